@@ -1,0 +1,231 @@
+//! The grid of particles that a cloth is woven from.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{Vec2, Vec3},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    transform::components::Transform,
+};
+
+use super::{ClothError, ClothMaterial, ClothParticles, Pins};
+
+/// The most particles that one cloth may have: 4096 × 4096.
+pub const MAX_PARTICLES: usize = 1 << 24;
+
+/// A cloth: a grid of `columns` × `rows` particles, `spacing` metres apart.
+///
+/// Spawning this is enough. It hangs by its top row from the entity's [`Transform`], laid out from (0, 0, 0)
+/// to (width, −height, 0) in the entity's frame; particle (row, column) has the index
+/// `row × columns + column` (paper, equation 1). Position, rotation and scale are respected at spawn; moved
+/// later, the transform carries the pinned particles along and the others follow by their springs.
+///
+/// Changing this component weaves a new cloth at rest.
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(ClothParticles, ClothMaterial, Pins, Transform)]
+pub struct Cloth {
+    /// Particles along the width, at least 2.
+    pub columns: u32,
+    /// Particles along the height, at least 2.
+    pub rows: u32,
+    /// Distance between neighbours in a row or column (m), before the transform's scale.
+    pub spacing: f32,
+}
+
+impl Default for Cloth {
+    /// 16 × 16 particles, 0.1 m apart.
+    fn default() -> Self {
+        Self::new(16, 16, 0.1)
+    }
+}
+
+impl Cloth {
+    /// A cloth of `columns` × `rows` particles, `spacing` metres apart.
+    pub const fn new(columns: u32, rows: u32, spacing: f32) -> Self {
+        Self {
+            columns,
+            rows,
+            spacing,
+        }
+    }
+
+    /// (columns − 1) × spacing (m).
+    pub fn width(&self) -> f32 {
+        self.columns.saturating_sub(1) as f32 * self.spacing
+    }
+
+    /// (rows − 1) × spacing (m).
+    pub fn height(&self) -> f32 {
+        self.rows.saturating_sub(1) as f32 * self.spacing
+    }
+
+    /// The checked grid under a transform's `scale`.
+    ///
+    /// # Errors
+    /// Too few or too many particles; a spacing that is zero, negative, not finite, or so small or large that
+    /// squared lengths leave the range of `f32`.
+    pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
+        let Self {
+            columns,
+            rows,
+            spacing,
+        } = *self;
+        if columns < 2 || rows < 2 {
+            return Err(ClothError::GridTooSmall { columns, rows });
+        }
+        if !(columns as usize)
+            .checked_mul(rows as usize)
+            .is_some_and(|count| count <= MAX_PARTICLES)
+        {
+            return Err(ClothError::GridTooLarge { columns, rows });
+        }
+        let name = "spacing (m)";
+        ClothError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
+        let scaled = spacing * scale.truncate();
+        let extent = scaled * Vec2::new(columns as f32, rows as f32);
+        let measurable = |length: f32| (length * length).is_normal();
+        if !(measurable(scaled.x) && measurable(scaled.y) && extent.length_squared().is_normal()) {
+            return Err(ClothError::Quantity {
+                quantity: "spacing × scale (m)",
+                expected: "of a size whose square a float can hold",
+                value: scaled.abs().min_element(),
+            });
+        }
+        Ok(ClothGrid {
+            columns,
+            rows,
+            spacing: scaled,
+        })
+    }
+}
+
+/// A grid known to be sound: what springs, trees and meshes are built from.
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
+pub struct ClothGrid {
+    columns: u32,
+    rows: u32,
+    /// Distance along the width and the height (m), scaled; negative under a mirroring scale.
+    spacing: Vec2,
+}
+
+impl ClothGrid {
+    /// Particles along the width.
+    pub fn columns(&self) -> u32 {
+        self.columns
+    }
+
+    /// Particles along the height.
+    pub fn rows(&self) -> u32 {
+        self.rows
+    }
+
+    /// Distance between neighbours along the width and the height (m), positive.
+    pub fn spacing(&self) -> Vec2 {
+        self.spacing.abs()
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    /// Whether there is no particle, as before the first tick.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// `row × columns + column` (paper, equation 1).
+    pub fn index(&self, row: u32, column: u32) -> u32 {
+        row * self.columns + column
+    }
+
+    /// Where a particle is at rest, in the cloth's frame (m).
+    pub fn rest_position(&self, row: u32, column: u32) -> Vec3 {
+        Vec3::new(
+            column as f32 * self.spacing.x,
+            -(row as f32) * self.spacing.y,
+            0.0,
+        )
+    }
+
+    /// All particles as (row, column), in the order of their indices.
+    pub fn cells(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let columns = self.columns;
+        (0..self.rows).flat_map(move |row| (0..columns).map(move |column| (row, column)))
+    }
+
+    /// The part of the cloth's area that a particle stands for (m²): half of it on a border, a quarter in a
+    /// corner, so that the particles' masses add up to density × area.
+    pub fn tributary_area(&self, row: u32, column: u32) -> f32 {
+        let share = |index: u32, count: u32| if index == 0 || index + 1 == count { 0.5 } else { 1.0 };
+        let spacing = self.spacing();
+        spacing.x * share(column, self.columns) * spacing.y * share(row, self.rows)
+    }
+
+    /// Two triangles a cell, as particle indices, counter-clockwise seen from +z (paper, Figure 1).
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + use<> {
+        let grid = *self;
+        (0..grid.rows.saturating_sub(1)).flat_map(move |row| {
+            (0..grid.columns.saturating_sub(1)).flat_map(move |column| {
+                let (a, b) = (grid.index(row, column), grid.index(row, column + 1));
+                let (c, d) = (grid.index(row + 1, column), grid.index(row + 1, column + 1));
+                [[a, c, b], [b, c, d]]
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lies_from_the_origin_to_width_and_minus_height() {
+        let cloth = Cloth::new(5, 3, 0.5);
+        let grid = cloth.grid(Vec3::ONE).expect("a sound grid");
+        assert_eq!(grid.rest_position(0, 0), Vec3::ZERO);
+        assert_eq!(
+            grid.rest_position(2, 4),
+            Vec3::new(cloth.width(), -cloth.height(), 0.0)
+        );
+        let indices: Vec<u32> = grid.cells().map(|(r, c)| grid.index(r, c)).collect();
+        assert_eq!(indices, (0..15).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn areas_add_up_and_triangles_face_forward() {
+        let grid = Cloth::new(5, 4, 0.5).grid(Vec3::ONE).expect("a sound grid");
+        let area: f32 = grid.cells().map(|(r, c)| grid.tributary_area(r, c)).sum();
+        assert_eq!(area, 2.0 * 1.5);
+        let positions: Vec<Vec3> = grid.cells().map(|(r, c)| grid.rest_position(r, c)).collect();
+        let mut triangle_area = 0.0;
+        for [a, b, c] in grid.triangles() {
+            let [a, b, c] = [a, b, c].map(|index| positions[index as usize]);
+            let normal = (b - a).cross(c - a);
+            assert!(normal.z > 0.0);
+            triangle_area += normal.z / 2.0;
+        }
+        assert_eq!(triangle_area, area);
+    }
+
+    #[test]
+    fn refuses_what_cannot_be_woven() {
+        assert!(matches!(
+            Cloth::new(1, 8, 0.1).grid(Vec3::ONE),
+            Err(ClothError::GridTooSmall { columns: 1, rows: 8 })
+        ));
+        assert!(matches!(
+            Cloth::new(u32::MAX, u32::MAX, 0.1).grid(Vec3::ONE),
+            Err(ClothError::GridTooLarge { .. })
+        ));
+        for spacing in [0.0, -0.1, f32::NAN, f32::INFINITY, 1e-30, 1e30] {
+            assert!(
+                matches!(
+                    Cloth::new(8, 8, spacing).grid(Vec3::ONE),
+                    Err(ClothError::Quantity { .. })
+                ),
+                "spacing {spacing}"
+            );
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! The search without a tree, in f64: what every query is held against.
+
+use crate::cloth::ClothParticles;
+
+use super::Probe;
+
+/// Indices of all particles that `probe` meets, found one by one in f64.
+pub fn brute_force(particles: &ClothParticles, probe: &Probe) -> Vec<u32> {
+    let meets = |&(_, position): &(usize, _)| probe.meets(position);
+    let positions = particles.positions().enumerate();
+    positions.filter(meets).map(|(index, _)| index as u32).collect()
+}

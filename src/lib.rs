@@ -1,0 +1,58 @@
+//! Cloth for [Bevy](https://bevyengine.org), with collisions found by a quad-tree of bounding spheres that is
+//! searched from the top down.
+//!
+//! Add [`DrapePlugins`](plugin::DrapePlugins), spawn a [`Cloth`](cloth::Cloth), and put a
+//! [`ClothCollider`](contact::ClothCollider) on whatever it shall touch:
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_drape::prelude::*;
+//!
+//! fn main() {
+//!     App::new()
+//!         .add_plugins((MinimalPlugins, DrapePlugins::default()))
+//!         .add_systems(Startup, |mut commands: Commands| {
+//!             commands.spawn(Cloth::new(32, 32, 0.1));
+//!             commands.spawn((ClothCollider::ball(0.5), Transform::from_xyz(1.5, -1.5, 0.3)));
+//!         })
+//!         .run();
+//! }
+//! ```
+//!
+//! # Where things are
+//! Each module uses only those above it in this list; all but the last are plain functions on plain data, free
+//! of systems and apps, to be tested and measured as such.
+//!
+//! | module | what lives there |
+//! |---|---|
+//! | [`cloth`] | what a cloth *is*: particles, grid, springs and their colours, material, pins |
+//! | [`solver`] | how it *moves*: Verlet, distance constraints, sub-steps |
+//! | [`hierarchy`] | how it is *searched*: the quad-tree, bound rules, the top-down query |
+//! | [`contact`] | what happens on *touch*: shapes, push-out, friction |
+//! | [`plugin`] | the ECS: plugins, system sets, components, messages, mesh, gizmos, diagnostics, rapier, panel |
+//!
+//! Lengths are metres, masses kilograms, times seconds throughout.
+
+pub mod cloth;
+pub mod contact;
+pub mod hierarchy;
+pub mod plugin;
+pub mod solver;
+
+/// What most games need, to be imported with `use bevy_drape::prelude::*`.
+pub mod prelude {
+    pub use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Corner, Pin, Pins};
+    pub use crate::contact::ClothCollider;
+    pub use crate::hierarchy::BoundRule;
+    //#[cfg(feature = "egui")]
+    //pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
+    #[cfg(feature = "gizmos")]
+    pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
+    pub use crate::plugin::{
+        ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothStats, ClothSystems, ClothTouchStarted,
+        ClothTouchStopped, DrapePlugins,
+    };
+    #[cfg(feature = "rapier")]
+    pub use crate::plugin::RapierClothCollider;
+    pub use crate::solver::ClothSettings;
+}

@@ -1,0 +1,106 @@
+//! Components of a cloth that the plugin adds and keeps.
+
+use std::ops::Range;
+
+use bevy::{
+    ecs::{change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent},
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use crate::{
+    cloth::{Cloth, ClothGrid, ClothMaterial, Pins, Springs},
+    contact::MovingBall,
+    hierarchy::{QuadTree, SphereBounds, TopDownQuery},
+    solver::{PinMotion, Stretch, TickStep},
+};
+
+/// What does not change while a cloth moves: its grid, springs and tree. Empty until the first tick.
+#[derive(Component, Debug, Default)]
+pub struct ClothTopology {
+    pub(super) grid: ClothGrid,
+    pub(super) springs: Springs,
+    pub(super) tree: QuadTree,
+    /// What all this was made from.
+    pub(super) woven: Option<(Cloth, ClothMaterial, Pins)>,
+}
+
+impl ClothTopology {
+    /// The grid of particles, scaled.
+    pub fn grid(&self) -> &ClothGrid {
+        &self.grid
+    }
+
+    /// The springs, colour by colour.
+    pub fn springs(&self) -> &Springs {
+        &self.springs
+    }
+
+    /// The quad-tree.
+    pub fn tree(&self) -> &QuadTree {
+        &self.tree
+    }
+}
+
+/// The bounding spheres of the last tick, and what the search through them found.
+#[derive(Component, Debug, Default)]
+pub struct ClothSearch {
+    pub(super) bounds: SphereBounds,
+    pub(super) query: TopDownQuery,
+}
+
+impl ClothSearch {
+    /// The bounding spheres.
+    pub fn bounds(&self) -> &SphereBounds {
+        &self.bounds
+    }
+
+    /// Which nodes were visited and which touched, and the candidates.
+    pub fn query(&self) -> &TopDownQuery {
+        &self.query
+    }
+}
+
+/// Figures of a cloth's last tick.
+#[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct ClothStats {
+    /// Time of all sub-steps (ms).
+    pub integrate_ms: f64,
+    /// Time to bring the bounding spheres up to date (ms).
+    pub rebuild_ms: f64,
+    /// Time of the search (ms).
+    pub query_ms: f64,
+    /// Nodes of the tree that were looked at.
+    pub nodes_visited: usize,
+    /// Leaves among them.
+    pub leaf_tests: usize,
+    /// Particles that were pushed out of a collider, once for each.
+    pub contacts: usize,
+    /// The largest stretch, at the end of the tick.
+    pub stretch: Stretch,
+}
+
+/// A ball that may touch the cloth in this tick, and its candidates.
+#[derive(Debug)]
+pub(super) struct BallInReach {
+    pub collider: Entity,
+    pub ball: MovingBall,
+    /// Its part of the query's candidates.
+    pub candidates: Range<usize>,
+    pub deepest: f32,
+}
+
+/// What one tick's systems hand on to the next. Kept so that a tick does not allocate.
+#[derive(Component, Debug, Default)]
+pub(super) struct ClothTick {
+    pub step: TickStep,
+    /// Pinned particles that the frame carries along.
+    pub pins: Vec<PinMotion>,
+    /// How far a particle may get in the tick by itself (m).
+    pub reach: f32,
+    pub balls: Vec<BallInReach>,
+    /// One flag a candidate: pushed out in this tick.
+    pub touched: Vec<bool>,
+    /// When the plugin last wrote the particles: whoever wrote them since was the game.
+    pub written: Option<Tick>,
+}

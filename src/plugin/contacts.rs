@@ -1,0 +1,141 @@
+//! Who touches whom, and the messages that say so.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::Entity,
+        lifecycle::Remove,
+        message::{Message, MessageWriter},
+        observer::On,
+        query::Has,
+        reflect::ReflectComponent,
+        system::Query,
+    },
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::ClothFault;
+
+/// A collider that a cloth touches.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct ClothContact {
+    /// The collider's entity.
+    pub collider: Entity,
+    /// Particles that it pushed in the last tick.
+    pub particles: usize,
+    /// How deep the deepest of them was found (m), before it was pushed out.
+    pub deepest_penetration: f32,
+}
+
+/// The colliders that a cloth touched in the last tick.
+#[derive(Component, Reflect, Debug, Default, Clone)]
+#[reflect(Component, Default, Debug, Clone)]
+pub struct ClothContacts {
+    now: Vec<ClothContact>,
+    /// Those told of, each with the most particles and the deepest penetration since the touch began.
+    told: Vec<ClothContact>,
+}
+
+impl ClothContacts {
+    /// All colliders touched.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &ClothContact> {
+        self.now.iter()
+    }
+
+    /// The contact with one collider, if it touches.
+    pub fn with(&self, collider: Entity) -> Option<&ClothContact> {
+        self.now.iter().find(|contact| contact.collider == collider)
+    }
+
+    /// Takes the contacts of a new tick; those of no particle are none.
+    pub(super) fn renew(&mut self, contacts: impl Iterator<Item = ClothContact>) {
+        self.now.clear();
+        self.now.extend(contacts.filter(|contact| contact.particles > 0));
+    }
+}
+
+/// A cloth and a collider have begun to touch.
+#[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct ClothTouchStarted {
+    /// The cloth's entity.
+    pub cloth: Entity,
+    /// The collider's entity.
+    pub collider: Entity,
+    /// Particles that touched in this tick.
+    pub particles: usize,
+    /// How deep the deepest was found in this tick (m).
+    pub deepest_penetration: f32,
+}
+
+/// A cloth and a collider no longer touch, or one of them is gone: the entities may no longer exist.
+#[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct ClothTouchStopped {
+    /// The cloth's entity.
+    pub cloth: Entity,
+    /// The collider's entity.
+    pub collider: Entity,
+    /// The most particles that touched in one tick, while the touch lasted.
+    pub particles: usize,
+    /// How deep the deepest was found, while the touch lasted (m).
+    pub deepest_penetration: f32,
+}
+
+/// Tells of the difference between this tick and the last.
+pub(super) fn tell_of_touches(
+    mut cloths: Query<(Entity, &mut ClothContacts, Has<ClothFault>)>,
+    mut started: MessageWriter<ClothTouchStarted>,
+    mut stopped: MessageWriter<ClothTouchStopped>,
+) {
+    for (cloth, mut contacts, faulty) in &mut cloths {
+        if contacts.now.is_empty() && contacts.told.is_empty() {
+            continue;
+        }
+        let ClothContacts { now, told } = &mut *contacts;
+        if faulty {
+            now.clear();
+        }
+        for contact in now.iter() {
+            if let Some(told) = told.iter_mut().find(|told| told.collider == contact.collider) {
+                told.particles = told.particles.max(contact.particles);
+                told.deepest_penetration = told.deepest_penetration.max(contact.deepest_penetration);
+            } else {
+                told.push(*contact);
+                started.write(ClothTouchStarted {
+                    cloth,
+                    collider: contact.collider,
+                    particles: contact.particles,
+                    deepest_penetration: contact.deepest_penetration,
+                });
+            }
+        }
+        told.retain(|told| {
+            let lasts = now.iter().any(|contact| contact.collider == told.collider);
+            if !lasts {
+                stopped.write(told.stopped(cloth));
+            }
+            lasts
+        });
+    }
+}
+
+/// A cloth that goes takes its touches with it.
+pub(super) fn tell_of_removed_cloths(
+    removed: On<Remove, ClothContacts>,
+    contacts: Query<&ClothContacts>,
+    mut stopped: MessageWriter<ClothTouchStopped>,
+) {
+    if let Ok(contacts) = contacts.get(removed.entity) {
+        stopped.write_batch(contacts.told.iter().map(|told| told.stopped(removed.entity)));
+    }
+}
+
+impl ClothContact {
+    fn stopped(&self, cloth: Entity) -> ClothTouchStopped {
+        ClothTouchStopped {
+            cloth,
+            collider: self.collider,
+            particles: self.particles,
+            deepest_penetration: self.deepest_penetration,
+        }
+    }
+}

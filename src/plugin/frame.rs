@@ -1,0 +1,60 @@
+//! The frame that a cloth is simulated in.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{Affine3A, Isometry3d, Vec3},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    transform::components::GlobalTransform,
+};
+
+use crate::cloth::ClothError;
+
+/// The frame that a cloth's particles are given in: its entity's global translation and rotation as of the
+/// last tick. The scale is already in the particles, so this frame measures metres.
+#[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct ClothFrame {
+    isometry: Isometry3d,
+    affine: Affine3A,
+}
+
+impl ClothFrame {
+    /// The frame of a global transform, and its scale.
+    ///
+    /// # Errors
+    /// [`ClothError::Transform`] for one that is not finite or that cannot be inverted.
+    pub(super) fn of(transform: &GlobalTransform) -> Result<(Self, Vec3), ClothError> {
+        let affine = transform.affine();
+        let (scale, rotation, translation) = affine.to_scale_rotation_translation();
+        let isometry = Isometry3d::new(translation, rotation);
+        let inverse = affine.inverse();
+        if affine.is_finite() && inverse.is_finite() && rotation.is_finite() && scale.min_element() != 0.0 {
+            Ok((Self { isometry, affine }, scale))
+        } else {
+            Err(ClothError::Transform {
+                transform: format!("{affine:?}"),
+            })
+        }
+    }
+
+    /// From the particles' frame to the world.
+    pub fn isometry(&self) -> Isometry3d {
+        self.isometry
+    }
+
+    /// A particle's position in the world (m).
+    pub fn to_world(&self, position: Vec3) -> Vec3 {
+        self.isometry * position
+    }
+
+    /// A point of the world in the particles' frame (m).
+    pub fn from_world(&self, point: Vec3) -> Vec3 {
+        self.isometry.inverse() * point
+    }
+
+    /// From the particles' frame to the entity's own, in which its mesh is given: takes the scale out.
+    #[cfg(feature = "mesh")]
+    pub(super) fn to_entity(self) -> Affine3A {
+        self.affine.inverse() * Affine3A::from(self.isometry)
+    }
+}

@@ -1,0 +1,79 @@
+//! Floor 3: the ECS: one plugin a file, and [`DrapePlugins`] over them.
+
+mod colliders;
+mod components;
+mod contacts;
+mod diagnostics;
+mod fault;
+mod frame;
+#[cfg(feature = "gizmos")]
+mod gizmos;
+#[cfg(feature = "mesh")]
+mod mesh;
+#[cfg(feature = "egui")]
+mod panel;
+mod prepare;
+#[cfg(feature = "rapier")]
+mod rapier;
+mod simulation;
+mod tick;
+
+use bevy::{
+    app::{FixedUpdate, PluginGroup, PluginGroupBuilder},
+    ecs::{intern::Interned, schedule::ScheduleLabel},
+};
+
+pub use components::{ClothSearch, ClothStats, ClothTopology};
+pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
+pub use diagnostics::ClothDiagnosticsPlugin;
+pub use fault::ClothFault;
+pub use frame::ClothFrame;
+#[cfg(feature = "gizmos")]
+pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
+#[cfg(feature = "mesh")]
+pub use mesh::{ClothMesh, ClothMeshPlugin};
+#[cfg(feature = "egui")]
+//pub use panel::{ClothColliderSpeed, ClothPanel, ClothPanelPlugin};
+#[cfg(feature = "rapier")]
+pub use rapier::{ClothRapierPlugin, RapierClothCollider};
+pub use simulation::{ClothGravity, ClothPlugin, ClothSystems};
+
+/// All that a game needs: the simulation, its diagnostics and, with their features, mesh, gizmos and the
+/// bridge to rapier. Add it after Bevy's own plugins.
+///
+/// The simulation runs in [`FixedUpdate`] unless [`new`](Self::new) is given another schedule. The panel of
+/// feature `egui` is a plugin of its own, `ClothPanelPlugin`.
+#[derive(Debug, Clone, Copy)]
+pub struct DrapePlugins {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl Default for DrapePlugins {
+    fn default() -> Self {
+        Self::new(FixedUpdate)
+    }
+}
+
+impl DrapePlugins {
+    /// With the simulation in `schedule`.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            schedule: schedule.intern(),
+        }
+    }
+}
+
+impl PluginGroup for DrapePlugins {
+    fn build(self) -> PluginGroupBuilder {
+        let group = PluginGroupBuilder::start::<Self>()
+            .add(ClothPlugin::new(self.schedule))
+            .add(ClothDiagnosticsPlugin::new(self.schedule));
+        #[cfg(feature = "mesh")]
+        let group = group.add(ClothMeshPlugin::new(self.schedule));
+        #[cfg(feature = "gizmos")]
+        let group = group.add(ClothGizmosPlugin);
+        #[cfg(feature = "rapier")]
+        let group = group.add(ClothRapierPlugin::new(self.schedule));
+        group
+    }
+}

@@ -1,0 +1,135 @@
+//! The plugin that simulates: system sets, schedule, gravity.
+
+use bevy::{
+    app::{App, FixedUpdate, Plugin},
+    ecs::{
+        intern::Interned,
+        reflect::ReflectResource,
+        resource::Resource,
+        schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet},
+    },
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::{
+    ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats, ClothTopology, ClothTouchStarted,
+    ClothTouchStopped,
+    colliders::{ColliderMotion, prepare_colliders},
+    components::ClothTick,
+    contacts::{tell_of_removed_cloths, tell_of_touches},
+    prepare::prepare_cloths,
+    tick::{integrate, query_collisions, rebuild_hierarchies},
+};
+use crate::{
+    cloth::{Cloth, ClothMaterial, ClothParticles, Pins},
+    contact::ClothCollider,
+    hierarchy::BoundRule,
+    solver::ClothSettings,
+};
+
+/// What happens in a tick, in this order. Each runs once a tick, not once a sub-step.
+///
+/// Systems that move colliders or write particles belong before [`Prepare`](Self::Prepare), those that read
+/// what came of it after [`WriteBack`](Self::WriteBack).
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ClothSystems {
+    /// Weaves new cloths, checks every input, takes over transforms, gravity and colliders.
+    Prepare,
+    /// Brings the bounding spheres up to date.
+    Rebuild,
+    /// Searches the trees from the top down, with bounds inflated by how far cloth and ball can move in the
+    /// tick: candidates.
+    Query,
+    /// All sub-steps: Verlet, one sweep over the springs, response on the candidates.
+    Integrate,
+    /// Messages and diagnostics.
+    WriteBack,
+}
+
+/// Acceleration of every cloth (m/s²), in the world; [`ClothSettings::gravity`] overrides it for one.
+#[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Resource, Default, Debug, Clone, PartialEq)]
+pub struct ClothGravity(pub Vec3);
+
+impl Default for ClothGravity {
+    /// 9.81 m/s² downwards.
+    fn default() -> Self {
+        Self(Vec3::new(0.0, -9.81, 0.0))
+    }
+}
+
+/// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws.
+#[derive(Debug, Clone, Copy)]
+pub struct ClothPlugin {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl Default for ClothPlugin {
+    fn default() -> Self {
+        Self::new(FixedUpdate)
+    }
+}
+
+impl ClothPlugin {
+    /// With its systems in `schedule`.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            schedule: schedule.intern(),
+        }
+    }
+}
+
+impl Plugin for ClothPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<Cloth>()
+            .register_type::<ClothMaterial>()
+            .register_type::<ClothParticles>()
+            .register_type::<Pins>()
+            .register_type::<ClothSettings>()
+            .register_type::<BoundRule>()
+            .register_type::<ClothCollider>()
+            .register_type::<ClothContacts>()
+            .register_type::<ClothFrame>()
+            .register_type::<ClothStats>()
+            .register_type::<ClothGravity>();
+        app.register_required_components::<Cloth, ClothSettings>()
+            .register_required_components::<Cloth, BoundRule>()
+            .register_required_components::<Cloth, ClothTopology>()
+            .register_required_components::<Cloth, ClothFrame>()
+            .register_required_components::<Cloth, ClothSearch>()
+            .register_required_components::<Cloth, ClothContacts>()
+            .register_required_components::<Cloth, ClothStats>()
+            .register_required_components::<Cloth, ClothTick>()
+            .register_required_components::<ClothCollider, ColliderMotion>();
+        app.init_resource::<ClothGravity>()
+            .add_message::<ClothTouchStarted>()
+            .add_message::<ClothTouchStopped>()
+            .add_observer(tell_of_removed_cloths)
+            .add_observer(ClothFault::forget_on_removal::<Cloth>)
+            .add_observer(ClothFault::forget_on_removal::<ClothCollider>);
+        app.configure_sets(
+            self.schedule,
+            (
+                ClothSystems::Prepare,
+                ClothSystems::Rebuild,
+                ClothSystems::Query,
+                ClothSystems::Integrate,
+                ClothSystems::WriteBack,
+            )
+                .chain(),
+        )
+        .add_systems(
+            self.schedule,
+            (
+                (prepare_colliders, prepare_cloths)
+                    .chain()
+                    .in_set(ClothSystems::Prepare),
+                rebuild_hierarchies.in_set(ClothSystems::Rebuild),
+                query_collisions.in_set(ClothSystems::Query),
+                integrate.in_set(ClothSystems::Integrate),
+                tell_of_touches.in_set(ClothSystems::WriteBack),
+            ),
+        );
+    }
+}

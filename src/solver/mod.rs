@@ -1,0 +1,13 @@
+//! Floor 1: how a cloth *moves*: Verlet integration and distance constraints in small sub-steps.
+//!
+//! A tick is cut into sub-steps of Δt. Each moves every particle by the paper's equation (2) and then sweeps
+//! once over the springs, which as XPBD constraints hold their rest lengths (Macklin et al. 2016; small steps
+//! instead of many sweeps: Macklin et al. 2019). With one sweep a sub-step no multiplier needs storing.
+
+mod settings;
+mod stretch;
+mod substep;
+
+pub use settings::ClothSettings;
+pub use stretch::Stretch;
+pub use substep::{PinMotion, SubStep, TickStep, advance};
