@@ -44,8 +44,8 @@ pub mod prelude {
     pub use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Corner, Pin, Pins};
     pub use crate::contact::ClothCollider;
     pub use crate::hierarchy::BoundRule;
-    //#[cfg(feature = "egui")]
-    //pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
+    #[cfg(feature = "egui")]
+    pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
     pub use crate::plugin::{

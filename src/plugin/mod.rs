@@ -33,7 +33,7 @@ pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
 #[cfg(feature = "egui")]
-//pub use panel::{ClothColliderSpeed, ClothPanel, ClothPanelPlugin};
+pub use panel::{ClothColliderSpeed, ClothPanel, ClothPanelPlugin};
 #[cfg(feature = "rapier")]
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
 pub use simulation::{ClothGravity, ClothPlugin, ClothSystems};
