@@ -1,6 +1,8 @@
 //! The cloth, the ball that rapier moves, light, and a floor to cast shadows on.
 
-use bevy::{camera::RenderTarget, core_pipeline::tonemapping::Tonemapping, prelude::*};
+use bevy::{
+    camera::RenderTarget, core_pipeline::tonemapping::Tonemapping, ecs::schedule::SingleThreadedExecutor, prelude::*,
+};
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{
     Collider, NoUserData, PhysicsSet, RapierPhysicsPlugin, RigidBody, TimestepMode, Velocity,
@@ -31,8 +33,12 @@ impl Plugin for ScenePlugin {
                 RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
                 DrapePlugins::default(),
             ))
+            // A tick is one chain of short systems: waking threads for each would cost as much as they do.
+            .edit_schedule(FixedUpdate, |schedule| {
+                schedule.set_executor(SingleThreadedExecutor::new());
+            })
             .insert_resource(ClearColor(Color::srgb(0.87, 0.91, 0.95)))
-            .insert_resource(GlobalAmbientLight { brightness: 500.0, ..default() })
+            .insert_resource(GlobalAmbientLight { brightness: 700.0, ..default() })
             .add_systems(Startup, (spawn_surroundings, spawn_ball, spawn_cloth))
             .add_systems(FixedFirst, remember_ball)
             .add_systems(FixedUpdate, drive_ball.before(PhysicsSet::SyncBackend))
@@ -48,12 +54,12 @@ pub fn camera(target: Option<Handle<Image>>) -> impl Bundle {
         target,
         // Needs no look-up table, unlike Bevy's default.
         Tonemapping::AcesFitted,
-        Transform::from_xyz(4.2, 3.6, 5.8).looking_at(FOCUS, Vec3::Y),
+        Transform::from_xyz(5.2, 2.9, 2.75).looking_at(FOCUS, Vec3::Y),
     )
 }
 
 /// What the camera looks at.
-pub const FOCUS: Vec3 = Vec3::new(0.0, 1.9, 0.0);
+pub const FOCUS: Vec3 = Vec3::new(0.0, 1.95, 0.2);
 
 /// When the ball last is this far past the cloth's plane, within `seconds` of simulation: the cloth is well
 /// wrapped around it.
@@ -82,7 +88,7 @@ pub fn cloth() -> impl Bundle {
 
 fn spawn_cloth(mut commands: Commands, mut materials: ResMut<Assets<StandardMaterial>>) {
     let material = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.75, 0.8, 0.95),
+        base_color: Color::srgb(0.33, 0.43, 0.72),
         perceptual_roughness: 0.9,
         double_sided: true,
         cull_mode: None,
@@ -129,7 +135,7 @@ fn spawn_ball(
 }
 
 /// Back and forth along z. Rapier does the moving.
-fn drive_ball(mut balls: Query<(&Transform, &ClothColliderSpeed, &mut Velocity), With<Ball>>) {
+pub fn drive_ball(mut balls: Query<(&Transform, &ClothColliderSpeed, &mut Velocity), With<Ball>>) {
     for (transform, speed, mut velocity) in &mut balls {
         let z = transform.translation.z;
         let onwards = if velocity.linear.z < 0.0 { -1.0 } else { 1.0 };
@@ -165,19 +171,19 @@ fn spawn_surroundings(
 ) {
     commands.spawn((
         Name::new("floor"),
-        Mesh3d(meshes.add(Plane3d::default().mesh().size(14.0, 14.0))),
+        Mesh3d(meshes.add(Plane3d::default().mesh().size(40.0, 40.0))),
         MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: Color::srgb(0.5, 0.53, 0.56),
+            base_color: Color::srgb(0.36, 0.38, 0.42),
             perceptual_roughness: 0.95,
             ..default()
         })),
     ));
     commands.spawn((
         DirectionalLight {
-            illuminance: 9_000.0,
+            illuminance: 7_000.0,
             shadow_maps_enabled: true,
             ..default()
         },
-        Transform::from_xyz(3.0, 8.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y),
+        Transform::from_xyz(4.0, 8.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y),
     ));
 }

@@ -29,7 +29,11 @@ impl View {
     /// Bevy's plugins for this view.
     pub fn plugins(self) -> PluginGroupBuilder {
         let log = LogPlugin {
-            filter: format!("{},wgpu_hal=off,bevy_render=error", bevy::log::DEFAULT_FILTER),
+            // Without a renderer, Bevy's own plugins complain that there is none.
+            filter: match self {
+                Self::Nothing => "bevy_render=off,bevy_gizmos_render=off".into(),
+                _ => "wgpu=error,bevy_render=error".into(),
+            },
             level: bevy::log::Level::WARN,
             ..default()
         };

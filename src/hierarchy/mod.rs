@@ -6,6 +6,8 @@
 mod bounds;
 mod brute;
 mod query;
+#[cfg(test)]
+mod tests;
 mod tree;
 
 pub use bounds::{BoundRule, SphereBounds};

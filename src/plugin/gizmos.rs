@@ -51,8 +51,8 @@ impl Default for ClothGizmos {
     fn default() -> Self {
         Self {
             draw_all: false,
-            untouched: Color::Srgba(Srgba::new(0.1, 0.75, 0.3, 0.8)),
-            touching: Color::Srgba(Srgba::new(1.0, 0.1, 0.1, 1.0)),
+            untouched: Color::Srgba(Srgba::new(0.35, 0.95, 0.45, 1.0)),
+            touching: Color::Srgba(Srgba::new(0.9, 0.05, 0.05, 1.0)),
             springs: Color::Srgba(Srgba::new(0.9, 0.8, 0.4, 0.6)),
             resolution: 16,
             smallest: 0.45,

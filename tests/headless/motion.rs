@@ -1,0 +1,232 @@
+//! How cloth moves: against closed forms.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::support::*;
+
+/// Only springs along rows and columns, so that each column hangs by itself.
+const COLUMNS_ALONE: ClothMaterial = ClothMaterial {
+    shear_compliance: f32::INFINITY,
+    bend_compliance: f32::INFINITY,
+    ..ClothMaterial::COTTON
+};
+
+/// ½ g t², to the discrete formula's own error of ½ g t Δt, and to the rounding of 1280 additions to 5 m.
+#[test]
+fn free_fall_is_exact() {
+    let mut app = app();
+    let material = ClothMaterial { damping: 0.0, ..default() };
+    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none(), material)).id();
+    tick(&mut app, 64);
+    let fallen = -position(&app, cloth, (0, 0)).y;
+    let exact = 0.5 * GRAVITY;
+    let discrete = exact + 0.5 * GRAVITY / (64.0 * 20.0);
+    assert!((fallen - discrete).abs() < 1280.0 * f32::EPSILON * 5.0, "{fallen} {discrete}");
+    assert!((fallen - exact).abs() < 1.01 * (discrete - exact));
+}
+
+/// Hooke's column: under its own weight a column of height H stretches by α ρ g H²/2, whatever the grid. A sweep
+/// that is as stiff as mass/Δt² leaves at most F (w + w) Δt² more a spring, F being the weight below it:
+/// (rows − 1)² g Δt² in all.
+#[test]
+fn a_hanging_cloth_has_the_stretch_that_its_compliance_gives() {
+    for (rows, spacing) in [(16, 0.1), (31, 0.05)] {
+        let mut app = app();
+        let compliance = 0.02;
+        let cloth = Cloth::new(6, rows, spacing);
+        let material = ClothMaterial { stretch_compliance: compliance, damping: 0.05, ..COLUMNS_ALONE };
+        let settings = ClothSettings { substeps: 40, ..default() };
+        let entity = app.world_mut().spawn((cloth, material, settings)).id();
+        tick(&mut app, 64 * 12);
+        let particles = particles(&app, entity);
+        let height = cloth.height();
+        let extension = compliance * material.areal_density * GRAVITY * height * height / 2.0;
+        let substep = TICK / 40.0;
+        let unfinished = ((rows - 1) as f32).powi(2) * GRAVITY * substep * substep;
+        for column in 0..6 {
+            let end = |row| particles.position((row, column)).expect("a particle");
+            let length = (1..rows).map(|row| end(row).distance(end(row - 1))).sum::<f32>();
+            let found = length - height;
+            assert!((found - extension).abs() < unfinished, "{rows} rows: {found} {extension} ± {unfinished}");
+        }
+        let speed = particles.largest_speed();
+        assert!(speed < 1e-3, "at rest, not {speed} m/s");
+    }
+}
+
+/// With all its springs a cloth hangs no longer than its columns alone would.
+#[test]
+fn shear_and_bend_springs_only_help() {
+    let mut app = app();
+    let cloth = Cloth::default();
+    let material = ClothMaterial { damping: 0.05, ..default() };
+    let entity = app.world_mut().spawn((cloth, material)).id();
+    tick(&mut app, 64 * 10);
+    let height = cloth.height();
+    let elastic = material.stretch_compliance * material.areal_density * GRAVITY * height * height / 2.0;
+    let unfinished = 15.0_f32.powi(2) * GRAVITY * (TICK / 20.0).powi(2);
+    for column in 0..16 {
+        let at = |row| position(&app, entity, (row, column));
+        let length = (1..16).map(|row| at(row).distance(at(row - 1))).sum::<f32>();
+        assert!(length < height + elastic + unfinished, "{length}");
+        assert!(length > height * 0.999, "{length}");
+    }
+}
+
+#[test]
+fn a_pinned_particle_never_moves() {
+    let mut app = app();
+    let pins = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Index(5), Pin::Cell(9, 9)]);
+    let cloth = app.world_mut().spawn((Cloth::default(), pins, Transform::from_xyz(3.0, 2.0, 1.0))).id();
+    app.world_mut().spawn((ClothCollider::ball(0.4), Transform::from_xyz(3.5, 1.5, 1.0)));
+    tick(&mut app, 1);
+    for _ in 0..100 {
+        tick(&mut app, 1);
+        for (cell, rest) in [
+            ((0, 0), Vec3::ZERO),
+            ((0, 5), Vec3::new(0.5, 0.0, 0.0)),
+            ((9, 9), Vec3::new(0.90000004, -0.90000004, 0.0)),
+        ] {
+            assert_eq!(position(&app, cloth, cell), rest);
+        }
+    }
+    assert!(position(&app, cloth, (15, 0)).y < -1.0, "the others do");
+}
+
+/// What is pinned follows a change of the pins at run time, and of the masses with them.
+#[test]
+fn pins_and_material_may_change_at_any_time() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    tick(&mut app, 10);
+    let before = position(&app, cloth, (0, 8));
+    change::<Pins>(&mut app, cloth, |pins| *pins = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]));
+    change::<ClothMaterial>(&mut app, cloth, |material| material.areal_density = 1.5);
+    tick(&mut app, 10);
+    assert!(position(&app, cloth, (0, 8)).y < before.y);
+    let mass: f32 = particles(&app, cloth).inverse_masses().filter(|&w| w > 0.0).map(f32::recip).sum();
+    let corners = 2.0 * 1.5 * 0.1 * 0.1 / 4.0;
+    assert!((mass - (1.5 * 1.5 * 1.5 - corners)).abs() < 1e-4, "{mass}");
+}
+
+/// The transform counts: place, turn and scale at spawn, parents too.
+#[test]
+fn the_transform_is_respected_at_spawn() {
+    let mut app = app();
+    let parent = app.world_mut().spawn(Transform::from_xyz(10.0, 0.0, 0.0)).id();
+    let turned = Transform::from_xyz(0.0, 5.0, 0.0)
+        .with_rotation(Quat::from_rotation_y(std::f32::consts::FRAC_PI_2))
+        .with_scale(Vec3::new(2.0, 3.0, 1.0));
+    let cloth = app.world_mut().spawn((Cloth::new(3, 3, 0.5), Pins::filter(|_, _| true), turned, ChildOf(parent))).id();
+    tick(&mut app, 2);
+    let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+    let corner = frame.to_world(position(&app, cloth, (2, 2)));
+    // Two metres wide along −z, three high.
+    assert!(corner.distance(Vec3::new(10.0, 2.0, -2.0)) < 1e-5, "{corner}");
+    assert!(frame.from_world(corner).distance(position(&app, cloth, (2, 2))) < 1e-5);
+}
+
+/// Gravity points down in the world however the cloth is turned; a cloth of its own has its own.
+#[test]
+fn gravity_is_the_worlds_unless_a_cloth_has_its_own() {
+    let mut app = app();
+    let turned = Transform::from_rotation(Quat::from_euler(EulerRot::XYZ, 0.7, -1.1, 2.0));
+    let free = (Cloth::new(3, 3, 0.5), Pins::none());
+    let turned = app.world_mut().spawn((free.clone(), turned)).id();
+    let gravity = Some(Vec3::X * 2.0);
+    let own = app.world_mut().spawn((free, ClothSettings { gravity, ..default() })).id();
+    app.insert_resource(ClothGravity(Vec3::NEG_Z));
+    tick(&mut app, 1);
+    let velocity = |cloth: Entity| {
+        let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+        frame.isometry().rotation * particles(&app, cloth).velocity(4).expect("a particle")
+    };
+    assert!(velocity(turned).distance(Vec3::NEG_Z * TICK) < 2e-4);
+    assert!(velocity(own).distance(Vec3::X * 2.0 * TICK) < 4e-4);
+}
+
+/// Pinned particles go with the transform, the others stay behind at first: a flag on a moving pole.
+#[test]
+fn a_moved_transform_carries_its_pins() {
+    let mut app = app();
+    let still = (Cloth::default(), ClothSettings { gravity: Some(Vec3::ZERO), ..default() });
+    let cloth = app.world_mut().spawn(still).id();
+    tick(&mut app, 2);
+    change::<Transform>(&mut app, cloth, |transform| transform.translation.z = 0.05);
+    tick(&mut app, 1);
+    let world = |app: &App, cell| {
+        let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+        frame.to_world(position(app, cloth, cell)).z
+    };
+    assert_eq!(world(&app, (0, 3)), 0.05);
+    assert!(world(&app, (15, 3)).abs() < 1e-3);
+    tick(&mut app, 64 * 30);
+    assert!((world(&app, (15, 3)) - 0.05).abs() < 0.05, "it has followed");
+}
+
+/// A kilometre away a cloth moves as at the origin, bit for bit: it lives in its own frame.
+#[test]
+fn a_kilometre_away_is_as_good_as_here() {
+    let mut app = app();
+    let free = (Cloth::default(), Pins::new([Pin::Corner(Corner::TopLeft)]));
+    let here = app.world_mut().spawn(free.clone()).id();
+    let there = app.world_mut().spawn((free, Transform::from_xyz(1000.0, -500.0, 1000.0))).id();
+    tick(&mut app, 128);
+    assert_eq!(particles(&app, here), particles(&app, there));
+}
+
+/// Games may write particles, and empty them to begin anew.
+#[test]
+fn games_may_write_particles() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
+    tick(&mut app, 1);
+    change::<ClothParticles>(&mut app, cloth, |particles| {
+        for index in 0..particles.len() {
+            particles.set_velocity(index, Vec3::Z * 3.0).expect("a particle");
+        }
+    });
+    tick(&mut app, 1);
+    let z = position(&app, cloth, (4, 4)).z;
+    assert!((z - 3.0 * TICK).abs() < 1e-3, "{z}");
+    change::<ClothParticles>(&mut app, cloth, |particles| *particles = default());
+    tick(&mut app, 1);
+    assert_eq!(position(&app, cloth, (4, 4)).z, 0.0);
+    change::<Cloth>(&mut app, cloth, |cloth| *cloth = Cloth::new(4, 5, 0.2));
+    tick(&mut app, 1);
+    assert_eq!(particles(&app, cloth).len(), 20);
+}
+
+/// Particles that come with a cloth are where it begins.
+#[test]
+fn a_cloth_may_begin_in_a_state_of_the_games_own() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
+    tick(&mut app, 30);
+    let fallen = particles(&app, cloth).clone();
+    let copy = app.world_mut().spawn((Cloth::default(), Pins::none(), fallen)).id();
+    tick(&mut app, 30);
+    assert_eq!(particles(&app, cloth), particles(&app, copy));
+}
+
+/// Neither the step's length nor a change of it blows a cloth up or changes its speed.
+#[test]
+fn huge_and_changing_steps_are_survived() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    app.world_mut().spawn((ClothCollider::ball(0.4), Transform::from_xyz(0.7, -1.0, 0.1)));
+    for seconds in [1.0 / 64.0, 1.0, 1.0 / 1000.0, 10.0, 1.0 / 64.0] {
+        app.world_mut().resource_mut::<Time<Fixed>>().set_timestep_seconds(seconds);
+        for substeps in [1, 20, 3] {
+            change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = substeps);
+            (0..20).for_each(|_| app.update());
+            let particles = particles(&app, cloth);
+            assert_eq!(particles.validate(), Ok(()));
+            assert!(app.world().get::<ClothFault>(cloth).is_none());
+        }
+    }
+    tick(&mut app, 64 * 20);
+    let stretch = app.world().get::<ClothStats>(cloth).expect("figures").stretch.structural;
+    assert!(stretch < 0.05, "{stretch}");
+}

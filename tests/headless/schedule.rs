@@ -1,0 +1,128 @@
+//! Where the systems run, in what order, and with which other plugins.
+
+use bevy::{
+    asset::AssetPlugin,
+    camera::visibility::VisibilityPlugin,
+    diagnostic::{DiagnosticPath, DiagnosticsStore},
+    ecs::schedule::{LogLevel, ScheduleBuildSettings},
+    gizmos::GizmoPlugin,
+    mesh::MeshPlugin,
+    prelude::*,
+};
+use bevy_drape::{
+    plugin::{ClothDiagnosticsPlugin, ClothGizmosPlugin, ClothMeshPlugin, ClothPlugin, ClothRapierPlugin},
+    prelude::*,
+};
+
+use crate::{rapier::app_with_rapier, support::*};
+
+/// Has the next run of these schedules fail if two systems of them may run in either order with effect.
+fn refuse_ambiguities(app: &mut App) {
+    let settings = || ScheduleBuildSettings {
+        ambiguity_detection: LogLevel::Error,
+        ..default()
+    };
+    app.edit_schedule(FixedUpdate, |schedule| {
+        schedule.set_build_settings(settings());
+    })
+    .edit_schedule(PostUpdate, |schedule| {
+        schedule.set_build_settings(settings());
+    });
+}
+
+#[test]
+fn no_system_is_ambiguous() {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        TransformPlugin,
+        AssetPlugin::default(),
+        MeshPlugin,
+        VisibilityPlugin,
+        GizmoPlugin,
+        DrapePlugins::default(),
+    ));
+    refuse_ambiguities(&mut app);
+    app.finish();
+    app.cleanup();
+    app.world_mut().spawn((Cloth::default(), ShowClothGizmos::default()));
+    app.insert_resource(bevy::time::TimeUpdateStrategy::FixedTimesteps(1));
+    (0..3).for_each(|_| app.update());
+}
+
+#[test]
+fn no_system_is_ambiguous_with_rapier() {
+    let mut app = app_with_rapier();
+    refuse_ambiguities(&mut app);
+    tick(&mut app, 2);
+}
+
+/// The test above can fail: a system in no order with ours is found.
+#[test]
+#[should_panic(expected = "ambiguous")]
+fn an_ambiguous_system_is_found() {
+    let mut app = app();
+    app.add_systems(FixedUpdate, |_: Query<&mut ClothParticles>| {});
+    refuse_ambiguities(&mut app);
+    tick(&mut app, 1);
+}
+
+/// Each plugin alone, in any order, in an app that has next to nothing.
+#[test]
+fn each_plugin_works_alone() {
+    let mut app = with_plugins(ClothPlugin::default());
+    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
+    tick(&mut app, 10);
+    assert!(position(&app, cloth, (0, 0)).y < -0.05);
+
+    let mut app = with_plugins((ClothDiagnosticsPlugin::default(), ClothMeshPlugin::default(), ClothGizmosPlugin, ClothRapierPlugin::default()));
+    app.world_mut().spawn(Cloth::default());
+    tick(&mut app, 2);
+}
+
+/// In another schedule the cloth moves by that schedule's time.
+#[test]
+fn the_schedule_is_the_games_choice() {
+    let mut app = with_plugins(DrapePlugins::new(Update));
+    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
+    tick(&mut app, 64);
+    let fallen = -position(&app, cloth, (0, 0)).y;
+    // Cotton's damping costs less than a fifth of it: v' = g − v D 60 Hz.
+    assert!(fallen > 0.4 * GRAVITY && fallen < 0.51 * GRAVITY, "{fallen}");
+}
+
+/// No time, no motion: a paused clock leaves a cloth bit for bit as it is.
+#[test]
+fn a_paused_clock_stops_the_cloth() {
+    for plugins in [DrapePlugins::default(), DrapePlugins::new(Update)] {
+        let mut app = with_plugins(plugins);
+        let cloth = app.world_mut().spawn(Cloth::default()).id();
+        tick(&mut app, 10);
+        app.world_mut().resource_mut::<Time<Virtual>>().pause();
+        app.update();
+        let before = particles(&app, cloth).clone();
+        (0..5).for_each(|_| app.update());
+        assert_eq!(particles(&app, cloth), &before);
+        app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+        (0..5).for_each(|_| app.update());
+        assert_ne!(particles(&app, cloth), &before);
+    }
+}
+
+#[test]
+fn diagnostics_are_measured() {
+    let mut app = app();
+    app.world_mut().spawn(Cloth::default());
+    app.world_mut().spawn((ClothCollider::ball(0.4), Transform::from_xyz(0.7, -0.7, 0.3)));
+    tick(&mut app, 30);
+    let store = app.world().resource::<DiagnosticsStore>();
+    let value = |path: &DiagnosticPath| store.get(path).and_then(|each| each.value()).expect("a value");
+    type Plugin = ClothDiagnosticsPlugin;
+    assert!(value(&Plugin::INTEGRATE) > 0.0);
+    assert!(value(&Plugin::REBUILD) > 0.0 && value(&Plugin::QUERY) > 0.0);
+    assert!(value(&Plugin::NODES_VISITED) > value(&Plugin::LEAF_TESTS));
+    assert!(value(&Plugin::LEAF_TESTS) >= value(&Plugin::CONTACTS));
+    assert!(value(&Plugin::CONTACTS) > 0.0);
+    let stretch = value(&Plugin::STRETCH);
+    assert!(stretch > 0.0 && stretch < 20.0, "{stretch} %");
+}

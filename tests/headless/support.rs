@@ -1,0 +1,56 @@
+//! The app that the tests drive, and short ways to ask it.
+
+use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy_drape::prelude::*;
+
+/// Bevy's fixed tick (s).
+pub const TICK: f32 = 1.0 / 64.0;
+
+/// Standard gravity as the plugin has it (m/s²).
+pub const GRAVITY: f32 = 9.81;
+
+/// An app in which every update is one tick.
+pub fn app() -> App {
+    with_plugins(DrapePlugins::default())
+}
+
+/// The same with other plugins of ours.
+pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, plugins))
+        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    app.finish();
+    app.cleanup();
+    // The first update of an app has no time in it.
+    app.update();
+    assert_eq!(app.world().resource::<Time<Fixed>>().elapsed_secs(), 0.0);
+    app
+}
+
+/// Runs so many ticks.
+pub fn tick(app: &mut App, ticks: usize) {
+    let before = app.world().resource::<Time<Fixed>>().elapsed_secs_f64();
+    (0..ticks).for_each(|_| app.update());
+    let passed = app.world().resource::<Time<Fixed>>().elapsed_secs_f64() - before;
+    assert!((passed - ticks as f64 * f64::from(TICK)).abs() < 1e-9, "{passed} s in {ticks} ticks");
+}
+
+/// An entity's particles.
+pub fn particles(app: &App, cloth: Entity) -> &ClothParticles {
+    app.world().get(cloth).expect("a cloth")
+}
+
+/// An entity's position of one particle.
+pub fn position(app: &App, cloth: Entity, cell: (u32, u32)) -> Vec3 {
+    particles(app, cloth).position(cell).expect("a particle")
+}
+
+/// A component of an entity, changed.
+pub fn change<C: Component<Mutability = bevy::ecs::component::Mutable>>(app: &mut App, entity: Entity, change: impl FnOnce(&mut C)) {
+    change(&mut app.world_mut().get_mut::<C>(entity).expect("the component"));
+}
+
+/// All messages since the last call.
+pub fn messages<M: Message>(app: &mut App) -> Vec<M> {
+    app.world_mut().resource_mut::<Messages<M>>().drain().collect()
+}
