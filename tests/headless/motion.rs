@@ -150,8 +150,8 @@ fn gravity_is_the_worlds_unless_a_cloth_has_its_own() {
 #[test]
 fn a_moved_transform_carries_its_pins() {
     let mut app = app();
-    let still = (Cloth::default(), ClothSettings { gravity: Some(Vec3::ZERO), ..default() });
-    let cloth = app.world_mut().spawn(still).id();
+    let damped = ClothMaterial { damping: 0.05, ..default() };
+    let cloth = app.world_mut().spawn((Cloth::default(), damped)).id();
     tick(&mut app, 2);
     change::<Transform>(&mut app, cloth, |transform| transform.translation.z = 0.05);
     tick(&mut app, 1);
@@ -162,7 +162,7 @@ fn a_moved_transform_carries_its_pins() {
     assert_eq!(world(&app, (0, 3)), 0.05);
     assert!(world(&app, (15, 3)).abs() < 1e-3);
     tick(&mut app, 64 * 30);
-    assert!((world(&app, (15, 3)) - 0.05).abs() < 0.05, "it has followed");
+    assert!((world(&app, (15, 3)) - 0.05).abs() < 1e-3, "it hangs below its pins again");
 }
 
 /// A kilometre away a cloth moves as at the origin, bit for bit: it lives in its own frame.
@@ -226,6 +226,7 @@ fn huge_and_changing_steps_are_survived() {
             assert!(app.world().get::<ClothFault>(cloth).is_none());
         }
     }
+    change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = 20);
     tick(&mut app, 64 * 20);
     let stretch = app.world().get::<ClothStats>(cloth).expect("figures").stretch.structural;
     assert!(stretch < 0.05, "{stretch}");

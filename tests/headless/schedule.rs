@@ -113,7 +113,7 @@ fn a_paused_clock_stops_the_cloth() {
 fn diagnostics_are_measured() {
     let mut app = app();
     app.world_mut().spawn(Cloth::default());
-    app.world_mut().spawn((ClothCollider::ball(0.4), Transform::from_xyz(0.7, -0.7, 0.3)));
+    app.world_mut().spawn((ClothCollider::default(), Transform::from_xyz(0.7, -0.7, 0.9)));
     tick(&mut app, 30);
     let store = app.world().resource::<DiagnosticsStore>();
     let value = |path: &DiagnosticPath| store.get(path).and_then(|each| each.value()).expect("a value");

@@ -18,6 +18,9 @@ pub fn app() -> App {
 pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, plugins))
+        .init_resource::<Heard<ClothTouchStarted>>()
+        .init_resource::<Heard<ClothTouchStopped>>()
+        .add_systems(Last, (hear::<ClothTouchStarted>, hear::<ClothTouchStopped>))
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
     app.finish();
     app.cleanup();
@@ -50,7 +53,21 @@ pub fn change<C: Component<Mutability = bevy::ecs::component::Mutable>>(app: &mu
     change(&mut app.world_mut().get_mut::<C>(entity).expect("the component"));
 }
 
+/// Messages since they were last asked for: Bevy keeps its own for two frames only.
+#[derive(Resource)]
+struct Heard<M: Message>(Vec<M>);
+
+impl<M: Message> Default for Heard<M> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+fn hear<M: Message + Clone>(messages: Option<ResMut<Messages<M>>>, mut heard: ResMut<Heard<M>>) {
+    heard.0.extend(messages.into_iter().flat_map(|mut messages| messages.drain().collect::<Vec<_>>()));
+}
+
 /// All messages since the last call.
 pub fn messages<M: Message>(app: &mut App) -> Vec<M> {
-    app.world_mut().resource_mut::<Messages<M>>().drain().collect()
+    std::mem::take(&mut app.world_mut().resource_mut::<Heard<M>>().0)
 }

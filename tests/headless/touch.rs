@@ -30,8 +30,8 @@ fn app_with_moving_balls() -> App {
 
 fn spawn_pass(app: &mut App) -> (Entity, Entity) {
     let cloth = app.world_mut().spawn(Cloth::default()).id();
-    let place = Transform::from_xyz(0.75, -1.0, -1.5);
-    let ball = app.world_mut().spawn((ClothCollider::ball(0.4), Moving(1.5), place)).id();
+    let place = Transform::from_xyz(0.75, -1.0, -2.2);
+    let ball = app.world_mut().spawn((ClothCollider::ball(0.4), Moving(2.2), place)).id();
     (cloth, ball)
 }
 
@@ -53,24 +53,34 @@ fn spheres_turn_red_and_back_green() {
         tick(&mut app, 10);
         assert_eq!(red(&app, cloth), [0; 5], "{rule:?}");
         assert!(messages::<ClothTouchStarted>(&mut app).is_empty());
-        tick(&mut app, 50);
-        let reds = red(&app, cloth);
-        assert!(reds[0] == 1 && reds[1] > 0 && reds[4] > 20 && reds[4] < 256, "{rule:?}: {reds:?}");
-        let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
-        let contact = contacts.with(ball).expect("a contact");
-        assert!(contact.particles > 10, "{contact:?}");
-        let stats = app.world().get::<ClothStats>(cloth).expect("figures");
-        assert_eq!(stats.contacts, contact.particles);
-        assert!(stats.leaf_tests > 0 && stats.leaf_tests < stats.nodes_visited);
+        // A cloth that is hit may bounce off for some ticks.
+        let mut most = 0;
+        for _ in 0..60 {
+            tick(&mut app, 1);
+            let stats = app.world().get::<ClothStats>(cloth).expect("figures");
+            let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
+            let particles = contacts.with(ball).map_or(0, |contact| contact.particles);
+            assert_eq!(stats.contacts, particles);
+            let reds = red(&app, cloth);
+            assert!(reds[4] >= particles, "what touches is red");
+            if particles > most {
+                most = particles;
+                assert!(reds[..4].iter().all(|&red| red > 0) && reds[4] < 256, "{rule:?}: {reds:?}");
+                assert!(stats.leaf_tests > 0 && stats.leaf_tests < stats.nodes_visited);
+            }
+        }
+        assert!(most > 10, "{rule:?}: {most}");
         let started = messages::<ClothTouchStarted>(&mut app);
-        assert!(matches!(started[..], [ClothTouchStarted { cloth: a, collider: b, particles: 1.., .. }] if a == cloth && b == ball), "{started:?}");
+        let first = started.first().expect("a message");
+        assert!(first.cloth == cloth && first.collider == ball && first.particles > 0, "{first:?}");
+        assert!(first.deepest_penetration > 0.0, "{first:?}");
         tick(&mut app, 400);
         assert_eq!(red(&app, cloth), [0; 5], "{rule:?}");
         let query = app.world().get::<ClothSearch>(cloth).expect("a search").query();
         assert!(query.states()[1..].iter().all(|state| *state == NodeState::Unvisited));
-        let started = messages::<ClothTouchStarted>(&mut app).len();
+        let started = started.len() + messages::<ClothTouchStarted>(&mut app).len();
         let stopped = messages::<ClothTouchStopped>(&mut app);
-        assert_eq!(stopped.len(), started + 1, "what starts stops");
+        assert_eq!(stopped.len(), started, "what starts stops");
         assert!(stopped.iter().all(|told| told.deepest_penetration > 0.0 && told.particles > 0));
         assert!(stopped.iter().any(|told| told.particles > 10));
     }
