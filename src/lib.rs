@@ -44,15 +44,20 @@ pub mod prelude {
     pub use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Corner, Pin, Pins};
     pub use crate::contact::ClothCollider;
     pub use crate::hierarchy::BoundRule;
-    #[cfg(feature = "egui")]
-    pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
-    #[cfg(feature = "gizmos")]
-    pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
-    pub use crate::plugin::{
-        ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothStats, ClothSystems, ClothTouchStarted,
-        ClothTouchStopped, DrapePlugins,
-    };
     #[cfg(feature = "rapier")]
     pub use crate::plugin::RapierClothCollider;
+    #[cfg(feature = "egui")]
+    pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
+    pub use crate::plugin::{
+        ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothStats, ClothSystems,
+        ClothTouchStarted, ClothTouchStopped, DrapePlugins,
+    };
+    #[cfg(feature = "gizmos")]
+    pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
     pub use crate::solver::ClothSettings;
 }
+
+/// The README's snippets, compiled with the doc tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

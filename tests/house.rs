@@ -7,26 +7,45 @@ use std::{
 };
 
 /// Each floor's modules, from the ground up. Modules of one floor may not import each other.
-const FLOORS: [&[&str]; 4] = [&["cloth"], &["solver", "hierarchy"], &["contact"], &["plugin"]];
+const FLOORS: [&[&str]; 4] = [
+    &["cloth"],
+    &["solver", "hierarchy"],
+    &["contact"],
+    &["plugin"],
+];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let entries = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").path());
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
     let below = folders.iter().flat_map(|folder| sources(folder));
-    below.chain(files).filter(|path| path.extension().is_some_and(|end| end == "rs")).collect()
+    below
+        .chain(files)
+        .filter(|path| path.extension().is_some_and(|end| end == "rs"))
+        .collect()
 }
 
 /// The code of a file, without comments and without what follows `#[cfg(test)]`.
 fn code(path: &Path) -> String {
     let text = fs::read_to_string(path).expect("a source file");
-    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-    code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    let code = text
+        .split("#[cfg(test)]\nmod tests {")
+        .next()
+        .unwrap_or_default();
+    code.lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 /// Modules of this crate that a text names, as `crate::name` or in `crate::{name, …}`.
 fn modules_named(code: &str) -> Vec<String> {
     let name = |text: &str| -> String {
-        text.trim_start().chars().take_while(|each| each.is_alphanumeric() || *each == '_').collect()
+        text.trim_start()
+            .chars()
+            .take_while(|each| each.is_alphanumeric() || *each == '_')
+            .collect()
     };
     let mut names = Vec::new();
     for after in code.split("crate::").skip(1) {
@@ -62,8 +81,15 @@ fn floors_import_downwards_only() {
             assert!(!files.is_empty(), "{module}");
             for file in files.iter().filter(|file| !file.ends_with("tests.rs")) {
                 for name in modules_named(&code(file)) {
-                    let allowed = name == *module || FLOORS[..floor].iter().any(|below| below.contains(&name.as_str()));
-                    assert!(allowed, "{} of floor {floor} imports {name}", file.display());
+                    let allowed = name == *module
+                        || FLOORS[..floor]
+                            .iter()
+                            .any(|below| below.contains(&name.as_str()));
+                    assert!(
+                        allowed,
+                        "{} of floor {floor} imports {name}",
+                        file.display()
+                    );
                 }
             }
         }
@@ -74,8 +100,21 @@ fn floors_import_downwards_only() {
 fn lower_floors_hold_no_ecs() {
     for module in FLOORS[..3].iter().copied().flatten() {
         for file in sources(&source_folder().join(module)) {
-            for word in ["Query<", "Res<", "ResMut<", "Commands", "Resource", "App", "bevy::app", "World"] {
-                assert!(!code(&file).contains(word), "{} holds {word}", file.display());
+            for word in [
+                "Query<",
+                "Res<",
+                "ResMut<",
+                "Commands",
+                "Resource",
+                "App",
+                "bevy::app",
+                "World",
+            ] {
+                assert!(
+                    !code(&file).contains(word),
+                    "{} holds {word}",
+                    file.display()
+                );
             }
         }
     }
@@ -83,15 +122,28 @@ fn lower_floors_hold_no_ecs() {
 
 #[test]
 fn every_folder_is_on_a_floor() {
-    let entries = fs::read_dir(source_folder()).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let entries = fs::read_dir(source_folder())
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").path());
     for path in entries.filter(|path| path.is_dir()) {
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        assert!(FLOORS.iter().any(|modules| modules.contains(&name.as_str())), "{name} is on no floor");
+        let name = path
+            .file_name()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        assert!(
+            FLOORS
+                .iter()
+                .any(|modules| modules.contains(&name.as_str())),
+            "{name} is on no floor"
+        );
     }
 }
 
 #[test]
 fn grouped_and_single_imports_are_read() {
-    let names = modules_named("use crate::cloth::Pin;\nuse crate::{\n  solver::{A, B},\n  plugin,\n};\nfn f() { crate::contact::g() }");
+    let names = modules_named(
+        "use crate::cloth::Pin;\nuse crate::{\n  solver::{A, B},\n  plugin,\n};\nfn f() { crate::contact::g() }",
+    );
     assert_eq!(names, ["cloth", "solver", "plugin", "contact"]);
 }

@@ -29,9 +29,22 @@ const KEYS: [(&str, &str); 10] = [
 /// Runs the scene in a window until it is closed.
 pub fn run() -> ExitCode {
     let exit = App::new()
-        .add_plugins((View::Window.plugins(), ScenePlugin, ClothPanelPlugin, PanOrbitCameraPlugin))
+        .add_plugins((
+            View::Window.plugins(),
+            ScenePlugin,
+            ClothPanelPlugin,
+            PanOrbitCameraPlugin,
+        ))
         .add_systems(Startup, spawn_camera)
-        .add_systems(Update, (free_mouse_for_panel, press_clock_keys, press_cloth_keys, press_ball_keys))
+        .add_systems(
+            Update,
+            (
+                free_mouse_for_panel,
+                press_clock_keys,
+                press_cloth_keys,
+                press_ball_keys,
+            ),
+        )
         .add_systems(EguiPrimaryContextPass, show_keys)
         .run();
     match exit {
@@ -81,7 +94,12 @@ fn press_clock_keys(
 
 fn press_cloth_keys(
     keys: Res<ButtonInput<KeyCode>>,
-    mut cloths: Query<(&mut ShowClothGizmos, &mut BoundRule, &mut ClothMaterial, &mut ClothParticles)>,
+    mut cloths: Query<(
+        &mut ShowClothGizmos,
+        &mut BoundRule,
+        &mut ClothMaterial,
+        &mut ClothParticles,
+    )>,
 ) {
     for (mut show, mut rule, mut material, mut particles) in &mut cloths {
         if keys.just_pressed(KeyCode::KeyL) {

@@ -87,7 +87,9 @@ pub fn run(view: View, seconds: f64, out: &Path, json: bool) -> ExitCode {
             FixedUpdate,
             (
                 start_tick.before(scene::drive_ball),
-                start_cloth.after(PhysicsSet::Writeback).before(ClothSystems::Prepare),
+                start_cloth
+                    .after(PhysicsSet::Writeback)
+                    .before(ClothSystems::Prepare),
                 end_tick.after(ClothSystems::WriteBack),
             ),
         )
@@ -95,11 +97,16 @@ pub fn run(view: View, seconds: f64, out: &Path, json: bool) -> ExitCode {
     app.finish();
     app.cleanup();
 
-    let timestep = app.world().resource::<Time<Fixed>>().timestep().as_secs_f64();
+    let timestep = app
+        .world()
+        .resource::<Time<Fixed>>()
+        .timestep()
+        .as_secs_f64();
     let ticks = (seconds / timestep).round().max(1.0) as u64;
     let picture_tick = (scene::best_moment(seconds) / timestep).round() as u64;
     let bar = ProgressBar::new(ticks).with_style(
-        ProgressStyle::with_template("{bar:40} {pos}/{len} ticks, {eta} left").unwrap_or_else(|_| ProgressStyle::default_bar()),
+        ProgressStyle::with_template("{bar:40} {pos}/{len} ticks, {eta} left")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
     let start = Instant::now();
     let mut drawing = Duration::ZERO;
@@ -120,8 +127,18 @@ pub fn run(view: View, seconds: f64, out: &Path, json: bool) -> ExitCode {
     }
     bar.finish_and_clear();
 
-    let adapter = app.world().get_resource::<RenderAdapterInfo>().map(|info| info.name.clone());
-    let report = report(&mut app, ticks, seconds, (start.elapsed() - drawing).as_secs_f64(), picture, adapter);
+    let adapter = app
+        .world()
+        .get_resource::<RenderAdapterInfo>()
+        .map(|info| info.name.clone());
+    let report = report(
+        &mut app,
+        ticks,
+        seconds,
+        (start.elapsed() - drawing).as_secs_f64(),
+        picture,
+        adapter,
+    );
     if json {
         match serde_json::to_string(&report) {
             Ok(text) => println!("{text}"),
@@ -147,7 +164,13 @@ fn report(
     let mut cloths = app.world_mut().query::<(&ClothTopology, &ClothSettings)>();
     let (particles, springs, substeps) = cloths
         .iter(app.world())
-        .map(|(topology, settings)| (topology.grid().len(), topology.springs().len(), settings.substeps))
+        .map(|(topology, settings)| {
+            (
+                topology.grid().len(),
+                topology.springs().len(),
+                settings.substeps,
+            )
+        })
         .next()
         .unwrap_or_default();
     let mut measured = app.world_mut().resource_mut::<Measured>();
@@ -176,18 +199,41 @@ fn print_report(report: &Report) {
     let speed = report.simulated_seconds / report.wall_seconds;
     let over = |milliseconds| 100.0 * (milliseconds / report.solver_ms - 1.0);
     println!("The ball and the cloth, headless");
-    println!("  cloth                {} particles, {} springs, {} sub-steps a tick", report.particles, report.springs, report.substeps);
-    println!("  ticks                {} ({} s simulated in {:.2} s, {speed:.0} × real time)", report.ticks, report.simulated_seconds, report.wall_seconds);
-    println!("  a tick (median)      {:.4} ms: solver {:.4} ms, cloth's systems in all {:.4} ms, rapier {:.4} ms", report.tick_ms, report.solver_ms, report.cloth_ms, report.rapier_ms);
-    println!("  beyond the solver    {:.0} % for the cloth's systems, {:.0} % for the whole tick", over(report.cloth_ms), over(report.tick_ms));
-    println!("  contacts             {} particles at most, {} nodes visited at most", report.contacts, report.nodes_visited);
-    println!("  largest stretch      {:.2} %", report.largest_stretch_percent);
-    println!("  deepest penetration  {:.2} mm found within a tick, {:.4} mm left after one", report.deepest_penetration_mm, report.deepest_left_mm);
-    match (&report.picture, &report.adapter) {
-        (Some(path), Some(adapter)) => println!("  picture              {}, drawn by {adapter}", path.display()),
-        (None, Some(adapter)) => println!("  picture              none: {adapter} did not finish one"),
-        _ => println!("  picture              none: no graphics adapter found"),
-    }
+    println!(
+        "  cloth                {} particles, {} springs, {} sub-steps a tick",
+        report.particles, report.springs, report.substeps
+    );
+    println!(
+        "  ticks                {} ({} s simulated in {:.2} s, {speed:.0} × real time)",
+        report.ticks, report.simulated_seconds, report.wall_seconds
+    );
+    println!(
+        "  a tick (median)      {:.4} ms: solver {:.4} ms, cloth's systems in all {:.4} ms, rapier {:.4} ms",
+        report.tick_ms, report.solver_ms, report.cloth_ms, report.rapier_ms
+    );
+    println!(
+        "  beyond the solver    {:.0} % for the cloth's systems, {:.0} % for the whole tick",
+        over(report.cloth_ms),
+        over(report.tick_ms)
+    );
+    println!(
+        "  contacts             {} particles at most, {} nodes visited at most",
+        report.contacts, report.nodes_visited
+    );
+    println!(
+        "  largest stretch      {:.2} %",
+        report.largest_stretch_percent
+    );
+    println!(
+        "  deepest penetration  {:.2} mm found within a tick, {:.4} mm left after one",
+        report.deepest_penetration_mm, report.deepest_left_mm
+    );
+    let picture = match (&report.picture, &report.adapter) {
+        (Some(path), Some(adapter)) => format!("{}, drawn by {adapter}", path.display()),
+        (None, Some(adapter)) => format!("none: {adapter} did not finish one"),
+        _ => "none: no graphics adapter found".into(),
+    };
+    println!("  picture              {picture}");
 }
 
 fn median(values: &mut [f64]) -> f64 {
@@ -212,7 +258,10 @@ fn take_picture(app: &mut App, out: &Path) -> Option<PathBuf> {
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     let target = Image::new_target_texture(1280, 720, TextureFormat::Rgba8UnormSrgb, None);
     let target = app.world_mut().resource_mut::<Assets<Image>>().add(target);
-    let camera = app.world_mut().spawn(scene::camera(Some(target.clone()))).id();
+    let camera = app
+        .world_mut()
+        .spawn(scene::camera(Some(target.clone())))
+        .id();
     // A few frames, for assets, pipelines and shadows to be ready.
     (0..8).for_each(|_| app.update());
     let screenshot = app
@@ -252,7 +301,13 @@ fn end_tick(mut measured: ResMut<Measured>) {
 }
 
 fn look_at_the_worst(
-    cloths: Query<(&ClothStats, &ClothContacts, &ClothFrame, &ClothParticles, &ClothSettings)>,
+    cloths: Query<(
+        &ClothStats,
+        &ClothContacts,
+        &ClothFrame,
+        &ClothParticles,
+        &ClothSettings,
+    )>,
     balls: Query<(&Transform, &ClothCollider), With<Ball>>,
     mut measured: ResMut<Measured>,
 ) {

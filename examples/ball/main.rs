@@ -69,6 +69,10 @@ fn main() -> ExitCode {
         }
         eprintln!("No window can be opened here: running headless.");
     }
-    let view = if View::Offscreen.can_be_had() { View::Offscreen } else { View::Nothing };
+    let view = if View::Offscreen.can_be_had() {
+        View::Offscreen
+    } else {
+        View::Nothing
+    };
     headless::run(view, arguments.seconds, &arguments.out, arguments.json)
 }

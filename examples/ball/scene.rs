@@ -1,7 +1,8 @@
 //! The cloth, the ball that rapier moves, light, and a floor to cast shadows on.
 
 use bevy::{
-    camera::RenderTarget, core_pipeline::tonemapping::Tonemapping, ecs::schedule::SingleThreadedExecutor, prelude::*,
+    camera::RenderTarget, core_pipeline::tonemapping::Tonemapping,
+    ecs::schedule::SingleThreadedExecutor, prelude::*,
 };
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{
@@ -27,7 +28,11 @@ pub struct ScenePlugin;
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
         // Rapier steps with the cloth, once a fixed tick.
-        let dt = app.world().resource::<Time<Fixed>>().timestep().as_secs_f32();
+        let dt = app
+            .world()
+            .resource::<Time<Fixed>>()
+            .timestep()
+            .as_secs_f32();
         app.insert_resource(TimestepMode::Fixed { dt, substeps: 1 })
             .add_plugins((
                 RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
@@ -38,7 +43,10 @@ impl Plugin for ScenePlugin {
                 schedule.set_executor(SingleThreadedExecutor::new());
             })
             .insert_resource(ClearColor(Color::srgb(0.87, 0.91, 0.95)))
-            .insert_resource(GlobalAmbientLight { brightness: 700.0, ..default() })
+            .insert_resource(GlobalAmbientLight {
+                brightness: 700.0,
+                ..default()
+            })
             .add_systems(Startup, (spawn_surroundings, spawn_ball, spawn_cloth))
             .add_systems(FixedFirst, remember_ball)
             .add_systems(FixedUpdate, drive_ball.before(PhysicsSet::SyncBackend))
@@ -48,7 +56,9 @@ impl Plugin for ScenePlugin {
 
 /// The camera of either view, with its image if it has one.
 pub fn camera(target: Option<Handle<Image>>) -> impl Bundle {
-    let target = target.map_or_else(RenderTarget::default, |image| RenderTarget::Image(image.into()));
+    let target = target.map_or_else(RenderTarget::default, |image| {
+        RenderTarget::Image(image.into())
+    });
     (
         Camera3d::default(),
         target,
@@ -81,7 +91,10 @@ pub fn cloth() -> impl Bundle {
         Pins::top_row(),
         ClothMaterial::COTTON,
         // Keeps the flat triangles between the particles out of the ball.
-        ClothSettings { particle_radius: 0.02, ..default() },
+        ClothSettings {
+            particle_radius: 0.02,
+            ..default()
+        },
         Transform::from_xyz(-0.5 * SPACING * (PARTICLES - 1) as f32, TOP, 0.0),
     )
 }
@@ -139,7 +152,11 @@ pub fn drive_ball(mut balls: Query<(&Transform, &ClothColliderSpeed, &mut Veloci
     for (transform, speed, mut velocity) in &mut balls {
         let z = transform.translation.z;
         let onwards = if velocity.linear.z < 0.0 { -1.0 } else { 1.0 };
-        let direction = if z.abs() < TURNING { onwards } else { -z.signum() };
+        let direction = if z.abs() < TURNING {
+            onwards
+        } else {
+            -z.signum()
+        };
         // A still ball keeps the way that it will go.
         velocity.linear = Vec3::Z * direction * speed.0.max(f32::MIN_POSITIVE);
     }

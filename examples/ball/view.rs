@@ -49,7 +49,10 @@ impl View {
             });
         }
         let settings = match self {
-            Self::Nothing => WgpuSettings { backends: None, ..default() },
+            Self::Nothing => WgpuSettings {
+                backends: None,
+                ..default()
+            },
             _ => WgpuSettings::default(),
         };
         plugins
@@ -75,7 +78,10 @@ impl View {
     /// Whether [`try_out`](Self::try_out) goes well. Asked of another process, since neither winit nor wgpu
     /// nor a driver can be trusted to return an error.
     pub fn can_be_had(self) -> bool {
-        if self == Self::Window && cfg!(target_os = "linux") && env::var_os("DISPLAY").is_none_or(|name| name.is_empty()) {
+        if self == Self::Window
+            && cfg!(target_os = "linux")
+            && env::var_os("DISPLAY").is_none_or(|name| name.is_empty())
+        {
             return false;
         }
         let name = match self {

@@ -72,7 +72,9 @@ pub enum ClothError {
         inverse_mass: f32,
     },
     /// A rapier collider that a cloth cannot touch.
-    #[error("a rapier collider must be a ball, scaled alike along its axes, for cloth to touch it; this one is {shape}")]
+    #[error(
+        "a rapier collider must be a ball, scaled alike along its axes, for cloth to touch it; this one is {shape}"
+    )]
     NotABall {
         /// The kind of shape that it is.
         shape: String,

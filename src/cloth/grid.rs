@@ -73,9 +73,9 @@ impl Cloth {
         if columns < 2 || rows < 2 {
             return Err(ClothError::GridTooSmall { columns, rows });
         }
-        if !(columns as usize)
+        if (columns as usize)
             .checked_mul(rows as usize)
-            .is_some_and(|count| count <= MAX_PARTICLES)
+            .is_none_or(|count| count > MAX_PARTICLES)
         {
             return Err(ClothError::GridTooLarge { columns, rows });
         }
@@ -157,7 +157,13 @@ impl ClothGrid {
     /// The part of the cloth's area that a particle stands for (m²): half of it on a border, a quarter in a
     /// corner, so that the particles' masses add up to density × area.
     pub fn tributary_area(&self, row: u32, column: u32) -> f32 {
-        let share = |index: u32, count: u32| if index == 0 || index + 1 == count { 0.5 } else { 1.0 };
+        let share = |index: u32, count: u32| {
+            if index == 0 || index + 1 == count {
+                0.5
+            } else {
+                1.0
+            }
+        };
         let spacing = self.spacing();
         spacing.x * share(column, self.columns) * spacing.y * share(row, self.rows)
     }
@@ -197,7 +203,10 @@ mod tests {
         let grid = Cloth::new(5, 4, 0.5).grid(Vec3::ONE).expect("a sound grid");
         let area: f32 = grid.cells().map(|(r, c)| grid.tributary_area(r, c)).sum();
         assert_eq!(area, 2.0 * 1.5);
-        let positions: Vec<Vec3> = grid.cells().map(|(r, c)| grid.rest_position(r, c)).collect();
+        let positions: Vec<Vec3> = grid
+            .cells()
+            .map(|(r, c)| grid.rest_position(r, c))
+            .collect();
         let mut triangle_area = 0.0;
         for [a, b, c] in grid.triangles() {
             let [a, b, c] = [a, b, c].map(|index| positions[index as usize]);
@@ -212,7 +221,10 @@ mod tests {
     fn refuses_what_cannot_be_woven() {
         assert!(matches!(
             Cloth::new(1, 8, 0.1).grid(Vec3::ONE),
-            Err(ClothError::GridTooSmall { columns: 1, rows: 8 })
+            Err(ClothError::GridTooSmall {
+                columns: 1,
+                rows: 8
+            })
         ));
         assert!(matches!(
             Cloth::new(u32::MAX, u32::MAX, 0.1).grid(Vec3::ONE),

@@ -96,11 +96,26 @@ impl ClothMaterial {
             "positive",
         )?;
         let range = "zero or more, and finite";
-        check(self.stretch_compliance, finite, "stretch compliance (m/N)", range)?;
+        check(
+            self.stretch_compliance,
+            finite,
+            "stretch compliance (m/N)",
+            range,
+        )?;
         check(self.friction, finite, "friction μ", range)?;
         let range = "zero or more";
-        check(self.shear_compliance, not_negative, "shear compliance (m/N)", range)?;
-        check(self.bend_compliance, not_negative, "bend compliance (m/N)", range)?;
+        check(
+            self.shear_compliance,
+            not_negative,
+            "shear compliance (m/N)",
+            range,
+        )?;
+        check(
+            self.bend_compliance,
+            not_negative,
+            "bend compliance (m/N)",
+            range,
+        )?;
         let unit = |v: f32| (0.0..=1.0).contains(&v);
         check(self.damping, unit, "damping D", "from 0 to 1")?;
         Ok(())
@@ -117,12 +132,24 @@ mod tests {
             assert_eq!(material.validate(), Ok(()), "{name}");
         }
         let bad: [(fn(&mut ClothMaterial, f32), &[f32], &str); 6] = [
-            (|m, v| m.areal_density = v, &[0.0, -1.0, f32::NAN, f32::INFINITY], "density"),
-            (|m, v| m.stretch_compliance = v, &[-1.0, f32::NAN, f32::INFINITY], "stretch"),
+            (
+                |m, v| m.areal_density = v,
+                &[0.0, -1.0, f32::NAN, f32::INFINITY],
+                "density",
+            ),
+            (
+                |m, v| m.stretch_compliance = v,
+                &[-1.0, f32::NAN, f32::INFINITY],
+                "stretch",
+            ),
             (|m, v| m.shear_compliance = v, &[-1.0, f32::NAN], "shear"),
             (|m, v| m.bend_compliance = v, &[-1.0, f32::NAN], "bend"),
             (|m, v| m.damping = v, &[-0.1, 1.1, f32::NAN], "damping"),
-            (|m, v| m.friction = v, &[-0.1, f32::NAN, f32::INFINITY], "friction"),
+            (
+                |m, v| m.friction = v,
+                &[-0.1, f32::NAN, f32::INFINITY],
+                "friction",
+            ),
         ];
         for (set, values, name) in bad {
             for &value in values {

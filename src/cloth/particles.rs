@@ -77,7 +77,10 @@ impl ClothParticles {
     pub fn at_rest(grid: &ClothGrid, material: &ClothMaterial) -> Result<Self, ClothError> {
         let mut particles = Self {
             columns: grid.columns(),
-            position: grid.cells().map(|(r, c)| grid.rest_position(r, c)).collect(),
+            position: grid
+                .cells()
+                .map(|(r, c)| grid.rest_position(r, c))
+                .collect(),
             displacement: vec![Vec3::ZERO; grid.len()],
             inverse_mass: vec![0.0; grid.len()],
             substep: DEFAULT_SUBSTEP,
@@ -165,7 +168,8 @@ impl ClothParticles {
 
     /// Whether nothing but its pin moves the particle.
     pub fn is_pinned(&self, id: impl Into<ParticleId>) -> Option<bool> {
-        self.inverse_mass(id).map(|inverse_mass| inverse_mass == 0.0)
+        self.inverse_mass(id)
+            .map(|inverse_mass| inverse_mass == 0.0)
     }
 
     /// Moves a particle (m); it keeps its velocity, and gets none from the jump. A pinned one stays where it
@@ -173,7 +177,11 @@ impl ClothParticles {
     ///
     /// # Errors
     /// [`ClothError::NoSuchParticle`].
-    pub fn set_position(&mut self, id: impl Into<ParticleId>, position: Vec3) -> Result<(), ClothError> {
+    pub fn set_position(
+        &mut self,
+        id: impl Into<ParticleId>,
+        position: Vec3,
+    ) -> Result<(), ClothError> {
         let index = self.existing(id.into())?;
         self.position[index] = position;
         Ok(())
@@ -183,7 +191,11 @@ impl ClothParticles {
     ///
     /// # Errors
     /// [`ClothError::NoSuchParticle`].
-    pub fn set_displacement(&mut self, id: impl Into<ParticleId>, displacement: Vec3) -> Result<(), ClothError> {
+    pub fn set_displacement(
+        &mut self,
+        id: impl Into<ParticleId>,
+        displacement: Vec3,
+    ) -> Result<(), ClothError> {
         let index = self.existing(id.into())?;
         self.displacement[index] = displacement;
         Ok(())
@@ -193,7 +205,11 @@ impl ClothParticles {
     ///
     /// # Errors
     /// [`ClothError::NoSuchParticle`].
-    pub fn set_velocity(&mut self, id: impl Into<ParticleId>, velocity: Vec3) -> Result<(), ClothError> {
+    pub fn set_velocity(
+        &mut self,
+        id: impl Into<ParticleId>,
+        velocity: Vec3,
+    ) -> Result<(), ClothError> {
         let substep = self.substep;
         self.set_displacement(id, velocity * substep)
     }
@@ -202,7 +218,11 @@ impl ClothParticles {
     ///
     /// # Errors
     /// [`ClothError::NoSuchParticle`].
-    pub fn set_inverse_mass(&mut self, id: impl Into<ParticleId>, inverse_mass: f32) -> Result<(), ClothError> {
+    pub fn set_inverse_mass(
+        &mut self,
+        id: impl Into<ParticleId>,
+        inverse_mass: f32,
+    ) -> Result<(), ClothError> {
         let index = self.existing(id.into())?;
         self.inverse_mass[index] = inverse_mass;
         Ok(())
@@ -301,7 +321,11 @@ mod tests {
         particles.set_velocity((2, 1), Vec3::X).expect("it exists");
         assert!((particles.velocity(9).expect("it exists") - Vec3::X).length() < 1e-6);
         assert_eq!((particles.columns(), particles.rows()), (4, 3));
-        assert_eq!(particles.index((0, 4)), None, "a column too far is not the next row");
+        assert_eq!(
+            particles.index((0, 4)),
+            None,
+            "a column too far is not the next row"
+        );
         assert!(matches!(
             particles.set_position((3, 0), Vec3::ZERO),
             Err(ClothError::NoSuchParticle { rows: 3, .. })
@@ -317,7 +341,9 @@ mod tests {
     #[test]
     fn respan_keeps_velocities() {
         let mut particles = particles();
-        particles.set_velocity(5, Vec3::new(1.0, -2.0, 3.0)).expect("it exists");
+        particles
+            .set_velocity(5, Vec3::new(1.0, -2.0, 3.0))
+            .expect("it exists");
         particles.respan(0.01);
         let velocity = particles.velocity(5).expect("it exists");
         assert!((velocity - Vec3::new(1.0, -2.0, 3.0)).length() < 1e-6);
@@ -328,14 +354,27 @@ mod tests {
     fn each_number_that_is_not_finite_is_found() {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let mut particles = particles();
-            particles.set_position(7, Vec3::new(0.0, bad, 0.0)).expect("it exists");
-            assert!(matches!(particles.validate(), Err(ClothError::ParticleNotFinite { index: 7, .. })));
+            particles
+                .set_position(7, Vec3::new(0.0, bad, 0.0))
+                .expect("it exists");
+            assert!(matches!(
+                particles.validate(),
+                Err(ClothError::ParticleNotFinite { index: 7, .. })
+            ));
             let mut particles = self::particles();
-            particles.set_displacement(11, Vec3::new(0.0, 0.0, bad)).expect("it exists");
-            assert!(matches!(particles.validate(), Err(ClothError::ParticleNotFinite { index: 11, .. })));
+            particles
+                .set_displacement(11, Vec3::new(0.0, 0.0, bad))
+                .expect("it exists");
+            assert!(matches!(
+                particles.validate(),
+                Err(ClothError::ParticleNotFinite { index: 11, .. })
+            ));
             let mut particles = self::particles();
             particles.set_inverse_mass(0, bad).expect("it exists");
-            assert!(matches!(particles.validate(), Err(ClothError::ParticleNotFinite { index: 0, .. })));
+            assert!(matches!(
+                particles.validate(),
+                Err(ClothError::ParticleNotFinite { index: 0, .. })
+            ));
         }
         assert_eq!(particles().validate(), Ok(()));
     }

@@ -175,17 +175,38 @@ mod tests {
         assert_eq!(pinned(&Pins::none()), []);
         assert_eq!(pinned(&Pins::new([Pin::Index(6), Pin::Cell(2, 1)])), [6, 9]);
         assert_eq!(pinned(&Pins::new([Pin::Column(3)])), [3, 7, 11]);
-        let corners = [Corner::TopLeft, Corner::TopRight, Corner::BottomLeft, Corner::BottomRight];
+        let corners = [
+            Corner::TopLeft,
+            Corner::TopRight,
+            Corner::BottomLeft,
+            Corner::BottomRight,
+        ];
         assert_eq!(pinned(&Pins::new(corners.map(Pin::Corner))), [0, 3, 8, 11]);
-        assert_eq!(pinned(&Pins::filter(|row, column| row == column)), [0, 5, 10]);
+        assert_eq!(
+            pinned(&Pins::filter(|row, column| row == column)),
+            [0, 5, 10]
+        );
     }
 
     #[test]
     fn a_pin_outside_is_named() {
         let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("a sound grid");
-        for pin in [Pin::Index(12), Pin::Cell(0, 4), Pin::Cell(3, 0), Pin::Row(3), Pin::Column(4)] {
+        for pin in [
+            Pin::Index(12),
+            Pin::Cell(0, 4),
+            Pin::Cell(3, 0),
+            Pin::Row(3),
+            Pin::Column(4),
+        ] {
             let error = Pins::new([Pin::Row(0), pin.clone()]).validate(&grid);
-            assert_eq!(error, Err(ClothError::PinOutOfRange { pin, columns: 4, rows: 3 }));
+            assert_eq!(
+                error,
+                Err(ClothError::PinOutOfRange {
+                    pin,
+                    columns: 4,
+                    rows: 3
+                })
+            );
         }
     }
 }

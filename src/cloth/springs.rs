@@ -46,7 +46,13 @@ impl Springs {
         let mut springs = Self::default();
         let (rows, columns) = (grid.rows(), grid.columns());
         let (along, down) = (grid.spacing().x, grid.spacing().y);
-        let border = |index: u32, count: u32| if index == 0 || index + 1 == count { 2.0 } else { 1.0 };
+        let border = |index: u32, count: u32| {
+            if index == 0 || index + 1 == count {
+                2.0
+            } else {
+                1.0
+            }
+        };
         // Springs of a row or column that reach over `reach` particles: those that start in the first half of
         // every 2 × reach particles are one colour, the others the next.
         for (kind, reach, compliance) in [
@@ -55,35 +61,54 @@ impl Springs {
         ] {
             let length = reach as f32;
             for half in 0..2 {
-                springs.colour(kind, compliance, |add| {
-                    for (row, column) in grid.cells() {
-                        if (column / reach) % 2 == half && column + reach < columns {
-                            let strip = length * along / down * border(row, rows);
-                            add([(row, column), (row, column + reach)], length * along, strip);
+                springs.colour(
+                    kind,
+                    compliance,
+                    |add| {
+                        for (row, column) in grid.cells() {
+                            if (column / reach) % 2 == half && column + reach < columns {
+                                let strip = length * along / down * border(row, rows);
+                                add(
+                                    [(row, column), (row, column + reach)],
+                                    length * along,
+                                    strip,
+                                );
+                            }
                         }
-                    }
-                }, grid);
-                springs.colour(kind, compliance, |add| {
-                    for (row, column) in grid.cells() {
-                        if (row / reach) % 2 == half && row + reach < rows {
-                            let strip = length * down / along * border(column, columns);
-                            add([(row, column), (row + reach, column)], length * down, strip);
+                    },
+                    grid,
+                );
+                springs.colour(
+                    kind,
+                    compliance,
+                    |add| {
+                        for (row, column) in grid.cells() {
+                            if (row / reach) % 2 == half && row + reach < rows {
+                                let strip = length * down / along * border(column, columns);
+                                add([(row, column), (row + reach, column)], length * down, strip);
+                            }
                         }
-                    }
-                }, grid);
+                    },
+                    grid,
+                );
             }
             // Shear is swept between stretch and bend.
             if kind == SpringKind::Structural {
                 for half in 0..2 {
                     for (from, to) in [(0, 1), (1, 0)] {
-                        springs.colour(SpringKind::Shear, material.shear_compliance, |add| {
-                            for (row, column) in grid.cells() {
-                                if row % 2 == half && row + 1 < rows && column + 1 < columns {
-                                    let ends = [(row, column + from), (row + 1, column + to)];
-                                    add(ends, grid.spacing().length(), 1.0);
+                        springs.colour(
+                            SpringKind::Shear,
+                            material.shear_compliance,
+                            |add| {
+                                for (row, column) in grid.cells() {
+                                    if row % 2 == half && row + 1 < rows && column + 1 < columns {
+                                        let ends = [(row, column + from), (row + 1, column + to)];
+                                        add(ends, grid.spacing().length(), 1.0);
+                                    }
                                 }
-                            }
-                        }, grid);
+                            },
+                            grid,
+                        );
                     }
                 }
             }
@@ -105,7 +130,8 @@ impl Springs {
         }
         let start = self.ends.len();
         fill(&mut |ends, rest_length, strip| {
-            self.ends.push(ends.map(|(row, column)| grid.index(row, column)));
+            self.ends
+                .push(ends.map(|(row, column)| grid.index(row, column)));
             self.rest_length.push(rest_length);
             self.compliance.push(compliance * strip);
         });
@@ -161,14 +187,19 @@ mod tests {
     #[test]
     fn colours_share_no_particle_and_no_spring_is_missing_or_twice() {
         for (columns, rows) in [(2, 2), (2, 3), (3, 2), (5, 7), (8, 8), (13, 4), (16, 16)] {
-            let grid = Cloth::new(columns, rows, 0.1).grid(Vec3::ONE).expect("a sound grid");
+            let grid = Cloth::new(columns, rows, 0.1)
+                .grid(Vec3::ONE)
+                .expect("a sound grid");
             let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
             let mut seen = HashSet::new();
             for colour in springs.colours() {
                 let mut particles = HashSet::new();
                 for index in colour.springs.clone() {
                     let [a, b] = springs.ends()[index];
-                    assert!(particles.insert(a) && particles.insert(b), "{columns} × {rows}: {colour:?}");
+                    assert!(
+                        particles.insert(a) && particles.insert(b),
+                        "{columns} × {rows}: {colour:?}"
+                    );
                     assert!(seen.insert((a.min(b), a.max(b))));
                 }
             }
@@ -183,18 +214,28 @@ mod tests {
 
     #[test]
     fn rest_lengths_are_those_of_the_cloth_at_rest() {
-        let grid = Cloth::new(6, 5, 0.25).grid(Vec3::new(2.0, -3.0, 1.0)).expect("a sound grid");
+        let grid = Cloth::new(6, 5, 0.25)
+            .grid(Vec3::new(2.0, -3.0, 1.0))
+            .expect("a sound grid");
         let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
-        let positions: Vec<Vec3> = grid.cells().map(|(r, c)| grid.rest_position(r, c)).collect();
+        let positions: Vec<Vec3> = grid
+            .cells()
+            .map(|(r, c)| grid.rest_position(r, c))
+            .collect();
         for (&[a, b], &rest_length) in springs.ends().iter().zip(springs.rest_length()) {
             let length = positions[a as usize].distance(positions[b as usize]);
-            assert!((length - rest_length).abs() < 1e-5, "{length} {rest_length}");
+            assert!(
+                (length - rest_length).abs() < 1e-5,
+                "{length} {rest_length}"
+            );
         }
     }
 
     #[test]
     fn an_infinite_compliance_leaves_its_springs_out() {
-        let grid = Cloth::new(6, 5, 0.25).grid(Vec3::ONE).expect("a sound grid");
+        let grid = Cloth::new(6, 5, 0.25)
+            .grid(Vec3::ONE)
+            .expect("a sound grid");
         let material = ClothMaterial {
             shear_compliance: f32::INFINITY,
             bend_compliance: f32::INFINITY,

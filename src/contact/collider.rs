@@ -59,11 +59,23 @@ mod tests {
     #[test]
     fn the_radius_is_scaled_and_checked() {
         assert_eq!(ClothCollider::default().scaled_radius(Vec3::ONE), Ok(1.0));
-        assert_eq!(ClothCollider::ball(0.5).scaled_radius(Vec3::new(1.0, -3.0, 2.0)), Ok(1.5));
+        assert_eq!(
+            ClothCollider::ball(0.5).scaled_radius(Vec3::new(1.0, -3.0, 2.0)),
+            Ok(1.5)
+        );
         for radius in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            assert!(ClothCollider::ball(radius).scaled_radius(Vec3::ONE).is_err(), "{radius}");
+            assert!(
+                ClothCollider::ball(radius)
+                    .scaled_radius(Vec3::ONE)
+                    .is_err(),
+                "{radius}"
+            );
         }
         assert!(ClothCollider::ball(1.0).scaled_radius(Vec3::ZERO).is_err());
-        assert!(ClothCollider::ball(1.0).scaled_radius(Vec3::INFINITY).is_err());
+        assert!(
+            ClothCollider::ball(1.0)
+                .scaled_radius(Vec3::INFINITY)
+                .is_err()
+        );
     }
 }

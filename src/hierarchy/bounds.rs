@@ -90,7 +90,8 @@ impl SphereBounds {
             }
             let centre = self.centre[children.clone()].iter().sum::<Vec3>() / children.len() as f32;
             let reach = |child: usize| centre.distance(self.centre[child]) + self.radius[child];
-            self.radius[index] = children.map(reach).fold(0.0, f32::max) * (1.0 + 4.0 * f32::EPSILON);
+            self.radius[index] =
+                children.map(reach).fold(0.0, f32::max) * (1.0 + 4.0 * f32::EPSILON);
             self.centre[index] = centre;
         }
     }
@@ -159,7 +160,10 @@ impl SphereBounds {
         let position = particles.positions_slice();
         let sphere = |node: u32| {
             let sphere = self.sphere(tree, particles, node);
-            (Vec3::from(sphere.center).as_dvec3(), f64::from(sphere.radius()))
+            (
+                Vec3::from(sphere.center).as_dvec3(),
+                f64::from(sphere.radius()),
+            )
         };
         let tolerance = f64::from(ROUNDING);
         for (index, node) in tree.nodes().iter().enumerate() {
@@ -167,9 +171,12 @@ impl SphereBounds {
             for row in node.rows.clone() {
                 for column in node.columns.clone() {
                     let particle = tree.particle(row, column) as usize;
-                    let reach = centre.distance(position[particle].as_dvec3()) + f64::from(self.particle_radius);
+                    let reach = centre.distance(position[particle].as_dvec3())
+                        + f64::from(self.particle_radius);
                     if reach > radius * tolerance {
-                        return Err(format!("node {index} of radius {radius} does not hold particle {particle}, at {reach}"));
+                        return Err(format!(
+                            "node {index} of radius {radius} does not hold particle {particle}, at {reach}"
+                        ));
                     }
                 }
             }

@@ -8,5 +8,8 @@ use super::Probe;
 pub fn brute_force(particles: &ClothParticles, probe: &Probe) -> Vec<u32> {
     let meets = |&(_, position): &(usize, _)| probe.meets(position);
     let positions = particles.positions().enumerate();
-    positions.filter(meets).map(|(index, _)| index as u32).collect()
+    positions
+        .filter(meets)
+        .map(|(index, _)| index as u32)
+        .collect()
 }

@@ -80,9 +80,9 @@ impl TopDownQuery {
     ) -> Range<usize> {
         let position = particles.positions_slice();
         match bounds.rule() {
-            BoundRule::RestShape => {
-                self.descend(tree, position, probe, |node| bounds.rest_sphere(tree, position, node))
-            }
+            BoundRule::RestShape => self.descend(tree, position, probe, |node| {
+                bounds.rest_sphere(tree, position, node)
+            }),
             BoundRule::Refit | BoundRule::Paper => {
                 self.descend(tree, position, probe, |node| bounds.stored_sphere(node))
             }
@@ -149,8 +149,13 @@ impl TopDownQuery {
     /// Nodes of `level` that were looked at, and those of them that a ball touches.
     pub fn level(&self, tree: &QuadTree, level: usize) -> (usize, usize) {
         let nodes = tree.levels().get(level).cloned().unwrap_or_default();
-        let states = self.state.get(nodes.start as usize..nodes.end as usize).unwrap_or_default();
-        let count = |wanted: &dyn Fn(NodeState) -> bool| states.iter().filter(|&&state| wanted(state)).count();
+        let states = self
+            .state
+            .get(nodes.start as usize..nodes.end as usize)
+            .unwrap_or_default();
+        let count = |wanted: &dyn Fn(NodeState) -> bool| {
+            states.iter().filter(|&&state| wanted(state)).count()
+        };
         (
             count(&|state| state != NodeState::Unvisited),
             count(&|state| state == NodeState::Touching),

@@ -40,7 +40,13 @@ fn states() -> impl Strategy<Value = State> {
     let noise = prop_oneof![Just(0.0f32), 0.0f32..0.5, 0.0f32..8.0];
     let shape = (within(6.0), any::<bool>(), noise, any::<u64>());
     let radius = prop_oneof![0.05f32..1.0, 1.0f32..12.0];
-    let ball = (radius, any::<usize>(), 0.0f32..1.6, within(1.0), 0.0f32..0.3);
+    let ball = (
+        radius,
+        any::<usize>(),
+        0.0f32..1.6,
+        within(1.0),
+        0.0f32..0.3,
+    );
     let origin = prop_oneof![Just(Vec3::ZERO), within(1.0e4)];
     (grid, shape, ball, origin).prop_map(
         |(
@@ -77,7 +83,9 @@ struct Scene {
 
 impl State {
     fn weave(&self) -> Scene {
-        let grid = Cloth::new(self.columns, self.rows, SPACING).grid(Vec3::ONE).expect("a sound grid");
+        let grid = Cloth::new(self.columns, self.rows, SPACING)
+            .grid(Vec3::ONE)
+            .expect("a sound grid");
         let material = ClothMaterial {
             shear_compliance: if self.diagonals { 0.0 } else { f32::INFINITY },
             ..ClothMaterial::COTTON
@@ -93,16 +101,25 @@ impl State {
         };
         for (row, column) in grid.cells() {
             let rest = grid.rest_position(row, column);
-            let phase = Vec3::new(row as f32 * 0.4, column as f32 * 0.3, (row + column) as f32 * 0.2);
-            let mut moved = rest + Vec3::from(phase.to_array().map(f32::sin)) * self.waves * SPACING;
+            let phase = Vec3::new(
+                row as f32 * 0.4,
+                column as f32 * 0.3,
+                (row + column) as f32 * 0.2,
+            );
+            let mut moved =
+                rest + Vec3::from(phase.to_array().map(f32::sin)) * self.waves * SPACING;
             if self.folded && row > self.rows / 2 {
                 moved.y = -moved.y;
             }
             moved += Vec3::new(random(), random(), random()) * self.noise * SPACING;
-            particles.set_position((row, column), moved + self.origin * SPACING).expect("it exists");
+            particles
+                .set_position((row, column), moved + self.origin * SPACING)
+                .expect("it exists");
         }
         let springs = Springs::of_grid(&grid, &material);
-        let near = particles.position(self.near % particles.len()).expect("it exists");
+        let near = particles
+            .position(self.near % particles.len())
+            .expect("it exists");
         let radius = self.radius * SPACING;
         Scene {
             tree: QuadTree::of_grid(&grid, springs.has(SpringKind::Shear)),
@@ -122,7 +139,14 @@ impl Scene {
     fn bounds(&self, rule: BoundRule) -> SphereBounds {
         let mut bounds = SphereBounds::default();
         let particle_radius = self.probe.particle_radius;
-        bounds.rebuild(rule, &self.tree, &self.grid, &self.particles, self.stretch.bound, particle_radius);
+        bounds.rebuild(
+            rule,
+            &self.tree,
+            &self.grid,
+            &self.particles,
+            self.stretch.bound,
+            particle_radius,
+        );
         bounds
     }
 
@@ -173,18 +197,30 @@ fn searches_add_up_and_clear() {
         let state = states().new_tree(&mut runner).expect("a state").current();
         let scene = state.weave();
         let bounds = scene.bounds(BoundRule::RestShape);
-        let far = Probe { centre: scene.probe.centre + Vec3::splat(1.0e3), ..scene.probe };
+        let far = Probe {
+            centre: scene.probe.centre + Vec3::splat(1.0e3),
+            ..scene.probe
+        };
         query.clear(&scene.tree);
         let first = query.search(&scene.tree, &bounds, &scene.particles, &scene.probe);
         let (visited, states) = (query.nodes_visited(), query.states().to_vec());
         let none = query.search(&scene.tree, &bounds, &scene.particles, &far);
         assert!(none.is_empty());
-        assert_eq!(query.nodes_visited(), visited + 1, "a far ball costs one test, the root's");
+        assert_eq!(
+            query.nodes_visited(),
+            visited + 1,
+            "a far ball costs one test, the root's"
+        );
         assert_eq!(query.states(), states);
         let second = query.search(&scene.tree, &bounds, &scene.particles, &scene.probe);
         assert_eq!(query.candidates()[first], query.candidates()[second]);
         query.clear(&scene.tree);
-        assert!(query.states().iter().all(|state| *state == NodeState::Unvisited));
+        assert!(
+            query
+                .states()
+                .iter()
+                .all(|state| *state == NodeState::Unvisited)
+        );
     }
 }
 
@@ -212,7 +248,12 @@ fn the_papers_root_misses_its_own_corner() {
     let mut query = TopDownQuery::default();
     assert!(scene.found(&mut query, BoundRule::Paper).is_empty());
     assert_eq!(query.nodes_visited(), 1);
-    assert!(scene.bounds(BoundRule::Paper).validate(&scene.tree, &scene.particles).is_err());
+    assert!(
+        scene
+            .bounds(BoundRule::Paper)
+            .validate(&scene.tree, &scene.particles)
+            .is_err()
+    );
     assert_eq!(scene.found(&mut query, BoundRule::RestShape), [0]);
 }
 
@@ -229,9 +270,16 @@ fn paper_misses() {
         let scene = state.weave();
         let truth = brute_force(&scene.particles, &scene.probe);
         let found = scene.found(&mut query, BoundRule::Paper);
-        assert!(found.iter().all(|particle| truth.contains(particle)), "what is found is there");
+        assert!(
+            found.iter().all(|particle| truth.contains(particle)),
+            "what is found is there"
+        );
         let missed = truth.len() - found.len();
-        let size = if state.radius < 1.0 { "below 1 spacing" } else { "1 to 12 spacings" };
+        let size = if state.radius < 1.0 {
+            "below 1 spacing"
+        } else {
+            "1 to 12 spacings"
+        };
         for size in [size, "any"] {
             let count = counts.entry(size).or_default();
             count[0] += truth.len();
@@ -250,5 +298,8 @@ fn paper_misses() {
         );
     }
     let [contacts, missed, ..] = counts["any"];
-    assert!(missed > 0 && missed < contacts, "it finds some and misses some");
+    assert!(
+        missed > 0 && missed < contacts,
+        "it finds some and misses some"
+    );
 }

@@ -113,8 +113,12 @@ impl QuadTree {
                     return Err(format!("leaf {index} holds {} particles", area(node)));
                 }
                 let particle = grid.index(node.rows.start, node.columns.start);
-                if node.middle != particle || std::mem::replace(&mut leaf_of[particle as usize], true) {
-                    return Err(format!("leaf {index} is not the one leaf of particle {particle}"));
+                if node.middle != particle
+                    || std::mem::replace(&mut leaf_of[particle as usize], true)
+                {
+                    return Err(format!(
+                        "leaf {index} is not the one leaf of particle {particle}"
+                    ));
                 }
                 continue;
             }
@@ -122,9 +126,15 @@ impl QuadTree {
             let within = |outer: &Range<u32>, inner: &Range<u32>| {
                 outer.start <= inner.start && inner.end <= outer.end && !inner.is_empty()
             };
-            let inside = |child: &Node| within(&node.columns, &child.columns) && within(&node.rows, &child.rows);
-            if !children.iter().all(inside) || children.iter().map(area).sum::<usize>() != area(node) {
-                return Err(format!("the children of node {index} do not part its patch"));
+            let inside = |child: &Node| {
+                within(&node.columns, &child.columns) && within(&node.rows, &child.rows)
+            };
+            if !children.iter().all(inside)
+                || children.iter().map(area).sum::<usize>() != area(node)
+            {
+                return Err(format!(
+                    "the children of node {index} do not part its patch"
+                ));
             }
         }
         match leaf_of.iter().position(|&found| !found) {
@@ -137,7 +147,9 @@ impl QuadTree {
 /// Both halves of `range`, the first the larger, or the whole of it where it holds one.
 fn halves(range: Range<u32>) -> impl Iterator<Item = Range<u32>> + Clone {
     let half = range.start + (range.end - range.start).div_ceil(2);
-    [range.start..half, half..range.end].into_iter().filter(|half| !half.is_empty())
+    [range.start..half, half..range.end]
+        .into_iter()
+        .filter(|half| !half.is_empty())
 }
 
 /// Length of the shortest way along the springs at rest between two particles so many columns and rows apart
@@ -155,7 +167,9 @@ mod tests {
     use bevy::math::Vec3;
 
     fn grid(columns: u32, rows: u32) -> ClothGrid {
-        Cloth::new(columns, rows, 0.5).grid(Vec3::ONE).expect("a sound grid")
+        Cloth::new(columns, rows, 0.5)
+            .grid(Vec3::ONE)
+            .expect("a sound grid")
     }
 
     #[test]
@@ -206,6 +220,11 @@ mod tests {
         let tree = QuadTree::of_grid(&grid(9, 3), true);
         // From (1, 4) to (2, 8): one diagonal and three columns.
         assert!((tree.nodes()[0].rest_radius - 0.5 * 2.0_f32.sqrt() - 1.5).abs() < 1e-6);
-        assert!(tree.nodes().iter().filter(|node| node.is_leaf()).all(|leaf| leaf.rest_radius == 0.0));
+        assert!(
+            tree.nodes()
+                .iter()
+                .filter(|node| node.is_leaf())
+                .all(|leaf| leaf.rest_radius == 0.0)
+        );
     }
 }

@@ -4,59 +4,66 @@ use bevy::{
     ecs::{
         component::Component,
         entity::Entity,
-        system::{Commands, Query},
+        system::{Commands, Query, Res},
     },
     math::{Isometry3d, Vec3},
+    time::Time,
     transform::helper::TransformHelper,
 };
 
-use super::{ClothFault, ClothFrame};
+use super::{ClothFault, ClothFrame, frame::global_transform};
 use crate::{
     cloth::ClothError,
     contact::{ClothCollider, MovingBall},
 };
 
-/// Where a collider was a tick ago and where it is now, in the world.
+/// A collider's way through the tick, in the world.
 #[derive(Component, Debug, Default)]
 pub(super) struct ColliderMotion {
-    /// `None` before the first tick.
-    poses: Option<(Isometry3d, Isometry3d)>,
+    /// From where to where; `None` before the first tick.
+    way: Option<(Isometry3d, Isometry3d)>,
+    /// Where the last tick with time in it left it.
+    last: Option<Isometry3d>,
     radius: f32,
 }
 
 impl ColliderMotion {
-    fn follow(&mut self, collider: &ClothCollider, transforms: &TransformHelper, entity: Entity) -> Result<(), ClothError> {
-        let transform = transforms
-            .compute_global_transform(entity)
-            .map_err(|error| ClothError::Transform { transform: error.to_string() })?;
+    fn follow(
+        &mut self,
+        collider: &ClothCollider,
+        transforms: &TransformHelper,
+        entity: Entity,
+        time_passes: bool,
+    ) -> Result<(), ClothError> {
+        let transform = global_transform(transforms, entity)?;
         // Two of a flat collider's axes still make a ball: only what is not finite is refused here.
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let radius = collider.scaled_radius(scale)?;
         if !(translation.is_finite() && rotation.is_finite()) {
-            return Err(ClothError::Transform { transform: format!("{transform:?}") });
+            return Err(ClothError::Transform {
+                transform: format!("{transform:?}"),
+            });
         }
         let pose = Isometry3d::new(translation, rotation);
-        let last = self.poses.map_or(pose, |(_, last)| last);
-        self.poses = Some((last, pose));
+        let from = self.last.unwrap_or(pose);
+        self.way = Some((from, pose));
+        // What is moved while no time passes has its way still before it.
+        self.last = Some(if time_passes { pose } else { from });
         self.radius = radius;
         Ok(())
     }
 
     /// The collider's way through the tick in a cloth's frame.
     pub fn seen_from(&self, frame: &ClothFrame) -> Option<MovingBall> {
-        let (from, to) = self.poses?;
+        let (from, to) = self.way?;
         let inverse = frame.isometry().inverse();
-        let turn = (to.rotation * from.rotation.inverse()).to_scaled_axis();
-        // The shorter way round.
-        let turn = if turn.length() > std::f32::consts::PI {
-            turn - turn.normalize() * std::f32::consts::TAU
-        } else {
-            turn
-        };
+        let turned = to.rotation * from.rotation.inverse();
+        // Of the two quaternions of a rotation, the one of the shorter way round.
+        let turned = if turned.w < 0.0 { -turned } else { turned };
         Some(MovingBall {
             from: inverse * Vec3::from(from.translation),
             to: inverse * Vec3::from(to.translation),
-            turn: inverse.rotation * turn,
+            turn: inverse.rotation * turned.to_scaled_axis(),
             radius: self.radius,
         })
     }
@@ -64,12 +71,19 @@ impl ColliderMotion {
 
 /// Reads every collider's transform.
 pub(super) fn prepare_colliders(
-    mut colliders: Query<(Entity, &ClothCollider, &mut ColliderMotion, Option<&ClothFault>)>,
+    mut colliders: Query<(
+        Entity,
+        &ClothCollider,
+        &mut ColliderMotion,
+        Option<&ClothFault>,
+    )>,
     transforms: TransformHelper,
+    time: Res<Time>,
     mut commands: Commands,
 ) {
+    let time_passes = time.delta_secs() > 0.0;
     for (entity, collider, mut motion, fault) in &mut colliders {
-        let outcome = motion.follow(collider, &transforms, entity);
+        let outcome = motion.follow(collider, &transforms, entity, time_passes);
         if outcome.is_err() {
             *motion = ColliderMotion::default();
         }

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use bevy::{
-    ecs::{change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent},
+    ecs::{
+        change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent,
+    },
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 

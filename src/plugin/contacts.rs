@@ -50,7 +50,8 @@ impl ClothContacts {
     /// Takes the contacts of a new tick; those of no particle are none.
     pub(super) fn renew(&mut self, contacts: impl Iterator<Item = ClothContact>) {
         self.now.clear();
-        self.now.extend(contacts.filter(|contact| contact.particles > 0));
+        self.now
+            .extend(contacts.filter(|contact| contact.particles > 0));
     }
 }
 
@@ -95,9 +96,13 @@ pub(super) fn tell_of_touches(
             now.clear();
         }
         for contact in now.iter() {
-            if let Some(told) = told.iter_mut().find(|told| told.collider == contact.collider) {
+            if let Some(told) = told
+                .iter_mut()
+                .find(|told| told.collider == contact.collider)
+            {
                 told.particles = told.particles.max(contact.particles);
-                told.deepest_penetration = told.deepest_penetration.max(contact.deepest_penetration);
+                told.deepest_penetration =
+                    told.deepest_penetration.max(contact.deepest_penetration);
             } else {
                 told.push(*contact);
                 started.write(ClothTouchStarted {
@@ -125,7 +130,12 @@ pub(super) fn tell_of_removed_cloths(
     mut stopped: MessageWriter<ClothTouchStopped>,
 ) {
     if let Ok(contacts) = contacts.get(removed.entity) {
-        stopped.write_batch(contacts.told.iter().map(|told| told.stopped(removed.entity)));
+        stopped.write_batch(
+            contacts
+                .told
+                .iter()
+                .map(|told| told.stopped(removed.entity)),
+        );
     }
 }
 

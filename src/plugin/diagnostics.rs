@@ -69,11 +69,15 @@ fn measure(cloths: Query<&ClothStats, Without<ClothFault>>, mut diagnostics: Dia
     diagnostics.add_measurement(&Plugin::INTEGRATE, || sum(|stats| stats.integrate_ms));
     diagnostics.add_measurement(&Plugin::REBUILD, || sum(|stats| stats.rebuild_ms));
     diagnostics.add_measurement(&Plugin::QUERY, || sum(|stats| stats.query_ms));
-    diagnostics.add_measurement(&Plugin::NODES_VISITED, || sum(|stats| stats.nodes_visited as f64));
+    diagnostics.add_measurement(&Plugin::NODES_VISITED, || {
+        sum(|stats| stats.nodes_visited as f64)
+    });
     diagnostics.add_measurement(&Plugin::LEAF_TESTS, || sum(|stats| stats.leaf_tests as f64));
     diagnostics.add_measurement(&Plugin::CONTACTS, || sum(|stats| stats.contacts as f64));
     diagnostics.add_measurement(&Plugin::STRETCH, || {
-        let stretch = cloths.iter().map(|stats| f64::from(stats.stretch.structural));
+        let stretch = cloths
+            .iter()
+            .map(|stats| f64::from(stats.stretch.structural));
         100.0 * stretch.fold(0.0, f64::max)
     });
 }

@@ -2,11 +2,7 @@
 
 use bevy::{
     ecs::{
-        component::Component,
-        entity::Entity,
-        lifecycle::Remove,
-        observer::On,
-        system::Commands,
+        component::Component, entity::Entity, lifecycle::Remove, observer::On, system::Commands,
     },
     log::error,
 };

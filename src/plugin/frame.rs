@@ -1,13 +1,28 @@
 //! The frame that a cloth is simulated in.
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
+    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
     math::{Affine3A, Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::GlobalTransform,
+    transform::{components::GlobalTransform, helper::TransformHelper},
 };
 
 use crate::cloth::ClothError;
+
+/// An entity's global transform as of now, not as of the last frame.
+///
+/// # Errors
+/// [`ClothError::Transform`] if an ancestor has none.
+pub(super) fn global_transform(
+    transforms: &TransformHelper,
+    entity: Entity,
+) -> Result<GlobalTransform, ClothError> {
+    transforms
+        .compute_global_transform(entity)
+        .map_err(|error| ClothError::Transform {
+            transform: error.to_string(),
+        })
+}
 
 /// The frame that a cloth's particles are given in: its entity's global translation and rotation as of the
 /// last tick. The scale is already in the particles, so this frame measures metres.
@@ -28,7 +43,11 @@ impl ClothFrame {
         let (scale, rotation, translation) = affine.to_scale_rotation_translation();
         let isometry = Isometry3d::new(translation, rotation);
         let inverse = affine.inverse();
-        if affine.is_finite() && inverse.is_finite() && rotation.is_finite() && scale.min_element() != 0.0 {
+        if affine.is_finite()
+            && inverse.is_finite()
+            && rotation.is_finite()
+            && scale.min_element() != 0.0
+        {
             Ok((Self { isometry, affine }, scale))
         } else {
             Err(ClothError::Transform {

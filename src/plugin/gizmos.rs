@@ -120,7 +120,13 @@ impl Plugin for ClothGizmosPlugin {
 
 fn draw_cloths(
     cloths: Query<
-        (&ClothTopology, &ClothParticles, &ClothSearch, &ClothFrame, Option<&ShowClothGizmos>),
+        (
+            &ClothTopology,
+            &ClothParticles,
+            &ClothSearch,
+            &ClothFrame,
+            Option<&ShowClothGizmos>,
+        ),
         Without<ClothFault>,
     >,
     store: Res<GizmoConfigStore>,
@@ -155,9 +161,16 @@ fn draw_spheres(
     for level in *levels.start().min(&leaves)..=*levels.end().min(&leaves) {
         for node in tree.levels()[level].clone() {
             let touching = states.get(node as usize) == Some(&NodeState::Touching);
-            let color = if touching { look.touching } else { look.untouched };
+            let color = if touching {
+                look.touching
+            } else {
+                look.untouched
+            };
             let sphere = search.bounds.sphere(tree, particles, node);
-            let place = Isometry3d::new(frame.to_world(sphere.center.into()), frame.isometry().rotation);
+            let place = Isometry3d::new(
+                frame.to_world(sphere.center.into()),
+                frame.isometry().rotation,
+            );
             gizmos
                 .sphere(place, sphere.radius().max(smallest), color)
                 .resolution(look.resolution);
@@ -180,7 +193,10 @@ fn draw_springs(
             SpringKind::Bend => look.springs.with_alpha(look.springs.alpha() * 0.25),
         };
         for &[a, b] in &topology.springs.ends()[colour.springs.clone()] {
-            if let (Some(a), Some(b)) = (particles.position(a as usize), particles.position(b as usize)) {
+            if let (Some(a), Some(b)) = (
+                particles.position(a as usize),
+                particles.position(b as usize),
+            ) {
                 gizmos.line(frame.to_world(a), frame.to_world(b), color);
             }
         }

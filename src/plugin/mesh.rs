@@ -55,8 +55,11 @@ impl ClothMeshPlugin {
 
 impl Plugin for ClothMeshPlugin {
     fn build(&self, app: &mut App) {
-        let fixed: [Interned<dyn ScheduleLabel>; 3] =
-            [FixedPreUpdate.intern(), FixedUpdate.intern(), FixedPostUpdate.intern()];
+        let fixed: [Interned<dyn ScheduleLabel>; 3] = [
+            FixedPreUpdate.intern(),
+            FixedUpdate.intern(),
+            FixedPostUpdate.intern(),
+        ];
         // In any other schedule a tick is a frame, and there is nothing to interpolate.
         let interpolated = fixed.contains(&self.schedule);
         let update = move |cloths: Query<_, _>, time: Res<_>, meshes: ResMut<_>| {
@@ -113,50 +116,88 @@ fn flat_mesh(grid: &ClothGrid) -> Mesh {
             row as f32 / (grid.rows() - 1) as f32,
         ]
     };
-    let positions: Vec<_> = grid.cells().map(|(r, c)| grid.rest_position(r, c).to_array()).collect();
+    let positions: Vec<_> = grid
+        .cells()
+        .map(|(r, c)| grid.rest_position(r, c).to_array())
+        .collect();
     let uvs: Vec<_> = grid.cells().map(|(row, column)| uv(row, column)).collect();
     let normals = vec![Vec3::Z.to_array(); grid.len()];
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-        .with_inserted_indices(Indices::U32(grid.triangles().flatten().collect()))
+    Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+    .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+    .with_inserted_indices(Indices::U32(grid.triangles().flatten().collect()))
 }
 
 fn update_meshes(
-    mut cloths: Query<(&ClothTopology, &ClothParticles, &ClothFrame, &mut ClothMesh), Without<ClothFault>>,
+    mut cloths: Query<
+        (&ClothTopology, &ClothParticles, &ClothFrame, &mut ClothMesh),
+        Without<ClothFault>,
+    >,
     time: Res<Time<Fixed>>,
     mut meshes: ResMut<Assets<Mesh>>,
     interpolated: bool,
 ) {
-    let fraction = if interpolated { time.overstep_fraction().min(1.0) } else { 1.0 };
+    let fraction = if interpolated {
+        time.overstep_fraction().min(1.0)
+    } else {
+        1.0
+    };
     for (topology, particles, frame, mut cloth_mesh) in &mut cloths {
         let Some(mut mesh) = meshes.get_mut(&cloth_mesh.handle) else {
             continue;
         };
-        let ClothMesh { previous, drawn, .. } = &mut *cloth_mesh;
+        let ClothMesh {
+            previous, drawn, ..
+        } = &mut *cloth_mesh;
         if particles.len() != topology.grid.len() || mesh.count_vertices() != particles.len() {
             continue;
         }
         interpolate(drawn, previous, particles, fraction, &frame.to_entity());
-        if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(Mesh::ATTRIBUTE_POSITION) {
-            values.iter_mut().zip(&*drawn).for_each(|(value, position)| *value = position.to_array());
+        if let Ok(VertexAttributeValues::Float32x3(values)) =
+            mesh.try_attribute_mut(Mesh::ATTRIBUTE_POSITION)
+        {
+            values
+                .iter_mut()
+                .zip(&*drawn)
+                .for_each(|(value, position)| *value = position.to_array());
         }
-        if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(Mesh::ATTRIBUTE_NORMAL) {
-            let normals = topology.grid.cells().map(|(row, column)| normal(&topology.grid, drawn, row, column));
-            values.iter_mut().zip(normals).for_each(|(value, normal)| *value = normal.to_array());
+        if let Ok(VertexAttributeValues::Float32x3(values)) =
+            mesh.try_attribute_mut(Mesh::ATTRIBUTE_NORMAL)
+        {
+            let normals = topology
+                .grid
+                .cells()
+                .map(|(row, column)| normal(&topology.grid, drawn, row, column));
+            values
+                .iter_mut()
+                .zip(normals)
+                .for_each(|(value, normal)| *value = normal.to_array());
         }
     }
 }
 
 /// Where the particles are to be drawn: `fraction` of the way from the last tick to this one.
-fn interpolate(drawn: &mut Vec<Vec3>, previous: &[Vec3], particles: &ClothParticles, fraction: f32, to_entity: &Affine3A) {
+fn interpolate(
+    drawn: &mut Vec<Vec3>,
+    previous: &[Vec3],
+    particles: &ClothParticles,
+    fraction: f32,
+    to_entity: &Affine3A,
+) {
     drawn.clear();
     if previous.len() == particles.len() {
         let pairs = previous.iter().zip(particles.positions());
         drawn.extend(pairs.map(|(from, to)| to_entity.transform_point3(from.lerp(to, fraction))));
     } else {
-        drawn.extend(particles.positions().map(|position| to_entity.transform_point3(position)));
+        drawn.extend(
+            particles
+                .positions()
+                .map(|position| to_entity.transform_point3(position)),
+        );
     }
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::{
     app::{App, Plugin},
-    diagnostic::{DiagnosticPath, DiagnosticsStore},
+    diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
     ecs::{
         change_detection::DetectChangesMut,
         component::Component,
@@ -22,7 +22,9 @@ use bevy_egui::{
     egui::{self, ComboBox, Slider, Ui},
 };
 
-use super::{ClothDiagnosticsPlugin, ClothGravity, ClothSearch, ClothStats, ClothTopology, ShowClothGizmos};
+use super::{
+    ClothDiagnosticsPlugin, ClothGravity, ClothSearch, ClothStats, ClothTopology, ShowClothGizmos,
+};
 use crate::{cloth::ClothMaterial, hierarchy::BoundRule, solver::ClothSettings};
 
 /// Whether the panel is shown.
@@ -97,31 +99,39 @@ fn draw_panel(
         return Ok(());
     }
     let context = contexts.ctx_mut()?;
-    egui::Window::new("Cloth").default_pos([12.0, 12.0]).default_width(270.0).show(context, |ui| {
-        show_clock(ui, &mut clocks);
-        if let Some(diagnostics) = diagnostics {
-            show_times(ui, &diagnostics);
-        }
-        ui.separator();
-        let mut down = -gravity.0.y;
-        ui.add(Slider::new(&mut down, 0.0..=25.0).text("gravity (m/s²)"));
-        let changed = ClothGravity(gravity.0.with_y(-down));
-        gravity.set_if_neq(changed);
-        for (entity, name, mut speed) in &mut speeds {
-            let label = format!("{} (m/s)", name.map_or_else(|| entity.to_string(), ToString::to_string));
-            let mut value = speed.0;
-            ui.add(Slider::new(&mut value, 0.0..=10.0).text(label));
-            speed.set_if_neq(ClothColliderSpeed(value));
-        }
-        for mut cloth in &mut cloths {
-            let name = cloth.name.map_or_else(|| format!("cloth {}", cloth.entity), ToString::to_string);
+    egui::Window::new("Cloth")
+        .default_pos([12.0, 12.0])
+        .default_width(270.0)
+        .show(context, |ui| {
+            show_clock(ui, &mut clocks);
+            if let Some(diagnostics) = diagnostics {
+                show_times(ui, &diagnostics);
+            }
             ui.separator();
-            egui::CollapsingHeader::new(name)
-                .id_salt(cloth.entity)
-                .default_open(true)
-                .show(ui, |ui| show_cloth(ui, &mut cloth, &mut commands));
-        }
-    });
+            let mut down = -gravity.0.y;
+            ui.add(Slider::new(&mut down, 0.0..=25.0).text("gravity (m/s²)"));
+            let changed = ClothGravity(gravity.0.with_y(-down));
+            gravity.set_if_neq(changed);
+            for (entity, name, mut speed) in &mut speeds {
+                let label = format!(
+                    "{} (m/s)",
+                    name.map_or_else(|| entity.to_string(), ToString::to_string)
+                );
+                let mut value = speed.0;
+                ui.add(Slider::new(&mut value, 0.0..=10.0).text(label));
+                speed.set_if_neq(ClothColliderSpeed(value));
+            }
+            for mut cloth in &mut cloths {
+                let name = cloth
+                    .name
+                    .map_or_else(|| format!("cloth {}", cloth.entity), ToString::to_string);
+                ui.separator();
+                egui::CollapsingHeader::new(name)
+                    .id_salt(cloth.entity)
+                    .default_open(true)
+                    .show(ui, |ui| show_cloth(ui, &mut cloth, &mut commands));
+            }
+        });
     Ok(())
 }
 
@@ -135,7 +145,10 @@ fn show_clock(ui: &mut Ui, clocks: &mut Clocks) {
                 clocks.running.pause();
             }
         }
-        if ui.add_enabled(paused, egui::Button::new("Single step")).clicked() {
+        if ui
+            .add_enabled(paused, egui::Button::new("Single step"))
+            .clicked()
+        {
             let timestep = clocks.fixed.timestep();
             clocks.fixed.accumulate_overstep(timestep);
         }
@@ -144,10 +157,21 @@ fn show_clock(ui: &mut Ui, clocks: &mut Clocks) {
 
 fn show_times(ui: &mut Ui, diagnostics: &DiagnosticsStore) {
     type Plugin = ClothDiagnosticsPlugin;
-    let mean = |path: &DiagnosticPath| diagnostics.get(path).and_then(|d| d.smoothed()).unwrap_or(0.0);
-    let (integrate, rebuild, query) = (mean(&Plugin::INTEGRATE), mean(&Plugin::REBUILD), mean(&Plugin::QUERY));
+    let mean = |path: &DiagnosticPath| {
+        diagnostics
+            .get(path)
+            .and_then(Diagnostic::smoothed)
+            .unwrap_or(0.0)
+    };
+    let (integrate, rebuild, query) = (
+        mean(&Plugin::INTEGRATE),
+        mean(&Plugin::REBUILD),
+        mean(&Plugin::QUERY),
+    );
     ui.label(format!("{:.3} ms a tick", integrate + rebuild + query))
-        .on_hover_text(format!("integrate {integrate:.3}, rebuild {rebuild:.4}, query {query:.4} ms"));
+        .on_hover_text(format!(
+            "integrate {integrate:.3}, rebuild {rebuild:.4}, query {query:.4} ms"
+        ));
 }
 
 fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
@@ -161,15 +185,27 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
     ));
 
     let deepest = tree.levels().len().saturating_sub(1);
-    let mut shown = cloth.show.as_deref().cloned().unwrap_or(ShowClothGizmos { levels: None, springs: false });
-    let level = shown.levels.as_ref().map(|levels| (*levels.start()).min(deepest));
-    let text = level.map_or_else(|| "none".to_string(), |level| level_name(cloth, level));
-    ComboBox::from_label("spheres").selected_text(text).show_ui(ui, |ui| {
-        ui.selectable_value(&mut shown.levels, None, "none");
-        for level in 0..=deepest {
-            ui.selectable_value(&mut shown.levels, Some(level..=level), level_name(cloth, level));
-        }
+    let mut shown = cloth.show.as_deref().cloned().unwrap_or(ShowClothGizmos {
+        levels: None,
+        springs: false,
     });
+    let level = shown
+        .levels
+        .as_ref()
+        .map(|levels| (*levels.start()).min(deepest));
+    let text = level.map_or_else(|| "none".to_string(), |level| level_name(cloth, level));
+    ComboBox::from_label("spheres")
+        .selected_text(text)
+        .show_ui(ui, |ui| {
+            ui.selectable_value(&mut shown.levels, None, "none");
+            for level in 0..=deepest {
+                ui.selectable_value(
+                    &mut shown.levels,
+                    Some(level..=level),
+                    level_name(cloth, level),
+                );
+            }
+        });
     ui.checkbox(&mut shown.springs, "springs");
     match &mut cloth.show {
         Some(show) => {
@@ -182,12 +218,17 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
     }
 
     let mut rule = *cloth.rule;
-    let name = BoundRule::ALL.iter().find(|(_, each)| *each == rule).map_or("", |(name, _)| name);
-    ComboBox::from_label("bound rule").selected_text(name).show_ui(ui, |ui| {
-        for (name, each) in BoundRule::ALL {
-            ui.selectable_value(&mut rule, each, name);
-        }
-    });
+    let name = BoundRule::ALL
+        .iter()
+        .find(|(_, each)| *each == rule)
+        .map_or("", |(name, _)| name);
+    ComboBox::from_label("bound rule")
+        .selected_text(name)
+        .show_ui(ui, |ui| {
+            for (name, each) in BoundRule::ALL {
+                ui.selectable_value(&mut rule, each, name);
+            }
+        });
     cloth.rule.set_if_neq(rule);
 
     let mut settings = *cloth.settings;
@@ -206,19 +247,33 @@ fn level_name(cloth: &PanelClothItem, level: usize) -> String {
 
 fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
     let presets = ClothMaterial::PRESETS;
-    let name = presets.iter().find(|(_, preset)| preset == material).map_or("custom", |(name, _)| name);
-    ComboBox::from_label("material").selected_text(name).show_ui(ui, |ui| {
-        for (name, preset) in presets {
-            ui.selectable_value(material, preset, name);
-        }
-    });
-    ui.add(Slider::new(&mut material.areal_density, 0.01..=5.0).logarithmic(true).text("kg/m²"));
+    let name = presets
+        .iter()
+        .find(|(_, preset)| preset == material)
+        .map_or("custom", |(name, _)| name);
+    ComboBox::from_label("material")
+        .selected_text(name)
+        .show_ui(ui, |ui| {
+            for (name, preset) in presets {
+                ui.selectable_value(material, preset, name);
+            }
+        });
+    ui.add(
+        Slider::new(&mut material.areal_density, 0.01..=5.0)
+            .logarithmic(true)
+            .text("kg/m²"),
+    );
     for (value, text) in [
         (&mut material.stretch_compliance, "stretch (m/N)"),
         (&mut material.shear_compliance, "shear (m/N)"),
         (&mut material.bend_compliance, "bend (m/N)"),
     ] {
-        ui.add(Slider::new(value, 0.0..=10.0).logarithmic(true).smallest_positive(1.0e-6).text(text));
+        ui.add(
+            Slider::new(value, 0.0..=10.0)
+                .logarithmic(true)
+                .smallest_positive(1.0e-6)
+                .text(text),
+        );
     }
     ui.add(Slider::new(&mut material.damping, 0.0..=0.2).text("damping D"));
     ui.add(Slider::new(&mut material.friction, 0.0..=2.0).text("friction μ"));

@@ -12,7 +12,10 @@ use bevy::{
     transform::{components::GlobalTransform, helper::TransformHelper},
 };
 
-use super::{ClothFault, ClothFrame, ClothGravity, ClothStats, ClothTopology, components::ClothTick};
+use super::{
+    ClothFault, ClothFrame, ClothGravity, ClothStats, ClothTopology, components::ClothTick,
+    frame::global_transform,
+};
 use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, SpringKind, Springs},
     hierarchy::QuadTree,
@@ -44,16 +47,19 @@ pub(super) fn prepare_cloths(
     mut commands: Commands,
 ) {
     for mut cloth in &mut cloths {
-        let outcome = transforms
-            .compute_global_transform(cloth.entity)
-            .map_err(|error| ClothError::Transform { transform: error.to_string() })
+        let outcome = global_transform(&transforms, cloth.entity)
             .and_then(|transform| cloth.prepare(&transform, gravity.0, time.delta_secs()));
         ClothFault::report(&mut commands, cloth.entity, cloth.fault, outcome);
     }
 }
 
 impl PreparingItem<'_, '_> {
-    fn prepare(&mut self, transform: &GlobalTransform, gravity: Vec3, seconds: f32) -> Result<(), ClothError> {
+    fn prepare(
+        &mut self,
+        transform: &GlobalTransform,
+        gravity: Vec3,
+        seconds: f32,
+    ) -> Result<(), ClothError> {
         let (frame, scale) = ClothFrame::of(transform)?;
         self.settings.validate()?;
         let gravity = self.settings.gravity.unwrap_or(gravity);
@@ -63,24 +69,29 @@ impl PreparingItem<'_, '_> {
         let was_woven = self.weave(scale)?;
         self.particles.validate()?;
         self.tick.pins.clear();
-        if was_woven && *self.frame != frame {
+        if !was_woven {
+            *self.frame = frame;
+        } else if seconds > 0.0 && *self.frame != frame {
             self.carry(self.frame.isometry(), frame.isometry());
-        }
-        if *self.frame != frame {
             *self.frame = frame;
         }
         if self.tick.written != Some(self.particles.last_changed()) {
             self.stats.stretch = Stretch::measure(&self.topology.springs, &self.particles);
             self.tick.written = Some(self.particles.last_changed());
         }
-        let acceleration = frame.isometry().rotation.inverse() * gravity;
+        let acceleration = self.frame.isometry().rotation.inverse() * gravity;
         self.tick.step = TickStep {
             seconds,
             substeps: self.settings.substeps,
             acceleration,
             damping: self.material.damping,
         };
-        let carried = self.tick.pins.iter().map(|pin| pin.from.distance(pin.to)).fold(0.0, f32::max);
+        let carried = self
+            .tick
+            .pins
+            .iter()
+            .map(|pin| pin.from.distance(pin.to))
+            .fold(0.0, f32::max);
         self.tick.reach =
             (self.particles.largest_speed() + acceleration.length() * seconds) * seconds + carried;
         Ok(())
@@ -90,7 +101,11 @@ impl PreparingItem<'_, '_> {
     /// the cloth had been woven before. Changes nothing on an error.
     fn weave(&mut self, scale: Vec3) -> Result<bool, ClothError> {
         let (cloth, material, pins) = (self.cloth, self.material, self.pins);
-        let same_cloth = self.topology.woven.as_ref().map(|(woven, ..)| woven == cloth);
+        let same_cloth = self
+            .topology
+            .woven
+            .as_ref()
+            .map(|(woven, ..)| woven == cloth);
         if same_cloth != Some(true) || self.particles.is_empty() {
             let grid = cloth.grid(scale)?;
             material.validate()?;
@@ -109,7 +124,12 @@ impl PreparingItem<'_, '_> {
             let tree = QuadTree::of_grid(&grid, springs.has(SpringKind::Shear));
             *self.particles = particles;
             let woven = Some((*cloth, *material, pins.clone()));
-            *self.topology = ClothTopology { grid, springs, tree, woven };
+            *self.topology = ClothTopology {
+                grid,
+                springs,
+                tree,
+                woven,
+            };
             return Ok(false);
         }
         let grid = self.topology.grid;
@@ -135,7 +155,9 @@ impl PreparingItem<'_, '_> {
         let new_from_old = new.inverse() * old;
         let columns = self.particles.columns_mut();
         let state = columns.position.iter_mut().zip(columns.displacement);
-        for (index, ((position, displacement), &inverse_mass)) in state.zip(columns.inverse_mass).enumerate() {
+        for (index, ((position, displacement), &inverse_mass)) in
+            state.zip(columns.inverse_mass).enumerate()
+        {
             let pinned_to = *position;
             *position = new_from_old * *position;
             *displacement = new_from_old.rotation * *displacement;

@@ -60,7 +60,12 @@ impl Plugin for ClothRapierPlugin {
 
 fn adopt_balls(
     mut adopted: Query<
-        (Entity, &Collider, Option<&mut ClothCollider>, Option<&ClothFault>),
+        (
+            Entity,
+            &Collider,
+            Option<&mut ClothCollider>,
+            Option<&ClothFault>,
+        ),
         With<RapierClothCollider>,
     >,
     transforms: TransformHelper,
@@ -72,14 +77,23 @@ fn adopt_balls(
             if cloth_collider.is_some() {
                 commands.entity(entity).try_remove::<ClothCollider>();
             }
-            ClothFault::report(&mut commands, entity, fault, Err(ClothError::NotABall { shape }));
+            ClothFault::report(
+                &mut commands,
+                entity,
+                fault,
+                Err(ClothError::NotABall { shape }),
+            );
             continue;
         };
         // Rapier's radius has its scale in it, which need not be the transform's; ours is before the scale.
         let scale = transforms
             .compute_global_transform(entity)
             .map_or(1.0, |transform| transform.scale().abs().max_element());
-        let unscaled = if scale > 0.0 { ball.radius() / scale } else { ball.radius() };
+        let unscaled = if scale > 0.0 {
+            ball.radius() / scale
+        } else {
+            ball.radius()
+        };
         let wanted = ClothCollider::ball(unscaled);
         match cloth_collider {
             Some(mut cloth_collider) => {

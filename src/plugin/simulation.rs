@@ -13,8 +13,8 @@ use bevy::{
 };
 
 use super::{
-    ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats, ClothTopology, ClothTouchStarted,
-    ClothTouchStopped,
+    ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats, ClothTopology,
+    ClothTouchStarted, ClothTouchStopped,
     colliders::{ColliderMotion, prepare_colliders},
     components::ClothTick,
     contacts::{tell_of_removed_cloths, tell_of_touches},

@@ -1,12 +1,7 @@
 //! The systems of a tick between preparation and write-back.
 
 use bevy::{
-    ecs::{
-        change_detection::DetectChanges,
-        entity::Entity,
-        query::Without,
-        system::Query,
-    },
+    ecs::{change_detection::DetectChanges, entity::Entity, query::Without, system::Query},
     platform::time::Instant,
 };
 
@@ -25,7 +20,14 @@ use crate::{
 /// Brings the bounding spheres up to date.
 pub(super) fn rebuild_hierarchies(
     mut cloths: Query<
-        (&ClothTopology, &ClothParticles, &ClothSettings, &BoundRule, &mut ClothSearch, &mut ClothStats),
+        (
+            &ClothTopology,
+            &ClothParticles,
+            &ClothSettings,
+            &BoundRule,
+            &mut ClothSearch,
+            &mut ClothStats,
+        ),
         Without<ClothFault>,
     >,
 ) {
@@ -46,7 +48,14 @@ pub(super) fn rebuild_hierarchies(
 /// Finds the particles that each collider may touch within the tick.
 pub(super) fn query_collisions(
     mut cloths: Query<
-        (&ClothTopology, &ClothParticles, &ClothFrame, &mut ClothSearch, &mut ClothTick, &mut ClothStats),
+        (
+            &ClothTopology,
+            &ClothParticles,
+            &ClothFrame,
+            &mut ClothSearch,
+            &mut ClothTick,
+            &mut ClothStats,
+        ),
         Without<ClothFault>,
     >,
     colliders: Query<(Entity, &ColliderMotion), Without<ClothFault>>,
@@ -97,25 +106,53 @@ pub(super) fn integrate(
         Without<ClothFault>,
     >,
 ) {
-    for (topology, material, settings, search, mut particles, mut tick, mut contacts, mut stats) in &mut cloths {
+    for (topology, material, settings, search, mut particles, mut tick, mut contacts, mut stats) in
+        &mut cloths
+    {
         let start = Instant::now();
-        let ClothTick { step, pins, balls, touched, written, .. } = &mut *tick;
+        let ClothTick {
+            step,
+            pins,
+            balls,
+            touched,
+            written,
+            ..
+        } = &mut *tick;
         // A schedule may run without time passing.
         if step.seconds > 0.0 {
             let candidates = search.query.candidates();
             let (radius, friction) = (settings.particle_radius, material.friction);
-            advance(&mut particles, &topology.springs, *step, pins, |particles, substep| {
-                for BallInReach { ball, candidates: range, deepest, .. } in &mut *balls {
-                    let candidates = &candidates[range.clone()];
-                    let touched = &mut touched[range.clone()];
-                    let depth = push_out(particles, candidates, touched, ball, radius, friction, substep);
-                    *deepest = deepest.max(depth);
+            advance(
+                &mut particles,
+                &topology.springs,
+                *step,
+                pins,
+                |particles, substep| {
+                    for BallInReach {
+                        ball,
+                        candidates: range,
+                        deepest,
+                        ..
+                    } in &mut *balls
+                    {
+                        let candidates = &candidates[range.clone()];
+                        let touched = &mut touched[range.clone()];
+                        let depth = push_out(
+                            particles, candidates, touched, ball, radius, friction, substep,
+                        );
+                        *deepest = deepest.max(depth);
+                    }
+                },
+            );
+            contacts.renew(balls.iter().map(|ball| {
+                ClothContact {
+                    collider: ball.collider,
+                    particles: touched[ball.candidates.clone()]
+                        .iter()
+                        .filter(|&&touched| touched)
+                        .count(),
+                    deepest_penetration: ball.deepest,
                 }
-            });
-            contacts.renew(balls.iter().map(|ball| ClothContact {
-                collider: ball.collider,
-                particles: touched[ball.candidates.clone()].iter().filter(|&&touched| touched).count(),
-                deepest_penetration: ball.deepest,
             }));
             stats.stretch = Stretch::measure(&topology.springs, &particles);
             *written = Some(particles.last_changed());

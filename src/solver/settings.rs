@@ -41,7 +41,12 @@ impl ClothSettings {
     /// # Errors
     /// [`ClothError::Quantity`] for the first that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
-        ClothError::check(self.substeps as f32, |v| v >= 1.0, "sub-steps", "at least 1")?;
+        ClothError::check(
+            self.substeps as f32,
+            |v| v >= 1.0,
+            "sub-steps",
+            "at least 1",
+        )?;
         ClothError::check(
             self.particle_radius,
             |v| v >= 0.0 && v.is_finite(),
@@ -64,12 +69,42 @@ mod tests {
         let good = ClothSettings::default();
         assert_eq!(good.validate(), Ok(()));
         for (settings, name) in [
-            (ClothSettings { substeps: 0, ..good }, "sub-steps"),
-            (ClothSettings { particle_radius: -0.1, ..good }, "radius"),
-            (ClothSettings { particle_radius: f32::NAN, ..good }, "radius"),
-            (ClothSettings { gravity: Some(Vec3::INFINITY), ..good }, "gravity"),
+            (
+                ClothSettings {
+                    substeps: 0,
+                    ..good
+                },
+                "sub-steps",
+            ),
+            (
+                ClothSettings {
+                    particle_radius: -0.1,
+                    ..good
+                },
+                "radius",
+            ),
+            (
+                ClothSettings {
+                    particle_radius: f32::NAN,
+                    ..good
+                },
+                "radius",
+            ),
+            (
+                ClothSettings {
+                    gravity: Some(Vec3::INFINITY),
+                    ..good
+                },
+                "gravity",
+            ),
         ] {
-            assert!(settings.validate().expect_err(name).to_string().contains(name));
+            assert!(
+                settings
+                    .validate()
+                    .expect_err(name)
+                    .to_string()
+                    .contains(name)
+            );
         }
     }
 }

@@ -18,12 +18,16 @@ impl Stretch {
     pub fn measure(springs: &Springs, particles: &ClothParticles) -> Self {
         let position = particles.positions_slice();
         let largest = |kind| {
-            let colours = springs.colours().iter().filter(|colour| colour.kind == kind);
+            let colours = springs
+                .colours()
+                .iter()
+                .filter(|colour| colour.kind == kind);
             let ratios = colours.flat_map(|colour| {
                 let ends = &springs.ends()[colour.springs.clone()];
                 let rest_length = &springs.rest_length()[colour.springs.clone()];
                 ends.iter().zip(rest_length).map(|(&[a, b], rest_length)| {
-                    position[a as usize].distance_squared(position[b as usize]) / (rest_length * rest_length)
+                    position[a as usize].distance_squared(position[b as usize])
+                        / (rest_length * rest_length)
                 })
             });
             ratios.fold(1.0, f32::max).sqrt() - 1.0
@@ -46,17 +50,22 @@ mod tests {
     fn finds_the_longest_spring_of_each_kind() {
         let grid = Cloth::new(4, 4, 1.0).grid(Vec3::ONE).expect("a sound grid");
         let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
-        let mut particles = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
+        let mut particles =
+            ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
         assert_eq!(Stretch::measure(&springs, &particles), Stretch::default());
 
         // The corner pulled out along the diagonal: both its structural springs become √(2² + 1²) long, its
         // shear spring 2√2.
-        particles.set_position((0, 0), Vec3::new(-1.0, 1.0, 0.0)).expect("it exists");
+        particles
+            .set_position((0, 0), Vec3::new(-1.0, 1.0, 0.0))
+            .expect("it exists");
         let stretch = Stretch::measure(&springs, &particles);
         assert!((stretch.structural - (5.0_f32.sqrt() - 1.0)).abs() < 1e-6);
         assert!((stretch.bound - 5.0_f32.sqrt() + 1.0).abs() < 1e-6);
 
-        particles.set_position((0, 0), Vec3::new(-0.1, 0.1, 0.0)).expect("it exists");
+        particles
+            .set_position((0, 0), Vec3::new(-0.1, 0.1, 0.0))
+            .expect("it exists");
         let stretch = Stretch::measure(&springs, &particles);
         assert!((stretch.structural - (1.22_f32.sqrt() - 1.0)).abs() < 1e-6);
         assert!((stretch.bound - 1.22_f32.sqrt() + 1.0).abs() < 1e-6);
@@ -65,7 +74,9 @@ mod tests {
         for (row, column) in grid.cells() {
             let x = column as f32 + 0.6 * row as f32;
             let sheared = Vec3::new(x, -0.8 * row as f32, 0.0);
-            particles.set_position((row, column), sheared).expect("it exists");
+            particles
+                .set_position((row, column), sheared)
+                .expect("it exists");
         }
         let stretch = Stretch::measure(&springs, &particles);
         assert!(stretch.structural < 1e-6);

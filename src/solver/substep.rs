@@ -76,14 +76,15 @@ pub fn advance(
         let substep = SubStep { index, count };
         integrate(particles, kept, step.acceleration * (dt * dt));
         for pin in pins {
-            particles.columns_mut().position[pin.particle as usize] = pin.from.lerp(pin.to, substep.end());
+            particles.columns_mut().position[pin.particle as usize] =
+                pin.from.lerp(pin.to, substep.end());
         }
         sweep(particles, springs, dt);
         respond(particles, substep);
     }
 }
 
-/// The paper's equation (2), x' = x + (x − x_prev)(1 − D) + a Δt², with x − x_prev stored as such. Pinned
+/// The paper's equation (2), `x' = x + (x − x_prev)(1 − D) + a Δt²`, with `x − x_prev` stored as such. Pinned
 /// particles stay.
 fn integrate(particles: &mut ClothParticles, kept: f32, acceleration_dt2: Vec3) {
     let columns = particles.columns_mut();
@@ -99,7 +100,7 @@ fn integrate(particles: &mut ClothParticles, kept: f32, acceleration_dt2: Vec3) 
 }
 
 /// Moves both ends of each spring towards its rest length, in inverse proportion to their masses: the XPBD
-/// distance constraint, λ = −C / (w_a + w_b + α/Δt²), colour by colour.
+/// distance constraint, `λ = −C / (w_a + w_b + α/Δt²)`, colour by colour.
 ///
 /// A move is added to position and displacement alike, so that the displacement never sees the rounding of
 /// the position.
@@ -143,7 +144,10 @@ mod tests {
     fn falls_by_the_discrete_formula() {
         let (mut particles, springs) = cloth(&ClothMaterial::COTTON, &Pins::none());
         let start = particles.position(7).expect("it exists");
-        let step = TickStep { acceleration: Vec3::new(0.0, -9.81, 0.0), ..Default::default() };
+        let step = TickStep {
+            acceleration: Vec3::new(0.0, -9.81, 0.0),
+            ..Default::default()
+        };
         for _ in 0..64 {
             advance(&mut particles, &springs, step, &[], |_, _| {});
         }
@@ -151,7 +155,10 @@ mod tests {
         let expected = 0.5 * 9.81 * time * (time + dt);
         let fallen = start.y - particles.position(7).expect("it exists").y;
         let rounding = substeps * f32::EPSILON * expected;
-        assert!((fallen - expected).abs() < rounding, "{fallen} {expected} ± {rounding}");
+        assert!(
+            (fallen - expected).abs() < rounding,
+            "{fallen} {expected} ± {rounding}"
+        );
     }
 
     /// D is lost in each 1/60 s, whatever the sub-steps: after 1 s of a free flight the velocity is
@@ -163,13 +170,20 @@ mod tests {
             for index in 0..particles.len() {
                 particles.set_velocity(index, Vec3::X).expect("it exists");
             }
-            let step = TickStep { substeps, damping: 0.02, ..Default::default() };
+            let step = TickStep {
+                substeps,
+                damping: 0.02,
+                ..Default::default()
+            };
             for _ in 0..64 {
                 advance(&mut particles, &springs, step, &[], |_, _| {});
             }
             let velocity = particles.velocity(3).expect("it exists").x;
             let expected = 0.98_f32.powi(60);
-            assert!((velocity / expected - 1.0).abs() < 1e-3, "{substeps}: {velocity} {expected}");
+            assert!(
+                (velocity / expected - 1.0).abs() < 1e-3,
+                "{substeps}: {velocity} {expected}"
+            );
         }
     }
 
@@ -187,11 +201,22 @@ mod tests {
         let centre = |particles: &ClothParticles| {
             let masses = particles.inverse_masses().map(f32::recip);
             let total: f32 = particles.inverse_masses().map(f32::recip).sum();
-            particles.positions().zip(masses).map(|(p, m)| p * m).sum::<Vec3>() / total
+            particles
+                .positions()
+                .zip(masses)
+                .map(|(p, m)| p * m)
+                .sum::<Vec3>()
+                / total
         };
         let before = centre(&particles);
         for _ in 0..64 {
-            advance(&mut particles, &springs, TickStep::default(), &[], |_, _| {});
+            advance(
+                &mut particles,
+                &springs,
+                TickStep::default(),
+                &[],
+                |_, _| {},
+            );
         }
         let drift = centre(&particles).distance(before);
         assert!(drift < 2e-5, "{drift}");
@@ -201,31 +226,59 @@ mod tests {
     fn pins_are_exact_and_follow_their_motion() {
         let (mut particles, springs) = cloth(&ClothMaterial::SILK, &Pins::top_row());
         let before: Vec<Vec3> = particles.positions().take(6).collect();
-        particles.set_velocity(2, Vec3::splat(9.0)).expect("it exists");
-        let step = TickStep { acceleration: Vec3::new(3.0, -9.81, 5.0), ..Default::default() };
+        particles
+            .set_velocity(2, Vec3::splat(9.0))
+            .expect("it exists");
+        let step = TickStep {
+            acceleration: Vec3::new(3.0, -9.81, 5.0),
+            ..Default::default()
+        };
         for _ in 0..64 {
             advance(&mut particles, &springs, step, &[], |_, _| {});
         }
         assert_eq!(particles.positions().take(6).collect::<Vec<_>>(), before);
 
-        let motion = PinMotion { particle: 2, from: before[2], to: before[2] + Vec3::Z };
+        let motion = PinMotion {
+            particle: 2,
+            from: before[2],
+            to: before[2] + Vec3::Z,
+        };
         let mut path = Vec::new();
-        advance(&mut particles, &springs, step, &[motion], |particles, substep| {
-            path.push((substep.end(), particles.position(2).expect("it exists").z));
-        });
+        advance(
+            &mut particles,
+            &springs,
+            step,
+            &[motion],
+            |particles, substep| {
+                path.push((substep.end(), particles.position(2).expect("it exists").z));
+            },
+        );
         assert_eq!(path.len(), 20);
-        assert!(path.iter().all(|(end, z)| (end - z).abs() < 1e-6), "{path:?}");
+        assert!(
+            path.iter().all(|(end, z)| (end - z).abs() < 1e-6),
+            "{path:?}"
+        );
     }
 
     #[test]
     fn coincident_and_pinned_ends_do_no_harm() {
-        let rigid = ClothMaterial { stretch_compliance: 0.0, shear_compliance: 0.0, ..ClothMaterial::COTTON };
+        let rigid = ClothMaterial {
+            stretch_compliance: 0.0,
+            shear_compliance: 0.0,
+            ..ClothMaterial::COTTON
+        };
         let (mut particles, springs) = cloth(&rigid, &Pins::filter(|row, _| row < 2));
         for index in 12..particles.len() {
-            particles.set_position(index, Vec3::ZERO).expect("it exists");
+            particles
+                .set_position(index, Vec3::ZERO)
+                .expect("it exists");
         }
         for seconds in [1.0 / 64.0, 1.0, 100.0] {
-            let step = TickStep { seconds, acceleration: Vec3::NEG_Y, ..Default::default() };
+            let step = TickStep {
+                seconds,
+                acceleration: Vec3::NEG_Y,
+                ..Default::default()
+            };
             for _ in 0..64 {
                 advance(&mut particles, &springs, step, &[], |_, _| {});
             }

@@ -23,23 +23,37 @@ fn expect_fault(
     let good = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
     spoil(&mut app, bad);
     tick(&mut app, 10);
-    let fault = app.world().get::<ClothFault>(bad).map(|fault| fault.0.clone());
+    let fault = app
+        .world()
+        .get::<ClothFault>(bad)
+        .map(|fault| fault.0.clone());
     let error = fault.expect("a fault");
     assert!(is_expected(&error), "{error:?}");
     assert_eq!(app.world().resource::<TimesReported>().0, 1, "{error}");
-    assert!(position(&app, good, (0, 0)).y < -0.05, "the good cloth falls");
+    assert!(
+        position(&app, good, (0, 0)).y < -0.05,
+        "the good cloth falls"
+    );
     mend(&mut app, bad);
     tick(&mut app, 10);
     assert!(app.world().get::<ClothFault>(bad).is_none(), "mended");
     if app.world().get::<Cloth>(bad).is_some() {
         let particles = particles(&app, bad);
         assert_eq!(particles.validate(), Ok(()));
-        assert!(particles.position((1, 1)).expect("a particle").y < -0.1, "and simulated");
+        assert!(
+            particles.position((1, 1)).expect("a particle").y < -0.1,
+            "and simulated"
+        );
     }
 }
 
 fn expect_bad_quantity(bad: impl Bundle, mend: impl FnOnce(&mut App, Entity)) {
-    expect_fault(bad, |_, _| {}, |error| matches!(error, ClothError::Quantity { .. }), mend);
+    expect_fault(
+        bad,
+        |_, _| {},
+        |error| matches!(error, ClothError::Quantity { .. }),
+        mend,
+    );
 }
 
 fn mend_cloth(app: &mut App, entity: Entity) {
@@ -50,15 +64,29 @@ fn mend_cloth(app: &mut App, entity: Entity) {
 fn too_few_columns_or_rows() {
     for (columns, rows) in [(0, 0), (1, 16), (16, 1), (0, 5)] {
         let is_expected = |error: &ClothError| matches!(error, ClothError::GridTooSmall { .. });
-        expect_fault(Cloth::new(columns, rows, 0.1), |_, _| {}, is_expected, mend_cloth);
+        expect_fault(
+            Cloth::new(columns, rows, 0.1),
+            |_, _| {},
+            is_expected,
+            mend_cloth,
+        );
     }
 }
 
 #[test]
 fn a_product_that_overflows() {
-    for (columns, rows) in [(u32::MAX, u32::MAX), (65_536, 65_536), (1 << 16, (1 << 8) + 1)] {
+    for (columns, rows) in [
+        (u32::MAX, u32::MAX),
+        (65_536, 65_536),
+        (1 << 16, (1 << 8) + 1),
+    ] {
         let is_expected = |error: &ClothError| matches!(error, ClothError::GridTooLarge { .. });
-        expect_fault(Cloth::new(columns, rows, 0.1), |_, _| {}, is_expected, mend_cloth);
+        expect_fault(
+            Cloth::new(columns, rows, 0.1),
+            |_, _| {},
+            is_expected,
+            mend_cloth,
+        );
     }
 }
 
@@ -96,9 +124,18 @@ fn a_material_that_cannot_be() {
 fn settings_that_cannot_be() {
     let good = ClothSettings::default();
     for settings in [
-        ClothSettings { substeps: 0, ..good },
-        ClothSettings { particle_radius: -0.1, ..good },
-        ClothSettings { gravity: Some(Vec3::NAN), ..good },
+        ClothSettings {
+            substeps: 0,
+            ..good
+        },
+        ClothSettings {
+            particle_radius: -0.1,
+            ..good
+        },
+        ClothSettings {
+            gravity: Some(Vec3::NAN),
+            ..good
+        },
     ] {
         expect_bad_quantity((Cloth::default(), settings), |app, entity| {
             change::<ClothSettings>(app, entity, |settings| *settings = default());
@@ -108,7 +145,12 @@ fn settings_that_cannot_be() {
 
 #[test]
 fn a_pin_out_of_range() {
-    for pin in [Pin::Index(256), Pin::Cell(16, 0), Pin::Row(16), Pin::Column(99)] {
+    for pin in [
+        Pin::Index(256),
+        Pin::Cell(16, 0),
+        Pin::Row(16),
+        Pin::Column(99),
+    ] {
         expect_fault(
             (Cloth::default(), Pins::new([pin])),
             |_, _| {},
@@ -158,13 +200,17 @@ fn a_nan_that_a_game_wrote() {
             move |app, entity| {
                 tick(app, 2);
                 change::<ClothParticles>(app, entity, |particles| {
-                    particles.set_position((3, 4), Vec3::splat(bad)).expect("a particle");
+                    particles
+                        .set_position((3, 4), Vec3::splat(bad))
+                        .expect("a particle");
                 });
             },
             |error| matches!(error, ClothError::ParticleNotFinite { index: 52, .. }),
             |app, entity| {
                 change::<ClothParticles>(app, entity, |particles| {
-                    particles.set_position((3, 4), Vec3::new(0.4, -0.3, 0.0)).expect("a particle");
+                    particles
+                        .set_position((3, 4), Vec3::new(0.4, -0.3, 0.0))
+                        .expect("a particle");
                 });
             },
         );
@@ -178,7 +224,15 @@ fn particles_of_another_cloth() {
     expect_fault(
         (Cloth::default(), foreign),
         |_, _| {},
-        |error| matches!(error, ClothError::ParticleCount { expected: 256, found: 16 }),
+        |error| {
+            matches!(
+                error,
+                ClothError::ParticleCount {
+                    expected: 256,
+                    found: 16
+                }
+            )
+        },
         |app, entity| change::<ClothParticles>(app, entity, |particles| *particles = default()),
     );
 }
@@ -190,15 +244,21 @@ fn a_collider_of_no_size() {
             change::<ClothCollider>(app, entity, |collider| *collider = default());
         });
     }
-    expect_bad_quantity((ClothCollider::default(), Transform::from_scale(Vec3::ZERO)), |app, entity| {
-        change::<Transform>(app, entity, |transform| transform.scale = Vec3::ONE);
-    });
+    expect_bad_quantity(
+        (ClothCollider::default(), Transform::from_scale(Vec3::ZERO)),
+        |app, entity| {
+            change::<Transform>(app, entity, |transform| transform.scale = Vec3::ONE);
+        },
+    );
 }
 
 #[test]
 fn a_collider_nowhere() {
     expect_fault(
-        (ClothCollider::default(), Transform::from_xyz(0.0, f32::NAN, 0.0)),
+        (
+            ClothCollider::default(),
+            Transform::from_xyz(0.0, f32::NAN, 0.0),
+        ),
         |_, _| {},
         |error| matches!(error, ClothError::Transform { .. }),
         |app, entity| change::<Transform>(app, entity, |transform| *transform = default()),
@@ -220,11 +280,23 @@ fn gravity_that_is_not_finite() {
 /// Each error says what is wrong, with the value.
 #[test]
 fn errors_read_well() {
-    let error = Cloth::new(1, 8, 0.1).grid(Vec3::ONE).expect_err("too small");
-    assert_eq!(error.to_string(), "a cloth needs at least 2 columns and 2 rows, not 1 × 8");
-    let error = Cloth::new(8, 8, -0.5).grid(Vec3::ONE).expect_err("negative");
+    let error = Cloth::new(1, 8, 0.1)
+        .grid(Vec3::ONE)
+        .expect_err("too small");
+    assert_eq!(
+        error.to_string(),
+        "a cloth needs at least 2 columns and 2 rows, not 1 × 8"
+    );
+    let error = Cloth::new(8, 8, -0.5)
+        .grid(Vec3::ONE)
+        .expect_err("negative");
     assert_eq!(error.to_string(), "spacing (m) must be positive, not -0.5");
     let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("sound");
-    let error = Pins::new([Pin::Row(3)]).validate(&grid).expect_err("out of range");
-    assert_eq!(error.to_string(), "Row(3) is outside of a cloth of 4 columns × 3 rows");
+    let error = Pins::new([Pin::Row(3)])
+        .validate(&grid)
+        .expect_err("out of range");
+    assert_eq!(
+        error.to_string(),
+        "Row(3) is outside of a cloth of 4 columns × 3 rows"
+    );
 }

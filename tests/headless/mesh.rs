@@ -14,14 +14,25 @@ use bevy_drape::prelude::*;
 use crate::support::*;
 
 fn app_with_meshes() -> App {
-    with_plugins((AssetPlugin::default(), MeshPlugin, VisibilityPlugin, DrapePlugins::default()))
+    with_plugins((
+        AssetPlugin::default(),
+        MeshPlugin,
+        VisibilityPlugin,
+        DrapePlugins::default(),
+    ))
 }
 
 fn vertices(app: &App, cloth: Entity, attribute: bevy::mesh::MeshVertexAttribute) -> Vec<Vec3> {
     let handle = &app.world().get::<Mesh3d>(cloth).expect("a mesh").0;
-    let mesh = app.world().resource::<Assets<Mesh>>().get(handle).expect("an asset");
+    let mesh = app
+        .world()
+        .resource::<Assets<Mesh>>()
+        .get(handle)
+        .expect("an asset");
     match mesh.attribute(attribute) {
-        Some(VertexAttributeValues::Float32x3(values)) => values.iter().map(|&value| value.into()).collect(),
+        Some(VertexAttributeValues::Float32x3(values)) => {
+            values.iter().map(|&value| value.into()).collect()
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -30,28 +41,55 @@ fn vertices(app: &App, cloth: Entity, attribute: bevy::mesh::MeshVertexAttribute
 #[test]
 fn the_mesh_follows_the_particles_and_its_bounds_stay_true() {
     let mut app = app_with_meshes();
-    let place = Transform::from_xyz(1.0, 2.0, 3.0).with_rotation(Quat::from_rotation_y(0.5)).with_scale(Vec3::new(2.0, 1.5, -1.0));
-    let parent = app.world_mut().spawn((Transform::from_xyz(0.0, 7.0, 0.0), Visibility::default())).id();
-    let cloth = app.world_mut().spawn((Cloth::default(), place, Visibility::default(), ChildOf(parent))).id();
-    app.world_mut().spawn((ClothCollider::ball(0.5), Transform::from_xyz(2.0, 8.0, 2.5)));
+    let place = Transform::from_xyz(1.0, 2.0, 3.0)
+        .with_rotation(Quat::from_rotation_y(0.5))
+        .with_scale(Vec3::new(2.0, 1.5, -1.0));
+    let parent = app
+        .world_mut()
+        .spawn((Transform::from_xyz(0.0, 7.0, 0.0), Visibility::default()))
+        .id();
+    let cloth = app
+        .world_mut()
+        .spawn((
+            Cloth::default(),
+            place,
+            Visibility::default(),
+            ChildOf(parent),
+        ))
+        .id();
+    app.world_mut()
+        .spawn((ClothCollider::ball(0.5), Transform::from_xyz(2.0, 8.0, 2.5)));
     tick(&mut app, 60);
     let before: Vec<Vec3> = particles(&app, cloth).positions().collect();
     tick(&mut app, 1);
     // With no overstep the picture is that of a tick ago.
-    let global = *app.world().get::<GlobalTransform>(cloth).expect("a transform");
+    let global = *app
+        .world()
+        .get::<GlobalTransform>(cloth)
+        .expect("a transform");
     let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
     let drawn = vertices(&app, cloth, Mesh::ATTRIBUTE_POSITION);
     for (vertex, particle) in drawn.iter().zip(&before) {
-        let distance = global.transform_point(*vertex).distance(frame.to_world(*particle));
+        let distance = global
+            .transform_point(*vertex)
+            .distance(frame.to_world(*particle));
         assert!(distance < 1e-5, "{distance}");
     }
     for normal in vertices(&app, cloth, Mesh::ATTRIBUTE_NORMAL) {
         assert!((normal.length() - 1.0).abs() < 1e-5);
     }
     let bounds = app.world().get::<Aabb>(cloth).expect("bounds");
-    let (least, most) = drawn.iter().fold((Vec3::MAX, Vec3::MIN), |(a, b), p| (a.min(*p), b.max(*p)));
-    assert!(Vec3::from(bounds.min()).distance(least) < 1e-5 && Vec3::from(bounds.max()).distance(most) < 1e-5);
-    assert!(most.z - least.z > 0.1, "the cloth has been pushed out of its plane");
+    let (least, most) = drawn
+        .iter()
+        .fold((Vec3::MAX, Vec3::MIN), |(a, b), p| (a.min(*p), b.max(*p)));
+    assert!(
+        Vec3::from(bounds.min()).distance(least) < 1e-5
+            && Vec3::from(bounds.max()).distance(most) < 1e-5
+    );
+    assert!(
+        most.z - least.z > 0.1,
+        "the cloth has been pushed out of its plane"
+    );
 }
 
 /// Between two ticks the mesh is between them.
@@ -67,7 +105,9 @@ fn the_mesh_is_interpolated() {
     let later = particle(&app);
     assert!((y(&app) - earlier).abs() < 1e-6);
     for quarter in 1..4 {
-        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(TICK / 4.0)));
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
+            TICK / 4.0,
+        )));
         app.update();
         let expected = earlier + (later - earlier) * quarter as f32 / 4.0;
         assert!((y(&app) - expected).abs() < 1e-6, "{quarter}");
@@ -79,14 +119,21 @@ fn the_mesh_is_interpolated() {
 #[test]
 fn a_new_grid_gets_a_new_mesh() {
     let mut app = app_with_meshes();
-    let still = ClothSettings { gravity: Some(Vec3::ZERO), ..default() };
+    let still = ClothSettings {
+        gravity: Some(Vec3::ZERO),
+        ..default()
+    };
     let cloth = app.world_mut().spawn((Cloth::new(3, 4, 0.2), still)).id();
     tick(&mut app, 2);
     let normals = vertices(&app, cloth, Mesh::ATTRIBUTE_NORMAL);
     assert_eq!(normals.len(), 12);
     assert!(normals.iter().all(|normal| normal.distance(Vec3::Z) < 1e-6));
     let handle = app.world().get::<Mesh3d>(cloth).expect("a mesh").0.clone();
-    let mesh = app.world().resource::<Assets<Mesh>>().get(&handle).expect("an asset");
+    let mesh = app
+        .world()
+        .resource::<Assets<Mesh>>()
+        .get(&handle)
+        .expect("an asset");
     assert_eq!(mesh.indices().expect("indices").len(), 2 * 3 * 6);
     let Some(VertexAttributeValues::Float32x2(uvs)) = mesh.attribute(Mesh::ATTRIBUTE_UV_0) else {
         panic!("no UVs");

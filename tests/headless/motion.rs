@@ -16,13 +16,22 @@ const COLUMNS_ALONE: ClothMaterial = ClothMaterial {
 #[test]
 fn free_fall_is_exact() {
     let mut app = app();
-    let material = ClothMaterial { damping: 0.0, ..default() };
-    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none(), material)).id();
+    let material = ClothMaterial {
+        damping: 0.0,
+        ..default()
+    };
+    let cloth = app
+        .world_mut()
+        .spawn((Cloth::default(), Pins::none(), material))
+        .id();
     tick(&mut app, 64);
     let fallen = -position(&app, cloth, (0, 0)).y;
     let exact = 0.5 * GRAVITY;
     let discrete = exact + 0.5 * GRAVITY / (64.0 * 20.0);
-    assert!((fallen - discrete).abs() < 1280.0 * f32::EPSILON * 5.0, "{fallen} {discrete}");
+    assert!(
+        (fallen - discrete).abs() < 1280.0 * f32::EPSILON * 5.0,
+        "{fallen} {discrete}"
+    );
     assert!((fallen - exact).abs() < 1.01 * (discrete - exact));
 }
 
@@ -35,8 +44,15 @@ fn a_hanging_cloth_has_the_stretch_that_its_compliance_gives() {
         let mut app = app();
         let compliance = 0.02;
         let cloth = Cloth::new(6, rows, spacing);
-        let material = ClothMaterial { stretch_compliance: compliance, damping: 0.05, ..COLUMNS_ALONE };
-        let settings = ClothSettings { substeps: 40, ..default() };
+        let material = ClothMaterial {
+            stretch_compliance: compliance,
+            damping: 0.05,
+            ..COLUMNS_ALONE
+        };
+        let settings = ClothSettings {
+            substeps: 40,
+            ..default()
+        };
         let entity = app.world_mut().spawn((cloth, material, settings)).id();
         tick(&mut app, 64 * 12);
         let particles = particles(&app, entity);
@@ -46,9 +62,14 @@ fn a_hanging_cloth_has_the_stretch_that_its_compliance_gives() {
         let unfinished = ((rows - 1) as f32).powi(2) * GRAVITY * substep * substep;
         for column in 0..6 {
             let end = |row| particles.position((row, column)).expect("a particle");
-            let length = (1..rows).map(|row| end(row).distance(end(row - 1))).sum::<f32>();
+            let length = (1..rows)
+                .map(|row| end(row).distance(end(row - 1)))
+                .sum::<f32>();
             let found = length - height;
-            assert!((found - extension).abs() < unfinished, "{rows} rows: {found} {extension} ± {unfinished}");
+            assert!(
+                (found - extension).abs() < unfinished,
+                "{rows} rows: {found} {extension} ± {unfinished}"
+            );
         }
         let speed = particles.largest_speed();
         assert!(speed < 1e-3, "at rest, not {speed} m/s");
@@ -60,15 +81,21 @@ fn a_hanging_cloth_has_the_stretch_that_its_compliance_gives() {
 fn shear_and_bend_springs_only_help() {
     let mut app = app();
     let cloth = Cloth::default();
-    let material = ClothMaterial { damping: 0.05, ..default() };
+    let material = ClothMaterial {
+        damping: 0.05,
+        ..default()
+    };
     let entity = app.world_mut().spawn((cloth, material)).id();
     tick(&mut app, 64 * 10);
     let height = cloth.height();
-    let elastic = material.stretch_compliance * material.areal_density * GRAVITY * height * height / 2.0;
+    let elastic =
+        material.stretch_compliance * material.areal_density * GRAVITY * height * height / 2.0;
     let unfinished = 15.0_f32.powi(2) * GRAVITY * (TICK / 20.0).powi(2);
     for column in 0..16 {
         let at = |row| position(&app, entity, (row, column));
-        let length = (1..16).map(|row| at(row).distance(at(row - 1))).sum::<f32>();
+        let length = (1..16)
+            .map(|row| at(row).distance(at(row - 1)))
+            .sum::<f32>();
         assert!(length < height + elastic + unfinished, "{length}");
         assert!(length > height * 0.999, "{length}");
     }
@@ -78,8 +105,12 @@ fn shear_and_bend_springs_only_help() {
 fn a_pinned_particle_never_moves() {
     let mut app = app();
     let pins = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Index(5), Pin::Cell(9, 9)]);
-    let cloth = app.world_mut().spawn((Cloth::default(), pins, Transform::from_xyz(3.0, 2.0, 1.0))).id();
-    app.world_mut().spawn((ClothCollider::ball(0.4), Transform::from_xyz(3.5, 1.5, 1.0)));
+    let cloth = app
+        .world_mut()
+        .spawn((Cloth::default(), pins, Transform::from_xyz(3.0, 2.0, 1.0)))
+        .id();
+    app.world_mut()
+        .spawn((ClothCollider::ball(0.4), Transform::from_xyz(3.5, 1.5, 1.0)));
     tick(&mut app, 1);
     for _ in 0..100 {
         tick(&mut app, 1);
@@ -101,11 +132,17 @@ fn pins_and_material_may_change_at_any_time() {
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     tick(&mut app, 10);
     let before = position(&app, cloth, (0, 8));
-    change::<Pins>(&mut app, cloth, |pins| *pins = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]));
+    change::<Pins>(&mut app, cloth, |pins| {
+        *pins = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]);
+    });
     change::<ClothMaterial>(&mut app, cloth, |material| material.areal_density = 1.5);
     tick(&mut app, 10);
     assert!(position(&app, cloth, (0, 8)).y < before.y);
-    let mass: f32 = particles(&app, cloth).inverse_masses().filter(|&w| w > 0.0).map(f32::recip).sum();
+    let mass: f32 = particles(&app, cloth)
+        .inverse_masses()
+        .filter(|&w| w > 0.0)
+        .map(f32::recip)
+        .sum();
     let corners = 2.0 * 1.5 * 0.1 * 0.1 / 4.0;
     assert!((mass - (1.5 * 1.5 * 1.5 - corners)).abs() < 1e-4, "{mass}");
 }
@@ -114,17 +151,36 @@ fn pins_and_material_may_change_at_any_time() {
 #[test]
 fn the_transform_is_respected_at_spawn() {
     let mut app = app();
-    let parent = app.world_mut().spawn(Transform::from_xyz(10.0, 0.0, 0.0)).id();
+    let parent = app
+        .world_mut()
+        .spawn(Transform::from_xyz(10.0, 0.0, 0.0))
+        .id();
     let turned = Transform::from_xyz(0.0, 5.0, 0.0)
         .with_rotation(Quat::from_rotation_y(std::f32::consts::FRAC_PI_2))
         .with_scale(Vec3::new(2.0, 3.0, 1.0));
-    let cloth = app.world_mut().spawn((Cloth::new(3, 3, 0.5), Pins::filter(|_, _| true), turned, ChildOf(parent))).id();
+    let cloth = app
+        .world_mut()
+        .spawn((
+            Cloth::new(3, 3, 0.5),
+            Pins::filter(|_, _| true),
+            turned,
+            ChildOf(parent),
+        ))
+        .id();
     tick(&mut app, 2);
     let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
     let corner = frame.to_world(position(&app, cloth, (2, 2)));
     // Two metres wide along −z, three high.
-    assert!(corner.distance(Vec3::new(10.0, 2.0, -2.0)) < 1e-5, "{corner}");
-    assert!(frame.from_world(corner).distance(position(&app, cloth, (2, 2))) < 1e-5);
+    assert!(
+        corner.distance(Vec3::new(10.0, 2.0, -2.0)) < 1e-5,
+        "{corner}"
+    );
+    assert!(
+        frame
+            .from_world(corner)
+            .distance(position(&app, cloth, (2, 2)))
+            < 1e-5
+    );
 }
 
 /// Gravity points down in the world however the cloth is turned; a cloth of its own has its own.
@@ -135,7 +191,16 @@ fn gravity_is_the_worlds_unless_a_cloth_has_its_own() {
     let free = (Cloth::new(3, 3, 0.5), Pins::none());
     let turned = app.world_mut().spawn((free.clone(), turned)).id();
     let gravity = Some(Vec3::X * 2.0);
-    let own = app.world_mut().spawn((free, ClothSettings { gravity, ..default() })).id();
+    let own = app
+        .world_mut()
+        .spawn((
+            free,
+            ClothSettings {
+                gravity,
+                ..default()
+            },
+        ))
+        .id();
     app.insert_resource(ClothGravity(Vec3::NEG_Z));
     tick(&mut app, 1);
     let velocity = |cloth: Entity| {
@@ -150,7 +215,10 @@ fn gravity_is_the_worlds_unless_a_cloth_has_its_own() {
 #[test]
 fn a_moved_transform_carries_its_pins() {
     let mut app = app();
-    let damped = ClothMaterial { damping: 0.05, ..default() };
+    let damped = ClothMaterial {
+        damping: 0.05,
+        ..default()
+    };
     let cloth = app.world_mut().spawn((Cloth::default(), damped)).id();
     tick(&mut app, 2);
     change::<Transform>(&mut app, cloth, |transform| transform.translation.z = 0.05);
@@ -162,7 +230,10 @@ fn a_moved_transform_carries_its_pins() {
     assert_eq!(world(&app, (0, 3)), 0.05);
     assert!(world(&app, (15, 3)).abs() < 1e-3);
     tick(&mut app, 64 * 30);
-    assert!((world(&app, (15, 3)) - 0.05).abs() < 1e-3, "it hangs below its pins again");
+    assert!(
+        (world(&app, (15, 3)) - 0.05).abs() < 1e-3,
+        "it hangs below its pins again"
+    );
 }
 
 /// A kilometre away a cloth moves as at the origin, bit for bit: it lives in its own frame.
@@ -171,7 +242,10 @@ fn a_kilometre_away_is_as_good_as_here() {
     let mut app = app();
     let free = (Cloth::default(), Pins::new([Pin::Corner(Corner::TopLeft)]));
     let here = app.world_mut().spawn(free.clone()).id();
-    let there = app.world_mut().spawn((free, Transform::from_xyz(1000.0, -500.0, 1000.0))).id();
+    let there = app
+        .world_mut()
+        .spawn((free, Transform::from_xyz(1000.0, -500.0, 1000.0)))
+        .id();
     tick(&mut app, 128);
     assert_eq!(particles(&app, here), particles(&app, there));
 }
@@ -184,7 +258,9 @@ fn games_may_write_particles() {
     tick(&mut app, 1);
     change::<ClothParticles>(&mut app, cloth, |particles| {
         for index in 0..particles.len() {
-            particles.set_velocity(index, Vec3::Z * 3.0).expect("a particle");
+            particles
+                .set_velocity(index, Vec3::Z * 3.0)
+                .expect("a particle");
         }
     });
     tick(&mut app, 1);
@@ -205,7 +281,10 @@ fn a_cloth_may_begin_in_a_state_of_the_games_own() {
     let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
     tick(&mut app, 30);
     let fallen = particles(&app, cloth).clone();
-    let copy = app.world_mut().spawn((Cloth::default(), Pins::none(), fallen)).id();
+    let copy = app
+        .world_mut()
+        .spawn((Cloth::default(), Pins::none(), fallen))
+        .id();
     tick(&mut app, 30);
     assert_eq!(particles(&app, cloth), particles(&app, copy));
 }
@@ -215,9 +294,14 @@ fn a_cloth_may_begin_in_a_state_of_the_games_own() {
 fn huge_and_changing_steps_are_survived() {
     let mut app = app();
     let cloth = app.world_mut().spawn(Cloth::default()).id();
-    app.world_mut().spawn((ClothCollider::ball(0.4), Transform::from_xyz(0.7, -1.0, 0.1)));
+    app.world_mut().spawn((
+        ClothCollider::ball(0.4),
+        Transform::from_xyz(0.7, -1.0, 0.1),
+    ));
     for seconds in [1.0 / 64.0, 1.0, 1.0 / 1000.0, 10.0, 1.0 / 64.0] {
-        app.world_mut().resource_mut::<Time<Fixed>>().set_timestep_seconds(seconds);
+        app.world_mut()
+            .resource_mut::<Time<Fixed>>()
+            .set_timestep_seconds(seconds);
         for substeps in [1, 20, 3] {
             change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = substeps);
             (0..20).for_each(|_| app.update());
@@ -228,6 +312,40 @@ fn huge_and_changing_steps_are_survived() {
     }
     change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = 20);
     tick(&mut app, 64 * 20);
-    let stretch = app.world().get::<ClothStats>(cloth).expect("figures").stretch.structural;
+    let stretch = app
+        .world()
+        .get::<ClothStats>(cloth)
+        .expect("figures")
+        .stretch
+        .structural;
     assert!(stretch < 0.05, "{stretch}");
+}
+
+/// What is moved while the clock stands still is carried along once it goes on: nothing is lost, nothing jumps.
+#[test]
+fn a_transform_moved_in_a_pause_counts_when_time_goes_on() {
+    let mut app = with_plugins(DrapePlugins::new(Update));
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let ball = (
+        ClothCollider::ball(0.4),
+        Transform::from_xyz(0.75, -0.8, -0.45),
+    );
+    let ball = app.world_mut().spawn(ball).id();
+    tick(&mut app, 2);
+    app.world_mut().resource_mut::<Time<Virtual>>().pause();
+    app.update();
+    change::<Transform>(&mut app, cloth, |transform| transform.translation.x = 0.05);
+    change::<Transform>(&mut app, ball, |transform| transform.translation.z = -0.3);
+    (0..3).for_each(|_| app.update());
+    app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+    tick(&mut app, 1);
+    let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+    assert_eq!(
+        frame.to_world(position(&app, cloth, (0, 0))),
+        Vec3::X * 0.05
+    );
+    // The ball has come its 0.15 m in 20 sub-steps, and was not in the cloth all at once.
+    let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
+    let contact = contacts.with(ball).expect("a contact");
+    assert!(contact.deepest_penetration < 0.03, "{contact:?}");
 }

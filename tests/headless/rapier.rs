@@ -10,7 +10,11 @@ use crate::support::*;
 
 pub fn app_with_rapier() -> App {
     with_plugins(|app: &mut App| {
-        app.insert_resource(TimestepMode::Fixed { dt: TICK, substeps: 1 }).add_plugins((
+        app.insert_resource(TimestepMode::Fixed {
+            dt: TICK,
+            substeps: 1,
+        })
+        .add_plugins((
             RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
             DrapePlugins::default(),
         ));
@@ -32,13 +36,31 @@ fn rapier_moves_the_ball_and_the_cloth_follows() {
         ))
         .id();
     tick(&mut app, 64);
-    let place = app.world().get::<Transform>(ball).expect("a transform").translation;
+    let place = app
+        .world()
+        .get::<Transform>(ball)
+        .expect("a transform")
+        .translation;
     assert!((place.z - 1.0).abs() < 0.07, "rapier has moved it: {place}");
-    assert_eq!(app.world().get::<ClothCollider>(ball), Some(&ClothCollider::ball(0.4)));
-    assert!(app.world().get::<ClothContacts>(cloth).expect("contacts").with(ball).is_some());
-    assert!(position(&app, cloth, (10, 8)).z > 0.5, "the cloth has followed");
+    assert_eq!(
+        app.world().get::<ClothCollider>(ball),
+        Some(&ClothCollider::ball(0.4))
+    );
+    assert!(
+        app.world()
+            .get::<ClothContacts>(cloth)
+            .expect("contacts")
+            .with(ball)
+            .is_some()
+    );
+    assert!(
+        position(&app, cloth, (10, 8)).z > 0.5,
+        "the cloth has followed"
+    );
     // The cloth is pushed out of where the ball is now, not of where it was a tick ago.
-    let inside = particles(&app, cloth).positions().any(|position| position.distance(place) < 0.4099);
+    let inside = particles(&app, cloth)
+        .positions()
+        .any(|position| position.distance(place) < 0.4099);
     assert!(!inside);
 }
 
@@ -61,7 +83,10 @@ fn radius_and_scale_are_rapiers() {
     let radius = collider.scaled_radius(Vec3::splat(3.0)).expect("a radius");
     assert!((radius - 0.6).abs() < 1e-6, "{radius}");
     let centre = Vec3::new(0.7, -0.7, 0.0);
-    let nearest = particles(&app, cloth).positions().skip(16).map(|position| position.distance(centre));
+    let nearest = particles(&app, cloth)
+        .positions()
+        .skip(16)
+        .map(|position| position.distance(centre));
     let nearest = nearest.fold(f32::MAX, f32::min);
     assert!((nearest - 0.61).abs() < 1e-3, "{nearest}");
 }
@@ -70,14 +95,36 @@ fn radius_and_scale_are_rapiers() {
 fn what_is_no_ball_is_named_and_left_out() {
     let mut app = app_with_rapier();
     let place = Transform::from_xyz(0.7, -0.7, 0.0);
-    let cuboid = app.world_mut().spawn((Collider::cuboid(0.3, 0.3, 0.3), RapierClothCollider, place)).id();
+    let cuboid = app
+        .world_mut()
+        .spawn((Collider::cuboid(0.3, 0.3, 0.3), RapierClothCollider, place))
+        .id();
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     tick(&mut app, 5);
     let fault = app.world().get::<ClothFault>(cuboid).expect("a fault");
-    assert!(matches!(&fault.0, ClothError::NotABall { shape } if shape == "Cuboid"), "{fault:?}");
-    assert_eq!(app.world().get::<ClothContacts>(cloth).expect("contacts").iter().len(), 0);
-    app.world_mut().entity_mut(cuboid).insert(Collider::ball(0.3));
+    assert!(
+        matches!(&fault.0, ClothError::NotABall { shape } if shape == "Cuboid"),
+        "{fault:?}"
+    );
+    assert_eq!(
+        app.world()
+            .get::<ClothContacts>(cloth)
+            .expect("contacts")
+            .iter()
+            .len(),
+        0
+    );
+    app.world_mut()
+        .entity_mut(cuboid)
+        .insert(Collider::ball(0.3));
     tick(&mut app, 5);
     assert!(app.world().get::<ClothFault>(cuboid).is_none());
-    assert_eq!(app.world().get::<ClothContacts>(cloth).expect("contacts").iter().len(), 1);
+    assert_eq!(
+        app.world()
+            .get::<ClothContacts>(cloth)
+            .expect("contacts")
+            .iter()
+            .len(),
+        1
+    );
 }

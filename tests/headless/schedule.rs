@@ -3,14 +3,16 @@
 use bevy::{
     asset::AssetPlugin,
     camera::visibility::VisibilityPlugin,
-    diagnostic::{DiagnosticPath, DiagnosticsStore},
+    diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
     ecs::schedule::{LogLevel, ScheduleBuildSettings},
     gizmos::GizmoPlugin,
     mesh::MeshPlugin,
     prelude::*,
 };
 use bevy_drape::{
-    plugin::{ClothDiagnosticsPlugin, ClothGizmosPlugin, ClothMeshPlugin, ClothPlugin, ClothRapierPlugin},
+    plugin::{
+        ClothDiagnosticsPlugin, ClothGizmosPlugin, ClothMeshPlugin, ClothPlugin, ClothRapierPlugin,
+    },
     prelude::*,
 };
 
@@ -45,7 +47,8 @@ fn no_system_is_ambiguous() {
     refuse_ambiguities(&mut app);
     app.finish();
     app.cleanup();
-    app.world_mut().spawn((Cloth::default(), ShowClothGizmos::default()));
+    app.world_mut()
+        .spawn((Cloth::default(), ShowClothGizmos::default()));
     app.insert_resource(bevy::time::TimeUpdateStrategy::FixedTimesteps(1));
     (0..3).for_each(|_| app.update());
 }
@@ -75,7 +78,12 @@ fn each_plugin_works_alone() {
     tick(&mut app, 10);
     assert!(position(&app, cloth, (0, 0)).y < -0.05);
 
-    let mut app = with_plugins((ClothDiagnosticsPlugin::default(), ClothMeshPlugin::default(), ClothGizmosPlugin, ClothRapierPlugin::default()));
+    let mut app = with_plugins((
+        ClothDiagnosticsPlugin::default(),
+        ClothMeshPlugin::default(),
+        ClothGizmosPlugin,
+        ClothRapierPlugin::default(),
+    ));
     app.world_mut().spawn(Cloth::default());
     tick(&mut app, 2);
 }
@@ -88,7 +96,10 @@ fn the_schedule_is_the_games_choice() {
     tick(&mut app, 64);
     let fallen = -position(&app, cloth, (0, 0)).y;
     // Cotton's damping costs less than a fifth of it: v' = g − v D 60 Hz.
-    assert!(fallen > 0.4 * GRAVITY && fallen < 0.51 * GRAVITY, "{fallen}");
+    assert!(
+        fallen > 0.4 * GRAVITY && fallen < 0.51 * GRAVITY,
+        "{fallen}"
+    );
 }
 
 /// No time, no motion: a paused clock leaves a cloth bit for bit as it is.
@@ -113,10 +124,18 @@ fn a_paused_clock_stops_the_cloth() {
 fn diagnostics_are_measured() {
     let mut app = app();
     app.world_mut().spawn(Cloth::default());
-    app.world_mut().spawn((ClothCollider::default(), Transform::from_xyz(0.7, -0.7, 0.9)));
+    app.world_mut().spawn((
+        ClothCollider::default(),
+        Transform::from_xyz(0.7, -0.7, 0.9),
+    ));
     tick(&mut app, 30);
     let store = app.world().resource::<DiagnosticsStore>();
-    let value = |path: &DiagnosticPath| store.get(path).and_then(|each| each.value()).expect("a value");
+    let value = |path: &DiagnosticPath| {
+        store
+            .get(path)
+            .and_then(Diagnostic::value)
+            .expect("a value")
+    };
     type Plugin = ClothDiagnosticsPlugin;
     assert!(value(&Plugin::INTEGRATE) > 0.0);
     assert!(value(&Plugin::REBUILD) > 0.0 && value(&Plugin::QUERY) > 0.0);

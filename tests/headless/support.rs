@@ -35,7 +35,10 @@ pub fn tick(app: &mut App, ticks: usize) {
     let before = app.world().resource::<Time<Fixed>>().elapsed_secs_f64();
     (0..ticks).for_each(|_| app.update());
     let passed = app.world().resource::<Time<Fixed>>().elapsed_secs_f64() - before;
-    assert!((passed - ticks as f64 * f64::from(TICK)).abs() < 1e-9, "{passed} s in {ticks} ticks");
+    assert!(
+        (passed - ticks as f64 * f64::from(TICK)).abs() < 1e-9,
+        "{passed} s in {ticks} ticks"
+    );
 }
 
 /// An entity's particles.
@@ -49,7 +52,11 @@ pub fn position(app: &App, cloth: Entity, cell: (u32, u32)) -> Vec3 {
 }
 
 /// A component of an entity, changed.
-pub fn change<C: Component<Mutability = bevy::ecs::component::Mutable>>(app: &mut App, entity: Entity, change: impl FnOnce(&mut C)) {
+pub fn change<C: Component<Mutability = bevy::ecs::component::Mutable>>(
+    app: &mut App,
+    entity: Entity,
+    change: impl FnOnce(&mut C),
+) {
     change(&mut app.world_mut().get_mut::<C>(entity).expect("the component"));
 }
 
@@ -64,7 +71,11 @@ impl<M: Message> Default for Heard<M> {
 }
 
 fn hear<M: Message + Clone>(messages: Option<ResMut<Messages<M>>>, mut heard: ResMut<Heard<M>>) {
-    heard.0.extend(messages.into_iter().flat_map(|mut messages| messages.drain().collect::<Vec<_>>()));
+    heard.0.extend(
+        messages
+            .into_iter()
+            .flat_map(|mut messages| messages.drain().collect::<Vec<_>>()),
+    );
 }
 
 /// All messages since the last call.

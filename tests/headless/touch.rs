@@ -31,16 +31,25 @@ fn app_with_moving_balls() -> App {
 fn spawn_pass(app: &mut App) -> (Entity, Entity) {
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     let place = Transform::from_xyz(0.75, -1.0, -2.2);
-    let ball = app.world_mut().spawn((ClothCollider::ball(0.4), Moving(2.2), place)).id();
+    let ball = app
+        .world_mut()
+        .spawn((ClothCollider::ball(0.4), Moving(2.2), place))
+        .id();
     (cloth, ball)
 }
 
 /// Red nodes on each level.
 fn red(app: &App, cloth: Entity) -> Vec<usize> {
     let topology = app.world().get::<ClothTopology>(cloth).expect("a topology");
-    let query = app.world().get::<ClothSearch>(cloth).expect("a search").query();
+    let query = app
+        .world()
+        .get::<ClothSearch>(cloth)
+        .expect("a search")
+        .query();
     let levels = 0..topology.tree().levels().len();
-    levels.map(|level| query.level(topology.tree(), level).1).collect()
+    levels
+        .map(|level| query.level(topology.tree(), level).1)
+        .collect()
 }
 
 /// The ball comes, passes through, and goes: green, red, green; and messages at both ends.
@@ -65,23 +74,41 @@ fn spheres_turn_red_and_back_green() {
             assert!(reds[4] >= particles, "what touches is red");
             if particles > most {
                 most = particles;
-                assert!(reds[..4].iter().all(|&red| red > 0) && reds[4] < 256, "{rule:?}: {reds:?}");
+                assert!(
+                    reds[..4].iter().all(|&red| red > 0) && reds[4] < 256,
+                    "{rule:?}: {reds:?}"
+                );
                 assert!(stats.leaf_tests > 0 && stats.leaf_tests < stats.nodes_visited);
             }
         }
         assert!(most > 10, "{rule:?}: {most}");
         let started = messages::<ClothTouchStarted>(&mut app);
         let first = started.first().expect("a message");
-        assert!(first.cloth == cloth && first.collider == ball && first.particles > 0, "{first:?}");
+        assert!(
+            first.cloth == cloth && first.collider == ball && first.particles > 0,
+            "{first:?}"
+        );
         assert!(first.deepest_penetration > 0.0, "{first:?}");
         tick(&mut app, 400);
         assert_eq!(red(&app, cloth), [0; 5], "{rule:?}");
-        let query = app.world().get::<ClothSearch>(cloth).expect("a search").query();
-        assert!(query.states()[1..].iter().all(|state| *state == NodeState::Unvisited));
+        let query = app
+            .world()
+            .get::<ClothSearch>(cloth)
+            .expect("a search")
+            .query();
+        assert!(
+            query.states()[1..]
+                .iter()
+                .all(|state| *state == NodeState::Unvisited)
+        );
         let started = started.len() + messages::<ClothTouchStarted>(&mut app).len();
         let stopped = messages::<ClothTouchStopped>(&mut app);
         assert_eq!(stopped.len(), started, "what starts stops");
-        assert!(stopped.iter().all(|told| told.deepest_penetration > 0.0 && told.particles > 0));
+        assert!(
+            stopped
+                .iter()
+                .all(|told| told.deepest_penetration > 0.0 && told.particles > 0)
+        );
         assert!(stopped.iter().any(|told| told.particles > 10));
     }
 }
@@ -95,11 +122,20 @@ fn complete_rules_give_the_same_motion() {
         app.world_mut().entity_mut(cloth).insert(rule);
         tick(&mut app, 90);
         let mut positions: Vec<Vec3> = particles(&app, cloth).positions().collect();
-        positions.push(Vec3::splat(app.world().get::<ClothStats>(cloth).expect("figures").contacts as f32));
+        positions.push(Vec3::splat(
+            app.world()
+                .get::<ClothStats>(cloth)
+                .expect("figures")
+                .contacts as f32,
+        ));
         positions
     };
     let (rest, refit) = (run(BoundRule::RestShape), run(BoundRule::Refit));
-    let difference = rest.iter().zip(&refit).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    let difference = rest
+        .iter()
+        .zip(&refit)
+        .map(|(a, b)| a.distance(*b))
+        .fold(0.0, f32::max);
     assert_eq!(difference, 0.0);
 }
 
@@ -111,12 +147,19 @@ fn a_resting_ball_does_not_sink_in() {
     let radius = 0.3;
     let cloth = Cloth::new(33, 33, 0.05);
     let rim = Pins::filter(|row, column| row % 32 == 0 || column % 32 == 0);
-    let slack = ClothMaterial { stretch_compliance: 5.0e-3, shear_compliance: 1.0e-2, ..default() };
+    let slack = ClothMaterial {
+        stretch_compliance: 5.0e-3,
+        shear_compliance: 1.0e-2,
+        ..default()
+    };
     let flat = Transform::from_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2));
     let entity = app.world_mut().spawn((cloth, rim, slack, flat)).id();
     // In the cloth's middle, coming down along the world's y.
     let at = |height: f32| Transform::from_xyz(0.8, height, 0.8);
-    let ball = app.world_mut().spawn((ClothCollider::ball(radius), at(radius + 0.1))).id();
+    let ball = app
+        .world_mut()
+        .spawn((ClothCollider::ball(radius), at(radius + 0.1)))
+        .id();
     for step in 0..128 {
         let height = radius + 0.1 - 0.4 * step as f32 / 127.0;
         change::<Transform>(&mut app, ball, |transform| *transform = at(height));
@@ -128,18 +171,36 @@ fn a_resting_ball_does_not_sink_in() {
     let frame = world.get::<ClothFrame>(entity).expect("a frame");
     let settings = world.get::<ClothSettings>(entity).expect("settings");
     let particles = particles(&app, entity);
-    let centre = frame.from_world(world.get::<Transform>(ball).expect("a transform").translation);
-    let contact = *world.get::<ClothContacts>(entity).expect("contacts").with(ball).expect("a contact");
+    let centre = frame.from_world(
+        world
+            .get::<Transform>(ball)
+            .expect("a transform")
+            .translation,
+    );
+    let contact = *world
+        .get::<ClothContacts>(entity)
+        .expect("contacts")
+        .with(ball)
+        .expect("a contact");
     assert!(contact.particles > 30, "{contact:?}");
     let left = deepest_penetration(particles, centre, radius, settings.particle_radius);
     assert!(left < 0.01 * f64::from(radius), "{left} m of {radius}");
 
-    let grid = *world.get::<ClothTopology>(entity).expect("a topology").grid();
+    let grid = *world
+        .get::<ClothTopology>(entity)
+        .expect("a topology")
+        .grid();
     let mut deepest = 0.0_f32;
     for triangle in grid.triangles() {
-        let [a, b, c] = triangle.map(|index| particles.position(index as usize).expect("a particle"));
+        let [a, b, c] =
+            triangle.map(|index| particles.position(index as usize).expect("a particle"));
         // The sagitta is largest in the middle of the longest edge; the middle and the edges' middles show it.
-        for point in [(a + b + c) / 3.0, (a + b) / 2.0, (b + c) / 2.0, (a + c) / 2.0] {
+        for point in [
+            (a + b + c) / 3.0,
+            (a + b) / 2.0,
+            (b + c) / 2.0,
+            (a + c) / 2.0,
+        ] {
             deepest = deepest.max(radius - point.distance(centre));
         }
     }
@@ -156,11 +217,18 @@ fn a_second_cloth_and_ball_do_not_disturb_the_first() {
             let place = Transform::from_xyz(5.0, 0.0, 0.0);
             let other = app.world_mut().spawn((Cloth::new(9, 21, 0.07), place)).id();
             let place = Transform::from_xyz(5.3, -0.7, -1.0);
-            let other_ball = app.world_mut().spawn((ClothCollider::ball(0.2), Moving(1.0), place)).id();
+            let other_ball = app
+                .world_mut()
+                .spawn((ClothCollider::ball(0.2), Moving(1.0), place))
+                .id();
             tick(&mut app, 70);
             let contacts = |cloth| app.world().get::<ClothContacts>(cloth).expect("contacts");
-            assert!(contacts(other).with(other_ball).is_some() && contacts(other).with(ball).is_none());
-            assert!(contacts(cloth).with(ball).is_some() && contacts(cloth).with(other_ball).is_none());
+            assert!(
+                contacts(other).with(other_ball).is_some() && contacts(other).with(ball).is_none()
+            );
+            assert!(
+                contacts(cloth).with(ball).is_some() && contacts(cloth).with(other_ball).is_none()
+            );
         } else {
             tick(&mut app, 70);
         }
@@ -176,7 +244,9 @@ fn one_cloth_touches_two_balls() {
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     let balls = [0.3, 1.2].map(|x| {
         let place = Transform::from_xyz(x, -0.9, -0.5);
-        app.world_mut().spawn((ClothCollider::ball(0.25), Moving(1.0), place)).id()
+        app.world_mut()
+            .spawn((ClothCollider::ball(0.25), Moving(1.0), place))
+            .id()
     });
     tick(&mut app, 35);
     let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
@@ -193,7 +263,10 @@ fn despawning_either_is_harmless_and_told() {
     app.world_mut().despawn(ball);
     tick(&mut app, 2);
     let stopped = messages::<ClothTouchStopped>(&mut app);
-    assert!(matches!(stopped[..], [ClothTouchStopped { collider, .. }] if collider == ball), "{stopped:?}");
+    assert!(
+        matches!(stopped[..], [ClothTouchStopped { collider, .. }] if collider == ball),
+        "{stopped:?}"
+    );
     assert_eq!(red(&app, cloth), [0; 5]);
 
     let (second, ball) = spawn_pass(&mut app);
@@ -203,7 +276,10 @@ fn despawning_either_is_harmless_and_told() {
     app.world_mut().despawn(second);
     tick(&mut app, 2);
     let stopped = messages::<ClothTouchStopped>(&mut app);
-    assert!(matches!(stopped[..], [ClothTouchStopped { collider, cloth, .. }] if collider == ball && cloth == second), "{stopped:?}");
+    assert!(
+        matches!(stopped[..], [ClothTouchStopped { collider, cloth, .. }] if collider == ball && cloth == second),
+        "{stopped:?}"
+    );
 }
 
 /// A collider of the default radius is the paper's.
@@ -211,9 +287,24 @@ fn despawning_either_is_harmless_and_told() {
 fn a_collider_alone_is_enough() {
     let mut app = app();
     let cloth = app.world_mut().spawn(Cloth::default()).id();
-    let ball = app.world_mut().spawn((ClothCollider::default(), Transform::from_xyz(0.7, -0.7, 0.9))).id();
+    let ball = app
+        .world_mut()
+        .spawn((
+            ClothCollider::default(),
+            Transform::from_xyz(0.7, -0.7, 0.9),
+        ))
+        .id();
     tick(&mut app, 30);
-    assert!(app.world().get::<ClothContacts>(cloth).expect("contacts").with(ball).is_some());
-    let outside = particles(&app, cloth).positions().skip(16).all(|position| position.distance(Vec3::new(0.7, -0.7, 0.9)) > 1.0099);
+    assert!(
+        app.world()
+            .get::<ClothContacts>(cloth)
+            .expect("contacts")
+            .with(ball)
+            .is_some()
+    );
+    let outside = particles(&app, cloth)
+        .positions()
+        .skip(16)
+        .all(|position| position.distance(Vec3::new(0.7, -0.7, 0.9)) > 1.0099);
     assert!(outside);
 }
