@@ -289,7 +289,30 @@ fn a_cloth_may_begin_in_a_state_of_the_games_own() {
     assert_eq!(particles(&app, cloth), particles(&app, copy));
 }
 
-/// Neither the step's length nor a change of it blows a cloth up or changes its speed.
+/// Velocity is g t whatever the sub-steps are and were: displacements are taken over to a new sub-step's length.
+/// They are sums of up to 640 rounded terms.
+#[test]
+fn a_change_of_substeps_keeps_the_speed() {
+    let mut app = app();
+    let undamped = ClothMaterial {
+        damping: 0.0,
+        ..default()
+    };
+    let cloth = (Cloth::default(), Pins::none(), undamped);
+    let cloth = app.world_mut().spawn(cloth).id();
+    for (second, substeps) in [(0.5, 20), (1.0, 3), (1.5, 7)] {
+        change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = substeps);
+        tick(&mut app, 32);
+        let speed = -particles(&app, cloth).velocity(9).expect("a particle").y;
+        let expected = GRAVITY * second;
+        assert!(
+            (speed / expected - 1.0).abs() < 640.0 * f32::EPSILON,
+            "{substeps}: {speed} {expected}"
+        );
+    }
+}
+
+/// Neither a huge step nor a change of its length blows a cloth up.
 #[test]
 fn huge_and_changing_steps_are_survived() {
     let mut app = app();

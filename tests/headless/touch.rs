@@ -282,6 +282,31 @@ fn despawning_either_is_harmless_and_told() {
     );
 }
 
+/// `RestShape` holds what a game has stretched since the last tick: its radii grow with the stretch present.
+#[test]
+fn what_a_game_stretches_is_found() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
+    let corner = Vec3::new(7.5, -7.5, 0.0);
+    let ball = (
+        ClothCollider::ball(0.3),
+        Transform::from_translation(corner),
+    );
+    app.world_mut().spawn(ball);
+    tick(&mut app, 1);
+    change::<ClothParticles>(&mut app, cloth, |particles| {
+        for index in 0..particles.len() {
+            let stretched = particles.position(index).expect("a particle") * 5.0;
+            particles
+                .set_position(index, stretched)
+                .expect("a particle");
+        }
+    });
+    tick(&mut app, 1);
+    let search = app.world().get::<ClothSearch>(cloth).expect("a search");
+    assert!(search.query().candidates().contains(&255));
+}
+
 /// A collider of the default radius is the paper's.
 #[test]
 fn a_collider_alone_is_enough() {
