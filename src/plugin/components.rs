@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, Pins, Springs},
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pins, Springs},
     contact::MovingBall,
     hierarchy::{QuadTree, SphereBounds, TopDownQuery},
     solver::{PinMotion, Stretch, TickStep},
@@ -40,6 +40,13 @@ impl ClothTopology {
     /// The quad-tree.
     pub fn tree(&self) -> &QuadTree {
         &self.tree
+    }
+
+    /// Whether springs and tree are those of `particles`: not before the first tick, nor once a game has
+    /// emptied the particles, until the next.
+    pub(super) fn fits(&self, particles: &ClothParticles) -> bool {
+        !particles.is_empty()
+            && (particles.len(), particles.columns()) == (self.grid.len(), self.grid.columns())
     }
 }
 

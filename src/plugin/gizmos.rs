@@ -135,7 +135,9 @@ fn draw_cloths(
     let look = store.config::<ClothGizmos>().1;
     let everywhere = look.draw_all.then(ShowClothGizmos::default);
     for (topology, particles, search, frame, show) in &cloths {
-        if let Some(show) = show.or(everywhere.as_ref()) {
+        if let Some(show) = show.or(everywhere.as_ref())
+            && topology.fits(particles)
+        {
             draw_spheres(topology, particles, search, frame, show, look, &mut gizmos);
             if show.springs {
                 draw_springs(topology, particles, frame, look, &mut gizmos);

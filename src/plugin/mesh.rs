@@ -19,7 +19,7 @@ use bevy::{
 use super::{ClothFault, ClothFrame, ClothSystems, ClothTopology};
 use crate::cloth::{ClothGrid, ClothParticles};
 
-/// On a cloth whose [`Mesh3d`] follows its particles. Give the entity a material with `double_sided: true` and
+/// On a cloth whose [`Mesh3d`] follows its particles; it replaces one that the entity had. Give the entity a material with `double_sided: true` and
 /// `cull_mode: None`: cloth is seen from both sides.
 #[derive(Component, Debug, Default)]
 pub struct ClothMesh {
@@ -153,7 +153,7 @@ fn update_meshes(
         let ClothMesh {
             previous, drawn, ..
         } = &mut *cloth_mesh;
-        if particles.len() != topology.grid.len() || mesh.count_vertices() != particles.len() {
+        if !topology.fits(particles) || mesh.count_vertices() != particles.len() {
             continue;
         }
         interpolate(drawn, previous, particles, fraction, &frame.to_entity());

@@ -32,6 +32,9 @@ pub(super) fn rebuild_hierarchies(
     >,
 ) {
     for (topology, particles, settings, &rule, mut search, mut stats) in &mut cloths {
+        if !topology.fits(particles) {
+            continue;
+        }
         let start = Instant::now();
         search.bounds.rebuild(
             rule,
@@ -61,6 +64,9 @@ pub(super) fn query_collisions(
     colliders: Query<(Entity, &ColliderMotion), Without<ClothFault>>,
 ) {
     for (topology, particles, frame, mut search, mut tick, mut stats) in &mut cloths {
+        if !topology.fits(particles) {
+            continue;
+        }
         let start = Instant::now();
         let ClothSearch { bounds, query } = &mut *search;
         query.clear(&topology.tree);
@@ -109,6 +115,9 @@ pub(super) fn integrate(
     for (topology, material, settings, search, mut particles, mut tick, mut contacts, mut stats) in
         &mut cloths
     {
+        if !topology.fits(&particles) {
+            continue;
+        }
         let start = Instant::now();
         let ClothTick {
             step,

@@ -8,11 +8,14 @@ use bevy::{
 
 use crate::cloth::ClothError;
 
+/// More would be a slip of the finger, and would hang the game.
+const MOST_SUBSTEPS: u32 = 10_000;
+
 /// How a cloth is simulated. May change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSettings {
-    /// Sub-steps a tick, at least 1. Cost grows in proportion, and stretch shrinks: a sub-step's sweep is as
+    /// Sub-steps a tick, from 1 to 10,000. Cost grows in proportion, and stretch shrinks: a sub-step's sweep is as
     /// stiff as mass/Δt².
     pub substeps: u32,
     /// Acceleration in the world (m/s²) for this cloth alone, instead of the resource
@@ -43,9 +46,9 @@ impl ClothSettings {
     pub fn validate(&self) -> Result<(), ClothError> {
         ClothError::check(
             self.substeps as f32,
-            |v| v >= 1.0,
+            |v| (1.0..=MOST_SUBSTEPS as f32).contains(&v),
             "sub-steps",
-            "at least 1",
+            "from 1 to 10,000",
         )?;
         ClothError::check(
             self.particle_radius,

@@ -60,7 +60,40 @@ fn no_system_is_ambiguous_with_rapier() {
     tick(&mut app, 2);
 }
 
-/// The test above can fail: a system in no order with ours is found.
+/// A game that empties the particles where it should not, or while time stands still, costs nothing but a tick.
+#[test]
+fn particles_may_vanish_anywhere() {
+    let vanish = |mut cloths: Query<&mut ClothParticles>| {
+        for mut particles in &mut cloths {
+            *particles = default();
+        }
+    };
+    for set in [
+        ClothSystems::Prepare,
+        ClothSystems::Rebuild,
+        ClothSystems::Query,
+        ClothSystems::Integrate,
+        ClothSystems::WriteBack,
+    ] {
+        for rule in [BoundRule::RestShape, BoundRule::Refit, BoundRule::Paper] {
+            let mut app = with_plugins((
+                AssetPlugin::default(),
+                MeshPlugin,
+                VisibilityPlugin,
+                GizmoPlugin,
+                DrapePlugins::default(),
+            ));
+            app.add_systems(FixedUpdate, vanish.after(set));
+            let cloth = (Cloth::default(), ShowClothGizmos::default(), rule);
+            app.world_mut().spawn(cloth);
+            let place = Transform::from_xyz(0.7, -0.7, 0.9);
+            app.world_mut().spawn((ClothCollider::default(), place));
+            tick(&mut app, 3);
+        }
+    }
+}
+
+/// The ambiguity tests can fail: a system in no order with ours is found.
 #[test]
 #[should_panic(expected = "ambiguous")]
 fn an_ambiguous_system_is_found() {
