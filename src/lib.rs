@@ -13,7 +13,7 @@
 //!         .add_plugins((MinimalPlugins, DrapePlugins::default()))
 //!         .add_systems(Startup, |mut commands: Commands| {
 //!             commands.spawn(Cloth::new(32, 32, 0.1));
-//!             commands.spawn((ClothCollider::ball(0.5), Transform::from_xyz(1.5, -1.5, 0.3)));
+//!             commands.spawn((ClothCollider::ball(0.5), Transform::from_xyz(1.5, -1.5, 0.5)));
 //!         })
 //!         .run();
 //! }

@@ -102,6 +102,10 @@ fn lower_floors_hold_no_ecs() {
         for file in sources(&source_folder().join(module)) {
             for word in [
                 "Query<",
+                "Single<",
+                "MessageReader",
+                "MessageWriter",
+                "super::super",
                 "Res<",
                 "ResMut<",
                 "Commands",

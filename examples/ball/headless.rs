@@ -59,6 +59,8 @@ struct Report {
     /// How deep any particle was at the end of a tick, by brute force in f64.
     deepest_left_mm: f64,
     picture: Option<PathBuf>,
+    /// Why there is no picture.
+    no_picture: Option<String>,
     adapter: Option<String>,
 }
 
@@ -121,7 +123,7 @@ pub fn run(view: View, seconds: f64, out: &Path, json: bool) -> ExitCode {
         }
         if view == View::Offscreen && picture.is_none() {
             let start = Instant::now();
-            picture = take_picture(&mut app, out);
+            picture = Some(take_picture(&mut app, out));
             drawing = start.elapsed();
         }
     }
@@ -158,9 +160,14 @@ fn report(
     ticks: u64,
     simulated_seconds: f64,
     wall_seconds: f64,
-    picture: Option<PathBuf>,
+    picture: Option<Result<PathBuf, String>>,
     adapter: Option<String>,
 ) -> Report {
+    let no_adapter = || Err("no graphics adapter found".into());
+    let (picture, no_picture) = match picture.unwrap_or_else(no_adapter) {
+        Ok(path) => (Some(path), None),
+        Err(why) => (None, Some(why)),
+    };
     let mut cloths = app.world_mut().query::<(&ClothTopology, &ClothSettings)>();
     let (particles, springs, substeps) = cloths
         .iter(app.world())
@@ -191,6 +198,7 @@ fn report(
         deepest_penetration_mm: 1.0e3 * measured.deepest,
         deepest_left_mm: 1.0e3 * measured.deepest_left,
         picture,
+        no_picture,
         adapter,
     }
 }
@@ -228,10 +236,10 @@ fn print_report(report: &Report) {
         "  deepest penetration  {:.2} mm found within a tick, {:.4} mm left after one",
         report.deepest_penetration_mm, report.deepest_left_mm
     );
-    let picture = match (&report.picture, &report.adapter) {
-        (Some(path), Some(adapter)) => format!("{}, drawn by {adapter}", path.display()),
-        (None, Some(adapter)) => format!("none: {adapter} did not finish one"),
-        _ => "none: no graphics adapter found".into(),
+    let picture = match (&report.picture, &report.adapter, &report.no_picture) {
+        (Some(path), Some(adapter), _) => format!("{}, drawn by {adapter}", path.display()),
+        (_, _, Some(why)) => format!("none: {why}"),
+        _ => "none".into(),
     };
     println!("  picture              {picture}");
 }
@@ -242,18 +250,14 @@ fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Draws one frame into an image and saves it, while time stands still.
-fn take_picture(app: &mut App, out: &Path) -> Option<PathBuf> {
+fn take_picture(app: &mut App, out: &Path) -> Result<PathBuf, String> {
     let path = out.join("ball.png");
-    if let Err(error) = fs::create_dir_all(out) {
-        eprintln!("{} could not be made: {error}", out.display());
-        return None;
-    }
+    fs::create_dir_all(out)
+        .map_err(|error| format!("{} could not be made: {error}", out.display()))?;
     // One left by an earlier run must not pass for this one's.
-    if let Err(error) = fs::remove_file(&path)
-        && error.kind() != std::io::ErrorKind::NotFound
-    {
-        eprintln!("{} could not be replaced: {error}", path.display());
-        return None;
+    if path.exists() {
+        fs::remove_file(&path)
+            .map_err(|error| format!("{} could not be replaced: {error}", path.display()))?;
     }
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     let target = Image::new_target_texture(1280, 720, TextureFormat::Rgba8UnormSrgb, None);
@@ -277,7 +281,11 @@ fn take_picture(app: &mut App, out: &Path) -> Option<PathBuf> {
         }
     }
     app.world_mut().despawn(camera);
-    path.is_file().then_some(path)
+    if path.is_file() {
+        Ok(path)
+    } else {
+        Err(format!("{} could not be drawn or saved", path.display()))
+    }
 }
 
 fn start_tick(mut measured: ResMut<Measured>) {

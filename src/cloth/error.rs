@@ -57,9 +57,9 @@ pub enum ClothError {
         /// The transform, written out.
         transform: String,
     },
-    /// A particle whose position, displacement or inverse mass is not a finite number.
+    /// A particle whose position, displacement or inverse mass is not a finite number, or beyond all measure.
     #[error(
-        "particle {index} is not finite: position {position}, displacement {displacement}, inverse mass {inverse_mass}"
+        "particle {index} is not finite, or beyond 10¹⁸ m: position {position}, displacement {displacement}, inverse mass {inverse_mass}"
     )]
     ParticleNotFinite {
         /// Index of the first such particle.

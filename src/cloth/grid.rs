@@ -17,7 +17,8 @@ pub const MAX_PARTICLES: usize = 1 << 24;
 /// Spawning this is enough. It hangs by its top row from the entity's [`Transform`], laid out from (0, 0, 0)
 /// to (width, −height, 0) in the entity's frame; particle (row, column) has the index
 /// `row × columns + column` (paper, equation 1). Position, rotation and scale are respected at spawn; moved
-/// later, the transform carries the pinned particles along and the others follow by their springs.
+/// later, the transform carries the pinned particles along and the others follow by their springs; move it in
+/// the cloth's schedule, so that the picture of a moving cloth does not run ahead of its motion.
 ///
 /// Changing this component weaves a new cloth at rest.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]

@@ -10,9 +10,12 @@ use super::ClothError;
 /// What a cloth is made of. May change at any time.
 ///
 /// A compliance is that of a *square patch of the cloth*, whatever the patch's size: pulled by one newton at
-/// two opposite edges, it grows by that many metres. A square's compliance does not depend on its size, so a
-/// material keeps its meaning under any resolution: a spring of a strip `w` wide and `l` long gets
-/// compliance × l ⁄ w. Zero is rigid.
+/// two opposite edges, that kind of springs alone would let it grow by so many metres. A square's compliance
+/// does not depend on its size, so stretch and shear keep their meaning under any resolution: a spring of a
+/// strip `w` wide and `l` long gets compliance × l ⁄ w. Zero is rigid.
+///
+/// Bending is resisted by the same law between every second particle. Such a chord shortens with the fourth
+/// power of a bend's sharpness: it keeps folds from closing, softly at first, and is weaker on a finer grid.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothMaterial {

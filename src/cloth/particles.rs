@@ -11,6 +11,9 @@ use super::{ClothError, ClothGrid, ClothMaterial, Pins};
 /// The sub-step that displacements span until the first tick says otherwise: 20 a tick of Bevy's 64 Hz.
 const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
 
+/// Where a particle may be at most (m): distances between such can still be squared in `f32`.
+const FARTHEST: f32 = 1.0e18;
+
 /// Which particle: an index, or (row, column).
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParticleId {
@@ -41,6 +44,7 @@ impl From<(u32, u32)> for ParticleId {
 /// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write between
 /// ticks; emptying it (`*particles = default()`) weaves the cloth anew at rest.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[reflect(opaque)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {
     columns: u32,
@@ -75,6 +79,7 @@ impl ClothParticles {
     /// # Errors
     /// A mass that a float can't hold or invert.
     pub fn at_rest(grid: &ClothGrid, material: &ClothMaterial) -> Result<Self, ClothError> {
+        Self::check_mass(grid, material)?;
         let mut particles = Self {
             columns: grid.columns(),
             position: grid
@@ -100,17 +105,21 @@ impl ClothParticles {
         pins: &Pins,
     ) -> Result<(), ClothError> {
         pins.validate(grid)?;
-        let smallest = material.areal_density * grid.tributary_area(0, 0);
-        ClothError::check(
-            smallest,
-            |mass| mass.is_normal() && (4.0 / mass).is_normal() && mass < f32::MAX / 4.0,
-            "the mass of a particle (kg)",
-            "of a size that a float can invert",
-        )?;
+        Self::check_mass(grid, material)?;
         for ((row, column), inverse_mass) in grid.cells().zip(&mut self.inverse_mass) {
             *inverse_mass = 1.0 / (material.areal_density * grid.tributary_area(row, column));
         }
         pins.for_each(grid, |index| self.inverse_mass[index] = 0.0);
+        Ok(())
+    }
+
+    fn check_mass(grid: &ClothGrid, material: &ClothMaterial) -> Result<(), ClothError> {
+        ClothError::check(
+            material.areal_density * grid.tributary_area(0, 0),
+            |corner| corner.is_normal() && (4.0 / corner).is_normal() && corner < f32::MAX / 4.0,
+            "the mass of a particle (kg)",
+            "of a size that a float can invert",
+        )?;
         Ok(())
     }
 
@@ -243,16 +252,18 @@ impl ClothParticles {
         self.inverse_mass.iter().copied()
     }
 
-    /// Whether every number is finite and no inverse mass is negative.
+    /// Whether every number is finite, none is beyond all measure (10¹⁸ m), and no inverse mass is negative.
     ///
     /// # Errors
     /// [`ClothError::ParticleNotFinite`] for the first particle that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         let sound = |index: usize| {
+            let (position, displacement) = (self.position[index], self.displacement[index]);
             let inverse_mass = self.inverse_mass[index];
-            // 0 × a number is 0 only if the number is finite: one comparison a particle instead of seven.
-            let vectors = (self.position[index] + self.displacement[index]) * 0.0;
-            vectors == Vec3::ZERO && inverse_mass >= 0.0 && inverse_mass.is_finite()
+            // False for NaN too.
+            position.length_squared() + displacement.length_squared() < FARTHEST * FARTHEST
+                && inverse_mass >= 0.0
+                && inverse_mass.is_finite()
         };
         match (0..self.len()).find(|&index| !sound(index)) {
             None => Ok(()),
@@ -352,7 +363,7 @@ mod tests {
 
     #[test]
     fn each_number_that_is_not_finite_is_found() {
-        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0e30] {
             let mut particles = particles();
             particles
                 .set_position(7, Vec3::new(0.0, bad, 0.0))
@@ -369,7 +380,9 @@ mod tests {
                 particles.validate(),
                 Err(ClothError::ParticleNotFinite { index: 11, .. })
             ));
-            let mut particles = self::particles();
+        }
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0] {
+            let mut particles = particles();
             particles.set_inverse_mass(0, bad).expect("it exists");
             assert!(matches!(
                 particles.validate(),

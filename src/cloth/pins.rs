@@ -95,7 +95,7 @@ impl Pins {
     }
 
     /// Nothing is pinned: the cloth falls.
-    pub fn none() -> Self {
+    pub const fn none() -> Self {
         Self(Vec::new())
     }
 

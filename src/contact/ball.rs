@@ -34,7 +34,8 @@ impl MovingBall {
 }
 
 /// Pushes those of `candidates` that are inside of `ball` out along the contact normal, and slows them against
-/// its moving surface by Coulomb's law: the tangential move is taken away up to μ times the normal one. Marks
+/// its moving surface by Coulomb's law: the tangential move is taken away up to μ times the normal one. A
+/// particle that was inside already leaves without gaining speed. Marks
 /// in `touched`, one flag a candidate, which they were. Returns how deep the deepest was (m), 0 if none was.
 ///
 /// Pinned particles are left where they are.
@@ -77,15 +78,17 @@ pub fn push_out(
         let surface = slide + turn.cross(normal * ball.radius);
         let relative = columns.displacement[particle] - surface;
         let tangential = relative - normal * normal.dot(relative);
+        // What the ball and the particle came towards each other in this sub-step is what its velocity has to
+        // lose, and what friction can hold against. An older overlap is no velocity, and must not become one.
+        let stopped = depth.min(-normal.dot(relative)).max(0.0);
         let slip = tangential.length();
-        let grip = if slip > friction * depth {
-            friction * depth / slip
+        let grip = if slip > friction * stopped {
+            friction * stopped / slip
         } else {
             1.0
         };
-        let correction = normal * depth - tangential * grip;
-        columns.position[particle] += correction;
-        columns.displacement[particle] += correction;
+        columns.position[particle] += normal * depth - tangential * grip;
+        columns.displacement[particle] += normal * stopped - tangential * grip;
     }
     deepest
 }
@@ -222,6 +225,53 @@ mod tests {
         for index in [0, 2, 5, 6, 7, 8] {
             assert_eq!(particles.position(index), Some(before[index]));
         }
+    }
+
+    /// A ball that appears inside of a cloth moves it aside, and does not shoot it away.
+    #[test]
+    fn an_overlap_becomes_no_speed() {
+        let grid = Cloth::new(2, 2, 1.0).grid(Vec3::ONE).expect("a sound grid");
+        let mut particles =
+            ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
+        let inside = Vec3::new(0.0, 0.7, 0.0);
+        particles.set_position(0, inside).expect("it exists");
+        particles
+            .set_displacement(0, Vec3::NEG_Y * 0.01)
+            .expect("it exists");
+        let substep = SubStep { index: 0, count: 1 };
+        push_out(
+            &mut particles,
+            &[0],
+            &mut [false],
+            &STILL,
+            0.0,
+            0.0,
+            substep,
+        );
+        assert_eq!(particles.position(0), Some(Vec3::Y));
+        assert_eq!(
+            particles.displacement(0),
+            Some(Vec3::ZERO),
+            "it was coming, and is stopped"
+        );
+        particles.set_position(0, inside).expect("it exists");
+        particles
+            .set_displacement(0, Vec3::Y * 0.01)
+            .expect("it exists");
+        push_out(
+            &mut particles,
+            &[0],
+            &mut [false],
+            &STILL,
+            0.0,
+            0.0,
+            substep,
+        );
+        assert_eq!(
+            particles.displacement(0),
+            Some(Vec3::Y * 0.01),
+            "it was leaving, and goes on"
+        );
     }
 
     #[test]

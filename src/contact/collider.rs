@@ -13,7 +13,8 @@ use crate::cloth::ClothError;
 /// it; the cloth never pushes it back.
 ///
 /// Its speed, and with it its friction, comes from how the transform changed since the last tick: move it in
-/// the cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems).
+/// the cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To move it without any
+/// speed, a teleport, insert this component anew.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Transform)]

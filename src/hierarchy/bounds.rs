@@ -68,7 +68,8 @@ impl SphereBounds {
     ) {
         self.rule = rule;
         self.particle_radius = particle_radius;
-        self.growth = (1.0 + stretch) * ROUNDING;
+        // Finite, so that a leaf's radius at rest, 0 times this, is 0 whatever becomes of the cloth.
+        self.growth = ((1.0 + stretch) * ROUNDING).min(f32::MAX);
         match rule {
             BoundRule::RestShape => {}
             BoundRule::Refit => self.refit(tree, particles),

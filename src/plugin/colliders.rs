@@ -11,7 +11,7 @@ use bevy::{
     transform::helper::TransformHelper,
 };
 
-use super::{ClothFault, ClothFrame, frame::global_transform};
+use super::{ClothFault, ClothFrame, fault::Part, frame::global_transform};
 use crate::{
     cloth::ClothError,
     contact::{ClothCollider, MovingBall},
@@ -36,7 +36,6 @@ impl ColliderMotion {
         time_passes: bool,
     ) -> Result<(), ClothError> {
         let transform = global_transform(transforms, entity)?;
-        // Two of a flat collider's axes still make a ball: only what is not finite is refused here.
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let radius = collider.scaled_radius(scale)?;
         if !(translation.is_finite() && rotation.is_finite()) {
@@ -44,13 +43,19 @@ impl ColliderMotion {
                 transform: format!("{transform:?}"),
             });
         }
-        let pose = Isometry3d::new(translation, rotation);
+        let pose = Isometry3d::new(translation, rotation.normalize());
         let from = self.last.unwrap_or(pose);
         self.way = Some((from, pose));
         // What is moved while no time passes has its way still before it.
         self.last = Some(if time_passes { pose } else { from });
         self.radius = radius;
         Ok(())
+    }
+
+    /// How far it moves in the tick (m).
+    pub fn travel(&self) -> f32 {
+        self.way
+            .map_or(0.0, |(from, to)| from.translation.distance(to.translation))
     }
 
     /// The collider's way through the tick in a cloth's frame.
@@ -87,6 +92,6 @@ pub(super) fn prepare_colliders(
         if outcome.is_err() {
             *motion = ColliderMotion::default();
         }
-        ClothFault::report(&mut commands, entity, fault, outcome);
+        ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
     }
 }

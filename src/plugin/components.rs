@@ -73,7 +73,7 @@ impl ClothSearch {
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothStats {
-    /// Time of all sub-steps (ms).
+    /// Time of all sub-steps (ms): the solver's call.
     pub integrate_ms: f64,
     /// Time to bring the bounding spheres up to date (ms).
     pub rebuild_ms: f64,
@@ -102,7 +102,10 @@ pub(super) struct BallInReach {
 /// What one tick's systems hand on to the next. Kept so that a tick does not allocate.
 #[derive(Component, Debug, Default)]
 pub(super) struct ClothTick {
-    pub step: TickStep,
+    /// `None` for a cloth that was not prepared: nothing else of the tick happens to it then.
+    pub step: Option<TickStep>,
+    /// As of the positions present: what `RestShape` relies on.
+    pub stretch: Stretch,
     /// Pinned particles that the frame carries along.
     pub pins: Vec<PinMotion>,
     /// How far a particle may get in the tick by itself (m).

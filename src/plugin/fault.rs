@@ -1,9 +1,7 @@
 //! What happens to bad input.
 
 use bevy::{
-    ecs::{
-        component::Component, entity::Entity, lifecycle::Remove, observer::On, system::Commands,
-    },
+    ecs::{component::Component, entity::Entity, system::Commands},
     log::error,
 };
 
@@ -11,31 +9,40 @@ use crate::cloth::ClothError;
 
 /// On a cloth or collider that is left out of the simulation: why. Taken away as soon as the fault is mended.
 #[derive(Component, Debug, Clone, PartialEq)]
-pub struct ClothFault(pub ClothError);
+pub struct ClothFault {
+    /// What is wrong.
+    pub error: ClothError,
+    part: Part,
+}
+
+/// What of an entity is at fault: it may be a cloth and a collider at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    Cloth,
+    Collider,
+}
 
 impl ClothFault {
-    /// Marks or clears `entity` by the outcome of its check. A fault is logged when it comes, not again while
-    /// it lasts.
+    /// Marks or clears `entity` by the outcome of the check of one part of it. A fault is logged when it comes,
+    /// not again while it lasts.
     pub(super) fn report(
         commands: &mut Commands,
         entity: Entity,
         known: Option<&Self>,
+        part: Part,
         outcome: Result<(), ClothError>,
     ) {
-        match outcome {
-            Ok(()) if known.is_some() => {
+        match (outcome, known) {
+            (Ok(()), Some(known)) if known.part == part => {
                 commands.entity(entity).try_remove::<Self>();
             }
-            Err(error) if known.is_none_or(|known| !known.0.is_same_fault(&error)) => {
+            (Err(error), known)
+                if known.is_none_or(|k| k.part == part && !k.error.is_same_fault(&error)) =>
+            {
                 error!("{entity} is left out of the cloth simulation: {error}");
-                commands.entity(entity).try_insert(Self(error));
+                commands.entity(entity).try_insert(Self { error, part });
             }
             _ => {}
         }
-    }
-
-    /// An entity that no longer is a `C` has no fault.
-    pub(super) fn forget_on_removal<C: Component>(removed: On<Remove, C>, mut commands: Commands) {
-        commands.entity(removed.entity).try_remove::<Self>();
     }
 }

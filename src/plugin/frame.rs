@@ -41,6 +41,8 @@ impl ClothFrame {
     pub(super) fn of(transform: &GlobalTransform) -> Result<(Self, Vec3), ClothError> {
         let affine = transform.affine();
         let (scale, rotation, translation) = affine.to_scale_rotation_translation();
+        // Under a sheared transform it comes out longer or shorter than a rotation.
+        let rotation = rotation.normalize();
         let isometry = Isometry3d::new(translation, rotation);
         let inverse = affine.inverse();
         if affine.is_finite()

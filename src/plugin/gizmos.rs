@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use bevy::{
     app::{App, Plugin, PostUpdate},
+    camera::visibility::{ViewVisibility, VisibilitySystems},
     color::{Color, Srgba},
     ecs::{
         component::Component,
@@ -22,7 +23,7 @@ use bevy::{
     transform::TransformSystems,
 };
 
-use super::{ClothFault, ClothFrame, ClothSearch, ClothTopology};
+use super::{ClothFault, ClothFrame, ClothSearch, ClothSystems, ClothTopology};
 use crate::{
     cloth::{ClothParticles, SpringKind},
     hierarchy::NodeState,
@@ -60,7 +61,7 @@ impl Default for ClothGizmos {
     }
 }
 
-/// Draws the gizmos of one cloth, as Bevy's `ShowAabbGizmo` does an entity's box.
+/// Draws the gizmos of one visible cloth, as Bevy's `ShowAabbGizmo` does an entity's box.
 #[derive(Component, Reflect, Debug, Clone, PartialEq, Eq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ShowClothGizmos {
@@ -112,8 +113,13 @@ impl Plugin for ClothGizmosPlugin {
 
     fn finish(&self, app: &mut App) {
         if app.is_plugin_added::<GizmoPlugin>() {
-            app.init_gizmo_group::<ClothGizmos>()
-                .add_systems(PostUpdate, draw_cloths.after(TransformSystems::Propagate));
+            app.init_gizmo_group::<ClothGizmos>().add_systems(
+                PostUpdate,
+                draw_cloths
+                    .after(TransformSystems::Propagate)
+                    .after(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible)
+                    .after(ClothSystems::WriteBack),
+            );
         }
     }
 }
@@ -126,6 +132,7 @@ fn draw_cloths(
             &ClothSearch,
             &ClothFrame,
             Option<&ShowClothGizmos>,
+            Option<&ViewVisibility>,
         ),
         Without<ClothFault>,
     >,
@@ -134,9 +141,10 @@ fn draw_cloths(
 ) {
     let look = store.config::<ClothGizmos>().1;
     let everywhere = look.draw_all.then(ShowClothGizmos::default);
-    for (topology, particles, search, frame, show) in &cloths {
+    for (topology, particles, search, frame, show, visible) in &cloths {
         if let Some(show) = show.or(everywhere.as_ref())
             && topology.fits(particles)
+            && visible.is_none_or(|visible| visible.get())
         {
             draw_spheres(topology, particles, search, frame, show, look, &mut gizmos);
             if show.springs {

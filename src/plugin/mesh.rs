@@ -1,13 +1,18 @@
 //! Keeps a mesh on the particles.
 
 use bevy::{
-    app::{App, FixedPostUpdate, FixedPreUpdate, FixedUpdate, Plugin, PostUpdate},
+    app::{
+        App, FixedFirst, FixedLast, FixedPostUpdate, FixedPreUpdate, FixedUpdate, Plugin,
+        PostUpdate,
+    },
     asset::{AssetEventSystems, Assets, Handle, RenderAssetUsages},
     ecs::{
         component::Component,
         entity::Entity,
         intern::Interned,
-        query::Without,
+        lifecycle::Remove,
+        observer::On,
+        query::{With, Without},
         schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
         system::{Commands, Query, Res, ResMut},
     },
@@ -17,7 +22,7 @@ use bevy::{
 };
 
 use super::{ClothFault, ClothFrame, ClothSystems, ClothTopology};
-use crate::cloth::{ClothGrid, ClothParticles};
+use crate::cloth::{Cloth, ClothGrid, ClothParticles};
 
 /// On a cloth whose [`Mesh3d`] follows its particles; it replaces one that the entity had. Give the entity a material with `double_sided: true` and
 /// `cull_mode: None`: cloth is seen from both sides.
@@ -55,30 +60,34 @@ impl ClothMeshPlugin {
 
 impl Plugin for ClothMeshPlugin {
     fn build(&self, app: &mut App) {
-        let fixed: [Interned<dyn ScheduleLabel>; 3] = [
+        let fixed: [Interned<dyn ScheduleLabel>; 5] = [
+            FixedFirst.intern(),
             FixedPreUpdate.intern(),
             FixedUpdate.intern(),
             FixedPostUpdate.intern(),
+            FixedLast.intern(),
         ];
         // In any other schedule a tick is a frame, and there is nothing to interpolate.
         let interpolated = fixed.contains(&self.schedule);
         let update = move |cloths: Query<_, _>, time: Res<_>, meshes: ResMut<_>| {
             update_meshes(cloths, time, meshes, interpolated);
         };
-        app.add_systems(
-            self.schedule,
-            remember_positions
-                .after(ClothSystems::Prepare)
-                .before(ClothSystems::Integrate),
-        )
-        // Before the asset events, from which Bevy's culling takes the new bounds.
-        .add_systems(
-            PostUpdate,
-            (add_meshes, update)
-                .chain()
-                .before(AssetEventSystems)
-                .run_if(resource_exists::<Assets<Mesh>>),
-        );
+        app.add_observer(remove_mesh)
+            .add_systems(
+                self.schedule,
+                remember_positions
+                    .after(ClothSystems::Prepare)
+                    .before(ClothSystems::Integrate),
+            )
+            // Before the asset events, from which Bevy's culling takes the new bounds.
+            .add_systems(
+                PostUpdate,
+                (add_meshes, update)
+                    .chain()
+                    .after(ClothSystems::WriteBack)
+                    .before(AssetEventSystems)
+                    .run_if(resource_exists::<Assets<Mesh>>),
+            );
     }
 }
 
@@ -95,7 +104,9 @@ fn add_meshes(
     mut commands: Commands,
 ) {
     for (entity, topology, mesh) in &cloths {
-        if topology.grid.is_empty() || mesh.is_some_and(|mesh| mesh.grid == topology.grid) {
+        let is_right =
+            |mesh: &ClothMesh| mesh.grid == topology.grid && meshes.contains(&mesh.handle);
+        if topology.grid.is_empty() || mesh.is_some_and(is_right) {
             continue;
         }
         let handle = meshes.add(flat_mesh(&topology.grid));
@@ -105,6 +116,19 @@ fn add_meshes(
             ..Default::default()
         };
         commands.entity(entity).try_insert((Mesh3d(handle), mesh));
+    }
+}
+
+/// What is no cloth any more is not drawn as one.
+fn remove_mesh(
+    removed: On<Remove, Cloth>,
+    meshes: Query<(), With<ClothMesh>>,
+    mut commands: Commands,
+) {
+    if meshes.contains(removed.entity) {
+        commands
+            .entity(removed.entity)
+            .try_remove::<(ClothMesh, Mesh3d)>();
     }
 }
 

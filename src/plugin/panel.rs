@@ -1,5 +1,7 @@
 //! An egui panel with every setting of the cloths and live figures.
 
+use std::ops::RangeInclusive;
+
 use bevy::{
     app::{App, Plugin},
     diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
@@ -19,7 +21,7 @@ use bevy::{
 };
 use bevy_egui::{
     EguiContexts, EguiPlugin, EguiPrimaryContextPass,
-    egui::{self, ComboBox, Slider, Ui},
+    egui::{self, ComboBox, Slider, SliderClamping, Ui},
 };
 
 use super::{
@@ -47,7 +49,7 @@ impl Default for ClothPanel {
 pub struct ClothColliderSpeed(pub f32);
 
 /// Shows a panel on the primary window: level shown, bound rule, sub-steps, material, gravity, the speed of
-/// each collider with a [`ClothColliderSpeed`], pause and single step, time a tick, nodes visited, contacts.
+/// each collider with a [`ClothColliderSpeed`], pause and single step (of the fixed schedules), time a tick, nodes visited, contacts.
 ///
 /// Adds `EguiPlugin` if the app has none yet.
 #[derive(Debug, Default, Clone, Copy)]
@@ -61,6 +63,7 @@ impl Plugin for ClothPanelPlugin {
         app.register_type::<ClothPanel>()
             .register_type::<ClothColliderSpeed>()
             .init_resource::<ClothPanel>()
+            .init_resource::<ClothGravity>()
             .add_systems(EguiPrimaryContextPass, draw_panel);
     }
 }
@@ -109,7 +112,7 @@ fn draw_panel(
             }
             ui.separator();
             let mut down = -gravity.0.y;
-            ui.add(Slider::new(&mut down, 0.0..=25.0).text("gravity (m/s²)"));
+            ui.add(slider(&mut down, 0.0..=25.0).text("gravity (m/s²)"));
             let changed = ClothGravity(gravity.0.with_y(-down));
             gravity.set_if_neq(changed);
             for (entity, name, mut speed) in &mut speeds {
@@ -118,7 +121,7 @@ fn draw_panel(
                     name.map_or_else(|| entity.to_string(), ToString::to_string)
                 );
                 let mut value = speed.0;
-                ui.add(Slider::new(&mut value, 0.0..=10.0).text(label));
+                ui.add(slider(&mut value, 0.0..=10.0).text(label));
                 speed.set_if_neq(ClothColliderSpeed(value));
             }
             for mut cloth in &mut cloths {
@@ -133,6 +136,11 @@ fn draw_panel(
             }
         });
     Ok(())
+}
+
+/// A slider that leaves a value outside of its range alone until someone moves it.
+fn slider<T: egui::emath::Numeric>(value: &mut T, range: RangeInclusive<T>) -> Slider<'_> {
+    Slider::new(value, range).clamping(SliderClamping::Edits)
 }
 
 fn show_clock(ui: &mut Ui, clocks: &mut Clocks) {
@@ -232,7 +240,7 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
     cloth.rule.set_if_neq(rule);
 
     let mut settings = *cloth.settings;
-    ui.add(Slider::new(&mut settings.substeps, 1..=80).text("sub-steps"));
+    ui.add(slider(&mut settings.substeps, 1..=80).text("sub-steps"));
     cloth.settings.set_if_neq(settings);
 
     let mut material = *cloth.material;
@@ -259,7 +267,7 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
             }
         });
     ui.add(
-        Slider::new(&mut material.areal_density, 0.01..=5.0)
+        slider(&mut material.areal_density, 0.01..=5.0)
             .logarithmic(true)
             .text("kg/m²"),
     );
@@ -269,12 +277,12 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
         (&mut material.bend_compliance, "bend (m/N)"),
     ] {
         ui.add(
-            Slider::new(value, 0.0..=10.0)
+            slider(value, 0.0..=10.0)
                 .logarithmic(true)
                 .smallest_positive(1.0e-6)
                 .text(text),
         );
     }
-    ui.add(Slider::new(&mut material.damping, 0.0..=0.2).text("damping D"));
-    ui.add(Slider::new(&mut material.friction, 0.0..=2.0).text("friction μ"));
+    ui.add(slider(&mut material.damping, 0.0..=0.2).text("damping D"));
+    ui.add(slider(&mut material.friction, 0.0..=2.0).text("friction μ"));
 }

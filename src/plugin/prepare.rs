@@ -14,13 +14,18 @@ use bevy::{
 
 use super::{
     ClothFault, ClothFrame, ClothGravity, ClothStats, ClothTopology, components::ClothTick,
-    frame::global_transform,
+    fault::Part, frame::global_transform,
 };
 use crate::{
-    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, SpringKind, Springs},
+    cloth::{
+        Cloth, ClothError, ClothGrid, ClothMaterial, ClothParticles, Pins, SpringKind, Springs,
+    },
     hierarchy::QuadTree,
     solver::{ClothSettings, PinMotion, Stretch, TickStep},
 };
+
+/// The pins of a cloth from which the game took its [`Pins`].
+static NO_PINS: Pins = Pins::none();
 
 #[derive(QueryData)]
 #[query_data(mutable)]
@@ -28,7 +33,7 @@ pub(super) struct Preparing {
     entity: Entity,
     cloth: &'static Cloth,
     material: &'static ClothMaterial,
-    pins: &'static Pins,
+    pins: Option<&'static Pins>,
     settings: &'static ClothSettings,
     particles: &'static mut ClothParticles,
     topology: &'static mut ClothTopology,
@@ -49,7 +54,13 @@ pub(super) fn prepare_cloths(
     for mut cloth in &mut cloths {
         let outcome = global_transform(&transforms, cloth.entity)
             .and_then(|transform| cloth.prepare(&transform, gravity.0, time.delta_secs()));
-        ClothFault::report(&mut commands, cloth.entity, cloth.fault, outcome);
+        ClothFault::report(
+            &mut commands,
+            cloth.entity,
+            cloth.fault,
+            Part::Cloth,
+            outcome,
+        );
     }
 }
 
@@ -60,6 +71,7 @@ impl PreparingItem<'_, '_> {
         gravity: Vec3,
         seconds: f32,
     ) -> Result<(), ClothError> {
+        self.tick.step = None;
         let (frame, scale) = ClothFrame::of(transform)?;
         self.settings.validate()?;
         let gravity = self.settings.gravity.unwrap_or(gravity);
@@ -76,16 +88,17 @@ impl PreparingItem<'_, '_> {
             *self.frame = frame;
         }
         if self.tick.written != Some(self.particles.last_changed()) {
-            self.stats.stretch = Stretch::measure(&self.topology.springs, &self.particles);
+            self.tick.stretch = Stretch::measure(&self.topology.springs, &self.particles);
+            self.stats.stretch = self.tick.stretch;
             self.tick.written = Some(self.particles.last_changed());
         }
         let acceleration = self.frame.isometry().rotation.inverse() * gravity;
-        self.tick.step = TickStep {
+        self.tick.step = Some(TickStep {
             seconds,
             substeps: self.settings.substeps,
             acceleration,
             damping: self.material.damping,
-        };
+        });
         let carried = self
             .tick
             .pins
@@ -100,53 +113,77 @@ impl PreparingItem<'_, '_> {
     /// Builds what does not exist yet or was made from other components than those present. Returns whether
     /// the cloth had been woven before. Changes nothing on an error.
     fn weave(&mut self, scale: Vec3) -> Result<bool, ClothError> {
-        let (cloth, material, pins) = (self.cloth, self.material, self.pins);
-        let same_cloth = self
-            .topology
-            .woven
-            .as_ref()
-            .map(|(woven, ..)| woven == cloth);
-        if same_cloth != Some(true) || self.particles.is_empty() {
-            let grid = cloth.grid(scale)?;
-            material.validate()?;
-            // Particles that came with a newly spawned cloth are kept; those of another grid are not.
-            let mut particles = if same_cloth.is_some() || self.particles.is_empty() {
-                ClothParticles::at_rest(&grid, material)?
-            } else {
-                self.particles.clone()
-            };
-            if (particles.len(), particles.columns()) != (grid.len(), grid.columns()) {
-                let (expected, found) = (grid.len(), particles.len());
-                return Err(ClothError::ParticleCount { expected, found });
+        let woven = self.topology.woven.as_ref();
+        let was_woven =
+            woven.is_some_and(|(cloth, ..)| cloth == self.cloth) && !self.particles.is_empty();
+        if was_woven {
+            self.follow_changes()?;
+        } else {
+            self.weave_anew(scale)?;
+        }
+        Ok(was_woven)
+    }
+
+    fn weave_anew(&mut self, scale: Vec3) -> Result<(), ClothError> {
+        let (material, pins) = (self.material, self.pins.unwrap_or(&NO_PINS));
+        let grid = self.cloth.grid(scale)?;
+        material.validate()?;
+        pins.validate(&grid)?;
+        // Particles that came with a newly spawned cloth are kept; those of another grid are not.
+        let mut particles = if self.topology.woven.is_some() || self.particles.is_empty() {
+            ClothParticles::at_rest(&grid, material)?
+        } else {
+            check_count(&self.particles, &grid)?;
+            self.particles.clone()
+        };
+        particles.weigh(&grid, material, pins)?;
+        let springs = Springs::of_grid(&grid, material);
+        let tree = QuadTree::of_grid(&grid, springs.has(SpringKind::Shear));
+        *self.particles = particles;
+        *self.topology = ClothTopology {
+            grid,
+            springs,
+            tree,
+            woven: Some((*self.cloth, *material, pins.clone())),
+        };
+        Ok(())
+    }
+
+    /// Takes over another material or other pins: masses, springs and tree only where they change, so that a
+    /// mass that the game has set outlasts a change of damping.
+    fn follow_changes(&mut self) -> Result<(), ClothError> {
+        let (material, pins) = (self.material, self.pins.unwrap_or(&NO_PINS));
+        let topology = &mut *self.topology;
+        check_count(&self.particles, &topology.grid)?;
+        let Some((_, was, were_pinned)) = &mut topology.woven else {
+            return Ok(());
+        };
+        if was == material && were_pinned == pins {
+            return Ok(());
+        }
+        material.validate()?;
+        if was.areal_density != material.areal_density || were_pinned != pins {
+            self.particles.weigh(&topology.grid, material, pins)?;
+        }
+        let compliances = |of: &ClothMaterial| {
+            [
+                of.stretch_compliance,
+                of.shear_compliance,
+                of.bend_compliance,
+            ]
+        };
+        if compliances(was) != compliances(material) {
+            let had_diagonals = topology.springs.has(SpringKind::Shear);
+            topology.springs = Springs::of_grid(&topology.grid, material);
+            let has_diagonals = topology.springs.has(SpringKind::Shear);
+            if had_diagonals != has_diagonals {
+                topology.tree = QuadTree::of_grid(&topology.grid, has_diagonals);
             }
-            particles.weigh(&grid, material, pins)?;
-            let springs = Springs::of_grid(&grid, material);
-            let tree = QuadTree::of_grid(&grid, springs.has(SpringKind::Shear));
-            *self.particles = particles;
-            let woven = Some((*cloth, *material, pins.clone()));
-            *self.topology = ClothTopology {
-                grid,
-                springs,
-                tree,
-                woven,
-            };
-            return Ok(false);
+            // The stretch that bounds rely on is measured over other springs now.
+            self.tick.written = None;
         }
-        let grid = self.topology.grid;
-        if (self.particles.len(), self.particles.columns()) != (grid.len(), grid.columns()) {
-            let (expected, found) = (grid.len(), self.particles.len());
-            return Err(ClothError::ParticleCount { expected, found });
-        }
-        let made_from = self.topology.woven.as_ref();
-        if made_from.is_none_or(|(_, woven, pinned)| woven != material || pinned != pins) {
-            material.validate()?;
-            self.particles.weigh(&grid, material, pins)?;
-            self.topology.springs = Springs::of_grid(&grid, material);
-            let diagonals = self.topology.springs.has(SpringKind::Shear);
-            self.topology.tree = QuadTree::of_grid(&grid, diagonals);
-            self.topology.woven = Some((*cloth, *material, pins.clone()));
-        }
-        Ok(true)
+        (*was, *were_pinned) = (*material, pins.clone());
+        Ok(())
     }
 
     /// The frame has moved: the particles stay where they are in the world, and their pins go along in the
@@ -170,4 +207,15 @@ impl PreparingItem<'_, '_> {
             }
         }
     }
+}
+
+/// Whether the particles are as many as the grid has, in as many columns.
+fn check_count(particles: &ClothParticles, grid: &ClothGrid) -> Result<(), ClothError> {
+    if (particles.len(), particles.columns()) == (grid.len(), grid.columns()) {
+        return Ok(());
+    }
+    Err(ClothError::ParticleCount {
+        expected: grid.len(),
+        found: particles.len(),
+    })
 }

@@ -6,6 +6,8 @@ use bevy::{
         component::Component,
         entity::Entity,
         intern::Interned,
+        lifecycle::Remove,
+        observer::On,
         query::With,
         reflect::ReflectComponent,
         schedule::{IntoScheduleConfigs, ScheduleLabel},
@@ -16,7 +18,7 @@ use bevy::{
 };
 use bevy_rapier3d::{geometry::Collider, plugin::PhysicsSet};
 
-use super::{ClothFault, ClothSystems};
+use super::{ClothFault, ClothSystems, fault::Part};
 use crate::{cloth::ClothError, contact::ClothCollider};
 
 /// Makes the rapier `Collider::ball` on the same entity a [`ClothCollider`], with the radius and scale that
@@ -49,12 +51,28 @@ impl ClothRapierPlugin {
 
 impl Plugin for ClothRapierPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<RapierClothCollider>().add_systems(
-            self.schedule,
-            adopt_balls
-                .after(PhysicsSet::Writeback)
-                .before(ClothSystems::Prepare),
-        );
+        app.register_type::<RapierClothCollider>()
+            .add_observer(let_go::<RapierClothCollider>)
+            .add_observer(let_go::<Collider>)
+            .add_systems(
+                self.schedule,
+                adopt_balls
+                    .after(PhysicsSet::Writeback)
+                    .before(ClothSystems::Prepare),
+            );
+    }
+}
+
+/// Without its marker or its rapier collider, an adopted collider is one no more.
+fn let_go<C: Component>(
+    removed: On<Remove, C>,
+    adopted: Query<(), With<RapierClothCollider>>,
+    mut commands: Commands,
+) {
+    if adopted.contains(removed.entity) {
+        commands
+            .entity(removed.entity)
+            .try_remove::<(ClothCollider, ClothFault)>();
     }
 }
 
@@ -81,6 +99,7 @@ fn adopt_balls(
                 &mut commands,
                 entity,
                 fault,
+                Part::Collider,
                 Err(ClothError::NotABall { shape }),
             );
             continue;

@@ -4,9 +4,12 @@ use bevy::{
     app::{App, FixedUpdate, Plugin},
     ecs::{
         intern::Interned,
+        lifecycle::{Insert, Remove},
+        observer::On,
         reflect::ReflectResource,
         resource::Resource,
         schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet},
+        system::{Commands, Query},
     },
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
@@ -106,8 +109,9 @@ impl Plugin for ClothPlugin {
             .add_message::<ClothTouchStarted>()
             .add_message::<ClothTouchStopped>()
             .add_observer(tell_of_removed_cloths)
-            .add_observer(ClothFault::forget_on_removal::<Cloth>)
-            .add_observer(ClothFault::forget_on_removal::<ClothCollider>);
+            .add_observer(clear_removed_cloth)
+            .add_observer(clear_removed_collider)
+            .add_observer(begin_anew);
         app.configure_sets(
             self.schedule,
             (
@@ -131,5 +135,32 @@ impl Plugin for ClothPlugin {
                 tell_of_touches.in_set(ClothSystems::WriteBack),
             ),
         );
+    }
+}
+
+/// What the plugin added to a cloth goes with it; its particles and settings stay, they are the game's.
+fn clear_removed_cloth(removed: On<Remove, Cloth>, mut commands: Commands) {
+    commands.entity(removed.entity).try_remove::<(
+        ClothTopology,
+        ClothFrame,
+        ClothSearch,
+        ClothContacts,
+        ClothStats,
+        ClothTick,
+        ClothFault,
+    )>();
+}
+
+/// Likewise for a collider.
+fn clear_removed_collider(removed: On<Remove, ClothCollider>, mut commands: Commands) {
+    commands
+        .entity(removed.entity)
+        .try_remove::<(ColliderMotion, ClothFault)>();
+}
+
+/// A collider that is inserted anew has not come from where it was before.
+fn begin_anew(inserted: On<Insert, ClothCollider>, mut motions: Query<&mut ColliderMotion>) {
+    if let Ok(mut motion) = motions.get_mut(inserted.entity) {
+        *motion = ColliderMotion::default();
     }
 }

@@ -25,14 +25,15 @@ pub(super) fn rebuild_hierarchies(
             &ClothParticles,
             &ClothSettings,
             &BoundRule,
+            &ClothTick,
             &mut ClothSearch,
             &mut ClothStats,
         ),
         Without<ClothFault>,
     >,
 ) {
-    for (topology, particles, settings, &rule, mut search, mut stats) in &mut cloths {
-        if !topology.fits(particles) {
+    for (topology, particles, settings, &rule, tick, mut search, mut stats) in &mut cloths {
+        if tick.step.is_none() || !topology.fits(particles) {
             continue;
         }
         let start = Instant::now();
@@ -41,7 +42,7 @@ pub(super) fn rebuild_hierarchies(
             &topology.tree,
             &topology.grid,
             particles,
-            stats.stretch.bound,
+            tick.stretch.bound,
             settings.particle_radius,
         );
         stats.rebuild_ms = milliseconds_since(start);
@@ -63,20 +64,22 @@ pub(super) fn query_collisions(
     >,
     colliders: Query<(Entity, &ColliderMotion), Without<ClothFault>>,
 ) {
+    let travels = colliders.iter().map(|(_, motion)| motion.travel());
+    let dragged = travels.fold(0.0, f32::max);
     for (topology, particles, frame, mut search, mut tick, mut stats) in &mut cloths {
-        if !topology.fits(particles) {
+        if tick.step.is_none() || !topology.fits(particles) {
             continue;
         }
         let start = Instant::now();
         let ClothSearch { bounds, query } = &mut *search;
         query.clear(&topology.tree);
         tick.balls.clear();
+        // A particle gets as far as its own speed and gravity take it, or as the fastest ball drags it.
+        let margin = tick.reach + dragged;
         for (collider, motion) in &colliders {
             let Some(ball) = motion.seen_from(frame) else {
                 continue;
             };
-            // A particle gets as far as its own speed and gravity take it, or as a ball drags it.
-            let margin = tick.reach + ball.travel();
             let probe = ball.probe(margin, bounds.particle_radius());
             let candidates = query.search(&topology.tree, bounds, particles, &probe);
             if !candidates.is_empty() {
@@ -115,12 +118,15 @@ pub(super) fn integrate(
     for (topology, material, settings, search, mut particles, mut tick, mut contacts, mut stats) in
         &mut cloths
     {
+        // Taken: a cloth that is not prepared again does not move again.
+        let Some(step) = tick.step.take() else {
+            continue;
+        };
         if !topology.fits(&particles) {
             continue;
         }
-        let start = Instant::now();
         let ClothTick {
-            step,
+            stretch,
             pins,
             balls,
             touched,
@@ -128,46 +134,41 @@ pub(super) fn integrate(
             ..
         } = &mut *tick;
         // A schedule may run without time passing.
-        if step.seconds > 0.0 {
-            let candidates = search.query.candidates();
-            let (radius, friction) = (settings.particle_radius, material.friction);
-            advance(
-                &mut particles,
-                &topology.springs,
-                *step,
-                pins,
-                |particles, substep| {
-                    for BallInReach {
-                        ball,
-                        candidates: range,
-                        deepest,
-                        ..
-                    } in &mut *balls
-                    {
-                        let candidates = &candidates[range.clone()];
-                        let touched = &mut touched[range.clone()];
-                        let depth = push_out(
-                            particles, candidates, touched, ball, radius, friction, substep,
-                        );
-                        *deepest = deepest.max(depth);
-                    }
-                },
-            );
-            contacts.renew(balls.iter().map(|ball| {
-                ClothContact {
-                    collider: ball.collider,
-                    particles: touched[ball.candidates.clone()]
-                        .iter()
-                        .filter(|&&touched| touched)
-                        .count(),
-                    deepest_penetration: ball.deepest,
-                }
-            }));
-            stats.stretch = Stretch::measure(&topology.springs, &particles);
-            *written = Some(particles.last_changed());
+        if step.seconds == 0.0 {
+            continue;
         }
-        stats.contacts = contacts.iter().map(|contact| contact.particles).sum();
+        let candidates = search.query.candidates();
+        let (radius, friction) = (settings.particle_radius, material.friction);
+        let respond = |particles: &mut ClothParticles, substep| {
+            for in_reach in &mut *balls {
+                let range = in_reach.candidates.clone();
+                let depth = push_out(
+                    particles,
+                    &candidates[range.clone()],
+                    &mut touched[range],
+                    &in_reach.ball,
+                    radius,
+                    friction,
+                    substep,
+                );
+                in_reach.deepest = in_reach.deepest.max(depth);
+            }
+        };
+        let start = Instant::now();
+        advance(&mut particles, &topology.springs, step, pins, respond);
         stats.integrate_ms = milliseconds_since(start);
+        *stretch = Stretch::measure(&topology.springs, &particles);
+        *written = Some(particles.last_changed());
+        contacts.renew(balls.iter().map(|in_reach| {
+            let touched = &touched[in_reach.candidates.clone()];
+            ClothContact {
+                collider: in_reach.collider,
+                particles: touched.iter().filter(|&&touched| touched).count(),
+                deepest_penetration: in_reach.deepest,
+            }
+        }));
+        stats.stretch = *stretch;
+        stats.contacts = contacts.iter().map(|contact| contact.particles).sum();
     }
 }
 

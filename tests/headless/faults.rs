@@ -26,7 +26,7 @@ fn expect_fault(
     let fault = app
         .world()
         .get::<ClothFault>(bad)
-        .map(|fault| fault.0.clone());
+        .map(|fault| fault.error.clone());
     let error = fault.expect("a fault");
     assert!(is_expected(&error), "{error:?}");
     assert_eq!(app.world().resource::<TimesReported>().0, 1, "{error}");
@@ -126,6 +126,10 @@ fn settings_that_cannot_be() {
     for settings in [
         ClothSettings {
             substeps: 0,
+            ..good
+        },
+        ClothSettings {
+            substeps: u32::MAX,
             ..good
         },
         ClothSettings {
@@ -275,6 +279,29 @@ fn gravity_that_is_not_finite() {
     app.insert_resource(ClothGravity::default());
     tick(&mut app, 3);
     assert!(app.world().get::<ClothFault>(cloth).is_none());
+}
+
+/// An entity may be a cloth and a collider at once: each part's fault is reported once.
+#[test]
+fn a_cloth_that_is_a_collider_too() {
+    expect_fault(
+        (
+            Cloth::default(),
+            ClothCollider::ball(0.1),
+            Pins::new([Pin::Row(99)]),
+        ),
+        |_, _| {},
+        |error| matches!(error, ClothError::PinOutOfRange { .. }),
+        |app, entity| change::<Pins>(app, entity, |pins| *pins = default()),
+    );
+    expect_fault(
+        (Cloth::default(), ClothCollider::ball(-0.1)),
+        |_, _| {},
+        |error| matches!(error, ClothError::Quantity { .. }),
+        |app, entity| {
+            change::<ClothCollider>(app, entity, |collider| *collider = ClothCollider::ball(0.1));
+        },
+    );
 }
 
 /// Each error says what is wrong, with the value.

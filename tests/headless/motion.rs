@@ -147,6 +147,60 @@ fn pins_and_material_may_change_at_any_time() {
     assert!((mass - (1.5 * 1.5 * 1.5 - corners)).abs() < 1e-4, "{mass}");
 }
 
+/// A mass that the game has set outlasts a change that has nothing to do with masses.
+#[test]
+fn a_grabbed_particle_stays_grabbed() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    tick(&mut app, 2);
+    change::<ClothParticles>(&mut app, cloth, |particles| {
+        particles.set_inverse_mass((9, 9), 0.0).expect("a particle");
+    });
+    let grabbed = position(&app, cloth, (9, 9));
+    change::<ClothMaterial>(&mut app, cloth, |material| {
+        material.damping = 0.1;
+        material.shear_compliance = f32::INFINITY;
+    });
+    tick(&mut app, 30);
+    assert_eq!(position(&app, cloth, (9, 9)), grabbed);
+    change::<ClothMaterial>(&mut app, cloth, |material| material.areal_density = 0.3);
+    tick(&mut app, 30);
+    assert_ne!(position(&app, cloth, (9, 9)), grabbed);
+}
+
+/// Under a sheared transform, as a turned child of a stretched parent has it, the cloth keeps its size while it
+/// is carried about.
+#[test]
+fn a_sheared_transform_does_not_shrink_the_cloth() {
+    let mut app = app();
+    let stretched = Transform::from_scale(Vec3::new(1.0, 2.0, 1.0));
+    let parent = app.world_mut().spawn(stretched).id();
+    let turned = Transform::from_rotation(Quat::from_rotation_z(0.8));
+    let weightless = ClothSettings {
+        gravity: Some(Vec3::ZERO),
+        ..default()
+    };
+    let cloth = (Cloth::default(), Pins::none(), weightless, turned);
+    let cloth = app.world_mut().spawn((cloth, ChildOf(parent))).id();
+    tick(&mut app, 2);
+    let size = |app: &App| position(app, cloth, (0, 0)).distance(position(app, cloth, (15, 15)));
+    let before = size(&app);
+    for step in 0..50 {
+        change::<Transform>(&mut app, parent, |transform| {
+            transform.translation.x = 0.01 * step as f32;
+        });
+        tick(&mut app, 1);
+    }
+    assert!(
+        (size(&app) / before - 1.0).abs() < 1e-4,
+        "{} {before}",
+        size(&app)
+    );
+    let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+    let there = frame.from_world(frame.to_world(Vec3::ONE));
+    assert!(there.distance(Vec3::ONE) < 1e-5);
+}
+
 /// The transform counts: place, turn and scale at spawn, parents too.
 #[test]
 fn the_transform_is_respected_at_spawn() {

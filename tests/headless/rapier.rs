@@ -103,7 +103,7 @@ fn what_is_no_ball_is_named_and_left_out() {
     tick(&mut app, 5);
     let fault = app.world().get::<ClothFault>(cuboid).expect("a fault");
     assert!(
-        matches!(&fault.0, ClothError::NotABall { shape } if shape == "Cuboid"),
+        matches!(&fault.error, ClothError::NotABall { shape } if shape == "Cuboid"),
         "{fault:?}"
     );
     assert_eq!(
@@ -127,4 +127,31 @@ fn what_is_no_ball_is_named_and_left_out() {
             .len(),
         1
     );
+}
+
+/// Without its marker or its rapier collider, a ball is a cloth's collider no more.
+#[test]
+fn an_adopted_ball_can_be_let_go() {
+    let mut app = app_with_rapier();
+    let spawn = |app: &mut App| {
+        let ball = (
+            Collider::ball(0.3),
+            RapierClothCollider,
+            Transform::default(),
+        );
+        app.world_mut().spawn(ball).id()
+    };
+    let (first, second) = (spawn(&mut app), spawn(&mut app));
+    tick(&mut app, 2);
+    for ball in [first, second] {
+        assert!(app.world().get::<ClothCollider>(ball).is_some());
+    }
+    app.world_mut()
+        .entity_mut(first)
+        .remove::<RapierClothCollider>();
+    app.world_mut().entity_mut(second).remove::<Collider>();
+    tick(&mut app, 2);
+    for ball in [first, second] {
+        assert!(app.world().get::<ClothCollider>(ball).is_none());
+    }
 }

@@ -4,7 +4,10 @@ use bevy::{
     asset::AssetPlugin,
     camera::visibility::VisibilityPlugin,
     diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
-    ecs::schedule::{LogLevel, ScheduleBuildSettings},
+    ecs::{
+        intern::Interned,
+        schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
+    },
     gizmos::GizmoPlugin,
     mesh::MeshPlugin,
     prelude::*,
@@ -27,6 +30,9 @@ fn refuse_ambiguities(app: &mut App) {
     app.edit_schedule(FixedUpdate, |schedule| {
         schedule.set_build_settings(settings());
     })
+    .edit_schedule(Update, |schedule| {
+        schedule.set_build_settings(settings());
+    })
     .edit_schedule(PostUpdate, |schedule| {
         schedule.set_build_settings(settings());
     });
@@ -34,6 +40,11 @@ fn refuse_ambiguities(app: &mut App) {
 
 #[test]
 fn no_system_is_ambiguous() {
+    let schedules = [FixedUpdate.intern(), Update.intern(), PostUpdate.intern()];
+    schedules.into_iter().for_each(find_no_ambiguity);
+}
+
+fn find_no_ambiguity(schedule: Interned<dyn ScheduleLabel>) {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,
@@ -42,7 +53,7 @@ fn no_system_is_ambiguous() {
         MeshPlugin,
         VisibilityPlugin,
         GizmoPlugin,
-        DrapePlugins::default(),
+        DrapePlugins::new(schedule),
     ));
     refuse_ambiguities(&mut app);
     app.finish();
@@ -86,10 +97,37 @@ fn particles_may_vanish_anywhere() {
             app.add_systems(FixedUpdate, vanish.after(set));
             let cloth = (Cloth::default(), ShowClothGizmos::default(), rule);
             app.world_mut().spawn(cloth);
-            let place = Transform::from_xyz(0.7, -0.7, 0.9);
+            let place = Transform::from_xyz(0.7, -0.7, 0.95);
             app.world_mut().spawn((ClothCollider::default(), place));
             tick(&mut app, 3);
         }
+    }
+}
+
+/// A cloth that a game throws beyond all measure is left out, and its gizmos with it.
+#[test]
+fn gizmos_survive_numbers_beyond_measure() {
+    let mut app = with_plugins((
+        AssetPlugin::default(),
+        MeshPlugin,
+        VisibilityPlugin,
+        GizmoPlugin,
+        DrapePlugins::default(),
+    ));
+    let cloth = (Cloth::default(), ShowClothGizmos::levels(0..=9));
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 2);
+    for far in [1e17, 1e20, f32::MAX, f32::NAN] {
+        // Between the checks and the drawing.
+        change::<ClothParticles>(&mut app, cloth, |particles| {
+            particles
+                .set_position(77, Vec3::splat(far))
+                .expect("a particle");
+        });
+        tick(&mut app, 3);
+        change::<ClothParticles>(&mut app, cloth, |particles| *particles = default());
+        tick(&mut app, 3);
+        assert!(app.world().get::<ClothFault>(cloth).is_none());
     }
 }
 
@@ -159,7 +197,7 @@ fn diagnostics_are_measured() {
     app.world_mut().spawn(Cloth::default());
     app.world_mut().spawn((
         ClothCollider::default(),
-        Transform::from_xyz(0.7, -0.7, 0.9),
+        Transform::from_xyz(0.7, -0.7, 0.95),
     ));
     tick(&mut app, 30);
     let store = app.world().resource::<DiagnosticsStore>();
