@@ -231,47 +231,29 @@ mod tests {
     #[test]
     fn an_overlap_becomes_no_speed() {
         let grid = Cloth::new(2, 2, 1.0).grid(Vec3::ONE).expect("a sound grid");
-        let mut particles =
-            ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
-        let inside = Vec3::new(0.0, 0.7, 0.0);
-        particles.set_position(0, inside).expect("it exists");
-        particles
-            .set_displacement(0, Vec3::NEG_Y * 0.01)
-            .expect("it exists");
-        let substep = SubStep { index: 0, count: 1 };
-        push_out(
-            &mut particles,
-            &[0],
-            &mut [false],
-            &STILL,
-            0.0,
-            0.0,
-            substep,
-        );
-        assert_eq!(particles.position(0), Some(Vec3::Y));
-        assert_eq!(
-            particles.displacement(0),
-            Some(Vec3::ZERO),
-            "it was coming, and is stopped"
-        );
-        particles.set_position(0, inside).expect("it exists");
-        particles
-            .set_displacement(0, Vec3::Y * 0.01)
-            .expect("it exists");
-        push_out(
-            &mut particles,
-            &[0],
-            &mut [false],
-            &STILL,
-            0.0,
-            0.0,
-            substep,
-        );
-        assert_eq!(
-            particles.displacement(0),
-            Some(Vec3::Y * 0.01),
-            "it was leaving, and goes on"
-        );
+        for (moving, left) in [
+            // It was coming, and is stopped; it was leaving, and goes on.
+            (Vec3::NEG_Y * 0.01, Vec3::ZERO),
+            (Vec3::Y * 0.01, Vec3::Y * 0.01),
+        ] {
+            let mut particles =
+                ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
+            particles.set_position(0, Vec3::Y * 0.7).expect("it exists");
+            particles.set_displacement(0, moving).expect("it exists");
+            let substep = SubStep { index: 0, count: 1 };
+            let mut touched = [false];
+            push_out(
+                &mut particles,
+                &[0],
+                &mut touched,
+                &STILL,
+                0.0,
+                0.0,
+                substep,
+            );
+            assert_eq!(particles.position(0), Some(Vec3::Y));
+            assert_eq!(particles.displacement(0), Some(left));
+        }
     }
 
     #[test]

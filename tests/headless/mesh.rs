@@ -3,24 +3,11 @@
 use std::time::Duration;
 
 use bevy::{
-    asset::AssetPlugin,
-    camera::{primitives::Aabb, visibility::VisibilityPlugin},
-    mesh::{MeshPlugin, VertexAttributeValues},
-    prelude::*,
-    time::TimeUpdateStrategy,
+    camera::primitives::Aabb, mesh::VertexAttributeValues, prelude::*, time::TimeUpdateStrategy,
 };
 use bevy_drape::prelude::*;
 
 use crate::support::*;
-
-fn app_with_meshes() -> App {
-    with_plugins((
-        AssetPlugin::default(),
-        MeshPlugin,
-        VisibilityPlugin,
-        DrapePlugins::default(),
-    ))
-}
 
 fn vertices(app: &App, cloth: Entity, attribute: bevy::mesh::MeshVertexAttribute) -> Vec<Vec3> {
     let handle = &app.world().get::<Mesh3d>(cloth).expect("a mesh").0;
@@ -40,7 +27,7 @@ fn vertices(app: &App, cloth: Entity, attribute: bevy::mesh::MeshVertexAttribute
 /// Where the vertices are in the world, by the entity's own transform: where the particles are.
 #[test]
 fn the_mesh_follows_the_particles_and_its_bounds_stay_true() {
-    let mut app = app_with_meshes();
+    let mut app = app_that_draws(FixedUpdate);
     let place = Transform::from_xyz(1.0, 2.0, 3.0)
         .with_rotation(Quat::from_rotation_y(0.5))
         .with_scale(Vec3::new(2.0, 1.5, -1.0));
@@ -95,7 +82,7 @@ fn the_mesh_follows_the_particles_and_its_bounds_stay_true() {
 /// Between two ticks the mesh is between them.
 #[test]
 fn the_mesh_is_interpolated() {
-    let mut app = app_with_meshes();
+    let mut app = app_that_draws(FixedUpdate);
     let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
     tick(&mut app, 20);
     let y = |app: &App| vertices(app, cloth, Mesh::ATTRIBUTE_POSITION)[40].y;
@@ -118,7 +105,7 @@ fn the_mesh_is_interpolated() {
 /// At rest the normal is +z, the UVs go from corner to corner, and another grid gets another mesh.
 #[test]
 fn a_new_grid_gets_a_new_mesh() {
-    let mut app = app_with_meshes();
+    let mut app = app_that_draws(FixedUpdate);
     let still = ClothSettings {
         gravity: Some(Vec3::ZERO),
         ..default()

@@ -1,15 +1,11 @@
 //! Where the systems run, in what order, and with which other plugins.
 
 use bevy::{
-    asset::AssetPlugin,
-    camera::visibility::VisibilityPlugin,
     diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
     ecs::{
         intern::Interned,
         schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
     },
-    gizmos::GizmoPlugin,
-    mesh::MeshPlugin,
     prelude::*,
 };
 use bevy_drape::{
@@ -23,19 +19,17 @@ use crate::{rapier::app_with_rapier, support::*};
 
 /// Has the next run of these schedules fail if two systems of them may run in either order with effect.
 fn refuse_ambiguities(app: &mut App) {
-    let settings = || ScheduleBuildSettings {
-        ambiguity_detection: LogLevel::Error,
-        ..default()
-    };
-    app.edit_schedule(FixedUpdate, |schedule| {
-        schedule.set_build_settings(settings());
-    })
-    .edit_schedule(Update, |schedule| {
-        schedule.set_build_settings(settings());
-    })
-    .edit_schedule(PostUpdate, |schedule| {
-        schedule.set_build_settings(settings());
-    });
+    let schedules = [FixedUpdate.intern(), Update.intern(), PostUpdate.intern()];
+    for schedule in schedules {
+        // A schedule is examined when it is built, and built again when it gets another system.
+        app.add_systems(schedule, || {});
+        app.edit_schedule(schedule, |schedule| {
+            schedule.set_build_settings(ScheduleBuildSettings {
+                ambiguity_detection: LogLevel::Error,
+                ..default()
+            });
+        });
+    }
 }
 
 #[test]
@@ -45,22 +39,10 @@ fn no_system_is_ambiguous() {
 }
 
 fn find_no_ambiguity(schedule: Interned<dyn ScheduleLabel>) {
-    let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        TransformPlugin,
-        AssetPlugin::default(),
-        MeshPlugin,
-        VisibilityPlugin,
-        GizmoPlugin,
-        DrapePlugins::new(schedule),
-    ));
+    let mut app = app_that_draws(schedule);
     refuse_ambiguities(&mut app);
-    app.finish();
-    app.cleanup();
     app.world_mut()
         .spawn((Cloth::default(), ShowClothGizmos::default()));
-    app.insert_resource(bevy::time::TimeUpdateStrategy::FixedTimesteps(1));
     (0..3).for_each(|_| app.update());
 }
 
@@ -87,13 +69,7 @@ fn particles_may_vanish_anywhere() {
         ClothSystems::WriteBack,
     ] {
         for rule in [BoundRule::RestShape, BoundRule::Refit, BoundRule::Paper] {
-            let mut app = with_plugins((
-                AssetPlugin::default(),
-                MeshPlugin,
-                VisibilityPlugin,
-                GizmoPlugin,
-                DrapePlugins::default(),
-            ));
+            let mut app = app_that_draws(FixedUpdate);
             app.add_systems(FixedUpdate, vanish.after(set));
             let cloth = (Cloth::default(), ShowClothGizmos::default(), rule);
             app.world_mut().spawn(cloth);
@@ -107,13 +83,7 @@ fn particles_may_vanish_anywhere() {
 /// A cloth that a game throws beyond all measure is left out, and its gizmos with it.
 #[test]
 fn gizmos_survive_numbers_beyond_measure() {
-    let mut app = with_plugins((
-        AssetPlugin::default(),
-        MeshPlugin,
-        VisibilityPlugin,
-        GizmoPlugin,
-        DrapePlugins::default(),
-    ));
+    let mut app = app_that_draws(FixedUpdate);
     let cloth = (Cloth::default(), ShowClothGizmos::levels(0..=9));
     let cloth = app.world_mut().spawn(cloth).id();
     tick(&mut app, 2);

@@ -1,6 +1,9 @@
 //! The app that the tests drive, and short ways to ask it.
 
-use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy::{
+    asset::AssetPlugin, camera::visibility::VisibilityPlugin, ecs::schedule::ScheduleLabel,
+    gizmos::GizmoPlugin, mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy,
+};
 use bevy_drape::prelude::*;
 
 /// Bevy's fixed tick (s).
@@ -14,7 +17,18 @@ pub fn app() -> App {
     with_plugins(DrapePlugins::default())
 }
 
-/// The same with other plugins of ours.
+/// The same with all that draws, short of a renderer, and the cloth in `schedule`.
+pub fn app_that_draws(schedule: impl ScheduleLabel) -> App {
+    with_plugins((
+        AssetPlugin::default(),
+        MeshPlugin,
+        VisibilityPlugin,
+        GizmoPlugin,
+        DrapePlugins::new(schedule),
+    ))
+}
+
+/// An app with other plugins of ours.
 pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, plugins))
