@@ -1,7 +1,7 @@
 //! The particles of a cloth, in columns.
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
+    ecs::component::Component,
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
@@ -45,7 +45,7 @@ impl From<(u32, u32)> for ParticleId {
 /// ticks; emptying it (`*particles = default()`) weaves the cloth anew at rest.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(opaque)]
-#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {
     columns: u32,
     position: Vec<Vec3>,

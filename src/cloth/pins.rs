@@ -3,7 +3,7 @@
 use std::{fmt, sync::Arc};
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
+    ecs::component::Component,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
@@ -79,7 +79,7 @@ impl PartialEq for Pin {
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(opaque)]
-#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct Pins(Vec<Pin>);
 
 impl Default for Pins {

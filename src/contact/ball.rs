@@ -23,6 +23,11 @@ impl MovingBall {
         self.from.distance(self.to)
     }
 
+    /// How far its surface moves at most, by travel and turn: how far it can drag what sticks to it (m).
+    pub fn drag(&self) -> f32 {
+        self.travel() + self.turn.length() * self.radius
+    }
+
     /// The ball around all of its way, inflated by `margin` (m), as what a query searches for.
     pub fn probe(&self, margin: f32, particle_radius: f32) -> Probe {
         Probe {

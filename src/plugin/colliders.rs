@@ -52,12 +52,6 @@ impl ColliderMotion {
         Ok(())
     }
 
-    /// How far it moves in the tick (m).
-    pub fn travel(&self) -> f32 {
-        self.way
-            .map_or(0.0, |(from, to)| from.translation.distance(to.translation))
-    }
-
     /// The collider's way through the tick in a cloth's frame.
     pub fn seen_from(&self, frame: &ClothFrame) -> Option<MovingBall> {
         let (from, to) = self.way?;

@@ -12,7 +12,7 @@ use bevy::{
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pins, Springs},
     contact::MovingBall,
-    hierarchy::{QuadTree, SphereBounds, TopDownQuery},
+    hierarchy::{BoundRule, QuadTree, SphereBounds, TopDownQuery},
     solver::{PinMotion, Stretch, TickStep},
 };
 
@@ -75,7 +75,7 @@ impl ClothSearch {
 pub struct ClothStats {
     /// Time of all sub-steps (ms): the solver's call.
     pub integrate_ms: f64,
-    /// Time to bring the bounding spheres up to date (ms).
+    /// Time to bring the bounding spheres up to date, and to measure the stretch that they rely on (ms).
     pub rebuild_ms: f64,
     /// Time of the search (ms).
     pub query_ms: f64,
@@ -104,6 +104,13 @@ pub(super) struct BallInReach {
 pub(super) struct ClothTick {
     /// `None` for a cloth that was not prepared: nothing else of the tick happens to it then.
     pub step: Option<TickStep>,
+    /// Whether the last preparation found nothing wrong: what is not sound is neither moved nor drawn.
+    pub sound: bool,
+    pub rule: BoundRule,
+    /// Coulomb's μ.
+    pub friction: f32,
+    /// Radius of each particle (m).
+    pub particle_radius: f32,
     /// As of the positions present: what `RestShape` relies on.
     pub stretch: Stretch,
     /// Pinned particles that the frame carries along.

@@ -7,14 +7,12 @@ use bevy::{
         lifecycle::Remove,
         message::{Message, MessageWriter},
         observer::On,
-        query::Has,
-        reflect::ReflectComponent,
         system::Query,
     },
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::ClothFault;
+use super::components::ClothTick;
 
 /// A collider that a cloth touches.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
@@ -29,7 +27,8 @@ pub struct ClothContact {
 
 /// The colliders that a cloth touched in the last tick.
 #[derive(Component, Reflect, Debug, Default, Clone)]
-#[reflect(Component, Default, Debug, Clone)]
+#[reflect(Default, Debug, Clone)]
+#[component(clone_behavior = Ignore)]
 pub struct ClothContacts {
     now: Vec<ClothContact>,
     /// Those told of, each with the most particles and the deepest penetration since the touch began.
@@ -83,16 +82,16 @@ pub struct ClothTouchStopped {
 
 /// Tells of the difference between this tick and the last.
 pub(super) fn tell_of_touches(
-    mut cloths: Query<(Entity, &mut ClothContacts, Has<ClothFault>)>,
+    mut cloths: Query<(Entity, &ClothTick, &mut ClothContacts)>,
     mut started: MessageWriter<ClothTouchStarted>,
     mut stopped: MessageWriter<ClothTouchStopped>,
 ) {
-    for (cloth, mut contacts, faulty) in &mut cloths {
+    for (cloth, tick, mut contacts) in &mut cloths {
         if contacts.now.is_empty() && contacts.told.is_empty() {
             continue;
         }
         let ClothContacts { now, told } = &mut *contacts;
-        if faulty {
+        if !tick.sound {
             now.clear();
         }
         for contact in now.iter() {

@@ -9,6 +9,7 @@ use crate::cloth::ClothError;
 
 /// On a cloth or collider that is left out of the simulation: why. Taken away as soon as the fault is mended.
 #[derive(Component, Debug, Clone, PartialEq)]
+#[component(clone_behavior = Ignore)]
 pub struct ClothFault {
     /// What is wrong.
     pub error: ClothError,

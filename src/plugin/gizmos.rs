@@ -8,8 +8,6 @@ use bevy::{
     color::{Color, Srgba},
     ecs::{
         component::Component,
-        query::Without,
-        reflect::ReflectComponent,
         schedule::IntoScheduleConfigs,
         system::{Query, Res},
     },
@@ -23,13 +21,14 @@ use bevy::{
     transform::TransformSystems,
 };
 
-use super::{ClothFault, ClothFrame, ClothSearch, ClothSystems, ClothTopology};
+use super::{ClothFrame, ClothSearch, ClothSystems, ClothTopology, components::ClothTick};
 use crate::{
     cloth::{ClothParticles, SpringKind},
     hierarchy::NodeState,
 };
 
-/// How cloths' gizmos look. A gizmo config group: line width and depth are those of its `GizmoConfig`.
+/// How cloths' gizmos look. They show the last tick, whereas the mesh is drawn up to a tick behind it. A gizmo config
+/// group: line width and depth are those of its `GizmoConfig`.
 #[derive(GizmoConfigGroup, Reflect, Debug, Clone)]
 #[reflect(Default, Debug, Clone)]
 pub struct ClothGizmos {
@@ -63,7 +62,7 @@ impl Default for ClothGizmos {
 
 /// Draws the gizmos of one visible cloth, as Bevy's `ShowAabbGizmo` does an entity's box.
 #[derive(Component, Reflect, Debug, Clone, PartialEq, Eq)]
-#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ShowClothGizmos {
     /// Levels of the tree whose spheres are drawn, 0 for the root; those deeper than the tree are its leaves'.
     /// `None` for no spheres.
@@ -125,24 +124,23 @@ impl Plugin for ClothGizmosPlugin {
 }
 
 fn draw_cloths(
-    cloths: Query<
-        (
-            &ClothTopology,
-            &ClothParticles,
-            &ClothSearch,
-            &ClothFrame,
-            Option<&ShowClothGizmos>,
-            Option<&ViewVisibility>,
-        ),
-        Without<ClothFault>,
-    >,
+    cloths: Query<(
+        &ClothTopology,
+        &ClothParticles,
+        &ClothSearch,
+        &ClothFrame,
+        Option<&ShowClothGizmos>,
+        Option<&ViewVisibility>,
+        &ClothTick,
+    )>,
     store: Res<GizmoConfigStore>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
     let look = store.config::<ClothGizmos>().1;
     let everywhere = look.draw_all.then(ShowClothGizmos::default);
-    for (topology, particles, search, frame, show, visible) in &cloths {
+    for (topology, particles, search, frame, show, visible, tick) in &cloths {
         if let Some(show) = show.or(everywhere.as_ref())
+            && tick.sound
             && topology.fits(particles)
             && visible.is_none_or(|visible| visible.get())
         {

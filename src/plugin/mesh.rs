@@ -12,7 +12,7 @@ use bevy::{
         intern::Interned,
         lifecycle::Remove,
         observer::On,
-        query::{With, Without},
+        query::With,
         schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
         system::{Commands, Query, Res, ResMut},
     },
@@ -21,7 +21,7 @@ use bevy::{
     time::{Fixed, Time},
 };
 
-use super::{ClothFault, ClothFrame, ClothSystems, ClothTopology};
+use super::{ClothFrame, ClothSystems, ClothTopology, components::ClothTick};
 use crate::cloth::{Cloth, ClothGrid, ClothParticles};
 
 /// On a cloth whose [`Mesh3d`] follows its particles; it replaces one that the entity had. Give the entity a material with `double_sided: true` and
@@ -91,7 +91,7 @@ impl Plugin for ClothMeshPlugin {
     }
 }
 
-fn remember_positions(mut cloths: Query<(&ClothParticles, &mut ClothMesh), Without<ClothFault>>) {
+fn remember_positions(mut cloths: Query<(&ClothParticles, &mut ClothMesh)>) {
     for (particles, mut mesh) in &mut cloths {
         mesh.previous.clear();
         mesh.previous.extend(particles.positions());
@@ -157,10 +157,13 @@ fn flat_mesh(grid: &ClothGrid) -> Mesh {
 }
 
 fn update_meshes(
-    mut cloths: Query<
-        (&ClothTopology, &ClothParticles, &ClothFrame, &mut ClothMesh),
-        Without<ClothFault>,
-    >,
+    mut cloths: Query<(
+        &ClothTopology,
+        &ClothParticles,
+        &ClothFrame,
+        &ClothTick,
+        &mut ClothMesh,
+    )>,
     time: Res<Time<Fixed>>,
     mut meshes: ResMut<Assets<Mesh>>,
     interpolated: bool,
@@ -170,14 +173,17 @@ fn update_meshes(
     } else {
         1.0
     };
-    for (topology, particles, frame, mut cloth_mesh) in &mut cloths {
+    for (topology, particles, frame, tick, mut cloth_mesh) in &mut cloths {
+        if !tick.sound || !topology.fits(particles) {
+            continue;
+        }
         let Some(mut mesh) = meshes.get_mut(&cloth_mesh.handle) else {
             continue;
         };
         let ClothMesh {
             previous, drawn, ..
         } = &mut *cloth_mesh;
-        if !topology.fits(particles) || mesh.count_vertices() != particles.len() {
+        if mesh.count_vertices() != particles.len() {
             continue;
         }
         interpolate(drawn, previous, particles, fraction, &frame.to_entity());

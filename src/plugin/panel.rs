@@ -176,10 +176,13 @@ fn show_times(ui: &mut Ui, diagnostics: &DiagnosticsStore) {
         mean(&Plugin::REBUILD),
         mean(&Plugin::QUERY),
     );
-    ui.label(format!("{:.3} ms a tick", integrate + rebuild + query))
-        .on_hover_text(format!(
-            "integrate {integrate:.3}, rebuild {rebuild:.4}, query {query:.4} ms"
-        ));
+    ui.label(format!(
+        "{:.3} ms a tick in solver and search",
+        integrate + rebuild + query
+    ))
+    .on_hover_text(format!(
+        "integrate {integrate:.3}, rebuild {rebuild:.4}, query {query:.4} ms"
+    ));
 }
 
 fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {

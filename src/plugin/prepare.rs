@@ -20,11 +20,11 @@ use crate::{
     cloth::{
         Cloth, ClothError, ClothGrid, ClothMaterial, ClothParticles, Pins, SpringKind, Springs,
     },
-    hierarchy::QuadTree,
+    hierarchy::{BoundRule, QuadTree},
     solver::{ClothSettings, PinMotion, Stretch, TickStep},
 };
 
-/// The pins of a cloth from which the game took its [`Pins`].
+/// The pins of a cloth from which the game took its [`Pins`]. In place of other components the defaults count.
 static NO_PINS: Pins = Pins::none();
 
 #[derive(QueryData)]
@@ -32,9 +32,10 @@ static NO_PINS: Pins = Pins::none();
 pub(super) struct Preparing {
     entity: Entity,
     cloth: &'static Cloth,
-    material: &'static ClothMaterial,
+    material: Option<&'static ClothMaterial>,
     pins: Option<&'static Pins>,
-    settings: &'static ClothSettings,
+    settings: Option<&'static ClothSettings>,
+    rule: Option<&'static BoundRule>,
     particles: &'static mut ClothParticles,
     topology: &'static mut ClothTopology,
     frame: &'static mut ClothFrame,
@@ -54,6 +55,7 @@ pub(super) fn prepare_cloths(
     for mut cloth in &mut cloths {
         let outcome = global_transform(&transforms, cloth.entity)
             .and_then(|transform| cloth.prepare(&transform, gravity.0, time.delta_secs()));
+        cloth.tick.sound = outcome.is_ok();
         ClothFault::report(
             &mut commands,
             cloth.entity,
@@ -73,12 +75,14 @@ impl PreparingItem<'_, '_> {
     ) -> Result<(), ClothError> {
         self.tick.step = None;
         let (frame, scale) = ClothFrame::of(transform)?;
-        self.settings.validate()?;
-        let gravity = self.settings.gravity.unwrap_or(gravity);
+        let settings = self.settings.copied().unwrap_or_default();
+        let material = self.material.copied().unwrap_or_default();
+        settings.validate()?;
+        let gravity = settings.gravity.unwrap_or(gravity);
         for value in gravity.to_array() {
             ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
         }
-        let was_woven = self.weave(scale)?;
+        let was_woven = self.weave(&material, scale)?;
         self.particles.validate()?;
         self.tick.pins.clear();
         if !was_woven {
@@ -95,37 +99,43 @@ impl PreparingItem<'_, '_> {
         let acceleration = self.frame.isometry().rotation.inverse() * gravity;
         self.tick.step = Some(TickStep {
             seconds,
-            substeps: self.settings.substeps,
+            substeps: settings.substeps,
             acceleration,
-            damping: self.material.damping,
+            damping: material.damping,
         });
-        let carried = self
-            .tick
-            .pins
-            .iter()
-            .map(|pin| pin.from.distance(pin.to))
-            .fold(0.0, f32::max);
-        self.tick.reach =
-            (self.particles.largest_speed() + acceleration.length() * seconds) * seconds + carried;
+        self.tick.rule = self.rule.copied().unwrap_or_default();
+        self.tick.friction = material.friction;
+        self.tick.particle_radius = settings.particle_radius;
+        self.tick.reach = self.reach(acceleration.length(), seconds);
         Ok(())
+    }
+
+    /// How far a particle may get in the tick by itself (m): by its speed and gravity, by what carries its
+    /// neighbours' pins, and by what a spring that is stretched now gives back.
+    fn reach(&self, acceleration: f32, seconds: f32) -> f32 {
+        let carried = self.tick.pins.iter().map(|pin| pin.from.distance(pin.to));
+        let longest_spring = self.topology.grid.spacing().length();
+        (self.particles.largest_speed() + acceleration * seconds) * seconds
+            + carried.fold(0.0, f32::max)
+            + self.tick.stretch.bound * longest_spring
     }
 
     /// Builds what does not exist yet or was made from other components than those present. Returns whether
     /// the cloth had been woven before. Changes nothing on an error.
-    fn weave(&mut self, scale: Vec3) -> Result<bool, ClothError> {
+    fn weave(&mut self, material: &ClothMaterial, scale: Vec3) -> Result<bool, ClothError> {
         let woven = self.topology.woven.as_ref();
         let was_woven =
             woven.is_some_and(|(cloth, ..)| cloth == self.cloth) && !self.particles.is_empty();
         if was_woven {
-            self.follow_changes()?;
+            self.follow_changes(material)?;
         } else {
-            self.weave_anew(scale)?;
+            self.weave_anew(material, scale)?;
         }
         Ok(was_woven)
     }
 
-    fn weave_anew(&mut self, scale: Vec3) -> Result<(), ClothError> {
-        let (material, pins) = (self.material, self.pins.unwrap_or(&NO_PINS));
+    fn weave_anew(&mut self, material: &ClothMaterial, scale: Vec3) -> Result<(), ClothError> {
+        let pins = self.pins.unwrap_or(&NO_PINS);
         let grid = self.cloth.grid(scale)?;
         material.validate()?;
         pins.validate(&grid)?;
@@ -151,8 +161,8 @@ impl PreparingItem<'_, '_> {
 
     /// Takes over another material or other pins: masses, springs and tree only where they change, so that a
     /// mass that the game has set outlasts a change of damping.
-    fn follow_changes(&mut self) -> Result<(), ClothError> {
-        let (material, pins) = (self.material, self.pins.unwrap_or(&NO_PINS));
+    fn follow_changes(&mut self, material: &ClothMaterial) -> Result<(), ClothError> {
+        let pins = self.pins.unwrap_or(&NO_PINS);
         let topology = &mut *self.topology;
         check_count(&self.particles, &topology.grid)?;
         let Some((_, was, were_pinned)) = &mut topology.woven else {

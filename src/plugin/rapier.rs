@@ -66,13 +66,14 @@ impl Plugin for ClothRapierPlugin {
 /// Without its marker or its rapier collider, an adopted collider is one no more.
 fn let_go<C: Component>(
     removed: On<Remove, C>,
-    adopted: Query<(), With<RapierClothCollider>>,
+    adopted: Query<Option<&ClothFault>, With<RapierClothCollider>>,
     mut commands: Commands,
 ) {
-    if adopted.contains(removed.entity) {
+    if let Ok(known) = adopted.get(removed.entity) {
         commands
             .entity(removed.entity)
-            .try_remove::<(ClothCollider, ClothFault)>();
+            .try_remove::<ClothCollider>();
+        ClothFault::report(&mut commands, removed.entity, known, Part::Collider, Ok(()));
     }
 }
 

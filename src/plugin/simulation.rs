@@ -21,6 +21,7 @@ use super::{
     colliders::{ColliderMotion, prepare_colliders},
     components::ClothTick,
     contacts::{tell_of_removed_cloths, tell_of_touches},
+    fault::Part,
     prepare::prepare_cloths,
     tick::{integrate, query_collisions, rebuild_hierarchies},
 };
@@ -62,7 +63,7 @@ impl Default for ClothGravity {
     }
 }
 
-/// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws.
+/// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws. Add it before the first cloth is spawned.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothPlugin {
     schedule: Interned<dyn ScheduleLabel>,
@@ -139,7 +140,11 @@ impl Plugin for ClothPlugin {
 }
 
 /// What the plugin added to a cloth goes with it; its particles and settings stay, they are the game's.
-fn clear_removed_cloth(removed: On<Remove, Cloth>, mut commands: Commands) {
+fn clear_removed_cloth(
+    removed: On<Remove, Cloth>,
+    faults: Query<&ClothFault>,
+    mut commands: Commands,
+) {
     commands.entity(removed.entity).try_remove::<(
         ClothTopology,
         ClothFrame,
@@ -147,15 +152,22 @@ fn clear_removed_cloth(removed: On<Remove, Cloth>, mut commands: Commands) {
         ClothContacts,
         ClothStats,
         ClothTick,
-        ClothFault,
     )>();
+    let known = faults.get(removed.entity).ok();
+    ClothFault::report(&mut commands, removed.entity, known, Part::Cloth, Ok(()));
 }
 
 /// Likewise for a collider.
-fn clear_removed_collider(removed: On<Remove, ClothCollider>, mut commands: Commands) {
+fn clear_removed_collider(
+    removed: On<Remove, ClothCollider>,
+    faults: Query<&ClothFault>,
+    mut commands: Commands,
+) {
     commands
         .entity(removed.entity)
-        .try_remove::<(ColliderMotion, ClothFault)>();
+        .try_remove::<ColliderMotion>();
+    let known = faults.get(removed.entity).ok();
+    ClothFault::report(&mut commands, removed.entity, known, Part::Collider, Ok(()));
 }
 
 /// A collider that is inserted anew has not come from where it was before.

@@ -1,49 +1,43 @@
 //! The systems of a tick between preparation and write-back.
 
 use bevy::{
-    ecs::{change_detection::DetectChanges, entity::Entity, query::Without, system::Query},
+    ecs::{change_detection::DetectChanges, entity::Entity, system::Query},
     platform::time::Instant,
 };
 
 use super::{
-    ClothContact, ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats, ClothTopology,
+    ClothContact, ClothContacts, ClothFrame, ClothSearch, ClothStats, ClothTopology,
     colliders::ColliderMotion,
     components::{BallInReach, ClothTick},
 };
 use crate::{
-    cloth::{ClothMaterial, ClothParticles},
-    contact::push_out,
-    hierarchy::BoundRule,
-    solver::{ClothSettings, Stretch, advance},
+    cloth::ClothParticles,
+    contact::{MovingBall, push_out},
+    solver::{Stretch, advance},
 };
 
 /// Brings the bounding spheres up to date.
 pub(super) fn rebuild_hierarchies(
-    mut cloths: Query<
-        (
-            &ClothTopology,
-            &ClothParticles,
-            &ClothSettings,
-            &BoundRule,
-            &ClothTick,
-            &mut ClothSearch,
-            &mut ClothStats,
-        ),
-        Without<ClothFault>,
-    >,
+    mut cloths: Query<(
+        &ClothTopology,
+        &ClothParticles,
+        &ClothTick,
+        &mut ClothSearch,
+        &mut ClothStats,
+    )>,
 ) {
-    for (topology, particles, settings, &rule, tick, mut search, mut stats) in &mut cloths {
+    for (topology, particles, tick, mut search, mut stats) in &mut cloths {
         if tick.step.is_none() || !topology.fits(particles) {
             continue;
         }
         let start = Instant::now();
         search.bounds.rebuild(
-            rule,
+            tick.rule,
             &topology.tree,
             &topology.grid,
             particles,
             tick.stretch.bound,
-            settings.particle_radius,
+            tick.particle_radius,
         );
         stats.rebuild_ms = milliseconds_since(start);
     }
@@ -51,21 +45,16 @@ pub(super) fn rebuild_hierarchies(
 
 /// Finds the particles that each collider may touch within the tick.
 pub(super) fn query_collisions(
-    mut cloths: Query<
-        (
-            &ClothTopology,
-            &ClothParticles,
-            &ClothFrame,
-            &mut ClothSearch,
-            &mut ClothTick,
-            &mut ClothStats,
-        ),
-        Without<ClothFault>,
-    >,
-    colliders: Query<(Entity, &ColliderMotion), Without<ClothFault>>,
+    mut cloths: Query<(
+        &ClothTopology,
+        &ClothParticles,
+        &ClothFrame,
+        &mut ClothSearch,
+        &mut ClothTick,
+        &mut ClothStats,
+    )>,
+    colliders: Query<(Entity, &ColliderMotion)>,
 ) {
-    let travels = colliders.iter().map(|(_, motion)| motion.travel());
-    let dragged = travels.fold(0.0, f32::max);
     for (topology, particles, frame, mut search, mut tick, mut stats) in &mut cloths {
         if tick.step.is_none() || !topology.fits(particles) {
             continue;
@@ -74,12 +63,23 @@ pub(super) fn query_collisions(
         let ClothSearch { bounds, query } = &mut *search;
         query.clear(&topology.tree);
         tick.balls.clear();
-        // A particle gets as far as its own speed and gravity take it, or as the fastest ball drags it.
-        let margin = tick.reach + dragged;
-        for (collider, motion) in &colliders {
-            let Some(ball) = motion.seen_from(frame) else {
-                continue;
+        // Besides by itself, a particle may get as far as a ball drags it, of those that come near the cloth.
+        let root = bounds.sphere(&topology.tree, particles, 0);
+        let balls = || {
+            let seen = |(collider, motion): (Entity, &ColliderMotion)| {
+                Some((collider, motion.seen_from(frame)?))
             };
+            colliders.iter().filter_map(seen)
+        };
+        let comes_near = |ball: &MovingBall| {
+            let probe = ball.probe(tick.reach + ball.drag(), bounds.particle_radius());
+            let reach = probe.radius + root.radius();
+            probe.centre.distance_squared(root.center.into()) <= reach * reach
+        };
+        let near = balls().filter(|(_, ball)| comes_near(ball));
+        let dragged = near.map(|(_, ball)| ball.drag()).fold(0.0, f32::max);
+        let margin = tick.reach + dragged;
+        for (collider, ball) in balls() {
             let probe = ball.probe(margin, bounds.particle_radius());
             let candidates = query.search(&topology.tree, bounds, particles, &probe);
             if !candidates.is_empty() {
@@ -101,23 +101,16 @@ pub(super) fn query_collisions(
 
 /// Runs all sub-steps.
 pub(super) fn integrate(
-    mut cloths: Query<
-        (
-            &ClothTopology,
-            &ClothMaterial,
-            &ClothSettings,
-            &ClothSearch,
-            &mut ClothParticles,
-            &mut ClothTick,
-            &mut ClothContacts,
-            &mut ClothStats,
-        ),
-        Without<ClothFault>,
-    >,
+    mut cloths: Query<(
+        &ClothTopology,
+        &ClothSearch,
+        &mut ClothParticles,
+        &mut ClothTick,
+        &mut ClothContacts,
+        &mut ClothStats,
+    )>,
 ) {
-    for (topology, material, settings, search, mut particles, mut tick, mut contacts, mut stats) in
-        &mut cloths
-    {
+    for (topology, search, mut particles, mut tick, mut contacts, mut stats) in &mut cloths {
         // Taken: a cloth that is not prepared again does not move again.
         let Some(step) = tick.step.take() else {
             continue;
@@ -125,6 +118,7 @@ pub(super) fn integrate(
         if !topology.fits(&particles) {
             continue;
         }
+        let (radius, friction) = (tick.particle_radius, tick.friction);
         let ClothTick {
             stretch,
             pins,
@@ -138,7 +132,6 @@ pub(super) fn integrate(
             continue;
         }
         let candidates = search.query.candidates();
-        let (radius, friction) = (settings.particle_radius, material.friction);
         let respond = |particles: &mut ClothParticles, substep| {
             for in_reach in &mut *balls {
                 let range = in_reach.candidates.clone();
@@ -157,7 +150,9 @@ pub(super) fn integrate(
         let start = Instant::now();
         advance(&mut particles, &topology.springs, step, pins, respond);
         stats.integrate_ms = milliseconds_since(start);
+        let start = Instant::now();
         *stretch = Stretch::measure(&topology.springs, &particles);
+        stats.rebuild_ms += milliseconds_since(start);
         *written = Some(particles.last_changed());
         contacts.renew(balls.iter().map(|in_reach| {
             let touched = &touched[in_reach.candidates.clone()];

@@ -284,10 +284,12 @@ fn gravity_that_is_not_finite() {
 /// An entity may be a cloth and a collider at once: each part's fault is reported once.
 #[test]
 fn a_cloth_that_is_a_collider_too() {
+    let aside = Transform::from_xyz(9.0, 0.0, 0.0);
     expect_fault(
         (
             Cloth::default(),
             ClothCollider::ball(0.1),
+            aside,
             Pins::new([Pin::Row(99)]),
         ),
         |_, _| {},
@@ -295,7 +297,7 @@ fn a_cloth_that_is_a_collider_too() {
         |app, entity| change::<Pins>(app, entity, |pins| *pins = default()),
     );
     expect_fault(
-        (Cloth::default(), ClothCollider::ball(-0.1)),
+        (Cloth::default(), ClothCollider::ball(-0.1), aside),
         |_, _| {},
         |error| matches!(error, ClothError::Quantity { .. }),
         |app, entity| {

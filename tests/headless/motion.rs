@@ -398,6 +398,24 @@ fn huge_and_changing_steps_are_survived() {
     assert!(stretch < 0.05, "{stretch}");
 }
 
+/// A cloth whose other part, a collider, is at fault moves on, and its pins stay with its transform.
+#[test]
+fn a_faulty_collider_does_not_stop_its_cloth() {
+    let mut app = app();
+    let both = (Cloth::default(), ClothCollider::ball(-1.0));
+    let cloth = app.world_mut().spawn(both).id();
+    tick(&mut app, 2);
+    for step in 1..10 {
+        change::<Transform>(&mut app, cloth, |transform| {
+            transform.translation.z = 0.01 * step as f32;
+        });
+        tick(&mut app, 1);
+        assert_eq!(position(&app, cloth, (0, 3)), Vec3::new(0.3, 0.0, 0.0));
+    }
+    assert!(app.world().get::<ClothFault>(cloth).is_some());
+    assert!(particles(&app, cloth).largest_speed() > 0.1);
+}
+
 /// What is moved while the clock stands still is carried along once it goes on: nothing is lost, nothing jumps.
 #[test]
 fn a_transform_moved_in_a_pause_counts_when_time_goes_on() {

@@ -208,7 +208,7 @@ fn a_resting_ball_does_not_sink_in() {
     assert!(deepest < 0.01 * radius, "{deepest} m of {radius}");
 }
 
-/// The first cloth does not notice a second pair: bit for bit.
+/// The first cloth does not notice a second pair, nor a bullet far away: bit for bit, and node for node.
 #[test]
 fn a_second_cloth_and_ball_do_not_disturb_the_first() {
     let run = |second: bool| {
@@ -218,24 +218,41 @@ fn a_second_cloth_and_ball_do_not_disturb_the_first() {
             let place = Transform::from_xyz(5.0, 0.0, 0.0);
             let other = app.world_mut().spawn((Cloth::new(9, 21, 0.07), place)).id();
             let place = Transform::from_xyz(5.3, -0.7, -1.0);
-            let other_ball = app
-                .world_mut()
-                .spawn((ClothCollider::ball(0.2), Moving(1.0), place))
-                .id();
+            let other_ball = (ClothCollider::ball(0.2), Moving(1.0), place);
+            let other_ball = app.world_mut().spawn(other_ball).id();
+            let place = Transform::from_xyz(200.0, 0.0, 0.0);
+            let bullet = (ClothCollider::ball(0.2), Moving(300.0), place);
+            app.world_mut().spawn(bullet);
             tick(&mut app, 70);
             let contacts = |cloth| app.world().get::<ClothContacts>(cloth).expect("contacts");
-            assert!(
-                contacts(other).with(other_ball).is_some() && contacts(other).with(ball).is_none()
-            );
-            assert!(
-                contacts(cloth).with(ball).is_some() && contacts(cloth).with(other_ball).is_none()
-            );
+            assert!(contacts(other).with(other_ball).is_some());
+            assert!(contacts(other).with(ball).is_none());
+            assert!(contacts(cloth).with(ball).is_some());
+            assert!(contacts(cloth).with(other_ball).is_none());
         } else {
             tick(&mut app, 70);
         }
-        particles(&app, cloth).clone()
+        let search = app.world().get::<ClothSearch>(cloth).expect("a search");
+        let states = search.query().states().to_vec();
+        (particles(&app, cloth).clone(), states)
     };
     assert_eq!(run(false), run(true));
+}
+
+/// A copy of a cloth begins where the first is, with touches and messages of its own.
+#[test]
+fn a_copy_has_its_own_touches() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let place = Transform::from_xyz(0.7, -0.7, 0.95);
+    app.world_mut().spawn((ClothCollider::default(), place));
+    tick(&mut app, 10);
+    messages::<ClothTouchStarted>(&mut app);
+    let copy = app.world_mut().entity_mut(cloth).clone_and_spawn();
+    tick(&mut app, 10);
+    let started = messages::<ClothTouchStarted>(&mut app);
+    assert!(started.iter().any(|told| told.cloth == copy), "{started:?}");
+    assert_eq!(particles(&app, cloth), particles(&app, copy));
 }
 
 /// Two balls at once are two contacts.
@@ -328,6 +345,15 @@ fn the_candidates_are_complete() {
         };
         // Two ticks: the first motion of a collider is known from the second on.
         tick(&mut app, 2);
+        // A hem that the game has pulled to the far side of the still ball, to snap back through it.
+        change::<ClothParticles>(&mut app, cloth, |particles| {
+            for column in 2..6 {
+                let pulled = Vec3::new(0.1 * column as f32, -1.2, -0.9);
+                particles
+                    .set_position((15, column), pulled)
+                    .expect("a particle");
+            }
+        });
         let (mut contacts, mut found) = (0, 0);
         for _ in 0..100 {
             let mut by_hand = particles(&app, cloth).clone();
@@ -433,6 +459,14 @@ fn components_may_be_removed() {
     app.world_mut().entity_mut(cloth).remove::<Pins>();
     tick(&mut app, 30);
     assert!(position(&app, cloth, (0, 0)).y < -0.1, "nothing holds it");
+    let mut entity = app.world_mut().entity_mut(cloth);
+    entity.remove::<(ClothMaterial, ClothSettings, BoundRule)>();
+    let before = position(&app, cloth, (0, 0));
+    tick(&mut app, 5);
+    assert!(
+        position(&app, cloth, (0, 0)).y < before.y,
+        "the defaults count"
+    );
 
     app.world_mut().entity_mut(cloth).remove::<Cloth>();
     let before = particles(&app, cloth).clone();
