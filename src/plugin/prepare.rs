@@ -73,7 +73,6 @@ impl PreparingItem<'_, '_> {
         gravity: Vec3,
         seconds: f32,
     ) -> Result<(), ClothError> {
-        self.tick.step = None;
         let (frame, scale) = ClothFrame::of(transform)?;
         let settings = self.settings.copied().unwrap_or_default();
         let material = self.material.copied().unwrap_or_default();

@@ -22,7 +22,12 @@ fn expect_fault(
     let bad = app.world_mut().spawn(bad).id();
     let good = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
     spoil(&mut app, bad);
-    tick(&mut app, 10);
+    tick(&mut app, 5);
+    // As text, in which a NaN equals another.
+    let state = |app: &App| format!("{:?}", app.world().get::<ClothParticles>(bad));
+    let left = state(&app);
+    tick(&mut app, 5);
+    assert_eq!(state(&app), left, "left as it is while at fault");
     let fault = app
         .world()
         .get::<ClothFault>(bad)
@@ -295,14 +300,6 @@ fn a_cloth_that_is_a_collider_too() {
         |_, _| {},
         |error| matches!(error, ClothError::PinOutOfRange { .. }),
         |app, entity| change::<Pins>(app, entity, |pins| *pins = default()),
-    );
-    expect_fault(
-        (Cloth::default(), ClothCollider::ball(-0.1), aside),
-        |_, _| {},
-        |error| matches!(error, ClothError::Quantity { .. }),
-        |app, entity| {
-            change::<ClothCollider>(app, entity, |collider| *collider = ClothCollider::ball(0.1));
-        },
     );
 }
 

@@ -102,6 +102,20 @@ fn the_mesh_is_interpolated() {
     assert_eq!(particle(&app), later, "no tick has passed");
 }
 
+/// Where a tick is a frame, the mesh shows that very tick.
+#[test]
+fn another_schedule_is_drawn_as_it_is() {
+    let draw = |mut app: App| {
+        let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
+        tick(&mut app, 10);
+        let drawn = vertices(&app, cloth, Mesh::ATTRIBUTE_POSITION);
+        let positions: Vec<Vec3> = particles(&app, cloth).positions().collect();
+        assert_eq!(drawn, positions);
+    };
+    draw(app_that_draws(Update));
+    draw(app_that_draws(PostUpdate));
+}
+
 /// At rest the normal is +z, the UVs go from corner to corner, and another grid gets another mesh.
 #[test]
 fn a_new_grid_gets_a_new_mesh() {

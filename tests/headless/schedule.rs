@@ -69,7 +69,7 @@ fn particles_may_vanish_anywhere() {
         ClothSystems::WriteBack,
     ] {
         for rule in [BoundRule::RestShape, BoundRule::Refit, BoundRule::Paper] {
-            let mut app = app_that_draws(FixedUpdate);
+            let mut app = app_with_gizmos();
             app.add_systems(FixedUpdate, vanish.after(set));
             let cloth = (Cloth::default(), ShowClothGizmos::default(), rule);
             app.world_mut().spawn(cloth);
@@ -83,7 +83,7 @@ fn particles_may_vanish_anywhere() {
 /// A cloth that a game throws beyond all measure is left out, and its gizmos with it.
 #[test]
 fn gizmos_survive_numbers_beyond_measure() {
-    let mut app = app_that_draws(FixedUpdate);
+    let mut app = app_with_gizmos();
     let cloth = (Cloth::default(), ShowClothGizmos::levels(0..=9));
     let cloth = app.world_mut().spawn(cloth).id();
     tick(&mut app, 2);
@@ -107,6 +107,16 @@ fn gizmos_survive_numbers_beyond_measure() {
 fn an_ambiguous_system_is_found() {
     let mut app = app();
     app.add_systems(FixedUpdate, |_: Query<&mut ClothParticles>| {});
+    refuse_ambiguities(&mut app);
+    tick(&mut app, 1);
+}
+
+/// In the schedule that draws, too.
+#[test]
+#[should_panic(expected = "ambiguous")]
+fn an_ambiguous_system_is_found_where_it_draws() {
+    let mut app = app_that_draws(FixedUpdate);
+    app.add_systems(PostUpdate, |_: Query<&mut ClothParticles>| {});
     refuse_ambiguities(&mut app);
     tick(&mut app, 1);
 }

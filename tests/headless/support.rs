@@ -4,7 +4,10 @@ use bevy::{
     asset::AssetPlugin, camera::visibility::VisibilityPlugin, ecs::schedule::ScheduleLabel,
     gizmos::GizmoPlugin, mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy,
 };
-use bevy_drape::prelude::*;
+use bevy_drape::{
+    plugin::{ClothGizmosPlugin, ClothPlugin},
+    prelude::*,
+};
 
 /// Bevy's fixed tick (s).
 pub const TICK: f32 = 1.0 / 64.0;
@@ -25,6 +28,17 @@ pub fn app_that_draws(schedule: impl ScheduleLabel) -> App {
         VisibilityPlugin,
         GizmoPlugin,
         DrapePlugins::new(schedule),
+    ))
+}
+
+/// One whose cloths have gizmos and no meshes: nothing hides them for want of a camera, and they are drawn.
+pub fn app_with_gizmos() -> App {
+    with_plugins((
+        AssetPlugin::default(),
+        MeshPlugin,
+        GizmoPlugin,
+        ClothPlugin::default(),
+        ClothGizmosPlugin,
     ))
 }
 
