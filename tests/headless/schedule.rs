@@ -84,10 +84,10 @@ fn particles_may_vanish_anywhere() {
 #[test]
 fn gizmos_survive_numbers_beyond_measure() {
     let mut app = app_with_gizmos();
-    let cloth = (Cloth::default(), ShowClothGizmos::levels(0..=9));
+    let cloth = (Cloth::new(16, 16, 0.01), ShowClothGizmos::levels(0..=9));
     let cloth = app.world_mut().spawn(cloth).id();
     tick(&mut app, 2);
-    for far in [1e17, 1e20, f32::MAX, f32::NAN] {
+    for far in [1e17, 5e17, 1e20, f32::MAX, f32::NAN] {
         // Between the checks and the drawing.
         change::<ClothParticles>(&mut app, cloth, |particles| {
             particles
