@@ -5,7 +5,7 @@ use bevy::{
     gizmos::GizmoPlugin, mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy,
 };
 use bevy_drape::{
-    plugin::{ClothGizmosPlugin, ClothPlugin},
+    plugin::{ClothGizmosPlugin, ClothPlugin, ClothSearch, ClothTopology},
     prelude::*,
 };
 
@@ -109,4 +109,48 @@ fn hear<M: Message + Clone>(messages: Option<ResMut<Messages<M>>>, mut heard: Re
 /// All messages since the last call.
 pub fn messages<M: Message>(app: &mut App) -> Vec<M> {
     std::mem::take(&mut app.world_mut().resource_mut::<Heard<M>>().0)
+}
+
+/// Metres a second, along z.
+#[derive(Component)]
+pub struct Moving(pub f32);
+
+/// An app whose balls move at a speed of their own.
+pub fn app_with_moving_balls() -> App {
+    let mut app = app();
+    app.add_systems(
+        FixedUpdate,
+        (|mut balls: Query<(&Moving, &mut Transform)>, time: Res<Time>| {
+            for (moving, mut transform) in &mut balls {
+                transform.translation.z += moving.0 * time.delta_secs();
+            }
+        })
+        .before(ClothSystems::Prepare),
+    );
+    app
+}
+
+/// A cloth, and a ball that is on its way through it.
+pub fn spawn_pass(app: &mut App) -> (Entity, Entity) {
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let place = Transform::from_xyz(0.75, -1.0, -2.2);
+    let ball = app
+        .world_mut()
+        .spawn((ClothCollider::ball(0.4), Moving(2.2), place))
+        .id();
+    (cloth, ball)
+}
+
+/// Red nodes on each level.
+pub fn red(app: &App, cloth: Entity) -> Vec<usize> {
+    let topology = app.world().get::<ClothTopology>(cloth).expect("a topology");
+    let query = app
+        .world()
+        .get::<ClothSearch>(cloth)
+        .expect("a search")
+        .query();
+    let levels = 0..topology.tree().levels().len();
+    levels
+        .map(|level| query.level(topology.tree(), level).1)
+        .collect()
 }

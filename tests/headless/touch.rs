@@ -11,48 +11,6 @@ use bevy_drape::{
 
 use crate::support::*;
 
-/// Metres a second, along z.
-#[derive(Component)]
-struct Moving(f32);
-
-fn app_with_moving_balls() -> App {
-    let mut app = app();
-    app.add_systems(
-        FixedUpdate,
-        (|mut balls: Query<(&Moving, &mut Transform)>, time: Res<Time>| {
-            for (moving, mut transform) in &mut balls {
-                transform.translation.z += moving.0 * time.delta_secs();
-            }
-        })
-        .before(ClothSystems::Prepare),
-    );
-    app
-}
-
-fn spawn_pass(app: &mut App) -> (Entity, Entity) {
-    let cloth = app.world_mut().spawn(Cloth::default()).id();
-    let place = Transform::from_xyz(0.75, -1.0, -2.2);
-    let ball = app
-        .world_mut()
-        .spawn((ClothCollider::ball(0.4), Moving(2.2), place))
-        .id();
-    (cloth, ball)
-}
-
-/// Red nodes on each level.
-fn red(app: &App, cloth: Entity) -> Vec<usize> {
-    let topology = app.world().get::<ClothTopology>(cloth).expect("a topology");
-    let query = app
-        .world()
-        .get::<ClothSearch>(cloth)
-        .expect("a search")
-        .query();
-    let levels = 0..topology.tree().levels().len();
-    levels
-        .map(|level| query.level(topology.tree(), level).1)
-        .collect()
-}
-
 /// The ball comes, passes through, and goes: green, red, green; and messages at both ends.
 #[test]
 fn spheres_turn_red_and_back_green() {
@@ -239,22 +197,6 @@ fn a_second_cloth_and_ball_do_not_disturb_the_first() {
     assert_eq!(run(false), run(true));
 }
 
-/// A copy of a cloth begins where the first is, with touches and messages of its own.
-#[test]
-fn a_copy_has_its_own_touches() {
-    let mut app = app();
-    let cloth = app.world_mut().spawn(Cloth::default()).id();
-    let place = Transform::from_xyz(0.7, -0.7, 0.95);
-    app.world_mut().spawn((ClothCollider::default(), place));
-    tick(&mut app, 10);
-    messages::<ClothTouchStarted>(&mut app);
-    let copy = app.world_mut().entity_mut(cloth).clone_and_spawn();
-    tick(&mut app, 10);
-    let started = messages::<ClothTouchStarted>(&mut app);
-    assert!(started.iter().any(|told| told.cloth == copy), "{started:?}");
-    assert_eq!(particles(&app, cloth), particles(&app, copy));
-}
-
 /// Two balls at once are two contacts.
 #[test]
 fn one_cloth_touches_two_balls() {
@@ -270,34 +212,6 @@ fn one_cloth_touches_two_balls() {
     let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
     assert_eq!(contacts.iter().len(), 2);
     assert!(balls.iter().all(|&ball| contacts.with(ball).is_some()));
-}
-
-#[test]
-fn despawning_either_is_harmless_and_told() {
-    let mut app = app_with_moving_balls();
-    let (cloth, ball) = spawn_pass(&mut app);
-    tick(&mut app, 60);
-    assert_eq!(messages::<ClothTouchStarted>(&mut app).len(), 1);
-    app.world_mut().despawn(ball);
-    tick(&mut app, 2);
-    let stopped = messages::<ClothTouchStopped>(&mut app);
-    assert!(
-        matches!(stopped[..], [ClothTouchStopped { collider, .. }] if collider == ball),
-        "{stopped:?}"
-    );
-    assert_eq!(red(&app, cloth), [0; 5]);
-
-    let (second, ball) = spawn_pass(&mut app);
-    app.world_mut().despawn(cloth);
-    tick(&mut app, 60);
-    assert_eq!(messages::<ClothTouchStarted>(&mut app).len(), 1);
-    app.world_mut().despawn(second);
-    tick(&mut app, 2);
-    let stopped = messages::<ClothTouchStopped>(&mut app);
-    assert!(
-        matches!(stopped[..], [ClothTouchStopped { collider, cloth, .. }] if collider == ball && cloth == second),
-        "{stopped:?}"
-    );
 }
 
 /// `RestShape` holds what a game has stretched since the last tick: its radii grow with the stretch present.
@@ -402,84 +316,6 @@ fn the_candidates_are_complete() {
         }
         assert!(contacts > 100 && found > contacts, "{contacts} {found}");
     }
-}
-
-/// A ball that jumps sweeps through what lies between; inserted anew, it has not come from anywhere.
-#[test]
-fn a_teleport_sweeps_nothing() {
-    let pushed = |teleport: bool| {
-        let mut app = app();
-        let cloth = app.world_mut().spawn(Cloth::default()).id();
-        let place = Transform::from_xyz(0.7, -0.7, -1.0);
-        let ball = (ClothCollider::ball(0.3), place);
-        let ball = app.world_mut().spawn(ball).id();
-        tick(&mut app, 2);
-        change::<Transform>(&mut app, ball, |transform| transform.translation.z = 1.0);
-        if teleport {
-            app.world_mut()
-                .entity_mut(ball)
-                .insert(ClothCollider::ball(0.3));
-        }
-        tick(&mut app, 1);
-        app.world()
-            .get::<ClothStats>(cloth)
-            .expect("figures")
-            .contacts
-    };
-    assert!(pushed(false) > 0);
-    assert_eq!(pushed(true), 0);
-}
-
-/// What is taken from an entity is gone: no ball lingers, no cloth moves on, and the touch ends.
-#[test]
-fn components_may_be_removed() {
-    let mut app = app();
-    let cloth = app.world_mut().spawn(Cloth::default()).id();
-    let place = Transform::from_xyz(0.7, -0.7, 0.95);
-    let ball = app
-        .world_mut()
-        .spawn((ClothCollider::default(), place))
-        .id();
-    let touches = |app: &App| {
-        let contacts = app.world().get::<ClothContacts>(cloth);
-        contacts.expect("contacts").with(ball).is_some()
-    };
-    tick(&mut app, 10);
-    assert!(touches(&app));
-    app.world_mut().entity_mut(ball).remove::<ClothCollider>();
-    tick(&mut app, 2);
-    assert!(!touches(&app));
-    assert_eq!(messages::<ClothTouchStopped>(&mut app).len(), 1);
-
-    app.world_mut()
-        .entity_mut(ball)
-        .insert(ClothCollider::default());
-    tick(&mut app, 10);
-    assert!(touches(&app));
-    app.world_mut().entity_mut(cloth).remove::<Pins>();
-    tick(&mut app, 30);
-    assert!(position(&app, cloth, (0, 0)).y < -0.1, "nothing holds it");
-    let mut entity = app.world_mut().entity_mut(cloth);
-    entity.remove::<(ClothMaterial, ClothSettings, BoundRule)>();
-    let before = position(&app, cloth, (0, 0));
-    tick(&mut app, 5);
-    assert!(
-        position(&app, cloth, (0, 0)).y < before.y,
-        "the defaults count"
-    );
-
-    app.world_mut().entity_mut(cloth).remove::<Cloth>();
-    let before = particles(&app, cloth).clone();
-    tick(&mut app, 5);
-    assert_eq!(particles(&app, cloth), &before);
-    assert!(app.world().get::<ClothStats>(cloth).is_none());
-    app.world_mut().entity_mut(cloth).insert(Cloth::default());
-    tick(&mut app, 5);
-    assert_ne!(
-        particles(&app, cloth),
-        &before,
-        "it goes on from where it was"
-    );
 }
 
 /// A collider of the default radius is the paper's.

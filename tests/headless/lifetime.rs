@@ -1,0 +1,128 @@
+//! Entities and components that come and go while cloth and ball touch.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::support::*;
+
+/// A copy of a cloth begins where the first is, with touches and messages of its own.
+#[test]
+fn a_copy_has_its_own_touches() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let place = Transform::from_xyz(0.7, -0.7, 0.95);
+    app.world_mut().spawn((ClothCollider::default(), place));
+    tick(&mut app, 10);
+    messages::<ClothTouchStarted>(&mut app);
+    let copy = app.world_mut().entity_mut(cloth).clone_and_spawn();
+    tick(&mut app, 10);
+    let started = messages::<ClothTouchStarted>(&mut app);
+    assert!(started.iter().any(|told| told.cloth == copy), "{started:?}");
+    assert_eq!(particles(&app, cloth), particles(&app, copy));
+}
+
+#[test]
+fn despawning_either_is_harmless_and_told() {
+    let mut app = app_with_moving_balls();
+    let (cloth, ball) = spawn_pass(&mut app);
+    tick(&mut app, 60);
+    assert_eq!(messages::<ClothTouchStarted>(&mut app).len(), 1);
+    app.world_mut().despawn(ball);
+    tick(&mut app, 2);
+    let stopped = messages::<ClothTouchStopped>(&mut app);
+    assert!(
+        matches!(stopped[..], [ClothTouchStopped { collider, .. }] if collider == ball),
+        "{stopped:?}"
+    );
+    assert_eq!(red(&app, cloth), [0; 5]);
+
+    let (second, ball) = spawn_pass(&mut app);
+    app.world_mut().despawn(cloth);
+    tick(&mut app, 60);
+    assert_eq!(messages::<ClothTouchStarted>(&mut app).len(), 1);
+    app.world_mut().despawn(second);
+    tick(&mut app, 2);
+    let stopped = messages::<ClothTouchStopped>(&mut app);
+    assert!(
+        matches!(stopped[..], [ClothTouchStopped { collider, cloth, .. }] if collider == ball && cloth == second),
+        "{stopped:?}"
+    );
+}
+
+/// A ball that jumps sweeps through what lies between; inserted anew, it has not come from anywhere.
+#[test]
+fn a_teleport_sweeps_nothing() {
+    let pushed = |teleport: bool| {
+        let mut app = app();
+        let cloth = app.world_mut().spawn(Cloth::default()).id();
+        let place = Transform::from_xyz(0.7, -0.7, -1.0);
+        let ball = (ClothCollider::ball(0.3), place);
+        let ball = app.world_mut().spawn(ball).id();
+        tick(&mut app, 2);
+        change::<Transform>(&mut app, ball, |transform| transform.translation.z = 1.0);
+        if teleport {
+            app.world_mut()
+                .entity_mut(ball)
+                .insert(ClothCollider::ball(0.3));
+        }
+        tick(&mut app, 1);
+        app.world()
+            .get::<ClothStats>(cloth)
+            .expect("figures")
+            .contacts
+    };
+    assert!(pushed(false) > 0);
+    assert_eq!(pushed(true), 0);
+}
+
+/// What is taken from an entity is gone: no ball lingers, no cloth moves on, and the touch ends.
+#[test]
+fn components_may_be_removed() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let place = Transform::from_xyz(0.7, -0.7, 0.95);
+    let ball = app
+        .world_mut()
+        .spawn((ClothCollider::default(), place))
+        .id();
+    let touches = |app: &App| {
+        let contacts = app.world().get::<ClothContacts>(cloth);
+        contacts.expect("contacts").with(ball).is_some()
+    };
+    tick(&mut app, 10);
+    assert!(touches(&app));
+    app.world_mut().entity_mut(ball).remove::<ClothCollider>();
+    tick(&mut app, 2);
+    assert!(!touches(&app));
+    assert_eq!(messages::<ClothTouchStopped>(&mut app).len(), 1);
+
+    app.world_mut()
+        .entity_mut(ball)
+        .insert(ClothCollider::default());
+    tick(&mut app, 10);
+    assert!(touches(&app));
+    app.world_mut().entity_mut(cloth).remove::<Pins>();
+    tick(&mut app, 30);
+    assert!(position(&app, cloth, (0, 0)).y < -0.1, "nothing holds it");
+    let mut entity = app.world_mut().entity_mut(cloth);
+    entity.remove::<(ClothMaterial, ClothSettings, BoundRule)>();
+    let before = position(&app, cloth, (0, 0));
+    tick(&mut app, 5);
+    assert!(
+        position(&app, cloth, (0, 0)).y < before.y,
+        "the defaults count"
+    );
+
+    app.world_mut().entity_mut(cloth).remove::<Cloth>();
+    let before = particles(&app, cloth).clone();
+    tick(&mut app, 5);
+    assert_eq!(particles(&app, cloth), &before);
+    assert!(app.world().get::<ClothStats>(cloth).is_none());
+    app.world_mut().entity_mut(cloth).insert(Cloth::default());
+    tick(&mut app, 5);
+    assert_ne!(
+        particles(&app, cloth),
+        &before,
+        "it goes on from where it was"
+    );
+}
