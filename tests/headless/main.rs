@@ -1,6 +1,7 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
 mod faults;
+mod frame;
 mod lifetime;
 mod mesh;
 mod motion;
