@@ -282,6 +282,11 @@ impl ClothParticles {
         squared.fold(0.0, f32::max).sqrt() / self.substep
     }
 
+    /// Whether there are as many as `grid` has, in as many columns.
+    pub(crate) fn fit(&self, grid: &ClothGrid) -> bool {
+        (self.len(), self.columns) == (grid.len(), grid.columns())
+    }
+
     pub(crate) fn positions_slice(&self) -> &[Vec3] {
         &self.position
     }

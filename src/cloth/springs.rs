@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use bevy::reflect::Reflect;
+use bevy::{math::Vec2, reflect::Reflect};
 
 use super::{ClothGrid, ClothMaterial};
 
@@ -43,98 +43,66 @@ impl Springs {
     /// width ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are
     /// left out.
     pub fn of_grid(grid: &ClothGrid, material: &ClothMaterial) -> Self {
+        use SpringKind::{Bend, Shear, Structural};
         let mut springs = Self::default();
-        let (rows, columns) = (grid.rows(), grid.columns());
-        let (along, down) = (grid.spacing().x, grid.spacing().y);
-        let border = |index: u32, count: u32| {
-            if index == 0 || index + 1 == count {
-                2.0
-            } else {
-                1.0
-            }
-        };
-        // Springs of a row or column that reach over `reach` particles: those that start in the first half of
-        // every 2 × reach particles are one colour, the others the next.
-        for (kind, reach, compliance) in [
-            (SpringKind::Structural, 1, material.stretch_compliance),
-            (SpringKind::Bend, 2, material.bend_compliance),
+        for (kind, compliance, steps) in [
+            (Structural, material.stretch_compliance, [(0, 1), (1, 0)]),
+            (Shear, material.shear_compliance, [(1, 1), (1, -1)]),
+            (Bend, material.bend_compliance, [(0, 2), (2, 0)]),
         ] {
-            let length = reach as f32;
-            for half in 0..2 {
-                springs.colour(
-                    kind,
-                    compliance,
-                    |add| {
-                        for (row, column) in grid.cells() {
-                            if (column / reach) % 2 == half && column + reach < columns {
-                                let strip = length * along / down * border(row, rows);
-                                add(
-                                    [(row, column), (row, column + reach)],
-                                    length * along,
-                                    strip,
-                                );
-                            }
-                        }
-                    },
-                    grid,
-                );
-                springs.colour(
-                    kind,
-                    compliance,
-                    |add| {
-                        for (row, column) in grid.cells() {
-                            if (row / reach) % 2 == half && row + reach < rows {
-                                let strip = length * down / along * border(column, columns);
-                                add([(row, column), (row + reach, column)], length * down, strip);
-                            }
-                        }
-                    },
-                    grid,
-                );
+            if compliance.is_infinite() {
+                continue;
             }
-            // Shear is swept between stretch and bend.
-            if kind == SpringKind::Structural {
-                for half in 0..2 {
-                    for (from, to) in [(0, 1), (1, 0)] {
-                        springs.colour(
-                            SpringKind::Shear,
-                            material.shear_compliance,
-                            |add| {
-                                for (row, column) in grid.cells() {
-                                    if row % 2 == half && row + 1 < rows && column + 1 < columns {
-                                        let ends = [(row, column + from), (row + 1, column + to)];
-                                        add(ends, grid.spacing().length(), 1.0);
-                                    }
-                                }
-                            },
-                            grid,
-                        );
-                    }
+            for half in 0..2 {
+                for step in steps {
+                    springs.add_colour(grid, kind, compliance, step, half);
                 }
             }
         }
         springs
     }
 
-    /// Adds a colour with the springs that `fill` names: both ends as (row, column), the rest length (m), and
-    /// the strip's length over its width.
-    fn colour(
+    /// Adds springs from particles to those `step` (rows, columns) on. Along the step, the springs that start in
+    /// the first half of every 2 × step particles are one colour, the others the next.
+    fn add_colour(
         &mut self,
+        grid: &ClothGrid,
         kind: SpringKind,
         compliance: f32,
-        fill: impl FnOnce(&mut dyn FnMut([(u32, u32); 2], f32, f32)),
-        grid: &ClothGrid,
+        step: (u32, i32),
+        half: u32,
     ) {
-        if compliance.is_infinite() {
-            return;
-        }
+        let (down, across) = step;
+        let spacing = grid.spacing();
+        let rest_length = (spacing * Vec2::new(across as f32, down as f32)).length();
+        // Of a strip on a border half of the width is missing.
+        let narrowed = |index: u32, count: u32| {
+            if index == 0 || index + 1 == count {
+                2.0
+            } else {
+                1.0
+            }
+        };
         let start = self.ends.len();
-        fill(&mut |ends, rest_length, strip| {
+        for (row, column) in grid.cells() {
+            let place = match step {
+                (0, across) => column / across.unsigned_abs(),
+                (down, _) => row / down,
+            };
+            let (to_row, to_column) = (row + down, column.wrapping_add_signed(across));
+            if place % 2 != half || to_row >= grid.rows() || to_column >= grid.columns() {
+                continue;
+            }
+            let length_over_width = match step {
+                (0, _) => rest_length / spacing.y * narrowed(row, grid.rows()),
+                (_, 0) => rest_length / spacing.x * narrowed(column, grid.columns()),
+                _ => 1.0,
+            };
             self.ends
-                .push(ends.map(|(row, column)| grid.index(row, column)));
+                .push([grid.index(row, column), grid.index(to_row, to_column)]);
             self.rest_length.push(rest_length);
-            self.compliance.push(compliance * strip);
-        });
+            self.compliance.push(compliance * length_over_width);
+        }
         let springs = start..self.ends.len();
         if !springs.is_empty() {
             self.colours.push(Colour { kind, springs });

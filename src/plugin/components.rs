@@ -45,8 +45,7 @@ impl ClothTopology {
     /// Whether springs and tree are those of `particles`: not before the first tick, nor once a game has
     /// emptied the particles, until the next.
     pub(super) fn fits(&self, particles: &ClothParticles) -> bool {
-        !particles.is_empty()
-            && (particles.len(), particles.columns()) == (self.grid.len(), self.grid.columns())
+        !particles.is_empty() && particles.fit(&self.grid)
     }
 }
 

@@ -24,8 +24,8 @@ use bevy::{
 use super::{ClothFrame, ClothSystems, ClothTopology, components::ClothTick};
 use crate::cloth::{Cloth, ClothGrid, ClothParticles};
 
-/// On a cloth whose [`Mesh3d`] follows its particles; it replaces one that the entity had. Give the entity a material with `double_sided: true` and
-/// `cull_mode: None`: cloth is seen from both sides.
+/// On a cloth whose [`Mesh3d`] follows its particles; it replaces one that the entity had. Give the entity a
+/// material with `double_sided: true` and `cull_mode: None`: cloth is seen from both sides.
 #[derive(Component, Debug, Default)]
 pub struct ClothMesh {
     handle: Handle<Mesh>,

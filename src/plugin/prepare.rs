@@ -220,7 +220,7 @@ impl PreparingItem<'_, '_> {
 
 /// Whether the particles are as many as the grid has, in as many columns.
 fn check_count(particles: &ClothParticles, grid: &ClothGrid) -> Result<(), ClothError> {
-    if (particles.len(), particles.columns()) == (grid.len(), grid.columns()) {
+    if particles.fit(grid) {
         return Ok(());
     }
     Err(ClothError::ParticleCount {

@@ -259,5 +259,6 @@ fn huge_and_changing_steps_are_survived() {
         .expect("figures")
         .stretch
         .structural;
+    // Draped over the ball it comes to rest at 1.3 %; one that had blown up would be at hundreds.
     assert!(stretch < 0.05, "{stretch}");
 }
