@@ -46,15 +46,15 @@ pub mod prelude {
     pub use crate::hierarchy::BoundRule;
     #[cfg(feature = "rapier")]
     pub use crate::plugin::RapierClothCollider;
+    pub use crate::plugin::{
+        ClothAttachments, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothStats,
+        ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, DrapePlugins,
+    };
     #[cfg(feature = "egui")]
     pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
-    pub use crate::plugin::{
-        ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothStats, ClothSystems,
-        ClothTouchStarted, ClothTouchStopped, DrapePlugins,
-    };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
-    pub use crate::solver::ClothSettings;
+    pub use crate::solver::{ClothSettings, Precision};
 }
 
 /// The README's snippets, compiled with the doc tests.

@@ -2,10 +2,10 @@
 
 use std::mem::discriminant;
 
-use bevy::math::Vec3;
+use bevy::{ecs::entity::Entity, math::Vec3};
 use thiserror::Error;
 
-use super::{grid::MAX_PARTICLES, particles::ParticleId, pins::Pin};
+use super::{Spring, grid::MAX_PARTICLES, particles::ParticleId, pins::Pin};
 
 /// Why a cloth or a collider is not simulated, with the value that is at fault.
 ///
@@ -86,6 +86,26 @@ pub enum ClothError {
         expected: usize,
         /// What was found.
         found: usize,
+    },
+    /// A spring between particles that do not exist or are one, or with a bad rest length or compliance.
+    #[error(
+        "spring {index}, {spring:?}, needs two of the {particles} particles, a rest length from 10⁻⁹ to 10¹² m and a finite compliance of zero or more"
+    )]
+    BadSpring {
+        /// Its place in the list.
+        index: usize,
+        /// The spring.
+        spring: Spring,
+        /// How many particles there are.
+        particles: usize,
+    },
+    /// What a pin is attached to does not exist or has no transform.
+    #[error("{pin:?} is attached to {target}, which does not exist or has no transform")]
+    NoTarget {
+        /// The attached pin.
+        pin: Pin,
+        /// What it is attached to.
+        target: Entity,
     },
     /// A particle that does not exist was written to.
     #[error("{id:?} is outside of a cloth of {columns} columns × {rows} rows")]

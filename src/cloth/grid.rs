@@ -63,8 +63,8 @@ impl Cloth {
     /// The checked grid under a transform's `scale`.
     ///
     /// # Errors
-    /// Too few or too many particles; a spacing that is zero, negative, not finite, or so small or large that
-    /// squared lengths leave the range of `f32`.
+    /// Too few or too many particles; a spacing that is zero, negative, not finite, below 10⁻⁹ m, or of a cloth
+    /// larger than 10¹² m.
     pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
         let Self {
             columns,
@@ -84,11 +84,12 @@ impl Cloth {
         ClothError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
         let scaled = spacing * scale.truncate();
         let extent = scaled * Vec2::new(columns as f32, rows as f32);
-        let measurable = |length: f32| (length * length).is_normal();
-        if !(measurable(scaled.x) && measurable(scaled.y) && extent.length_squared().is_normal()) {
+        // So that squares of lengths, and their products with masses, stay well inside of `f32`.
+        let measurable = |length: f32| (1.0e-9..1.0e12).contains(&length.abs());
+        if !(measurable(scaled.x) && measurable(scaled.y) && measurable(extent.length())) {
             return Err(ClothError::Quantity {
                 quantity: "spacing × scale (m)",
-                expected: "of a size whose square a float can hold",
+                expected: "at least 10⁻⁹, in a cloth of less than 10¹²",
                 value: scaled.abs().min_element(),
             });
         }

@@ -2,6 +2,7 @@
 
 mod error;
 mod grid;
+mod lanes;
 mod material;
 mod particles;
 mod pins;
@@ -12,4 +13,7 @@ pub use grid::{Cloth, ClothGrid, MAX_PARTICLES};
 pub use material::ClothMaterial;
 pub use particles::{ClothParticles, ParticleId};
 pub use pins::{Corner, Pin, Pins};
-pub use springs::{Colour, SpringKind, Springs};
+pub use springs::{Spring, SpringKind, Springs};
+
+pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
+pub(crate) use springs::{Compliances, Weave, rest_length};

@@ -2,11 +2,14 @@
 
 use bevy::{
     ecs::component::Component,
-    math::Vec3,
+    math::{Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{ClothError, ClothGrid, ClothMaterial, Pins};
+use super::{
+    ClothError, ClothGrid, ClothMaterial, Pins,
+    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X},
+};
 
 /// The sub-step that displacements span until the first tick says otherwise: 20 a tick of Bevy's 64 Hz.
 const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
@@ -35,7 +38,7 @@ impl From<(u32, u32)> for ParticleId {
     }
 }
 
-/// The particles of a cloth: columns of position, displacement and inverse mass.
+/// The particles of a cloth: position, displacement and inverse mass, in columns of eight lanes.
 ///
 /// Everything is in metres in the cloth's own frame: the entity's global translation and rotation, with the
 /// scale already multiplied in. The state is (position, displacement) rather than two positions because
@@ -47,30 +50,28 @@ impl From<(u32, u32)> for ParticleId {
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {
-    columns: u32,
-    position: Vec<Vec3>,
-    displacement: Vec<Vec3>,
-    inverse_mass: Vec<f32>,
+    layout: Layout,
+    blocks: Vec<Block>,
     substep: f32,
 }
 
 impl Default for ClothParticles {
     fn default() -> Self {
         Self {
-            columns: 0,
-            position: Vec::new(),
-            displacement: Vec::new(),
-            inverse_mass: Vec::new(),
+            layout: Layout::default(),
+            blocks: Vec::new(),
             substep: DEFAULT_SUBSTEP,
         }
     }
 }
 
-/// The columns, borrowed together for a kernel.
-pub(crate) struct Columns<'a> {
-    pub position: &'a mut [Vec3],
-    pub displacement: &'a mut [Vec3],
-    pub inverse_mass: &'a [f32],
+/// What one pass over the particles finds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Survey {
+    /// Whether all is as [`ClothParticles::validate`] wants it.
+    pub is_sound: bool,
+    /// Speed of the fastest particle (m/s).
+    pub largest_speed: f32,
 }
 
 impl ClothParticles {
@@ -80,18 +81,44 @@ impl ClothParticles {
     /// A mass that a float can't hold or invert.
     pub fn at_rest(grid: &ClothGrid, material: &ClothMaterial) -> Result<Self, ClothError> {
         Self::check_mass(grid, material)?;
-        let mut particles = Self {
-            columns: grid.columns(),
-            position: grid
-                .cells()
-                .map(|(r, c)| grid.rest_position(r, c))
-                .collect(),
-            displacement: vec![Vec3::ZERO; grid.len()],
-            inverse_mass: vec![0.0; grid.len()],
-            substep: DEFAULT_SUBSTEP,
-        };
+        let mut particles = Self::of_layout(Layout::new(grid.columns(), grid.rows()));
+        for ((row, column), slot) in grid.cells().zip(particles.layout.slots()) {
+            let position = grid.rest_position(row, column);
+            particles.blocks[slot.block].set_position(slot.lane, position);
+        }
         particles.weigh(grid, material, &Pins::none())?;
         Ok(particles)
+    }
+
+    /// Particles of no grid, at rest: positions (m) and inverse masses (1/kg, 0 for a pinned one), in one row.
+    ///
+    /// # Errors
+    /// [`ClothError::ParticleCount`] if there are not as many of either;
+    /// [`ClothError::ParticleNotFinite`] for the first that is not.
+    pub fn new(positions: &[Vec3], inverse_masses: &[f32]) -> Result<Self, ClothError> {
+        if positions.len() != inverse_masses.len() {
+            return Err(ClothError::ParticleCount {
+                expected: positions.len(),
+                found: inverse_masses.len(),
+            });
+        }
+        let mut particles = Self::of_layout(Layout::new(positions.len() as u32, 1));
+        let state = positions.iter().zip(inverse_masses);
+        for ((&position, &inverse_mass), slot) in state.zip(particles.layout.slots()) {
+            let block = &mut particles.blocks[slot.block];
+            block.set_position(slot.lane, position);
+            block.set_inverse_mass(slot.lane, inverse_mass);
+        }
+        particles.validate()?;
+        Ok(particles)
+    }
+
+    fn of_layout(layout: Layout) -> Self {
+        Self {
+            layout,
+            blocks: vec![Block::EMPTY; layout.blocks()],
+            substep: DEFAULT_SUBSTEP,
+        }
     }
 
     /// Sets the inverse masses from the grid's areas, the material's density and the pins.
@@ -106,49 +133,56 @@ impl ClothParticles {
     ) -> Result<(), ClothError> {
         pins.validate(grid)?;
         Self::check_mass(grid, material)?;
-        for ((row, column), inverse_mass) in grid.cells().zip(&mut self.inverse_mass) {
-            *inverse_mass = 1.0 / (material.areal_density * grid.tributary_area(row, column));
+        for ((row, column), slot) in grid.cells().zip(self.layout.slots()) {
+            let mass = material.areal_density * grid.tributary_area(row, column);
+            self.blocks[slot.block].set_inverse_mass(slot.lane, 1.0 / mass);
         }
-        pins.for_each(grid, |index| self.inverse_mass[index] = 0.0);
+        pins.for_each(grid, |index| self.pin(index));
         Ok(())
+    }
+
+    /// Has nothing but its pin move a particle.
+    pub(crate) fn pin(&mut self, index: usize) {
+        let slot = self.layout.slot_of(index);
+        self.blocks[slot.block].set_inverse_mass(slot.lane, 0.0);
     }
 
     fn check_mass(grid: &ClothGrid, material: &ClothMaterial) -> Result<(), ClothError> {
         ClothError::check(
             material.areal_density * grid.tributary_area(0, 0),
-            |corner| corner.is_normal() && (4.0 / corner).is_normal() && corner < f32::MAX / 4.0,
+            |corner| (1.0e-15..1.0e15).contains(&corner),
             "the mass of a particle (kg)",
-            "of a size that a float can invert",
+            "from 10⁻¹⁵ to 10¹⁵",
         )?;
         Ok(())
     }
 
     /// Number of particles.
     pub fn len(&self) -> usize {
-        self.position.len()
+        self.layout.len()
     }
 
     /// Whether there is no particle, as before the first tick.
     pub fn is_empty(&self) -> bool {
-        self.position.is_empty()
+        self.len() == 0
     }
 
     /// Particles a row.
     pub fn columns(&self) -> u32 {
-        self.columns
+        self.layout.columns
     }
 
     /// Particles a column.
     pub fn rows(&self) -> u32 {
-        (self.len() as u32).checked_div(self.columns).unwrap_or(0)
+        self.layout.rows
     }
 
     /// The index of a particle, if there is such a one.
     pub fn index(&self, id: impl Into<ParticleId>) -> Option<usize> {
         let index = match id.into() {
             ParticleId::Index(index) => index,
-            ParticleId::Cell(row, column) if column < self.columns => {
-                row as usize * self.columns as usize + column as usize
+            ParticleId::Cell(row, column) if column < self.layout.columns => {
+                row as usize * self.layout.columns as usize + column as usize
             }
             ParticleId::Cell(..) => return None,
         };
@@ -157,12 +191,13 @@ impl ClothParticles {
 
     /// Position (m).
     pub fn position(&self, id: impl Into<ParticleId>) -> Option<Vec3> {
-        self.index(id).map(|index| self.position[index])
+        self.index(id).map(|index| self.position_at(index))
     }
 
     /// Position − previous position (m), over one sub-step.
     pub fn displacement(&self, id: impl Into<ParticleId>) -> Option<Vec3> {
-        self.index(id).map(|index| self.displacement[index])
+        self.slot(id)
+            .map(|Slot { block, lane }| self.blocks[block].displacement(lane))
     }
 
     /// Displacement over the sub-step that it spans (m/s).
@@ -172,7 +207,8 @@ impl ClothParticles {
 
     /// Inverse mass (1/kg); 0 for a pinned particle.
     pub fn inverse_mass(&self, id: impl Into<ParticleId>) -> Option<f32> {
-        self.index(id).map(|index| self.inverse_mass[index])
+        self.slot(id)
+            .map(|Slot { block, lane }| self.blocks[block].inverse_mass(lane))
     }
 
     /// Whether nothing but its pin moves the particle.
@@ -191,8 +227,8 @@ impl ClothParticles {
         id: impl Into<ParticleId>,
         position: Vec3,
     ) -> Result<(), ClothError> {
-        let index = self.existing(id.into())?;
-        self.position[index] = position;
+        let Slot { block, lane } = self.existing(id.into())?;
+        self.blocks[block].set_position(lane, position);
         Ok(())
     }
 
@@ -205,8 +241,8 @@ impl ClothParticles {
         id: impl Into<ParticleId>,
         displacement: Vec3,
     ) -> Result<(), ClothError> {
-        let index = self.existing(id.into())?;
-        self.displacement[index] = displacement;
+        let Slot { block, lane } = self.existing(id.into())?;
+        self.blocks[block].set_displacement(lane, displacement);
         Ok(())
     }
 
@@ -232,24 +268,32 @@ impl ClothParticles {
         id: impl Into<ParticleId>,
         inverse_mass: f32,
     ) -> Result<(), ClothError> {
-        let index = self.existing(id.into())?;
-        self.inverse_mass[index] = inverse_mass;
+        let Slot { block, lane } = self.existing(id.into())?;
+        self.blocks[block].set_inverse_mass(lane, inverse_mass);
         Ok(())
     }
 
     /// All positions (m), in the order of the indices.
-    pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + DoubleEndedIterator + '_ {
-        self.position.iter().copied()
+    pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
+        self.each(Block::position)
     }
 
     /// All displacements (m), in the order of the indices.
-    pub fn displacements(&self) -> impl ExactSizeIterator<Item = Vec3> + DoubleEndedIterator + '_ {
-        self.displacement.iter().copied()
+    pub fn displacements(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
+        self.each(Block::displacement)
     }
 
     /// All inverse masses (1/kg), in the order of the indices.
-    pub fn inverse_masses(&self) -> impl ExactSizeIterator<Item = f32> + DoubleEndedIterator + '_ {
-        self.inverse_mass.iter().copied()
+    pub fn inverse_masses(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
+        self.each(Block::inverse_mass)
+    }
+
+    fn each<'a, T: 'a>(
+        &'a self,
+        of: fn(&Block, usize) -> T,
+    ) -> impl ExactSizeIterator<Item = T> + 'a {
+        let slots = self.layout.slots();
+        slots.map(move |Slot { block, lane }| of(&self.blocks[block], lane))
     }
 
     /// Whether every number is finite, none is beyond all measure (10¹⁸ m), and no inverse mass is negative.
@@ -257,66 +301,161 @@ impl ClothParticles {
     /// # Errors
     /// [`ClothError::ParticleNotFinite`] for the first particle that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
-        let sound = |index: usize| {
-            let (position, displacement) = (self.position[index], self.displacement[index]);
-            let inverse_mass = self.inverse_mass[index];
-            // False for NaN too.
-            position.length_squared() + displacement.length_squared() < FARTHEST * FARTHEST
-                && inverse_mass >= 0.0
-                && inverse_mass.is_finite()
+        if self.survey().is_sound {
+            return Ok(());
+        }
+        let sound = |slot: Slot| {
+            let block = &self.blocks[slot.block];
+            let squares = block.position(slot.lane).length_squared()
+                + block.displacement(slot.lane).length_squared();
+            is_sound(squares, block.inverse_mass(slot.lane))
         };
-        match (0..self.len()).find(|&index| !sound(index)) {
-            None => Ok(()),
-            Some(index) => Err(ClothError::ParticleNotFinite {
-                index,
-                position: self.position[index],
-                displacement: self.displacement[index],
-                inverse_mass: self.inverse_mass[index],
-            }),
+        let Some((index, slot)) = self
+            .layout
+            .slots()
+            .enumerate()
+            .find(|(_, slot)| !sound(*slot))
+        else {
+            return Ok(());
+        };
+        let block = &self.blocks[slot.block];
+        Err(ClothError::ParticleNotFinite {
+            index,
+            position: block.position(slot.lane),
+            displacement: block.displacement(slot.lane),
+            inverse_mass: block.inverse_mass(slot.lane),
+        })
+    }
+
+    /// Looks at every particle once.
+    pub(crate) fn survey(&self) -> Survey {
+        let mut sound = [true; LANES];
+        let mut largest = [0.0_f32; LANES];
+        for block in &self.blocks {
+            let view = block.view();
+            let square = |from: usize, lane: usize| {
+                let [a, b, c] = [0, LANES, 2 * LANES].map(|next| view[from + next + lane]);
+                a * a + b * b + c * c
+            };
+            for lane in 0..LANES {
+                let moved = square(DX, lane);
+                sound[lane] &= is_sound(square(X, lane) + moved, view[W + lane]);
+                largest[lane] = if moved > largest[lane] {
+                    moved
+                } else {
+                    largest[lane]
+                };
+            }
+        }
+        Survey {
+            is_sound: sound == [true; LANES],
+            largest_speed: largest.into_iter().fold(0.0, f32::max).sqrt() / self.substep,
         }
     }
 
     /// The largest speed of a particle (m/s).
     pub fn largest_speed(&self) -> f32 {
-        let squared = self.displacement.iter().map(|d| d.length_squared());
-        squared.fold(0.0, f32::max).sqrt() / self.substep
+        self.survey().largest_speed
     }
 
     /// Whether there are as many as `grid` has, in as many columns.
     pub(crate) fn fit(&self, grid: &ClothGrid) -> bool {
-        (self.len(), self.columns) == (grid.len(), grid.columns())
+        (self.rows(), self.columns()) == (grid.rows(), grid.columns())
     }
 
-    pub(crate) fn positions_slice(&self) -> &[Vec3] {
-        &self.position
+    /// Position (m) of a particle that exists.
+    pub(crate) fn position_at(&self, index: usize) -> Vec3 {
+        let Slot { block, lane } = self.layout.slot_of(index);
+        self.blocks[block].position(lane)
     }
 
-    pub(crate) fn columns_mut(&mut self) -> Columns<'_> {
-        Columns {
-            position: &mut self.position,
-            displacement: &mut self.displacement,
-            inverse_mass: &self.inverse_mass,
+    /// How the particles lie in memory.
+    pub(crate) fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The memory that they lie in.
+    pub(crate) fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// The memory that they lie in.
+    pub(crate) fn blocks_mut(&mut self) -> &mut [Block] {
+        &mut self.blocks
+    }
+
+    /// Forgets what the pinned particles were moved by.
+    pub(crate) fn still_pins(&mut self) {
+        for block in &mut self.blocks {
+            let view = block.view_mut();
+            for from in [DX, DY, DZ] {
+                for lane in 0..LANES {
+                    let moved = view[from + lane];
+                    view[from + lane] = if view[W + lane] > 0.0 { moved } else { 0.0 };
+                }
+            }
         }
+    }
+
+    /// Has a pinned particle be at `position` when the sub-step ends.
+    pub(crate) fn lead_pin(&mut self, index: usize, position: Vec3) {
+        let Slot { block, lane } = self.layout.slot_of(index);
+        let block = &mut self.blocks[block];
+        block.set_displacement(lane, position - block.position(lane));
+    }
+
+    /// Moves all particles as one body, velocities along with it.
+    pub(crate) fn transform(&mut self, by: Isometry3d) {
+        for slot in self.layout.slots() {
+            let block = &mut self.blocks[slot.block];
+            block.set_position(slot.lane, by * block.position(slot.lane));
+            block.set_displacement(slot.lane, by.rotation * block.displacement(slot.lane));
+        }
+    }
+
+    /// Becomes what `other` is, in the memory that it has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.layout = other.layout;
+        self.blocks.clone_from(&other.blocks);
+        self.substep = other.substep;
+    }
+
+    /// Puts a particle somewhere.
+    pub(crate) fn put(&mut self, index: usize, position: Vec3) {
+        let Slot { block, lane } = self.layout.slot_of(index);
+        self.blocks[block].set_position(lane, position);
     }
 
     /// Has displacements span `substep` seconds from now on, at the same velocities.
     pub(crate) fn respan(&mut self, substep: f32) {
         if substep != self.substep {
             let ratio = substep / self.substep;
-            for displacement in &mut self.displacement {
-                *displacement *= ratio;
+            for block in &mut self.blocks {
+                for displacement in &mut block.view_mut()[DX..] {
+                    *displacement *= ratio;
+                }
             }
             self.substep = substep;
         }
     }
 
-    fn existing(&self, id: ParticleId) -> Result<usize, ClothError> {
-        self.index(id).ok_or(ClothError::NoSuchParticle {
+    fn slot(&self, id: impl Into<ParticleId>) -> Option<Slot> {
+        self.index(id).map(|index| self.layout.slot_of(index))
+    }
+
+    fn existing(&self, id: ParticleId) -> Result<Slot, ClothError> {
+        self.slot(id).ok_or(ClothError::NoSuchParticle {
             id,
-            columns: self.columns,
+            columns: self.columns(),
             rows: self.rows(),
         })
     }
+}
+
+/// Whether a particle's numbers are, by the squares of position and displacement (m²) and its inverse mass
+/// (1/kg). False for NaN too.
+fn is_sound(squares: f32, inverse_mass: f32) -> bool {
+    (squares < FARTHEST * FARTHEST) & (inverse_mass >= 0.0) & (inverse_mass < f32::INFINITY)
 }
 
 #[cfg(test)]

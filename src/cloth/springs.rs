@@ -2,9 +2,12 @@
 
 use std::ops::Range;
 
-use bevy::{math::Vec2, reflect::Reflect};
+use bevy::{
+    math::Vec2,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
 
-use super::{ClothGrid, ClothMaterial};
+use super::{ClothError, ClothGrid, ClothMaterial, lanes::Layout};
 
 /// What a spring resists.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -17,132 +20,279 @@ pub enum SpringKind {
     Bend,
 }
 
-/// A run of springs no two of which share a particle, so that their order makes no difference.
-#[derive(Reflect, Debug, Clone, PartialEq)]
-pub struct Colour {
-    /// What its springs resist.
+/// A spring between two particles.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// What it resists.
     pub kind: SpringKind,
-    /// Which springs they are.
-    pub springs: Range<usize>,
+    /// Indices of its two particles.
+    pub ends: [u32; 2],
+    /// Length without a force (m), positive.
+    pub rest_length: f32,
+    /// How far a newton stretches it (m/N); 0 is rigid.
+    pub compliance: f32,
 }
 
-/// A cloth's springs, in columns, one colour after the other.
+/// A cloth's springs, sorted by colour: no two springs of one colour share a particle, so that their order makes
+/// no difference and many are solved at once.
 ///
-/// The order is the solver's stability: colour by colour over the whole cloth holds at every size, row by row
-/// blows up.
+/// The order is the solver's stability, too: colour by colour over the whole cloth holds at every size, row by
+/// row blows up.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[reflect(opaque)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct Springs {
-    colours: Vec<Colour>,
-    ends: Vec<[u32; 2]>,
-    rest_length: Vec<f32>,
-    compliance: Vec<f32>,
+    weave: Weave,
 }
+
+/// Where the springs are.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Weave {
+    /// Along the rows, columns and diagonals of a grid. Nothing is stored a spring.
+    Grid(ClothGrid, Compliances),
+    /// Anywhere, colour by colour.
+    List(Vec<Spring>, Vec<Range<usize>>),
+}
+
+impl Default for Weave {
+    fn default() -> Self {
+        Self::List(Vec::new(), Vec::new())
+    }
+}
+
+/// Compliance of a square patch by each kind of spring (m/N); infinite for no such springs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Compliances {
+    pub structural: f32,
+    pub shear: f32,
+    pub bend: f32,
+}
+
+impl Compliances {
+    /// Of a strip that a spring from (row, column), with this step and length, stands for, on a border half as
+    /// wide: compliance × length ⁄ width. `None` if there are no such springs.
+    pub fn of_strip(
+        &self,
+        grid: &ClothGrid,
+        (down, across): (u32, i32),
+        (row, column): (u32, u32),
+    ) -> Option<f32> {
+        let on_border = |index: u32, count: u32| index == 0 || index + 1 == count;
+        let (width, narrowed) = match (down, across) {
+            (0, _) => (grid.spacing().y, on_border(row, grid.rows())),
+            (_, 0) => (grid.spacing().x, on_border(column, grid.columns())),
+            _ => (rest_length(grid, (down, across)), false),
+        };
+        let compliance = match down.max(across.unsigned_abs()) {
+            2 => self.bend,
+            _ if down > 0 && across != 0 => self.shear,
+            _ => self.structural,
+        };
+        let narrowed = if narrowed { 2.0 } else { 1.0 };
+        compliance
+            .is_finite()
+            .then_some(compliance * rest_length(grid, (down, across)) / width * narrowed)
+    }
+}
+
+/// Rest length (m) of springs that go so many rows down and columns across.
+pub(crate) fn rest_length(grid: &ClothGrid, (down, across): (u32, i32)) -> f32 {
+    (grid.spacing() * Vec2::new(across as f32, down as f32)).length()
+}
+
+/// The springs of a grid, colour by colour: rows down and columns across from one end to the other, and which
+/// of them. Both diagonals of a pair of rows come before those of the next pair.
+const GRID_COLOURS: [((u32, i32), u32); 13] = [
+    ((0, 2), 0),
+    ((0, 2), 1),
+    ((0, 2), 2),
+    ((0, 1), 0),
+    ((0, 1), 1),
+    ((2, 0), 0),
+    ((2, 0), 1),
+    ((1, 0), 0),
+    ((1, 0), 1),
+    ((1, 1), 0),
+    ((1, -1), 0),
+    ((1, 1), 1),
+    ((1, -1), 1),
+];
 
 impl Springs {
     /// Structural, shear and bend springs of `grid`. A strip's compliance follows from its length over its
     /// width ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are
     /// left out.
     pub fn of_grid(grid: &ClothGrid, material: &ClothMaterial) -> Self {
-        use SpringKind::{Bend, Shear, Structural};
-        let mut springs = Self::default();
-        for (kind, compliance, steps) in [
-            (Structural, material.stretch_compliance, [(0, 1), (1, 0)]),
-            (Shear, material.shear_compliance, [(1, 1), (1, -1)]),
-            (Bend, material.bend_compliance, [(0, 2), (2, 0)]),
-        ] {
-            if compliance.is_infinite() {
-                continue;
+        let compliances = Compliances {
+            structural: material.stretch_compliance,
+            shear: material.shear_compliance,
+            bend: material.bend_compliance,
+        };
+        Self {
+            weave: Weave::Grid(*grid, compliances),
+        }
+    }
+
+    /// Springs of no grid, between `particles` particles. Each gets the first colour that neither of its ends
+    /// has yet: at most one more than twice as many as meet in one particle.
+    ///
+    /// # Errors
+    /// [`ClothError::BadSpring`] for the first that has an end too many or twice, or a rest length or
+    /// compliance out of range.
+    pub fn of_list(springs: &[Spring], particles: usize) -> Result<Self, ClothError> {
+        let mut taken: Vec<u64> = vec![0; particles];
+        let mut colour_of = Vec::with_capacity(springs.len());
+        for (index, spring) in springs.iter().enumerate() {
+            let [a, b] = spring.ends.map(|end| end as usize);
+            let is_sound = a.max(b) < particles
+                && a != b
+                && (1.0e-9..1.0e12).contains(&spring.rest_length)
+                && spring.compliance >= 0.0
+                && spring.compliance.is_finite();
+            if !is_sound {
+                return Err(ClothError::BadSpring {
+                    index,
+                    spring: *spring,
+                    particles,
+                });
             }
-            for half in 0..2 {
-                for step in steps {
-                    springs.add_colour(grid, kind, compliance, step, half);
+            // A particle with more than 63 springs puts the rest into colours of one spring each.
+            let free = (!(taken[a] | taken[b])).trailing_zeros().min(63);
+            let colour = if free < 63 {
+                taken[a] |= 1 << free;
+                taken[b] |= 1 << free;
+                free as usize
+            } else {
+                63 + index
+            };
+            colour_of.push((colour, index));
+        }
+        colour_of.sort_unstable();
+        let mut sorted = Vec::with_capacity(springs.len());
+        let mut colours: Vec<Range<usize>> = Vec::new();
+        for group in colour_of.chunk_by(|(a, _), (b, _)| a == b) {
+            let start = sorted.len();
+            sorted.extend(group.iter().map(|&(_, index)| springs[index]));
+            colours.push(start..sorted.len());
+        }
+        Ok(Self {
+            weave: Weave::List(sorted, colours),
+        })
+    }
+
+    /// Calls `visit` with each spring and the number of its colour, in the order in which they are swept.
+    pub fn for_each(&self, mut visit: impl FnMut(usize, Spring)) {
+        match &self.weave {
+            Weave::Grid(grid, compliances) => {
+                let strip = Layout::new(grid.columns(), grid.rows()).strip;
+                for (colour, (step, part)) in GRID_COLOURS.into_iter().enumerate() {
+                    for cell in grid.cells() {
+                        let there = part_of(step, cell, strip) == part;
+                        if let Some(spring) = grid_spring(grid, compliances, step, cell)
+                            && there
+                        {
+                            visit(colour, spring);
+                        }
+                    }
+                }
+            }
+            Weave::List(springs, colours) => {
+                for (colour, range) in colours.iter().enumerate() {
+                    for spring in &springs[range.clone()] {
+                        visit(colour, *spring);
+                    }
                 }
             }
         }
-        springs
     }
 
-    /// Adds springs from particles to those `step` (rows, columns) on. Along the step, the springs that start in
-    /// the first half of every 2 × step particles are one colour, the others the next.
-    fn add_colour(
-        &mut self,
-        grid: &ClothGrid,
-        kind: SpringKind,
-        compliance: f32,
-        step: (u32, i32),
-        half: u32,
-    ) {
-        let (down, across) = step;
-        let spacing = grid.spacing();
-        let rest_length = (spacing * Vec2::new(across as f32, down as f32)).length();
-        // Of a strip on a border half of the width is missing.
-        let narrowed = |index: u32, count: u32| {
-            if index == 0 || index + 1 == count {
-                2.0
-            } else {
-                1.0
-            }
-        };
-        let start = self.ends.len();
-        for (row, column) in grid.cells() {
-            let place = match step {
-                (0, across) => column / across.unsigned_abs(),
-                (down, _) => row / down,
-            };
-            let (to_row, to_column) = (row + down, column.wrapping_add_signed(across));
-            if place % 2 != half || to_row >= grid.rows() || to_column >= grid.columns() {
-                continue;
-            }
-            let length_over_width = match step {
-                (0, _) => rest_length / spacing.y * narrowed(row, grid.rows()),
-                (_, 0) => rest_length / spacing.x * narrowed(column, grid.columns()),
-                _ => 1.0,
-            };
-            self.ends
-                .push([grid.index(row, column), grid.index(to_row, to_column)]);
-            self.rest_length.push(rest_length);
-            self.compliance.push(compliance * length_over_width);
-        }
-        let springs = start..self.ends.len();
-        if !springs.is_empty() {
-            self.colours.push(Colour { kind, springs });
-        }
+    /// All springs, in the order in which they are swept.
+    pub fn to_vec(&self) -> Vec<Spring> {
+        let mut springs = Vec::with_capacity(self.len());
+        self.for_each(|_, spring| springs.push(spring));
+        springs
     }
 
     /// Number of springs.
     pub fn len(&self) -> usize {
-        self.ends.len()
+        match &self.weave {
+            Weave::Grid(grid, compliances) => {
+                let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
+                let along = |step: usize| {
+                    columns.saturating_sub(step) * rows + columns * rows.saturating_sub(step)
+                };
+                let there = |compliance: f32, count: usize| {
+                    if compliance.is_finite() { count } else { 0 }
+                };
+                there(compliances.structural, along(1))
+                    + there(compliances.bend, along(2))
+                    + there(compliances.shear, 2 * (columns - 1) * (rows - 1))
+            }
+            Weave::List(springs, _) => springs.len(),
+        }
     }
 
     /// Whether there is no spring, as before the first tick.
     pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
-    }
-
-    /// The colours, in the order in which they are swept.
-    pub fn colours(&self) -> &[Colour] {
-        &self.colours
-    }
-
-    /// Both particles of each spring.
-    pub fn ends(&self) -> &[[u32; 2]] {
-        &self.ends
-    }
-
-    /// Rest length of each spring (m).
-    pub fn rest_length(&self) -> &[f32] {
-        &self.rest_length
-    }
-
-    /// Compliance of each spring (m/N).
-    pub fn compliance(&self) -> &[f32] {
-        &self.compliance
+        self.len() == 0
     }
 
     /// Whether there are springs of `kind`.
     pub fn has(&self, kind: SpringKind) -> bool {
-        self.colours.iter().any(|colour| colour.kind == kind)
+        match &self.weave {
+            Weave::Grid(_, compliances) => match kind {
+                SpringKind::Structural => compliances.structural,
+                SpringKind::Shear => compliances.shear,
+                SpringKind::Bend => compliances.bend,
+            }
+            .is_finite(),
+            Weave::List(springs, _) => springs.iter().any(|spring| spring.kind == kind),
+        }
     }
+
+    /// Where they are, for the solver.
+    pub(crate) fn weave(&self) -> &Weave {
+        &self.weave
+    }
+}
+
+/// Which colour of its step a grid's spring from `cell` has.
+fn part_of((down, across): (u32, i32), (row, column): (u32, u32), strip: u32) -> u32 {
+    if down > 0 {
+        return row / down % 2;
+    }
+    let across = across.unsigned_abs();
+    let block = column % strip;
+    // Of a strip that is no multiple of four, the last two blocks' bend springs lead to the first two blocks,
+    // whose own have the first colour.
+    if across == 2 && strip % 4 == 2 && block + 2 >= strip {
+        2
+    } else {
+        block / across % 2
+    }
+}
+
+fn grid_spring(
+    grid: &ClothGrid,
+    compliances: &Compliances,
+    step: (u32, i32),
+    cell: (u32, u32),
+) -> Option<Spring> {
+    let (down, across) = step;
+    let (row, column) = (cell.0 + down, cell.1.checked_add_signed(across)?);
+    if row >= grid.rows() || column >= grid.columns() {
+        return None;
+    }
+    Some(Spring {
+        kind: match (down, across) {
+            (0, 1) | (1, 0) => SpringKind::Structural,
+            (1, _) => SpringKind::Shear,
+            _ => SpringKind::Bend,
+        },
+        ends: [grid.index(cell.0, cell.1), grid.index(row, column)],
+        rest_length: rest_length(grid, step),
+        compliance: compliances.of_strip(grid, step, cell)?,
+    })
 }
 
 #[cfg(test)]
@@ -152,25 +302,41 @@ mod tests {
     use bevy::math::Vec3;
     use std::collections::HashSet;
 
+    /// Fails if springs of one colour share a particle, or one is there twice. Returns all pairs of ends.
+    fn check_colours(springs: &Springs) -> HashSet<(u32, u32)> {
+        let mut seen = HashSet::new();
+        let mut particles = HashSet::new();
+        springs.for_each(|colour, spring| {
+            let [a, b] = spring.ends;
+            for end in [a, b] {
+                assert!(
+                    particles.insert((colour, end)),
+                    "colour {colour}: {spring:?}"
+                );
+            }
+            assert!(seen.insert((a.min(b), a.max(b))), "twice: {spring:?}");
+        });
+        seen
+    }
+
     #[test]
     fn colours_share_no_particle_and_no_spring_is_missing_or_twice() {
-        for (columns, rows) in [(2, 2), (2, 3), (3, 2), (5, 7), (8, 8), (13, 4), (16, 16)] {
+        for (columns, rows) in [
+            (2, 2),
+            (2, 3),
+            (3, 2),
+            (5, 7),
+            (8, 8),
+            (13, 4),
+            (16, 16),
+            (41, 6),
+            (50, 3),
+        ] {
             let grid = Cloth::new(columns, rows, 0.1)
                 .grid(Vec3::ONE)
                 .expect("a sound grid");
             let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
-            let mut seen = HashSet::new();
-            for colour in springs.colours() {
-                let mut particles = HashSet::new();
-                for index in colour.springs.clone() {
-                    let [a, b] = springs.ends()[index];
-                    assert!(
-                        particles.insert(a) && particles.insert(b),
-                        "{columns} × {rows}: {colour:?}"
-                    );
-                    assert!(seen.insert((a.min(b), a.max(b))));
-                }
-            }
+            let seen = check_colours(&springs);
             let (c, r) = (columns as usize, rows as usize);
             let structural = (c - 1) * r + c * (r - 1);
             let shear = 2 * (c - 1) * (r - 1);
@@ -190,13 +356,14 @@ mod tests {
             .cells()
             .map(|(r, c)| grid.rest_position(r, c))
             .collect();
-        for (&[a, b], &rest_length) in springs.ends().iter().zip(springs.rest_length()) {
-            let length = positions[a as usize].distance(positions[b as usize]);
+        springs.for_each(|_, spring| {
+            let [a, b] = spring.ends.map(|end| positions[end as usize]);
+            let length = a.distance(b);
             assert!(
-                (length - rest_length).abs() < 1e-5,
-                "{length} {rest_length}"
+                (length - spring.rest_length).abs() < 1e-5,
+                "{length} {spring:?}"
             );
-        }
+        });
     }
 
     #[test]
@@ -212,5 +379,72 @@ mod tests {
         let springs = Springs::of_grid(&grid, &material);
         assert!(springs.has(SpringKind::Structural));
         assert!(!springs.has(SpringKind::Shear) && !springs.has(SpringKind::Bend));
+    }
+
+    /// Springs in any order, all of them at random, and thirty to forty at one particle.
+    #[test]
+    fn a_list_is_coloured_and_no_spring_is_lost() {
+        let mut ends = HashSet::new();
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % 40
+        };
+        while ends.len() < 300 {
+            let (a, b) = (random(), random());
+            if a != b {
+                ends.insert((a.min(b), a.max(b)));
+            }
+        }
+        ends.extend((1..40).map(|end| (0, end)));
+        let spring = |&(a, b): &(u32, u32)| Spring {
+            kind: SpringKind::Structural,
+            ends: [a, b],
+            rest_length: 1.0,
+            compliance: 0.0,
+        };
+        let list: Vec<Spring> = ends.iter().map(spring).collect();
+        let springs = Springs::of_list(&list, 40).expect("sound springs");
+        assert_eq!(check_colours(&springs), ends);
+
+        for bad in [
+            Spring {
+                ends: [3, 40],
+                ..list[0]
+            },
+            Spring {
+                ends: [3, 3],
+                ..list[0]
+            },
+            Spring {
+                rest_length: 0.0,
+                ..list[0]
+            },
+            Spring {
+                compliance: f32::NAN,
+                ..list[0]
+            },
+        ] {
+            let mut list = list.clone();
+            list[7] = bad;
+            assert!(matches!(
+                Springs::of_list(&list, 40),
+                Err(ClothError::BadSpring { index: 7, .. })
+            ));
+        }
+    }
+
+    #[test]
+    fn a_hub_of_more_springs_than_colours_is_coloured_too() {
+        let list: Vec<Spring> = (1..100)
+            .map(|end| Spring {
+                kind: SpringKind::Structural,
+                ends: [0, end],
+                rest_length: 1.0,
+                compliance: 0.0,
+            })
+            .collect();
+        let springs = Springs::of_list(&list, 100).expect("sound springs");
+        assert_eq!(check_colours(&springs).len(), 99);
     }
 }

@@ -2,7 +2,11 @@
 
 use bevy::math::Vec3;
 
-use crate::{cloth::ClothParticles, hierarchy::Probe, solver::SubStep};
+use crate::{
+    cloth::{ClothParticles, Slot},
+    hierarchy::Probe,
+    solver::SubStep,
+};
 
 /// A ball on its way through a tick, in the cloth's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,20 +57,22 @@ pub fn push_out(
     friction: f32,
     substep: SubStep,
 ) -> f32 {
-    let columns = particles.columns_mut();
     let centre = ball.from.lerp(ball.to, substep.end());
     let (slide, turn) = (
         (ball.to - ball.from) / substep.count as f32,
         ball.turn / substep.count as f32,
     );
     let reach = ball.radius + particle_radius;
+    let layout = particles.layout();
     let mut deepest = 0.0_f32;
     for (&particle, touched) in candidates.iter().zip(touched) {
-        let particle = particle as usize;
-        if columns.inverse_mass[particle] == 0.0 {
+        let Slot { block, lane } = layout.slot_of(particle as usize);
+        let block = &mut particles.blocks_mut()[block];
+        if block.inverse_mass(lane) == 0.0 {
             continue;
         }
-        let offset = columns.position[particle] - centre;
+        let (position, displacement) = (block.position(lane), block.displacement(lane));
+        let offset = position - centre;
         let distance = offset.length();
         let depth = reach - distance;
         if depth <= 0.0 {
@@ -81,7 +87,7 @@ pub fn push_out(
             Vec3::Y
         };
         let surface = slide + turn.cross(normal * ball.radius);
-        let relative = columns.displacement[particle] - surface;
+        let relative = displacement - surface;
         let tangential = relative - normal * normal.dot(relative);
         // What the ball and the particle came towards each other in this sub-step is what its velocity has to
         // lose, and what friction can hold against. An older overlap is no velocity, and must not become one.
@@ -92,8 +98,8 @@ pub fn push_out(
         } else {
             1.0
         };
-        columns.position[particle] += normal * depth - tangential * grip;
-        columns.displacement[particle] += normal * stopped - tangential * grip;
+        block.set_position(lane, position + (normal * depth - tangential * grip));
+        block.set_displacement(lane, displacement + (normal * stopped - tangential * grip));
     }
     deepest
 }
@@ -119,7 +125,7 @@ mod tests {
     use super::*;
     use crate::{
         cloth::{Cloth, ClothMaterial, Springs},
-        solver::{TickStep, advance},
+        solver::{Solver, TickStep},
     };
 
     const GRAVITY: f32 = 9.81;
@@ -139,15 +145,10 @@ mod tests {
             acceleration: Vec3::NEG_Y * GRAVITY,
             damping: 0.0,
         };
-        advance(
-            &mut particles,
-            &Springs::default(),
-            step,
-            &[],
-            |particles, substep| {
-                push_out(particles, &[0], &mut [false], &ball, 0.0, friction, substep);
-            },
-        );
+        let mut solver = Solver::new(&Springs::default(), &particles);
+        solver.advance(&mut particles, step, &[], |particles, substep| {
+            push_out(particles, &[0], &mut [false], &ball, 0.0, friction, substep) > 0.0
+        });
         let position = particles.position(0).expect("it exists");
         assert!(
             (position.length() - 1.0).abs() < 1e-6,

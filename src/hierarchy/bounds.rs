@@ -79,13 +79,12 @@ impl SphereBounds {
 
     /// Bottom up. Children come after their parents in the tree, so one way backwards does it.
     fn refit(&mut self, tree: &QuadTree, particles: &ClothParticles) {
-        let position = particles.positions_slice();
         self.centre.resize(tree.nodes().len(), Vec3::ZERO);
         self.radius.resize(tree.nodes().len(), 0.0);
         for (index, node) in tree.nodes().iter().enumerate().rev() {
             let children = node.children.start as usize..node.children.end as usize;
             if children.is_empty() {
-                self.centre[index] = position[node.middle as usize];
+                self.centre[index] = particles.position_at(node.middle as usize);
                 self.radius[index] = self.particle_radius;
                 continue;
             }
@@ -99,7 +98,6 @@ impl SphereBounds {
 
     /// The paper's Figure 4.
     fn halve(&mut self, tree: &QuadTree, grid: &ClothGrid, particles: &ClothParticles) {
-        let position = particles.positions_slice();
         self.centre.resize(tree.nodes().len(), Vec3::ZERO);
         self.radius.resize(tree.nodes().len(), 0.0);
         let longest = grid.columns().max(grid.rows()) as f32;
@@ -109,7 +107,8 @@ impl SphereBounds {
                 let node = &tree.nodes()[index];
                 let (left, right) = (node.columns.start, node.columns.end - 1);
                 let (top, bottom) = (node.rows.start, node.rows.end - 1);
-                let corner = |row, column| position[tree.particle(row, column) as usize];
+                let corner =
+                    |row, column| particles.position_at(tree.particle(row, column) as usize);
                 self.centre[index] = (corner(top, left)
                     + corner(top, right)
                     + corner(bottom, left)
@@ -134,17 +133,22 @@ impl SphereBounds {
     /// The sphere of a node, in the cloth's frame (m).
     pub fn sphere(&self, tree: &QuadTree, particles: &ClothParticles, node: u32) -> BoundingSphere {
         let (centre, radius) = match self.rule {
-            BoundRule::RestShape => self.rest_sphere(tree, particles.positions_slice(), node),
+            BoundRule::RestShape => self.rest_sphere(tree, particles, node),
             BoundRule::Refit | BoundRule::Paper => self.stored_sphere(node),
         };
         BoundingSphere::new(Vec3A::from(centre), radius)
     }
 
     /// The sphere of a node under `RestShape`.
-    pub(crate) fn rest_sphere(&self, tree: &QuadTree, position: &[Vec3], node: u32) -> (Vec3, f32) {
+    pub(crate) fn rest_sphere(
+        &self,
+        tree: &QuadTree,
+        particles: &ClothParticles,
+        node: u32,
+    ) -> (Vec3, f32) {
         let node = &tree.nodes()[node as usize];
         let radius = node.rest_radius * self.growth + self.particle_radius;
-        (position[node.middle as usize], radius)
+        (particles.position_at(node.middle as usize), radius)
     }
 
     /// The sphere of a node under `Refit` and `Paper`.
@@ -158,7 +162,6 @@ impl SphereBounds {
     /// # Errors
     /// A sentence that names the node at fault.
     pub fn validate(&self, tree: &QuadTree, particles: &ClothParticles) -> Result<(), String> {
-        let position = particles.positions_slice();
         let sphere = |node: u32| {
             let sphere = self.sphere(tree, particles, node);
             (
@@ -172,7 +175,7 @@ impl SphereBounds {
             for row in node.rows.clone() {
                 for column in node.columns.clone() {
                     let particle = tree.particle(row, column) as usize;
-                    let reach = centre.distance(position[particle].as_dvec3())
+                    let reach = centre.distance(particles.position_at(particle).as_dvec3())
                         + f64::from(self.particle_radius);
                     if reach > radius * tolerance {
                         return Err(format!(

@@ -78,21 +78,51 @@ impl TopDownQuery {
         particles: &ClothParticles,
         probe: &Probe,
     ) -> Range<usize> {
-        let position = particles.positions_slice();
         match bounds.rule() {
-            BoundRule::RestShape => self.descend(tree, position, probe, |node| {
-                bounds.rest_sphere(tree, position, node)
+            BoundRule::RestShape => self.descend(tree, particles, probe, |node| {
+                bounds.rest_sphere(tree, particles, node)
             }),
             BoundRule::Refit | BoundRule::Paper => {
-                self.descend(tree, position, probe, |node| bounds.stored_sphere(node))
+                self.descend(tree, particles, probe, |node| bounds.stored_sphere(node))
             }
         }
+    }
+
+    /// Whether `probe` meets any particle. Leaves what was found as it is.
+    pub fn finds_any(
+        &self,
+        tree: &QuadTree,
+        bounds: &SphereBounds,
+        particles: &ClothParticles,
+        probe: &Probe,
+    ) -> bool {
+        // Each level adds three siblings at most, and halving 2²⁴ particles ends after 24 levels and a leaf.
+        let mut stack = [0; 3 * 25 + 1];
+        let mut count = usize::from(!tree.nodes().is_empty());
+        while count > 0 {
+            count -= 1;
+            let index = stack[count];
+            let node = &tree.nodes()[index as usize];
+            let sphere = bounds.sphere(tree, particles, index);
+            let reach = (sphere.radius() + probe.radius) * ROUNDING;
+            if Vec3::from(sphere.center).distance_squared(probe.centre) > reach * reach {
+                continue;
+            }
+            if node.is_leaf() && probe.meets(particles.position_at(node.middle as usize)) {
+                return true;
+            }
+            for child in node.children.clone() {
+                stack[count] = child;
+                count += 1;
+            }
+        }
+        false
     }
 
     fn descend(
         &mut self,
         tree: &QuadTree,
-        position: &[Vec3],
+        particles: &ClothParticles,
         probe: &Probe,
         sphere: impl Fn(u32) -> (Vec3, f32),
     ) -> Range<usize> {
@@ -111,7 +141,7 @@ impl TopDownQuery {
             let touching = centre.distance_squared(probe.centre) <= reach * reach;
             if node.is_leaf() {
                 self.leaf_tests += 1;
-                if touching && probe.meets(position[node.middle as usize]) {
+                if touching && probe.meets(particles.position_at(node.middle as usize)) {
                     self.candidates.push(node.middle);
                 }
             } else if touching {

@@ -6,14 +6,16 @@ use bevy::{
     ecs::{
         change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent,
     },
+    math::{Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
+use super::attach::Attached;
 use crate::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pins, Springs},
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pin, Pins, Springs},
     contact::MovingBall,
     hierarchy::{BoundRule, QuadTree, SphereBounds, TopDownQuery},
-    solver::{PinMotion, Stretch, TickStep},
+    solver::{ClothSettings, Control, PinMotion, Rest, Solver, Stretch, TickStep},
 };
 
 /// What does not change while a cloth moves: its grid, springs and tree. Empty until the first tick.
@@ -72,9 +74,9 @@ impl ClothSearch {
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothStats {
-    /// Time of all sub-steps (ms): the solver's call.
+    /// Time of all sub-steps, the stretch measured in the last of them (ms): the solver's call.
     pub integrate_ms: f64,
-    /// Time to bring the bounding spheres up to date, and to measure the stretch that they rely on (ms).
+    /// Time to bring the bounding spheres up to date (ms).
     pub rebuild_ms: f64,
     /// Time of the search (ms).
     pub query_ms: f64,
@@ -86,10 +88,14 @@ pub struct ClothStats {
     pub contacts: usize,
     /// The largest stretch, at the end of the tick.
     pub stretch: Stretch,
+    /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps.
+    pub substeps: u32,
+    /// Whether the cloth sleeps.
+    pub is_asleep: bool,
 }
 
 /// A ball that may touch the cloth in this tick, and its candidates.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct BallInReach {
     pub collider: Entity,
     pub ball: MovingBall,
@@ -112,7 +118,7 @@ pub(super) struct ClothTick {
     pub particle_radius: f32,
     /// As of the positions present: what `RestShape` relies on.
     pub stretch: Stretch,
-    /// Pinned particles that the frame carries along.
+    /// Pinned particles that the frame or a target carries along.
     pub pins: Vec<PinMotion>,
     /// How far a particle may get in the tick by itself (m).
     pub reach: f32,
@@ -121,4 +127,22 @@ pub(super) struct ClothTick {
     pub touched: Vec<bool>,
     /// When the plugin last wrote the particles: whoever wrote them since was the game.
     pub written: Option<Tick>,
+    pub solver: Solver,
+    pub control: Control,
+    pub rest: Rest,
+    /// Speed of the fastest particle as the tick begins (m/s).
+    pub largest_speed: f32,
+    /// What disturbs a cloth at rest when it changes, besides what it is woven from: settings and acceleration.
+    pub known: Option<(ClothSettings, Vec3)>,
+    /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
+    pub tethered: Option<(bool, f32)>,
+    /// What `attached` was made from.
+    pub attachments: Vec<(Pin, Entity)>,
+    pub attached: Vec<Attached>,
+    /// Where the first attachment's target was.
+    pub first_target: Option<Isometry3d>,
+    /// The particles as the tick began, for a tick that is done again.
+    pub backup: ClothParticles,
+    /// Whether it was said that the sub-steps don't suffice.
+    pub cap_is_told: bool,
 }

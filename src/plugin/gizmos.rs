@@ -194,19 +194,15 @@ fn draw_springs(
     gizmos: &mut Gizmos<ClothGizmos>,
 ) {
     use bevy::color::Alpha;
-    for colour in topology.springs.colours() {
-        let color = match colour.kind {
+    topology.springs.for_each(|_, spring| {
+        let color = match spring.kind {
             SpringKind::Structural => look.springs,
             SpringKind::Shear => look.springs.with_alpha(look.springs.alpha() * 0.5),
             SpringKind::Bend => look.springs.with_alpha(look.springs.alpha() * 0.25),
         };
-        for &[a, b] in &topology.springs.ends()[colour.springs.clone()] {
-            if let (Some(a), Some(b)) = (
-                particles.position(a as usize),
-                particles.position(b as usize),
-            ) {
-                gizmos.line(frame.to_world(a), frame.to_world(b), color);
-            }
+        let [a, b] = spring.ends.map(|end| particles.position(end as usize));
+        if let (Some(a), Some(b)) = (a, b) {
+            gizmos.line(frame.to_world(a), frame.to_world(b), color);
         }
-    }
+    });
 }

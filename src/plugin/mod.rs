@@ -1,5 +1,6 @@
 //! Floor 3: the ECS: one plugin a file, and [`DrapePlugins`] over them.
 
+mod attach;
 mod colliders;
 mod components;
 mod contacts;
@@ -17,12 +18,14 @@ mod prepare;
 mod rapier;
 mod simulation;
 mod tick;
+mod weave;
 
 use bevy::{
     app::{FixedUpdate, PluginGroup, PluginGroupBuilder},
     ecs::{intern::Interned, schedule::ScheduleLabel},
 };
 
+pub use attach::{ClothAttachments, ClothTeleport};
 pub use components::{ClothSearch, ClothStats, ClothTopology};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use diagnostics::ClothDiagnosticsPlugin;

@@ -27,7 +27,11 @@ use bevy_egui::{
 use super::{
     ClothDiagnosticsPlugin, ClothGravity, ClothSearch, ClothStats, ClothTopology, ShowClothGizmos,
 };
-use crate::{cloth::ClothMaterial, hierarchy::BoundRule, solver::ClothSettings};
+use crate::{
+    cloth::ClothMaterial,
+    hierarchy::BoundRule,
+    solver::{ClothSettings, Precision},
+};
 
 /// Whether the panel is shown.
 #[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq, Eq)]
@@ -188,11 +192,16 @@ fn show_times(ui: &mut Ui, diagnostics: &DiagnosticsStore) {
 fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
     let (tree, stats) = (cloth.topology.tree(), cloth.stats);
     ui.label(format!(
-        "{} contacts · {} of {} nodes visited · stretch {:.1} %",
+        "{} contacts · {} of {} nodes visited · stretch {:.1} % · {}",
         stats.contacts,
         stats.nodes_visited,
         tree.nodes().len(),
         100.0 * stats.stretch.structural,
+        if stats.is_asleep {
+            "asleep".to_string()
+        } else {
+            format!("{} sub-steps", stats.substeps)
+        },
     ));
 
     let deepest = tree.levels().len().saturating_sub(1);
@@ -243,12 +252,44 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
     cloth.rule.set_if_neq(rule);
 
     let mut settings = *cloth.settings;
-    ui.add(slider(&mut settings.substeps, 1..=80).text("sub-steps"));
+    show_precision(ui, &mut settings.precision);
+    ui.checkbox(&mut settings.tethers, "tethers");
+    ui.checkbox(&mut settings.sleeps, "sleeps at rest");
     cloth.settings.set_if_neq(settings);
 
     let mut material = *cloth.material;
     show_material(ui, &mut material);
     cloth.material.set_if_neq(material);
+}
+
+fn show_precision(ui: &mut Ui, precision: &mut Precision) {
+    let fixed = matches!(precision, Precision::Substeps(_));
+    ui.horizontal(|ui| {
+        if ui.radio(fixed, "fixed").clicked() && !fixed {
+            *precision = Precision::default();
+        }
+        if ui.radio(!fixed, "tolerance").clicked() && fixed {
+            *precision = ClothSettings::tolerance(0.01).precision;
+        }
+    });
+    match precision {
+        Precision::Substeps(substeps) => {
+            ui.add(slider(substeps, 1..=80).text("sub-steps"));
+        }
+        Precision::Tolerance {
+            stretch,
+            most_substeps,
+        } => {
+            let mut percent = 100.0 * *stretch;
+            ui.add(
+                slider(&mut percent, 0.1..=20.0)
+                    .logarithmic(true)
+                    .text("% stretch"),
+            );
+            *stretch = percent / 100.0;
+            ui.add(slider(most_substeps, 1..=400).text("sub-steps at most"));
+        }
+    }
 }
 
 fn level_name(cloth: &PanelClothItem, level: usize) -> String {

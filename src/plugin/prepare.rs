@@ -13,34 +13,31 @@ use bevy::{
 };
 
 use super::{
-    ClothFault, ClothFrame, ClothGravity, ClothStats, ClothTopology, components::ClothTick,
-    fault::Part, frame::global_transform,
+    ClothAttachments, ClothFault, ClothFrame, ClothGravity, ClothStats, ClothTeleport,
+    ClothTopology, components::ClothTick, fault::Part, frame::global_transform,
 };
 use crate::{
-    cloth::{
-        Cloth, ClothError, ClothGrid, ClothMaterial, ClothParticles, Pins, SpringKind, Springs,
-    },
-    hierarchy::{BoundRule, QuadTree},
-    solver::{ClothSettings, PinMotion, Stretch, TickStep},
+    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
+    hierarchy::BoundRule,
+    solver::{ClothSettings, PinMotion, TickStep},
 };
-
-/// The pins of a cloth from which the game took its [`Pins`]. In place of other components the defaults count.
-static NO_PINS: Pins = Pins::none();
 
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct Preparing {
     entity: Entity,
-    cloth: &'static Cloth,
+    pub(super) cloth: &'static Cloth,
     material: Option<&'static ClothMaterial>,
-    pins: Option<&'static Pins>,
+    pub(super) pins: Option<&'static Pins>,
+    pub(super) attachments: Option<&'static ClothAttachments>,
     settings: Option<&'static ClothSettings>,
     rule: Option<&'static BoundRule>,
-    particles: &'static mut ClothParticles,
-    topology: &'static mut ClothTopology,
-    frame: &'static mut ClothFrame,
+    pub(super) particles: &'static mut ClothParticles,
+    pub(super) topology: &'static mut ClothTopology,
+    pub(super) frame: &'static mut ClothFrame,
     stats: &'static mut ClothStats,
-    tick: &'static mut ClothTick,
+    pub(super) tick: &'static mut ClothTick,
+    teleport: Option<&'static ClothTeleport>,
     fault: Option<&'static ClothFault>,
 }
 
@@ -53,9 +50,13 @@ pub(super) fn prepare_cloths(
     mut commands: Commands,
 ) {
     for mut cloth in &mut cloths {
-        let outcome = global_transform(&transforms, cloth.entity)
-            .and_then(|transform| cloth.prepare(&transform, gravity.0, time.delta_secs()));
+        let outcome = global_transform(&transforms, cloth.entity).and_then(|transform| {
+            cloth.prepare(&transform, &transforms, gravity.0, time.delta_secs())
+        });
         cloth.tick.sound = outcome.is_ok();
+        if cloth.teleport.is_some() && outcome.is_ok() {
+            commands.entity(cloth.entity).try_remove::<ClothTeleport>();
+        }
         ClothFault::report(
             &mut commands,
             cloth.entity,
@@ -70,6 +71,7 @@ impl PreparingItem<'_, '_> {
     fn prepare(
         &mut self,
         transform: &GlobalTransform,
+        transforms: &TransformHelper,
         gravity: Vec3,
         seconds: f32,
     ) -> Result<(), ClothError> {
@@ -82,23 +84,51 @@ impl PreparingItem<'_, '_> {
             ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
         }
         let was_woven = self.weave(&material, scale)?;
-        self.particles.validate()?;
+        let by_game = self.tick.written != Some(self.particles.last_changed());
+        // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
+        if by_game || !self.tick.rest.is_asleep() {
+            let survey = self.particles.survey();
+            if !survey.is_sound {
+                return self.particles.validate();
+            }
+            self.tick.largest_speed = survey.largest_speed;
+        }
         self.tick.pins.clear();
         if !was_woven {
             *self.frame = frame;
+        } else if self.teleport.is_some() {
+            *self.frame = frame;
+            self.tick.rest.disturb();
         } else if seconds > 0.0 && *self.frame != frame {
             self.carry(self.frame.isometry(), frame.isometry());
             *self.frame = frame;
         }
-        if self.tick.written != Some(self.particles.last_changed()) {
-            self.tick.stretch = Stretch::measure(&self.topology.springs, &self.particles);
+        if seconds > 0.0 || !was_woven {
+            self.follow_targets(transforms, self.teleport.is_some())?;
+        }
+        if by_game {
+            self.tick.stretch = self.tick.solver.measure(&self.particles);
             self.stats.stretch = self.tick.stretch;
-            self.tick.written = Some(self.particles.last_changed());
+            if !self.tick.solver.tethers().are_of(&self.particles) {
+                self.tick.tethered = None;
+            }
+            self.tick.rest.disturb();
         }
         let acceleration = self.frame.isometry().rotation.inverse() * gravity;
+        self.tether(settings.tethers, &material, acceleration.length());
+        let known = Some((settings, acceleration));
+        if self.tick.known != known || !self.tick.pins.is_empty() || !settings.sleeps {
+            self.tick.known = known;
+            self.tick.rest.disturb();
+        } else if !self.tick.rest.is_asleep() {
+            let (speed, stretch) = (self.tick.largest_speed, self.tick.stretch);
+            self.tick.rest.observe(seconds, speed, stretch);
+        }
+        // The plugin's own writing, up to here.
+        self.tick.written = Some(self.particles.last_changed());
         self.tick.step = Some(TickStep {
             seconds,
-            substeps: settings.substeps,
+            substeps: self.tick.control.substeps(settings.precision),
             acceleration,
             damping: material.damping,
         });
@@ -114,117 +144,26 @@ impl PreparingItem<'_, '_> {
     fn reach(&self, acceleration: f32, seconds: f32) -> f32 {
         let carried = self.tick.pins.iter().map(|pin| pin.from.distance(pin.to));
         let longest_spring = self.topology.grid.spacing().length();
-        (self.particles.largest_speed() + acceleration * seconds) * seconds
+        (self.tick.largest_speed + acceleration * seconds) * seconds
             + carried.fold(0.0, f32::max)
             + self.tick.stretch.bound * longest_spring
-    }
-
-    /// Builds what does not exist yet or was made from other components than those present. Returns whether
-    /// the cloth had been woven before. Changes nothing on an error.
-    fn weave(&mut self, material: &ClothMaterial, scale: Vec3) -> Result<bool, ClothError> {
-        let woven = self.topology.woven.as_ref();
-        let was_woven =
-            woven.is_some_and(|(cloth, ..)| cloth == self.cloth) && !self.particles.is_empty();
-        if was_woven {
-            self.follow_changes(material)?;
-        } else {
-            self.weave_anew(material, scale)?;
-        }
-        Ok(was_woven)
-    }
-
-    fn weave_anew(&mut self, material: &ClothMaterial, scale: Vec3) -> Result<(), ClothError> {
-        let pins = self.pins.unwrap_or(&NO_PINS);
-        let grid = self.cloth.grid(scale)?;
-        material.validate()?;
-        pins.validate(&grid)?;
-        // Particles that came with a newly spawned cloth are kept; those of another grid are not.
-        let mut particles = if self.topology.woven.is_some() || self.particles.is_empty() {
-            ClothParticles::at_rest(&grid, material)?
-        } else {
-            check_count(&self.particles, &grid)?;
-            self.particles.clone()
-        };
-        particles.weigh(&grid, material, pins)?;
-        let springs = Springs::of_grid(&grid, material);
-        let tree = QuadTree::of_grid(&grid, springs.has(SpringKind::Shear));
-        *self.particles = particles;
-        *self.topology = ClothTopology {
-            grid,
-            springs,
-            tree,
-            woven: Some((*self.cloth, *material, pins.clone())),
-        };
-        Ok(())
-    }
-
-    /// Takes over another material or other pins: masses, springs and tree only where they change, so that a
-    /// mass that the game has set outlasts a change of damping.
-    fn follow_changes(&mut self, material: &ClothMaterial) -> Result<(), ClothError> {
-        let pins = self.pins.unwrap_or(&NO_PINS);
-        let topology = &mut *self.topology;
-        check_count(&self.particles, &topology.grid)?;
-        let Some((_, was, were_pinned)) = &mut topology.woven else {
-            return Ok(());
-        };
-        if was == material && were_pinned == pins {
-            return Ok(());
-        }
-        material.validate()?;
-        if was.areal_density != material.areal_density || were_pinned != pins {
-            self.particles.weigh(&topology.grid, material, pins)?;
-        }
-        let compliances = |of: &ClothMaterial| {
-            [
-                of.stretch_compliance,
-                of.shear_compliance,
-                of.bend_compliance,
-            ]
-        };
-        if compliances(was) != compliances(material) {
-            let had_diagonals = topology.springs.has(SpringKind::Shear);
-            topology.springs = Springs::of_grid(&topology.grid, material);
-            let has_diagonals = topology.springs.has(SpringKind::Shear);
-            if had_diagonals != has_diagonals {
-                topology.tree = QuadTree::of_grid(&topology.grid, has_diagonals);
-            }
-            // The stretch that bounds rely on is measured over other springs now.
-            self.tick.written = None;
-        }
-        (*was, *were_pinned) = (*material, pins.clone());
-        Ok(())
     }
 
     /// The frame has moved: the particles stay where they are in the world, and their pins go along in the
     /// course of the tick.
     fn carry(&mut self, old: Isometry3d, new: Isometry3d) {
         let new_from_old = new.inverse() * old;
-        let columns = self.particles.columns_mut();
-        let state = columns.position.iter_mut().zip(columns.displacement);
-        for (index, ((position, displacement), &inverse_mass)) in
-            state.zip(columns.inverse_mass).enumerate()
-        {
-            let pinned_to = *position;
-            *position = new_from_old * *position;
-            *displacement = new_from_old.rotation * *displacement;
+        let tick = &mut *self.tick;
+        for (index, inverse_mass) in self.particles.inverse_masses().enumerate() {
             if inverse_mass == 0.0 {
-                self.tick.pins.push(PinMotion {
+                let pinned_to = self.particles.position_at(index);
+                tick.pins.push(PinMotion {
                     particle: index as u32,
-                    from: *position,
+                    from: new_from_old * pinned_to,
                     to: pinned_to,
                 });
             }
         }
+        self.particles.transform(new_from_old);
     }
-}
-
-/// Whether the particles are as many as the grid has, in as many columns.
-fn check_count(particles: &ClothParticles, grid: &ClothGrid) -> Result<(), ClothError> {
-    if particles.fit(grid) {
-        return Ok(());
-    }
-    Err(ClothError::ParticleCount {
-        expected: grid.len(),
-        found: particles.len(),
-    })
 }

@@ -16,8 +16,8 @@ use bevy::{
 };
 
 use super::{
-    ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats, ClothTopology,
-    ClothTouchStarted, ClothTouchStopped,
+    ClothAttachments, ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats,
+    ClothTeleport, ClothTopology, ClothTouchStarted, ClothTouchStopped,
     colliders::{ColliderMotion, prepare_colliders},
     components::ClothTick,
     contacts::{tell_of_removed_cloths, tell_of_touches},
@@ -96,6 +96,8 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothContacts>()
             .register_type::<ClothFrame>()
             .register_type::<ClothStats>()
+            .register_type::<ClothAttachments>()
+            .register_type::<ClothTeleport>()
             .register_type::<ClothGravity>();
         app.register_required_components::<Cloth, ClothSettings>()
             .register_required_components::<Cloth, BoundRule>()

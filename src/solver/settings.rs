@@ -6,18 +6,15 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
+use super::precision::{MOST_SUBSTEPS, Precision};
 use crate::cloth::ClothError;
-
-/// More would be a slip of the finger, and would hang the game.
-const MOST_SUBSTEPS: u32 = 10_000;
 
 /// How a cloth is simulated. May change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSettings {
-    /// Sub-steps a tick, from 1 to 10,000. Cost grows in proportion, and stretch shrinks: a sub-step's sweep is as
-    /// stiff as mass/Δt².
-    pub substeps: u32,
+    /// How exactly: so many sub-steps a tick, or as many as hold a tolerance.
+    pub precision: Precision,
     /// Acceleration in the world (m/s²) for this cloth alone, instead of the resource
     /// [`ClothGravity`](crate::plugin::ClothGravity).
     pub gravity: Option<Vec3>,
@@ -25,15 +22,46 @@ pub struct ClothSettings {
     /// radius of the tree's leaves. About spacing² / (4 × the ball's radius) keeps the flat triangles between
     /// the particles from sinking into a ball.
     pub particle_radius: f32,
+    /// Whether no particle may be farther from the pins than the cloth between them is long. That takes most of
+    /// the stretch out of a fine cloth for a tenth of the cost more, and leaves to the springs what is elastic: see
+    /// [`Tethers`](super::Tethers).
+    pub tethers: bool,
+    /// Whether a cloth that has come to rest sleeps: it costs next to nothing, stays as it is to the last bit,
+    /// and wakes by a collider that moves near it, a pin that moves, a change of its components or gravity.
+    pub sleeps: bool,
 }
 
 impl Default for ClothSettings {
-    /// 20 sub-steps, the resource's gravity, particles of 1 cm radius.
+    /// 20 sub-steps, the resource's gravity, particles of 1 cm radius; tethers, and sleep.
     fn default() -> Self {
         Self {
-            substeps: 20,
+            precision: Precision::default(),
             gravity: None,
             particle_radius: 0.01,
+            tethers: true,
+            sleeps: true,
+        }
+    }
+}
+
+impl ClothSettings {
+    /// A fixed number of sub-steps a tick, all else by default.
+    pub fn substeps(substeps: u32) -> Self {
+        Self {
+            precision: Precision::Substeps(substeps),
+            ..Default::default()
+        }
+    }
+
+    /// A largest stretch (0.01 is one per cent) in place of sub-steps, of which a tick may have up to 100; all
+    /// else by default.
+    pub fn tolerance(stretch: f32) -> Self {
+        Self {
+            precision: Precision::Tolerance {
+                stretch,
+                most_substeps: 100,
+            },
+            ..Default::default()
         }
     }
 }
@@ -44,8 +72,23 @@ impl ClothSettings {
     /// # Errors
     /// [`ClothError::Quantity`] for the first that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
+        let substeps = match self.precision {
+            Precision::Substeps(substeps) => substeps,
+            Precision::Tolerance {
+                stretch,
+                most_substeps,
+            } => {
+                ClothError::check(
+                    stretch,
+                    |v| v > 0.0 && v.is_finite(),
+                    "tolerance of stretch",
+                    "positive and finite",
+                )?;
+                most_substeps
+            }
+        };
         ClothError::check(
-            self.substeps as f32,
+            substeps as f32,
             |v| (1.0..=MOST_SUBSTEPS as f32).contains(&v),
             "sub-steps",
             "from 1 to 10,000",
@@ -72,9 +115,16 @@ mod tests {
         let good = ClothSettings::default();
         assert_eq!(good.validate(), Ok(()));
         for (settings, name) in [
+            (ClothSettings::substeps(0), "sub-steps"),
+            (ClothSettings::substeps(10_001), "sub-steps"),
+            (ClothSettings::tolerance(0.0), "tolerance"),
+            (ClothSettings::tolerance(f32::NAN), "tolerance"),
             (
                 ClothSettings {
-                    substeps: 0,
+                    precision: Precision::Tolerance {
+                        stretch: 0.01,
+                        most_substeps: 0,
+                    },
                     ..good
                 },
                 "sub-steps",

@@ -14,28 +14,27 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Measures every structural and shear spring.
+    /// Measures every structural and shear spring, one by one.
+    /// [`Solver::measure`](super::Solver::measure) does the same for many at once.
     pub fn measure(springs: &Springs, particles: &ClothParticles) -> Self {
-        let position = particles.positions_slice();
-        let largest = |kind| {
-            let colours = springs
-                .colours()
-                .iter()
-                .filter(|colour| colour.kind == kind);
-            let ratios = colours.flat_map(|colour| {
-                let ends = &springs.ends()[colour.springs.clone()];
-                let rest_length = &springs.rest_length()[colour.springs.clone()];
-                ends.iter().zip(rest_length).map(|(&[a, b], rest_length)| {
-                    position[a as usize].distance_squared(position[b as usize])
-                        / (rest_length * rest_length)
-                })
-            });
-            ratios.fold(1.0, f32::max).sqrt() - 1.0
-        };
-        let structural = largest(SpringKind::Structural);
+        let (mut structural, mut bound) = (1.0_f32, 1.0_f32);
+        springs.for_each(|_, spring| {
+            let [a, b] = spring.ends.map(|end| particles.position_at(end as usize));
+            let ratio = a.distance_squared(b) / (spring.rest_length * spring.rest_length);
+            match spring.kind {
+                SpringKind::Structural => structural = structural.max(ratio),
+                SpringKind::Shear => bound = bound.max(ratio),
+                SpringKind::Bend => {}
+            }
+        });
+        Self::of_ratios(structural.sqrt(), bound.max(structural).sqrt())
+    }
+
+    /// From the largest length over rest length of structural springs, and of structural and shear springs.
+    pub(super) fn of_ratios(structural: f32, bound: f32) -> Self {
         Self {
-            structural,
-            bound: structural.max(largest(SpringKind::Shear)),
+            structural: structural.max(1.0) - 1.0,
+            bound: bound.max(1.0) - 1.0,
         }
     }
 }

@@ -2,7 +2,13 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::{ClothParticles, Springs};
+use super::{
+    Instructions, Stretch, Tethers,
+    list::ListSweep,
+    tether::Anchors,
+    wave::{GridSweep, Longest, Motion},
+};
+use crate::cloth::{ClothParticles, Springs, Weave};
 
 /// The time step for which the paper's damping D is given (s).
 const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
@@ -59,70 +65,139 @@ pub struct PinMotion {
     pub to: Vec3,
 }
 
-/// Moves `particles` by one tick. `respond` is called at the end of each sub-step, to push the particles out
-/// of what they touch.
-pub fn advance(
-    particles: &mut ClothParticles,
-    springs: &Springs,
-    step: TickStep,
-    pins: &[PinMotion],
-    mut respond: impl FnMut(&mut ClothParticles, SubStep),
-) {
-    let count = step.substeps.max(1);
-    let dt = step.seconds / count as f32;
-    let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
-    particles.respan(dt);
-    for index in 0..count {
-        let substep = SubStep { index, count };
-        integrate(particles, kept, step.acceleration * (dt * dt));
+/// Moves the particles that it was made for, a tick at a time, without allocating.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solver {
+    sweep: Sweep,
+    tethers: Tethers,
+    anchors: Anchors,
+    bands: usize,
+    instructions: Instructions,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Sweep {
+    Grid(GridSweep),
+    List(ListSweep),
+}
+
+impl Default for Solver {
+    /// Of no springs.
+    fn default() -> Self {
+        Self::of(Sweep::List(ListSweep::default()))
+    }
+}
+
+impl Solver {
+    /// Solves `springs` between `particles`. Without tethers, on one thread.
+    pub fn new(springs: &Springs, particles: &ClothParticles) -> Self {
+        Self::of(match springs.weave() {
+            Weave::Grid(grid, compliances) => Sweep::Grid(GridSweep::new(grid, compliances)),
+            Weave::List(springs, colours) => {
+                Sweep::List(ListSweep::new(springs, colours, particles.layout()))
+            }
+        })
+    }
+
+    fn of(sweep: Sweep) -> Self {
+        Self {
+            sweep,
+            tethers: Tethers::default(),
+            anchors: Anchors::default(),
+            bands: 1,
+            instructions: Instructions::default(),
+        }
+    }
+
+    /// With tethers from now on.
+    pub fn set_tethers(&mut self, tethers: Tethers) {
+        self.tethers = tethers;
+    }
+
+    /// The tethers.
+    pub fn tethers(&self) -> &Tethers {
+        &self.tethers
+    }
+
+    /// With so many bands of rows from now on, each a task of Bevy's compute pool. The result is the same to the
+    /// last bit. Springs on no grid are always one band.
+    pub fn set_bands(&mut self, bands: usize) {
+        self.bands = bands;
+    }
+
+    /// With these instructions from now on.
+    pub fn set_instructions(&mut self, instructions: Instructions) {
+        self.instructions = instructions;
+    }
+
+    /// Moves `particles` by one tick and measures the stretch that it ends with. `respond` is called at the end of
+    /// each sub-step, to push particles out of what they touch, and says whether it moved any.
+    ///
+    /// # Panics
+    /// If the particles are others than those that the solver was made for.
+    pub fn advance(
+        &mut self,
+        particles: &mut ClothParticles,
+        step: TickStep,
+        pins: &[PinMotion],
+        mut respond: impl FnMut(&mut ClothParticles, SubStep) -> bool,
+    ) -> Stretch {
+        let count = step.substeps.max(1);
+        let dt = step.seconds / count as f32;
+        particles.respan(dt);
+        particles.still_pins();
+        match &mut self.sweep {
+            Sweep::Grid(sweep) => sweep.soften(dt),
+            Sweep::List(sweep) => sweep.soften(dt),
+        }
+        let mut longest = Longest::default();
+        let mut is_measured = matches!(self.sweep, Sweep::Grid(_));
+        for index in 0..count {
+            let substep = SubStep { index, count };
+            for pin in pins {
+                particles.lead_pin(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
+            }
+            self.tethers.locate(particles.blocks(), &mut self.anchors);
+            let is_last = index + 1 == count;
+            let motion = Motion {
+                kept: (1.0 - step.damping).powf(dt / DAMPING_REFERENCE),
+                acceleration_dt2: (step.acceleration * (dt * dt)).to_array(),
+                tethers: &self.tethers,
+                anchors: &self.anchors,
+                measures: is_last,
+            };
+            let blocks = particles.blocks_mut();
+            match &self.sweep {
+                Sweep::Grid(sweep) => {
+                    longest = sweep.substep(blocks, motion, self.bands, self.instructions);
+                }
+                Sweep::List(sweep) => self.instructions.list(sweep, blocks, motion),
+            }
+            let has_moved = respond(particles, substep);
+            is_measured &= !(is_last && has_moved);
+        }
         for pin in pins {
-            particles.columns_mut().position[pin.particle as usize] =
-                pin.from.lerp(pin.to, substep.end());
+            // Not a rounding beside it.
+            particles.put(pin.particle as usize, pin.to);
         }
-        sweep(particles, springs, dt);
-        respond(particles, substep);
+        match &self.sweep {
+            Sweep::Grid(sweep) if is_measured => {
+                let (structural, bound) = sweep.ratios(&longest);
+                Stretch::of_ratios(structural, bound)
+            }
+            _ => self.measure(particles),
+        }
     }
-}
 
-/// The paper's equation (2), `x' = x + (x − x_prev)(1 − D) + a Δt²`, with `x − x_prev` stored as such. Pinned
-/// particles stay.
-fn integrate(particles: &mut ClothParticles, kept: f32, acceleration_dt2: Vec3) {
-    let columns = particles.columns_mut();
-    let state = columns.position.iter_mut().zip(columns.displacement);
-    for ((position, displacement), &inverse_mass) in state.zip(columns.inverse_mass) {
-        *displacement = if inverse_mass > 0.0 {
-            *displacement * kept + acceleration_dt2
-        } else {
-            Vec3::ZERO
+    /// Measures the stretch of `particles`.
+    pub fn measure(&self, particles: &ClothParticles) -> Stretch {
+        let (structural, bound) = match &self.sweep {
+            Sweep::Grid(sweep) => {
+                sweep.ratios(&self.instructions.measure(sweep, particles.blocks()))
+            }
+            Sweep::List(sweep) => sweep.ratios(particles),
         };
-        *position += *displacement;
-    }
-}
-
-/// Moves both ends of each spring towards its rest length, in inverse proportion to their masses: the XPBD
-/// distance constraint, `λ = −C / (w_a + w_b + α/Δt²)`, colour by colour.
-///
-/// A move is added to position and displacement alike, so that the displacement never sees the rounding of
-/// the position.
-fn sweep(particles: &mut ClothParticles, springs: &Springs, dt: f32) {
-    let columns = particles.columns_mut();
-    let inverse_dt2 = 1.0 / (dt * dt);
-    let constants = springs.rest_length().iter().zip(springs.compliance());
-    for (&[a, b], (&rest_length, &compliance)) in springs.ends().iter().zip(constants) {
-        let (a, b) = (a as usize, b as usize);
-        let (weight_a, weight_b) = (columns.inverse_mass[a], columns.inverse_mass[b]);
-        let span = columns.position[b] - columns.position[a];
-        let length = span.length();
-        let weight = weight_a + weight_b;
-        // Coincident ends have no direction, pinned ends no freedom.
-        if length > 0.0 && weight > 0.0 {
-            let share = (length - rest_length) / (length * (weight + compliance * inverse_dt2));
-            let (move_a, move_b) = (span * (share * weight_a), span * (share * -weight_b));
-            columns.position[a] += move_a;
-            columns.displacement[a] += move_a;
-            columns.position[b] += move_b;
-            columns.displacement[b] += move_b;
-        }
+        Stretch::of_ratios(structural, bound)
     }
 }
 
@@ -130,6 +205,16 @@ fn sweep(particles: &mut ClothParticles, springs: &Springs, dt: f32) {
 mod tests {
     use super::*;
     use crate::cloth::{Cloth, ClothMaterial, Pins};
+
+    /// Without responses.
+    fn advance(
+        particles: &mut ClothParticles,
+        springs: &Springs,
+        step: TickStep,
+        pins: &[PinMotion],
+    ) {
+        Solver::new(springs, particles).advance(particles, step, pins, |_, _| false);
+    }
 
     fn cloth(material: &ClothMaterial, pins: &Pins) -> (ClothParticles, Springs) {
         let grid = Cloth::new(6, 5, 0.1).grid(Vec3::ONE).expect("a sound grid");
@@ -149,7 +234,7 @@ mod tests {
             ..Default::default()
         };
         for _ in 0..64 {
-            advance(&mut particles, &springs, step, &[], |_, _| {});
+            advance(&mut particles, &springs, step, &[]);
         }
         let (time, dt, substeps) = (1.0, 1.0 / 1280.0, 1280.0);
         let expected = 0.5 * 9.81 * time * (time + dt);
@@ -176,7 +261,7 @@ mod tests {
                 ..Default::default()
             };
             for _ in 0..64 {
-                advance(&mut particles, &springs, step, &[], |_, _| {});
+                advance(&mut particles, &springs, step, &[]);
             }
             let velocity = particles.velocity(3).expect("it exists").x;
             let expected = 0.98_f32.powi(60);
@@ -210,13 +295,7 @@ mod tests {
         };
         let before = centre(&particles);
         for _ in 0..64 {
-            advance(
-                &mut particles,
-                &springs,
-                TickStep::default(),
-                &[],
-                |_, _| {},
-            );
+            advance(&mut particles, &springs, TickStep::default(), &[]);
         }
         let drift = centre(&particles).distance(before);
         assert!(drift < 2e-5, "{drift}");
@@ -234,7 +313,7 @@ mod tests {
             ..Default::default()
         };
         for _ in 0..64 {
-            advance(&mut particles, &springs, step, &[], |_, _| {});
+            advance(&mut particles, &springs, step, &[]);
         }
         assert_eq!(particles.positions().take(6).collect::<Vec<_>>(), before);
 
@@ -244,15 +323,11 @@ mod tests {
             to: before[2] + Vec3::Z,
         };
         let mut path = Vec::new();
-        advance(
-            &mut particles,
-            &springs,
-            step,
-            &[motion],
-            |particles, substep| {
-                path.push((substep.end(), particles.position(2).expect("it exists").z));
-            },
-        );
+        let mut solver = Solver::new(&springs, &particles);
+        solver.advance(&mut particles, step, &[motion], |particles, substep| {
+            path.push((substep.end(), particles.position(2).expect("it exists").z));
+            false
+        });
         assert_eq!(path.len(), 20);
         assert!(
             path.iter().all(|(end, z)| (end - z).abs() < 1e-6),
@@ -280,7 +355,7 @@ mod tests {
                 ..Default::default()
             };
             for _ in 0..64 {
-                advance(&mut particles, &springs, step, &[], |_, _| {});
+                advance(&mut particles, &springs, step, &[]);
             }
             assert_eq!(particles.validate(), Ok(()), "{seconds} s a tick");
         }

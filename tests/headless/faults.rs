@@ -129,14 +129,8 @@ fn a_material_that_cannot_be() {
 fn settings_that_cannot_be() {
     let good = ClothSettings::default();
     for settings in [
-        ClothSettings {
-            substeps: 0,
-            ..good
-        },
-        ClothSettings {
-            substeps: u32::MAX,
-            ..good
-        },
+        ClothSettings::substeps(0),
+        ClothSettings::substeps(u32::MAX),
         ClothSettings {
             particle_radius: -0.1,
             ..good

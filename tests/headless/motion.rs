@@ -49,10 +49,7 @@ fn a_hanging_cloth_has_the_stretch_that_its_compliance_gives() {
             damping: 0.05,
             ..COLUMNS_ALONE
         };
-        let settings = ClothSettings {
-            substeps: 40,
-            ..default()
-        };
+        let settings = ClothSettings::substeps(40);
         let entity = app.world_mut().spawn((cloth, material, settings)).id();
         tick(&mut app, 64 * 12);
         let particles = particles(&app, entity);
@@ -219,7 +216,9 @@ fn a_change_of_substeps_keeps_the_speed() {
     let cloth = (Cloth::default(), Pins::none(), undamped);
     let cloth = app.world_mut().spawn(cloth).id();
     for (second, substeps) in [(0.5, 20), (1.0, 3), (1.5, 7)] {
-        change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = substeps);
+        change::<ClothSettings>(&mut app, cloth, |settings| {
+            settings.precision = Precision::Substeps(substeps)
+        });
         tick(&mut app, 32);
         let speed = -particles(&app, cloth).velocity(9).expect("a particle").y;
         let expected = GRAVITY * second;
@@ -244,14 +243,16 @@ fn huge_and_changing_steps_are_survived() {
             .resource_mut::<Time<Fixed>>()
             .set_timestep_seconds(seconds);
         for substeps in [1, 20, 3] {
-            change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = substeps);
+            change::<ClothSettings>(&mut app, cloth, |settings| {
+                settings.precision = Precision::Substeps(substeps)
+            });
             (0..20).for_each(|_| app.update());
             let particles = particles(&app, cloth);
             assert_eq!(particles.validate(), Ok(()));
             assert!(app.world().get::<ClothFault>(cloth).is_none());
         }
     }
-    change::<ClothSettings>(&mut app, cloth, |settings| settings.substeps = 20);
+    change::<ClothSettings>(&mut app, cloth, |settings| *settings = default());
     tick(&mut app, 64 * 20);
     let stretch = app
         .world()

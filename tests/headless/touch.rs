@@ -6,7 +6,7 @@ use bevy_drape::{
     hierarchy::NodeState,
     plugin::{ClothSearch, ClothTopology},
     prelude::*,
-    solver::{TickStep, advance},
+    solver::{Solver, Tethers, TickStep},
 };
 
 use crate::support::*;
@@ -282,34 +282,33 @@ fn the_candidates_are_complete() {
             };
             let everything: Vec<u32> = (0..256).collect();
             let springs = app.world().get::<ClothTopology>(cloth).expect("a topology");
-            advance(
-                &mut by_hand,
-                springs.springs(),
-                step,
-                &[],
-                |particles, substep| {
-                    for (from, to) in from.into_iter().zip(to) {
-                        let ball = MovingBall {
-                            from,
-                            to,
-                            turn: Vec3::ZERO,
-                            radius: 0.4,
-                        };
-                        let mut touched = [false; 256];
-                        let friction = material.friction;
-                        push_out(
-                            particles,
-                            &everything,
-                            &mut touched,
-                            &ball,
-                            0.01,
-                            friction,
-                            substep,
-                        );
-                        found += touched.iter().filter(|&&touched| touched).count();
-                    }
-                },
-            );
+            let mut solver = Solver::new(springs.springs(), &by_hand);
+            solver.set_tethers(Tethers::new(springs.grid(), &material, &by_hand, GRAVITY));
+            solver.advance(&mut by_hand, step, &[], |particles, substep| {
+                let mut deepest = 0.0_f32;
+                for (from, to) in from.into_iter().zip(to) {
+                    let ball = MovingBall {
+                        from,
+                        to,
+                        turn: Vec3::ZERO,
+                        radius: 0.4,
+                    };
+                    let mut touched = [false; 256];
+                    let friction = material.friction;
+                    let depth = push_out(
+                        particles,
+                        &everything,
+                        &mut touched,
+                        &ball,
+                        0.01,
+                        friction,
+                        substep,
+                    );
+                    deepest = deepest.max(depth);
+                    found += touched.iter().filter(|&&touched| touched).count();
+                }
+                deepest > 0.0
+            });
             let stats = app.world().get::<ClothStats>(cloth).expect("figures");
             contacts += stats.contacts;
             assert_eq!(particles(&app, cloth), &by_hand, "{speed} m/s");

@@ -1,0 +1,207 @@
+//! How particles lie in memory: in blocks of eight lanes, so that one instruction works on eight springs.
+//!
+//! Each row of the grid is cut into eight strips side by side, each `strip` columns long; lane `l` of a row's
+//! block `j` is the particle in column `l × strip + j`. So the neighbours of a whole block are whole blocks:
+//!
+//! ```text
+//! columns of a row, strip = 4:   0 1 2 3 | 4 5 6 7 | 8 9 10 11 | …
+//! block 0 = columns 0 4 8 …      block 1 = columns 1 5 9 …      block 2 = …
+//! ```
+//!
+//! The last block of a row has its right neighbours in the first one, a lane further on: a view of that block
+//! which begins one number later. What its last lane then sees is masked by an infinite compliance.
+
+use bevy::math::Vec3;
+
+/// Particles in a block.
+pub(crate) const LANES: usize = 8;
+
+/// One number for each particle of a block.
+pub(crate) type Lanes = [f32; LANES];
+
+/// Where each quantity begins in a block: position (m), inverse mass (1/kg), displacement (m).
+pub(crate) const X: usize = 0;
+pub(crate) const Y: usize = LANES;
+pub(crate) const Z: usize = 2 * LANES;
+pub(crate) const W: usize = 3 * LANES;
+pub(crate) const DX: usize = 4 * LANES;
+pub(crate) const DY: usize = 5 * LANES;
+pub(crate) const DZ: usize = 6 * LANES;
+/// Where the next one would.
+const END: usize = 7 * LANES;
+
+/// The numbers of eight particles, each quantity's together.
+pub(crate) type View = [f32; END];
+
+/// Eight particles: 256 bytes, four cache lines. The last eight numbers are room for a view to be shifted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(64))]
+pub(crate) struct Block([f32; 8 * LANES]);
+
+impl Block {
+    /// No particles: at the origin, and nothing moves them.
+    pub const EMPTY: Self = Self([0.0; 8 * LANES]);
+
+    #[inline(always)]
+    pub fn view(&self) -> &View {
+        self.0.first_chunk().expect("56 of 64 numbers")
+    }
+
+    #[inline(always)]
+    pub fn view_mut(&mut self) -> &mut View {
+        self.0.first_chunk_mut().expect("56 of 64 numbers")
+    }
+
+    /// The view in which each lane holds its right neighbour's numbers. What the last lane holds is no particle.
+    #[inline(always)]
+    pub fn shifted(&self) -> &View {
+        self.0[1..].first_chunk().expect("56 of 63 numbers")
+    }
+
+    #[inline(always)]
+    pub fn shifted_mut(&mut self) -> &mut View {
+        self.0[1..].first_chunk_mut().expect("56 of 63 numbers")
+    }
+
+    pub fn position(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.0[X + lane], self.0[Y + lane], self.0[Z + lane])
+    }
+
+    pub fn displacement(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.0[DX + lane], self.0[DY + lane], self.0[DZ + lane])
+    }
+
+    pub fn inverse_mass(&self, lane: usize) -> f32 {
+        self.0[W + lane]
+    }
+
+    pub fn set_position(&mut self, lane: usize, position: Vec3) {
+        [self.0[X + lane], self.0[Y + lane], self.0[Z + lane]] = position.to_array();
+    }
+
+    pub fn set_displacement(&mut self, lane: usize, displacement: Vec3) {
+        [self.0[DX + lane], self.0[DY + lane], self.0[DZ + lane]] = displacement.to_array();
+    }
+
+    pub fn set_inverse_mass(&mut self, lane: usize, inverse_mass: f32) {
+        self.0[W + lane] = inverse_mass;
+    }
+}
+
+/// Which block and lane each particle of a grid is in.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Layout {
+    pub columns: u32,
+    pub rows: u32,
+    /// Columns in a strip, and so blocks in a row: even, so that horizontal springs have two colours, and at
+    /// least four, so that no bend spring leads back into its own block.
+    pub strip: u32,
+}
+
+/// A particle's block and lane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Slot {
+    pub block: usize,
+    pub lane: usize,
+}
+
+impl Layout {
+    pub fn new(columns: u32, rows: u32) -> Self {
+        let strip = columns.div_ceil(LANES as u32).next_multiple_of(2).max(4);
+        Self {
+            columns,
+            rows,
+            strip,
+        }
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.strip as usize * self.rows as usize
+    }
+
+    pub fn slot(&self, row: u32, column: u32) -> Slot {
+        Slot {
+            block: row as usize * self.strip as usize + (column % self.strip) as usize,
+            lane: (column / self.strip) as usize,
+        }
+    }
+
+    /// The slot of a particle's index.
+    pub fn slot_of(&self, index: usize) -> Slot {
+        let index = index as u32;
+        self.slot(index / self.columns, index % self.columns)
+    }
+
+    /// The column that a lane of a row's block stands for, if there is such a one.
+    pub fn column(&self, block: usize, lane: usize) -> Option<u32> {
+        let column = lane as u32 * self.strip + block as u32;
+        (column < self.columns).then_some(column)
+    }
+
+    /// All slots in the order of the particles' indices.
+    pub fn slots(&self) -> impl ExactSizeIterator<Item = Slot> + use<> {
+        let layout = *self;
+        let mut next = (0, 0, 0);
+        (0..self.len()).map(move |_| {
+            let (row, lane, block) = next;
+            let slot = Slot {
+                block: row * layout.strip as usize + block,
+                lane,
+            };
+            next = if layout.column(block, lane) == Some(layout.columns - 1) {
+                (row + 1, 0, 0)
+            } else if block + 1 == layout.strip as usize {
+                (row, lane + 1, 0)
+            } else {
+                (row, lane, block + 1)
+            };
+            slot
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_particle_has_a_slot_of_its_own() {
+        for columns in [1, 2, 7, 8, 9, 16, 31, 32, 33, 48, 64, 65, 100] {
+            let layout = Layout::new(columns, 3);
+            let mut seen = vec![[false; LANES]; layout.blocks()];
+            for (index, slot) in layout.slots().enumerate() {
+                assert_eq!(slot, layout.slot_of(index), "{columns} columns");
+                let column = layout.column(slot.block % layout.strip as usize, slot.lane);
+                assert_eq!(column, Some(index as u32 % columns));
+                assert!(!std::mem::replace(&mut seen[slot.block][slot.lane], true));
+            }
+            assert_eq!(layout.slots().len(), layout.len());
+        }
+    }
+
+    #[test]
+    fn right_neighbours_are_in_the_next_block_or_a_lane_on_in_the_first() {
+        let layout = Layout::new(37, 1);
+        let mut blocks = vec![Block::EMPTY; layout.blocks()];
+        for (index, slot) in layout.slots().enumerate() {
+            blocks[slot.block].set_position(slot.lane, Vec3::splat(index as f32));
+        }
+        let last = layout.strip as usize - 1;
+        for column in 0..36 {
+            let slot = layout.slot(0, column);
+            let right = if slot.block == last {
+                blocks[0].shifted()
+            } else {
+                blocks[slot.block + 1].view()
+            };
+            assert_eq!(right[X + slot.lane], (column + 1) as f32);
+            assert_eq!(right[Z + slot.lane], (column + 1) as f32);
+        }
+    }
+}

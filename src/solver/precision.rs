@@ -1,0 +1,192 @@
+//! How many sub-steps a tick is cut into: a fixed number, or as few as hold a tolerance.
+
+use bevy::reflect::Reflect;
+
+use super::Stretch;
+
+/// More would be a slip of the finger, and would hang the game.
+pub(super) const MOST_SUBSTEPS: u32 = 10_000;
+
+/// The part of the tolerance that the controller aims at: what is left is for what it can't foresee.
+const AIM: f32 = 0.75;
+
+/// The part of its sub-steps that a cloth keeps at least from tick to tick (half of them after 23 ticks), so
+/// that stiffness never changes at one blow.
+const SLOWEST: f32 = 0.97;
+
+/// Fewer than this, and the first tick in which something happens would be repeated again and again.
+const FEWEST: f32 = 4.0;
+
+/// How exactly a cloth is simulated. Cost grows in proportion to the sub-steps, and stretch shrinks about with
+/// their square: a sub-step's sweep is as stiff as mass/Δt².
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+pub enum Precision {
+    /// So many sub-steps a tick, from 1 to 10,000.
+    Substeps(u32),
+    /// As few as keep the largest stretch of a structural spring within a tolerance. A tick that ends beyond it is
+    /// done again with more, before anyone sees it.
+    Tolerance {
+        /// Largest length over rest length, − 1, that is allowed: 0.01 is one per cent. Positive.
+        stretch: f32,
+        /// No tick has more than so many, from 1 to 10,000; where they don't suffice, that is logged once.
+        most_substeps: u32,
+    },
+}
+
+impl Default for Precision {
+    fn default() -> Self {
+        Self::Substeps(20)
+    }
+}
+
+/// Chooses the sub-steps of each tick.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub struct Control {
+    /// For the coming tick; a fraction, so that it can go down slowly. 0 before the first.
+    substeps: f32,
+    /// The stretch a tick ago.
+    before: f32,
+    /// Whether the cap stopped it in the last tick.
+    is_capped: bool,
+}
+
+impl Control {
+    /// Sub-steps for the coming tick.
+    pub fn substeps(&mut self, precision: Precision) -> u32 {
+        match precision {
+            Precision::Substeps(substeps) => {
+                self.is_capped = false;
+                self.substeps = substeps as f32;
+                substeps
+            }
+            Precision::Tolerance { most_substeps, .. } => {
+                let fewest = FEWEST.min(most_substeps as f32);
+                self.substeps = self.substeps.clamp(fewest, most_substeps as f32);
+                self.substeps.ceil() as u32
+            }
+        }
+    }
+
+    /// Takes the stretch that the tick ended with. Returns with how many sub-steps to do it again, if it has to
+    /// be.
+    pub fn observe(&mut self, precision: Precision, stretch: Stretch) -> Option<u32> {
+        let Precision::Tolerance {
+            stretch: tolerance,
+            most_substeps,
+        } = precision
+        else {
+            return None;
+        };
+        let most = most_substeps as f32;
+        let found = stretch.structural;
+        // Stretch shrinks with the square of the sub-steps.
+        let wanted = |stretch: f32| self.substeps * (stretch / (AIM * tolerance)).sqrt();
+        let fails = found > tolerance;
+        self.is_capped = fails && self.substeps >= most;
+        if fails && !self.is_capped {
+            self.substeps = wanted(found).clamp(self.substeps * 1.25, most);
+            return Some(self.substeps.ceil() as u32);
+        }
+        // What it grew by in this tick it may grow by in the next.
+        let foreseen = found + (found - self.before).max(0.0);
+        self.substeps = wanted(foreseen).clamp(self.substeps * SLOWEST, self.substeps * 2.0);
+        self.before = found;
+        None
+    }
+
+    /// Whether the last tick ended beyond the tolerance for want of sub-steps.
+    pub fn is_capped(&self) -> bool {
+        self.is_capped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERCENT: Precision = Precision::Tolerance {
+        stretch: 0.01,
+        most_substeps: 100,
+    };
+
+    /// Runs a cloth whose stretch is `load` ⁄ sub-steps². Returns the sub-steps of each tick, and how many were
+    /// done in vain.
+    fn run(control: &mut Control, load: impl Fn(u32) -> f32, ticks: u32) -> (Vec<u32>, u32) {
+        let mut vain = 0;
+        let mut taken = Vec::new();
+        for tick in 0..ticks {
+            let mut substeps = control.substeps(PERCENT);
+            loop {
+                let structural = load(tick) / (substeps * substeps) as f32;
+                let stretch = Stretch {
+                    structural,
+                    bound: structural,
+                };
+                match control.observe(PERCENT, stretch) {
+                    Some(more) => {
+                        vain += substeps;
+                        assert!(more > substeps && more <= 100);
+                        substeps = more;
+                    }
+                    None => break,
+                }
+            }
+            assert!(load(tick) / ((substeps * substeps) as f32) <= 0.01 || control.is_capped());
+            taken.push(substeps);
+        }
+        (taken, vain)
+    }
+
+    #[test]
+    fn settles_on_what_the_load_asks_for_and_stays() {
+        // 1 % at 20 sub-steps, 0.75 % at 23.1.
+        let (taken, vain) = run(&mut Control::default(), |_| 4.0, 60);
+        assert!(taken[40..].iter().all(|&n| n == 24), "{taken:?}");
+        assert!(vain <= 4 + 24, "{vain}");
+    }
+
+    #[test]
+    fn follows_a_load_up_without_failing_and_down_without_haste() {
+        // Up fourfold within a second, then nothing.
+        let load = |tick: u32| match tick {
+            0..64 => 4.0,
+            64..128 => 4.0 + 12.0 * (tick - 64) as f32 / 64.0,
+            _ => 0.0,
+        };
+        let mut control = Control::default();
+        let (taken, _) = run(&mut control, load, 64);
+        assert_eq!(taken[63], 24);
+        let mut control_on = control;
+        let (taken, vain) = run(&mut control_on, |tick| load(tick + 64), 64);
+        assert_eq!(vain, 0, "it was ahead all the time: {taken:?}");
+        let (taken, _) = run(&mut control_on, |_| 0.0, 120);
+        assert!(
+            taken
+                .windows(2)
+                .all(|pair| pair[1] <= pair[0] && pair[0] - pair[1] <= 2)
+        );
+        assert_eq!(taken[119], 4);
+    }
+
+    #[test]
+    fn stops_at_the_cap_and_says_so() {
+        let mut control = Control::default();
+        let (taken, _) = run(&mut control, |_| 400.0, 10);
+        assert!(control.is_capped());
+        assert_eq!(taken[9], 100);
+        let (_, _) = run(&mut control, |_| 1.0, 10);
+        assert!(!control.is_capped());
+    }
+
+    #[test]
+    fn a_fixed_number_is_taken_as_it_is() {
+        let mut control = Control::default();
+        assert_eq!(control.substeps(Precision::Substeps(7)), 7);
+        let stretched = Stretch {
+            structural: 9.0,
+            bound: 9.0,
+        };
+        assert_eq!(control.observe(Precision::Substeps(7), stretched), None);
+        assert_eq!(control.substeps(Precision::Substeps(7)), 7);
+    }
+}

@@ -1,0 +1,268 @@
+//! Tethers: no particle may be farther from a pin than the cloth between them is long.
+//!
+//! A sweep is as stiff as mass/Δt², so a spring that holds half of the cloth stretches far while all others are
+//! fine. A unilateral constraint from each particle straight to a pin, which nothing moves, has no such trouble
+//! (long range attachments, Kim, Chentanez and Müller 2012). It takes away energy or none: it acts only against
+//! what is beyond its length, and a pin does not move.
+
+use bevy::math::Vec3;
+
+use super::kernel;
+use crate::cloth::{Block, ClothGrid, ClothMaterial, ClothParticles, LANES, Lanes, Layout, Slot};
+
+/// Up to so many pins each particle is tethered to all of them, with more to the nearest.
+const FEW_PINS: usize = 4;
+
+/// Tethers give way up to so many times the strain that the cloth's own weight could cause at its pins, so that
+/// they leave to the springs what is elastic: swings and colliders pull harder than weight.
+const MARGIN: f32 = 4.0;
+
+/// The length of what has none.
+const ENDLESS: f32 = f32::MAX;
+
+/// Tethers of a cloth, and what they were made for.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub struct Tethers {
+    pins: Vec<Slot>,
+    layers: Vec<Layer>,
+}
+
+/// One tether for each particle.
+#[derive(Debug, Clone, PartialEq)]
+struct Layer {
+    /// Index of the pin, of each particle or the same for all.
+    pins: LayerPins,
+    /// Squared length (m²), block by block.
+    length_square: Vec<Lanes>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum LayerPins {
+    Shared(usize),
+    Nearest(Vec<[u32; LANES]>),
+}
+
+/// Where the pins are in a sub-step.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(super) struct Anchors {
+    position: Vec<Vec3>,
+}
+
+impl Tethers {
+    /// Tethers from the particles of `grid` to those of them that are pinned. Each is as long as the straight line
+    /// between them at rest, times what the material gives under four times the weight of the whole cloth hung
+    /// by its pins, under an `acceleration` (m/s²); where threads can shear, up to the way along the threads.
+    pub fn new(
+        grid: &ClothGrid,
+        material: &ClothMaterial,
+        particles: &ClothParticles,
+        acceleration: f32,
+    ) -> Self {
+        let layout = particles.layout();
+        let pinned: Vec<(u32, u32, Slot)> = grid
+            .cells()
+            .zip(layout.slots())
+            .filter(|(_, slot)| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0)
+            .map(|((row, column), slot)| (row, column, slot))
+            .collect();
+        let spacing = grid.spacing();
+        let area = grid
+            .cells()
+            .map(|(r, c)| grid.tributary_area(r, c))
+            .sum::<f32>();
+        // N/m along what the pins hold.
+        let width = pinned.len() as f32 * spacing.min_element();
+        let tension = MARGIN * material.areal_density * area * acceleration / width;
+        let length = |(row, column): (u32, u32), pin: &(u32, u32, Slot)| {
+            let across = row_distance(column, pin.1) * spacing.x;
+            let down = row_distance(row, pin.0) * spacing.y;
+            let square = across * across + down * down;
+            if square == 0.0 {
+                return ENDLESS;
+            }
+            let straight = square.sqrt();
+            let bias = 2.0 * across * down / square;
+            let stretch = 1.0 + material.stretch_compliance * tension;
+            let sheared = straight * (stretch + material.shear_compliance * tension * bias * bias);
+            let threads = (across + down) * stretch;
+            // Along a thread there is nothing to shear, and infinite × 0 is no number.
+            let longest = if bias == 0.0 {
+                straight * stretch
+            } else {
+                sheared.min(threads)
+            };
+            (longest * longest).min(ENDLESS)
+        };
+        let layer = |choose: &dyn Fn((u32, u32)) -> usize, pins: LayerPins| Layer {
+            length_square: by_block(grid, layout, ENDLESS, |cell| {
+                length(cell, &pinned[choose(cell)])
+            }),
+            pins,
+        };
+        let layers = if pinned.is_empty() || pinned.len() == grid.len() {
+            Vec::new()
+        } else if pinned.len() <= FEW_PINS {
+            let one = |pin: usize| layer(&|_| pin, LayerPins::Shared(pin));
+            (0..pinned.len()).map(one).collect()
+        } else {
+            let nearest = nearest_pins(grid, &pinned);
+            let index = |(row, column)| nearest[grid.index(row, column) as usize] as usize;
+            let pins = by_block(grid, layout, 0, |cell| index(cell) as u32);
+            vec![layer(&index, LayerPins::Nearest(pins))]
+        };
+        Self {
+            pins: pinned.iter().map(|&(.., slot)| slot).collect(),
+            layers,
+        }
+    }
+
+    /// Whether the same particles are pinned as when the tethers were made.
+    pub(crate) fn are_of(&self, particles: &ClothParticles) -> bool {
+        let mut known = self.pins.iter();
+        let pinned = particles.layout().slots();
+        let pinned =
+            pinned.filter(|slot| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0);
+        pinned.eq(known.by_ref().copied())
+    }
+
+    /// How far the farthest particle is beyond its tether, as a part of it.
+    #[cfg(test)]
+    pub(super) fn largest_excess(&self, particles: &ClothParticles) -> f32 {
+        let mut largest = 0.0_f32;
+        for layer in &self.layers {
+            for (index, lengths) in layer.length_square.iter().enumerate() {
+                for (lane, length) in lengths.iter().enumerate() {
+                    let pin = self.pins[match &layer.pins {
+                        LayerPins::Shared(pin) => *pin,
+                        LayerPins::Nearest(pins) => pins[index][lane] as usize,
+                    }];
+                    let anchor = particles.blocks()[pin.block].position(pin.lane);
+                    let position = particles.blocks()[index].position(lane);
+                    let ratio = position.distance_squared(anchor) / length;
+                    largest = largest.max(ratio.sqrt() - 1.0);
+                }
+            }
+        }
+        largest
+    }
+
+    /// Takes over where the pins are at the end of this sub-step.
+    pub(super) fn locate(&self, blocks: &[Block], anchors: &mut Anchors) {
+        let position = |slot: &Slot| {
+            let block = &blocks[slot.block];
+            block.position(slot.lane) + block.displacement(slot.lane)
+        };
+        anchors.position.clear();
+        if !self.layers.is_empty() {
+            anchors.position.extend(self.pins.iter().map(position));
+        }
+    }
+
+    /// Pulls particles back. `blocks` are those from number `first` on.
+    #[inline(always)]
+    pub(super) fn pull(&self, anchors: &Anchors, blocks: &mut [Block], first: usize) {
+        for layer in &self.layers {
+            let lengths = &layer.length_square[first..first + blocks.len()];
+            match &layer.pins {
+                LayerPins::Shared(pin) => {
+                    let anchor = anchors.position[*pin]
+                        .to_array()
+                        .map(|value| [value; LANES]);
+                    let [x, y, z] = &anchor;
+                    for (block, length) in blocks.iter_mut().zip(lengths) {
+                        kernel::tether(block.view_mut(), [x, y, z], length);
+                    }
+                }
+                LayerPins::Nearest(pins) => {
+                    let pins = &pins[first..first + blocks.len()];
+                    for ((block, length), pins) in blocks.iter_mut().zip(lengths).zip(pins) {
+                        let position = pins.map(|pin| anchors.position[pin as usize]);
+                        let x = position.map(|position| position.x);
+                        let y = position.map(|position| position.y);
+                        let z = position.map(|position| position.z);
+                        kernel::tether(block.view_mut(), [&x, &y, &z], length);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn row_distance(a: u32, b: u32) -> f32 {
+    a.abs_diff(b) as f32
+}
+
+/// A value for each particle, laid out as the particles are.
+fn by_block<T: Copy>(
+    grid: &ClothGrid,
+    layout: Layout,
+    none: T,
+    value: impl Fn((u32, u32)) -> T,
+) -> Vec<[T; LANES]> {
+    let mut values = vec![[none; LANES]; layout.blocks()];
+    for (cell, slot) in grid.cells().zip(layout.slots()) {
+        values[slot.block][slot.lane] = value(cell);
+    }
+    values
+}
+
+/// For each particle the index of the nearest pin at rest: from neighbour to neighbour, twice over the grid, each
+/// taking the nearest of what its neighbours know (8SSED, Danielsson 1980).
+fn nearest_pins(grid: &ClothGrid, pinned: &[(u32, u32, Slot)]) -> Vec<u32> {
+    const UNKNOWN: u32 = u32::MAX;
+    let mut nearest = vec![UNKNOWN; grid.len()];
+    for (pin, &(row, column, _)) in pinned.iter().enumerate() {
+        nearest[grid.index(row, column) as usize] = pin as u32;
+    }
+    let spacing = grid.spacing();
+    let distance = |row: u32, column: u32, pin: u32| {
+        let Some(&(pin_row, pin_column, _)) = pinned.get(pin as usize) else {
+            return f32::INFINITY;
+        };
+        let across = row_distance(column, pin_column) * spacing.x;
+        let down = row_distance(row, pin_row) * spacing.y;
+        across * across + down * down
+    };
+    let neighbours: [(i32, i32); 8] = [
+        (-1, -1),
+        (-1, 0),
+        (-1, 1),
+        (0, -1),
+        (0, 1),
+        (1, -1),
+        (1, 0),
+        (1, 1),
+    ];
+    let mut visit = |row: u32, column: u32| {
+        let index = grid.index(row, column) as usize;
+        for (down, across) in neighbours {
+            let (Some(r), Some(c)) = (
+                row.checked_add_signed(down),
+                column.checked_add_signed(across),
+            ) else {
+                continue;
+            };
+            if r < grid.rows() && c < grid.columns() {
+                let known = nearest[grid.index(r, c) as usize];
+                if distance(row, column, known) < distance(row, column, nearest[index]) {
+                    nearest[index] = known;
+                }
+            }
+        }
+    };
+    for _ in 0..2 {
+        for row in 0..grid.rows() {
+            (0..grid.columns()).for_each(|column| visit(row, column));
+            (0..grid.columns())
+                .rev()
+                .for_each(|column| visit(row, column));
+        }
+        for row in (0..grid.rows()).rev() {
+            (0..grid.columns()).for_each(|column| visit(row, column));
+            (0..grid.columns())
+                .rev()
+                .for_each(|column| visit(row, column));
+        }
+    }
+    nearest
+}

@@ -1,0 +1,7 @@
+//! The solver against what is true: closed forms, conservation, a converged run in f64. `-- --nocapture` prints
+//! the figures.
+
+mod catenary;
+mod energy;
+mod precision;
+mod scenes;
