@@ -9,6 +9,9 @@
 //! spring at 2.8 GHz. Memory is no limit: a sub-step reads and writes each block of 256 bytes once, 32 bytes a
 //! particle, since all stages follow each other down the rows while these are in the first cache.
 
+use multiversion::{inherit_target, multiversion};
+
+use super::run::Run;
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
 
 /// Moves the ends of eight springs towards their rest lengths, in inverse proportion to their masses: the XPBD
@@ -22,12 +25,7 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
 /// the part ε²/4 of the correction (6·10⁻⁴ at 5 %), never too strong in a stretched spring, and finite where
 /// the ends coincide.
 #[inline(always)]
-pub(super) fn relax(
-    a: &mut View,
-    b: &mut View,
-    rest_square: impl Fn(usize) -> f32,
-    softness: &Lanes,
-) {
+fn relax(a: &mut View, b: &mut View, rest_square: impl Fn(usize) -> f32, softness: &Lanes) {
     for l in 0..LANES {
         let x = (b[X + l] - a[X + l]) + (b[DX + l] - a[DX + l]);
         let y = (b[Y + l] - a[Y + l]) + (b[DY + l] - a[DY + l]);
@@ -46,10 +44,21 @@ pub(super) fn relax(
     }
 }
 
+/// Moves the ends of the eight springs between two blocks.
+#[inline(always)]
+fn springs(a: &mut Block, b: &mut Block, rest_square: &Lanes, softness: &Lanes) {
+    relax(
+        a.view_mut(),
+        b.view_mut(),
+        |lane| rest_square[lane],
+        softness,
+    );
+}
+
 /// The paper's equation (2), `x' = x + (x − x_prev)(1 − D) + a Δt²`, but for adding the displacement to the
 /// position: [`commit`]. Pinned particles keep the displacement that they were given.
 #[inline(always)]
-pub(super) fn integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]) {
+fn integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]) {
     for block in row {
         let view = block.view_mut();
         for (at, acceleration) in [DX, DY, DZ].into_iter().zip(acceleration_dt2) {
@@ -62,12 +71,19 @@ pub(super) fn integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]
                 };
             }
         }
+        one_block_at_a_time();
     }
+}
+
+/// Keeps the compiler from gathering the lanes of several blocks: a block's own are side by side.
+#[inline(always)]
+fn one_block_at_a_time() {
+    std::hint::black_box(());
 }
 
 /// Ends a sub-step: displacements become positions.
 #[inline(always)]
-pub(super) fn commit(row: &mut [Block]) {
+fn commit(row: &mut [Block]) {
     for block in row {
         let view = block.view_mut();
         for at in X..W {
@@ -76,10 +92,80 @@ pub(super) fn commit(row: &mut [Block]) {
     }
 }
 
-/// Pulls each particle back that is farther from `anchor` than its tether is long: a unilateral constraint
+/// A row's horizontal springs: from even blocks, from odd ones, and from the last block into the first.
+#[inline(always)]
+fn across(row: &mut [Block], run: &Run) {
+    let rest = |_| run.rest_square;
+    for from in 0..2 {
+        let pairs = row[from..].chunks_exact_mut(2);
+        for (pair, softness) in pairs.zip(run.softness[from..].iter().step_by(2)) {
+            if let [a, b] = pair {
+                relax(a.view_mut(), b.view_mut(), rest, softness);
+            }
+        }
+    }
+    if let ([first, .., last], Some(softness)) = (row, run.softness.last()) {
+        relax(last.view_mut(), first.shifted_mut(), rest, softness);
+    }
+}
+
+/// A row's horizontal bend springs: of every four blocks from the first two, then from the last two, and from the
+/// row's last two blocks into its first two.
+#[inline(always)]
+fn bend_across(row: &mut [Block], run: &Run) {
+    let rest = |_| run.rest_square;
+    let strip = row.len();
+    for from in [0, 2] {
+        let groups = row[from..].chunks_exact_mut(4);
+        for (group, softness) in groups.zip(run.softness[from..].chunks(4)) {
+            if let ([a, b, c, d], [soft_a, soft_b, ..]) = (group, softness) {
+                relax(a.view_mut(), c.view_mut(), rest, soft_a);
+                relax(b.view_mut(), d.view_mut(), rest, soft_b);
+            }
+        }
+    }
+    if let ([a, b, .., c, d], Some([soft_c, soft_d])) = (row, run.softness[..strip].last_chunk()) {
+        relax(c.view_mut(), a.shifted_mut(), rest, soft_c);
+        relax(d.view_mut(), b.shifted_mut(), rest, soft_d);
+    }
+}
+
+/// Vertical springs, or vertical bend springs, between two rows.
+#[inline(always)]
+fn down(upper: &mut [Block], lower: &mut [Block], run: &Run) {
+    let rest = |_| run.rest_square;
+    for ((a, b), softness) in upper.iter_mut().zip(lower).zip(&run.softness) {
+        relax(a.view_mut(), b.view_mut(), rest, softness);
+    }
+}
+
+/// From each column of one row to the next column of the other.
+#[inline(always)]
+fn diagonal(left: &mut [Block], right: &mut [Block], run: &Run) {
+    let rest = |_| run.rest_square;
+    if let ([.., a], [b, ..], [.., softness]) = (&mut *left, &mut *right, &run.softness[..]) {
+        relax(a.view_mut(), b.shifted_mut(), rest, softness);
+    }
+    for ((a, b), softness) in left.iter_mut().zip(&mut right[1..]).zip(&run.softness) {
+        relax(a.view_mut(), b.view_mut(), rest, softness);
+    }
+}
+
+/// Pulls each particle back that is farther from its anchor than its tether is long: a unilateral constraint
 /// against a particle that nothing moves.
 #[inline(always)]
-pub(super) fn tether(view: &mut View, anchor: [&Lanes; 3], length_square: &Lanes) {
+fn tether(view: &mut View, anchor: &[Lanes; 3], length_square: &Lanes) {
+    let mut is_beyond = false;
+    for l in 0..LANES {
+        let x = (view[X + l] - anchor[0][l]) + view[DX + l];
+        let y = (view[Y + l] - anchor[1][l]) + view[DY + l];
+        let z = (view[Z + l] - anchor[2][l]) + view[DZ + l];
+        is_beyond |= x * x + y * y + z * z > length_square[l];
+    }
+    // Most of a cloth hangs slack.
+    if !is_beyond {
+        return;
+    }
     for l in 0..LANES {
         let x = (view[X + l] - anchor[0][l]) + view[DX + l];
         let y = (view[Y + l] - anchor[1][l]) + view[DY + l];
@@ -95,9 +181,32 @@ pub(super) fn tether(view: &mut View, anchor: [&Lanes; 3], length_square: &Lanes
     }
 }
 
+/// All particles of a row to one anchor.
+#[inline(always)]
+fn tether_to_one(row: &mut [Block], anchor: &[Lanes; 3], length_square: &[Lanes]) {
+    for (block, length_square) in row.iter_mut().zip(length_square) {
+        tether(block.view_mut(), anchor, length_square);
+        one_block_at_a_time();
+    }
+}
+
+/// A block's particles, each to an anchor of its own.
+#[inline(always)]
+fn tether_to_each(block: &mut Block, anchor: &[Lanes; 3], length_square: &Lanes) {
+    tether(block.view_mut(), anchor, length_square);
+}
+
+/// The largest squared lengths found (m²), lane by lane.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Longest {
+    pub across: Lanes,
+    pub down: Lanes,
+    pub diagonal: Lanes,
+}
+
 /// Raises `largest` to the squared lengths of eight springs, those of infinite softness left out.
 #[inline(always)]
-pub(super) fn measure(a: &View, b: &View, softness: &Lanes, largest: &mut Lanes) {
+fn measure(a: &View, b: &View, softness: &Lanes, largest: &mut Lanes) {
     for l in 0..LANES {
         let (x, y, z) = (
             b[X + l] - a[X + l],
@@ -108,4 +217,100 @@ pub(super) fn measure(a: &View, b: &View, softness: &Lanes, largest: &mut Lanes)
         let q = if softness[l] < f32::INFINITY { q } else { 0.0 };
         largest[l] = if q > largest[l] { q } else { largest[l] };
     }
+}
+
+/// Measures a row's horizontal springs.
+#[inline(always)]
+fn measure_within(row: &[Block], run: &Run, longest: &mut Longest) {
+    for (pair, softness) in row.windows(2).zip(&run.softness) {
+        measure(
+            pair[0].view(),
+            pair[1].view(),
+            softness,
+            &mut longest.across,
+        );
+    }
+    if let ([first, .., last], Some(softness)) = (row, run.softness.last()) {
+        measure(last.view(), first.shifted(), softness, &mut longest.across);
+    }
+}
+
+/// Measures the vertical springs between two rows.
+#[inline(always)]
+fn measure_down(upper: &[Block], lower: &[Block], run: &Run, longest: &mut Longest) {
+    for ((a, b), softness) in upper.iter().zip(lower).zip(&run.softness) {
+        measure(a.view(), b.view(), softness, &mut longest.down);
+    }
+}
+
+/// Measures the springs from each column of one row to the next column of the other.
+#[inline(always)]
+fn measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Longest) {
+    for ((a, b), softness) in left.iter().zip(&right[1..]).zip(&run.softness) {
+        measure(a.view(), b.view(), softness, &mut longest.diagonal);
+    }
+    if let (Some(a), Some(b), Some(softness)) = (left.last(), right.first(), run.softness.last()) {
+        measure(a.view(), b.shifted(), softness, &mut longest.diagonal);
+    }
+}
+
+/// Which instructions a sub-step may use. The results are the same to the last bit.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub enum Instructions {
+    /// The widest that the machine has: on x86-64 AVX2, found out as the program runs.
+    #[default]
+    Widest,
+    /// What every machine of the architecture has: on x86-64 SSE2.
+    Baseline,
+}
+
+impl Instructions {
+    pub(super) fn kernels(self) -> Kernels {
+        match self {
+            Self::Widest => widest(),
+            Self::Baseline => baseline(),
+        }
+    }
+}
+
+/// Makes the table of all row kernels, and both functions that fill it: each kernel is a function of its own, for
+/// one large one would be too much for the compiler to vectorise evenly.
+macro_rules! kernels {
+    ($($name:ident($($argument:ident: $kind:ty),*)),* $(,)?) => {
+        /// The arithmetic, compiled for one instruction set.
+        #[derive(Clone, Copy)]
+        pub(super) struct Kernels {
+            $(pub $name: fn($($kind),*),)*
+        }
+
+        #[multiversion(targets("x86_64+avx+avx2"))]
+        fn widest() -> Kernels {
+            $(
+                #[inherit_target]
+                fn $name($($argument: $kind),*) {
+                    super::kernel::$name($($argument),*);
+                }
+            )*
+            Kernels { $($name),* }
+        }
+
+        fn baseline() -> Kernels {
+            Kernels { $($name),* }
+        }
+    };
+}
+
+kernels! {
+    integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]),
+    commit(row: &mut [Block]),
+    springs(a: &mut Block, b: &mut Block, rest_square: &Lanes, softness: &Lanes),
+    across(row: &mut [Block], run: &Run),
+    bend_across(row: &mut [Block], run: &Run),
+    down(upper: &mut [Block], lower: &mut [Block], run: &Run),
+    diagonal(left: &mut [Block], right: &mut [Block], run: &Run),
+    tether_to_one(row: &mut [Block], anchor: &[Lanes; 3], length_square: &[Lanes]),
+    tether_to_each(block: &mut Block, anchor: &[Lanes; 3], length_square: &Lanes),
+    measure_within(row: &[Block], run: &Run, longest: &mut Longest),
+    measure_down(upper: &[Block], lower: &[Block], run: &Run, longest: &mut Longest),
+    measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Longest),
 }

@@ -3,10 +3,7 @@
 
 use std::ops::Range;
 
-use super::{
-    kernel::{commit, integrate, relax},
-    wave::{LEAST_SOFTNESS, Motion},
-};
+use super::{run::LEAST_SOFTNESS, wave::Motion};
 use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, Slot, Spring, SpringKind};
 
 /// Springs of one colour, at most eight.
@@ -67,9 +64,9 @@ impl ListSweep {
         }
     }
 
-    #[inline(always)]
-    pub(super) fn substep(&self, blocks: &mut [Block], motion: Motion) {
-        integrate(blocks, motion.kept, motion.acceleration_dt2);
+    pub fn substep(&self, blocks: &mut [Block], motion: &Motion) {
+        let kernels = motion.kernels;
+        (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
         for bundle in &self.bundles {
             let [mut a, mut b] = [Block::EMPTY; 2];
             let copy = |from: &Block, lane: usize, into: &mut Block, to: usize| {
@@ -81,15 +78,14 @@ impl ListSweep {
                 copy(&blocks[from.block], from.lane, &mut a, lane);
                 copy(&blocks[to.block], to.lane, &mut b, lane);
             }
-            let rest_square = |lane: usize| bundle.rest_square[lane];
-            relax(a.view_mut(), b.view_mut(), rest_square, &bundle.softness);
+            (kernels.springs)(&mut a, &mut b, &bundle.rest_square, &bundle.softness);
             for (lane, [from, to]) in bundle.ends.iter().enumerate().take(bundle.count) {
                 blocks[from.block].set_displacement(from.lane, a.displacement(lane));
                 blocks[to.block].set_displacement(to.lane, b.displacement(lane));
             }
         }
-        motion.tethers.pull(motion.anchors, blocks, 0);
-        commit(blocks);
+        motion.tethers.pull(motion.anchors, blocks, 0, kernels);
+        (kernels.commit)(blocks);
     }
 
     /// The largest length over rest length of structural springs, and of structural and shear springs.

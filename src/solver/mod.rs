@@ -4,13 +4,13 @@
 //! once over the springs, which as XPBD constraints hold their rest lengths (Macklin et al. 2016; small steps
 //! instead of many sweeps: Macklin et al. 2019). With one sweep a sub-step no multiplier needs storing.
 
-mod instructions;
 mod kernel;
 mod list;
 #[cfg(feature = "methods")]
 pub mod methods;
 mod precision;
 mod rest;
+mod run;
 mod settings;
 mod stretch;
 mod substep;
@@ -19,7 +19,7 @@ mod tests;
 mod tether;
 mod wave;
 
-pub use instructions::Instructions;
+pub use kernel::Instructions;
 pub use precision::{Control, Precision};
 pub use rest::Rest;
 pub use settings::ClothSettings;

@@ -7,8 +7,11 @@ use super::Stretch;
 /// More would be a slip of the finger, and would hang the game.
 pub(super) const MOST_SUBSTEPS: u32 = 10_000;
 
-/// The part of the tolerance that the controller aims at: what is left is for what it can't foresee.
+/// Parts of the tolerance: below the first the sub-steps become fewer, above the last more, and the one between is
+/// aimed at then. What is left is for what can't be foreseen, and in the band between nothing changes.
+const SLACK: f32 = 0.65;
 const AIM: f32 = 0.75;
+const TIGHT: f32 = 0.8;
 
 /// The part of its sub-steps that a cloth keeps at least from tick to tick (half of them after 23 ticks), so
 /// that stiffness never changes at one blow.
@@ -89,7 +92,11 @@ impl Control {
         }
         // What it grew by in this tick it may grow by in the next.
         let foreseen = found + (found - self.before).max(0.0);
-        self.substeps = wanted(foreseen).clamp(self.substeps * SLOWEST, self.substeps * 2.0);
+        if foreseen > TIGHT * tolerance {
+            self.substeps = wanted(foreseen).min(self.substeps * 2.0);
+        } else if foreseen < SLACK * tolerance {
+            self.substeps *= SLOWEST;
+        }
         self.before = found;
         None
     }
@@ -139,9 +146,10 @@ mod tests {
 
     #[test]
     fn settles_on_what_the_load_asks_for_and_stays() {
-        // 1 % at 20 sub-steps, 0.75 % at 23.1.
+        // 1 % at 20 sub-steps, 0.65 % at 24.8, 0.8 % at 22.4.
         let (taken, vain) = run(&mut Control::default(), |_| 4.0, 60);
-        assert!(taken[40..].iter().all(|&n| n == 24), "{taken:?}");
+        assert!(taken[40..].iter().all(|&n| n == taken[40]), "{taken:?}");
+        assert!((23..=25).contains(&taken[40]), "{taken:?}");
         assert!(vain <= 4 + 24, "{vain}");
     }
 
@@ -155,7 +163,7 @@ mod tests {
         };
         let mut control = Control::default();
         let (taken, _) = run(&mut control, load, 64);
-        assert_eq!(taken[63], 24);
+        assert!((23..=25).contains(&taken[63]), "{taken:?}");
         let mut control_on = control;
         let (taken, vain) = run(&mut control_on, |tick| load(tick + 64), 64);
         assert_eq!(vain, 0, "it was ahead all the time: {taken:?}");

@@ -4,9 +4,10 @@ use bevy::math::Vec3;
 
 use super::{
     Instructions, Stretch, Tethers,
+    kernel::Longest,
     list::ListSweep,
     tether::Anchors,
-    wave::{GridSweep, Longest, Motion},
+    wave::{GridSweep, Motion},
 };
 use crate::cloth::{ClothParticles, Springs, Weave};
 
@@ -150,6 +151,7 @@ impl Solver {
             Sweep::Grid(sweep) => sweep.soften(dt),
             Sweep::List(sweep) => sweep.soften(dt),
         }
+        let kernels = self.instructions.kernels();
         let mut longest = Longest::default();
         let mut is_measured = matches!(self.sweep, Sweep::Grid(_));
         for index in 0..count {
@@ -160,6 +162,7 @@ impl Solver {
             self.tethers.locate(particles.blocks(), &mut self.anchors);
             let is_last = index + 1 == count;
             let motion = Motion {
+                kernels: &kernels,
                 kept: (1.0 - step.damping).powf(dt / DAMPING_REFERENCE),
                 acceleration_dt2: (step.acceleration * (dt * dt)).to_array(),
                 tethers: &self.tethers,
@@ -169,9 +172,9 @@ impl Solver {
             let blocks = particles.blocks_mut();
             match &self.sweep {
                 Sweep::Grid(sweep) => {
-                    longest = sweep.substep(blocks, motion, self.bands, self.instructions);
+                    longest = sweep.substep(blocks, &motion, self.bands);
                 }
-                Sweep::List(sweep) => self.instructions.list(sweep, blocks, motion),
+                Sweep::List(sweep) => sweep.substep(blocks, &motion),
             }
             let has_moved = respond(particles, substep);
             is_measured &= !(is_last && has_moved);
@@ -193,7 +196,7 @@ impl Solver {
     pub fn measure(&self, particles: &ClothParticles) -> Stretch {
         let (structural, bound) = match &self.sweep {
             Sweep::Grid(sweep) => {
-                sweep.ratios(&self.instructions.measure(sweep, particles.blocks()))
+                sweep.ratios(&sweep.measure(particles.blocks(), &self.instructions.kernels()))
             }
             Sweep::List(sweep) => sweep.ratios(particles),
         };

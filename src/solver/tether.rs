@@ -7,7 +7,7 @@
 
 use bevy::math::Vec3;
 
-use super::kernel;
+use super::kernel::Kernels;
 use crate::cloth::{Block, ClothGrid, ClothMaterial, ClothParticles, LANES, Lanes, Layout, Slot};
 
 /// Up to so many pins each particle is tethered to all of them, with more to the nearest.
@@ -159,8 +159,13 @@ impl Tethers {
     }
 
     /// Pulls particles back. `blocks` are those from number `first` on.
-    #[inline(always)]
-    pub(super) fn pull(&self, anchors: &Anchors, blocks: &mut [Block], first: usize) {
+    pub(super) fn pull(
+        &self,
+        anchors: &Anchors,
+        blocks: &mut [Block],
+        first: usize,
+        kernels: &Kernels,
+    ) {
         for layer in &self.layers {
             let lengths = &layer.length_square[first..first + blocks.len()];
             match &layer.pins {
@@ -168,19 +173,18 @@ impl Tethers {
                     let anchor = anchors.position[*pin]
                         .to_array()
                         .map(|value| [value; LANES]);
-                    let [x, y, z] = &anchor;
-                    for (block, length) in blocks.iter_mut().zip(lengths) {
-                        kernel::tether(block.view_mut(), [x, y, z], length);
-                    }
+                    (kernels.tether_to_one)(blocks, &anchor, lengths);
                 }
                 LayerPins::Nearest(pins) => {
                     let pins = &pins[first..first + blocks.len()];
                     for ((block, length), pins) in blocks.iter_mut().zip(lengths).zip(pins) {
                         let position = pins.map(|pin| anchors.position[pin as usize]);
-                        let x = position.map(|position| position.x);
-                        let y = position.map(|position| position.y);
-                        let z = position.map(|position| position.z);
-                        kernel::tether(block.view_mut(), [&x, &y, &z], length);
+                        let anchor = [
+                            position.map(|position| position.x),
+                            position.map(|position| position.y),
+                            position.map(|position| position.z),
+                        ];
+                        (kernels.tether_to_each)(block, &anchor, length);
                     }
                 }
             }

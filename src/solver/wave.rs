@@ -4,84 +4,92 @@
 //! row only when the stage before is done with it and its neighbours; but the rows stay in the first cache.
 
 use super::{
-    instructions::Instructions,
-    kernel::{commit, integrate, measure, relax},
+    kernel::{Kernels, Longest},
+    run::Run,
     tether::{Anchors, Tethers},
 };
-use crate::cloth::{Block, ClothGrid, Compliances, Lanes, Layout, rest_length};
-
-/// What is added to w_a + w_b (1/kg): nothing to speak of, but it keeps a spring between two pins from dividing
-/// by zero.
-pub(super) const LEAST_SOFTNESS: f32 = 1.0e-18;
+use crate::cloth::{Block, ClothGrid, Compliances, Lanes, Layout};
 
 /// What is done to a group of rows at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Stage {
+enum Work {
     /// Verlet, and the springs within a row.
     Arrive,
     /// Vertical bend springs: of every four rows the first two, or the last two.
-    BendDown(usize),
+    BendDown,
     /// Vertical springs from even rows, or from odd ones.
-    Down(usize),
+    Down,
     /// Both diagonals, likewise.
-    Diagonal(usize),
+    Diagonal,
     /// Tethers; displacements become positions.
     Finish,
-    /// The lengths of the springs from even rows and within all, or from odd rows.
-    Measure(usize),
+    /// The lengths of the springs from even rows and within all rows.
+    MeasureEven,
+    /// The lengths of the springs from odd rows.
+    MeasureOdd,
+}
+
+/// A pass down the rows, one group of them after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Stage {
+    work: Work,
+    /// Rows in a group.
+    size: usize,
+    /// Rows in the first group, if that is shorter; else 0.
+    first: usize,
 }
 
 impl Stage {
-    /// Rows in a group, and in the first one if that is shorter.
-    fn group(self) -> (usize, usize) {
-        match self {
-            Self::Arrive | Self::Finish => (1, 0),
-            Self::Down(part) | Self::Diagonal(part) | Self::Measure(part) => (2, part),
-            Self::BendDown(part) => (4, 2 * part),
-        }
-    }
-
     /// Where the group that begins in `row` ends.
+    #[inline]
     fn end_of(self, row: usize, rows: usize) -> usize {
-        let (size, first) = self.group();
-        let end = if row < first { first } else { row + size };
+        let end = if row < self.first {
+            self.first
+        } else {
+            row + self.size
+        };
         end.min(rows)
     }
 
     /// The last end of a group that is not beyond `row`, and the first that is not before it.
     fn ends_around(self, row: usize, rows: usize) -> (usize, usize) {
-        let (size, first) = self.group();
         if row == rows {
             return (rows, rows);
         }
-        if row < first {
-            return (0, if row == 0 { 0 } else { first.min(rows) });
+        if row < self.first {
+            let after = if row == 0 { 0 } else { self.first.min(rows) };
+            return (0, after);
         }
-        let before = first + (row - first) / size * size;
-        let after = first + (row - first).next_multiple_of(size);
+        let inside = row - self.first;
+        let before = self.first + inside / self.size * self.size;
+        let after = self.first + inside.next_multiple_of(self.size);
         (before, after.min(rows))
     }
 }
 
+const fn stage(work: Work, size: usize, first: usize) -> Stage {
+    Stage { work, size, first }
+}
+
 const STAGES: usize = 10;
 
-/// The most stages that can be: an order in which stiff springs have the last word.
+/// All stages that can be, in an order in which stiff springs have the last word.
 const ORDER: [Stage; STAGES] = [
-    Stage::Arrive,
-    Stage::BendDown(0),
-    Stage::BendDown(1),
-    Stage::Down(0),
-    Stage::Down(1),
-    Stage::Diagonal(0),
-    Stage::Diagonal(1),
-    Stage::Finish,
-    Stage::Measure(0),
-    Stage::Measure(1),
+    stage(Work::Arrive, 1, 0),
+    stage(Work::BendDown, 4, 0),
+    stage(Work::BendDown, 4, 2),
+    stage(Work::Down, 2, 0),
+    stage(Work::Down, 2, 1),
+    stage(Work::Diagonal, 2, 0),
+    stage(Work::Diagonal, 2, 1),
+    stage(Work::Finish, 1, 0),
+    stage(Work::MeasureEven, 2, 0),
+    stage(Work::MeasureOdd, 2, 1),
 ];
 
 /// From which row to which each stage goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Span {
+struct Span {
     from: [usize; STAGES],
     to: [usize; STAGES],
 }
@@ -95,10 +103,10 @@ impl Span {
     }
 
     /// What can be done with rows `start..end` alone, whatever happens to the others at the same time.
-    fn inside(start: usize, end: usize, rows: usize) -> Self {
+    fn inside(stages: &[Stage], start: usize, end: usize, rows: usize) -> Self {
         let mut span = Self::whole(rows);
         let (mut from, mut to) = (start, end);
-        for (index, stage) in ORDER.into_iter().enumerate() {
+        for (index, stage) in stages.iter().enumerate() {
             from = stage.ends_around(from, rows).1;
             to = stage.ends_around(to, rows).0;
             (span.from[index], span.to[index]) = (from, to);
@@ -115,53 +123,6 @@ impl Span {
     }
 }
 
-/// Springs that lie alike: one block of them for each block of a row.
-#[derive(Debug, Clone, PartialEq)]
-struct Run {
-    rest_square: f32,
-    /// Compliance (m/N), infinite where there is no spring.
-    compliance: Vec<Lanes>,
-    /// α/Δt² (1/kg).
-    softness: Vec<Lanes>,
-}
-
-impl Run {
-    /// The springs that begin in `row` of `grid`; one row stands for all like it.
-    fn new(
-        grid: &ClothGrid,
-        layout: Layout,
-        compliances: &Compliances,
-        step: (u32, i32),
-        row: u32,
-    ) -> Self {
-        let compliance = |block: usize, lane: usize| {
-            let column = layout.column(block, lane)?;
-            let end = column.checked_add_signed(step.1)?;
-            let row = row.min(grid.rows().saturating_sub(1));
-            (end < grid.columns()).then_some(())?;
-            compliances.of_strip(grid, step, (row, column))
-        };
-        let lanes = |block: usize| {
-            std::array::from_fn(|lane| compliance(block, lane).unwrap_or(f32::INFINITY))
-        };
-        let rest = rest_length(grid, step);
-        let compliance: Vec<Lanes> = (0..layout.strip as usize).map(lanes).collect();
-        Self {
-            rest_square: rest * rest,
-            softness: compliance.clone(),
-            compliance,
-        }
-    }
-
-    fn soften(&mut self, inverse_dt2: f32) {
-        for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
-            for (softness, compliance) in softness.iter_mut().zip(compliance) {
-                *softness = compliance * inverse_dt2 + LEAST_SOFTNESS;
-            }
-        }
-    }
-}
-
 /// A grid's springs as the sub-steps want them.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct GridSweep {
@@ -172,6 +133,8 @@ pub(super) struct GridSweep {
     diagonal: Run,
     bend_across: [Run; 2],
     bend_down: Run,
+    /// Those of [`ORDER`] for which there are springs.
+    stages: Vec<Stage>,
     has_shear: bool,
     has_bend: bool,
     /// The Δt (s) that softnesses hold for.
@@ -181,20 +144,13 @@ pub(super) struct GridSweep {
 /// What is the same for all rows of a sub-step.
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
+    pub kernels: &'a Kernels,
     pub kept: f32,
     pub acceleration_dt2: [f32; 3],
     pub tethers: &'a Tethers,
     pub anchors: &'a Anchors,
     /// Whether lengths are measured, too.
     pub measures: bool,
-}
-
-/// The largest squared lengths found (m²), lane by lane.
-#[derive(Debug, Default, Clone, Copy)]
-pub(super) struct Longest {
-    across: Lanes,
-    down: Lanes,
-    diagonal: Lanes,
 }
 
 impl Longest {
@@ -214,6 +170,8 @@ impl Longest {
 impl GridSweep {
     pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
         let layout = Layout::new(grid.columns(), grid.rows());
+        let has_shear = compliances.shear.is_finite();
+        let has_bend = compliances.bend.is_finite();
         let run = |step, row| Run::new(grid, layout, compliances, step, row);
         // With two rows both are borders, and the second kind is not asked for.
         Self {
@@ -223,8 +181,16 @@ impl GridSweep {
             diagonal: run((1, 1), 0),
             bend_across: [run((0, 2), 0), run((0, 2), 1)],
             bend_down: run((2, 0), 0),
-            has_shear: compliances.shear.is_finite(),
-            has_bend: compliances.bend.is_finite(),
+            stages: ORDER
+                .into_iter()
+                .filter(|stage| match stage.work {
+                    Work::BendDown => has_bend,
+                    Work::Diagonal => has_shear,
+                    _ => true,
+                })
+                .collect(),
+            has_shear,
+            has_bend,
             substep: 0.0,
         }
     }
@@ -245,22 +211,16 @@ impl GridSweep {
 
     /// One sub-step. With several `bands` of rows, each is done by a task of its own as far as it can be alone,
     /// then what is left between them: the same operations on each particle in the same order.
-    pub fn substep(
-        &self,
-        blocks: &mut [Block],
-        motion: Motion,
-        bands: usize,
-        instructions: Instructions,
-    ) -> Longest {
+    pub fn substep(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Longest {
         let rows = self.layout.rows as usize;
         let mut longest = Longest::default();
         let bands = bands.min(rows / LEAST_ROWS).min(MOST_BANDS);
         if bands <= 1 {
-            instructions.wave(self, blocks, 0, &Span::whole(rows), motion, &mut longest);
+            self.wave(blocks, 0, &Span::whole(rows), motion, &mut longest);
             return longest;
         }
         let border = |band: usize| rows * band / bands;
-        let span = |band: usize| Span::inside(border(band), border(band + 1), rows);
+        let span = |band: usize| Span::inside(&self.stages, border(band), border(band + 1), rows);
         let mut found = [longest; MOST_BANDS];
         bevy::tasks::ComputeTaskPool::get_or_init(Default::default).scope(|scope| {
             let mut rest = &mut *blocks;
@@ -269,8 +229,7 @@ impl GridSweep {
                 let count = border(band + 1) - first;
                 let (own, others) = rest.split_at_mut(count * self.layout.strip as usize);
                 rest = others;
-                let mut run =
-                    move || instructions.wave(self, own, first, &span(band), motion, found);
+                let mut run = move || self.wave(own, first, &span(band), motion, found);
                 if band + 1 < bands {
                     scope.spawn(async move { run() });
                 } else {
@@ -281,7 +240,7 @@ impl GridSweep {
         });
         for band in 1..bands {
             let left = Span::between(&span(band - 1), &span(band));
-            instructions.wave(self, blocks, 0, &left, motion, &mut longest);
+            self.wave(blocks, 0, &left, motion, &mut longest);
         }
         for found in &found[..bands] {
             longest.merge(found);
@@ -290,17 +249,30 @@ impl GridSweep {
     }
 
     /// Measures all springs.
-    #[inline(always)]
-    pub fn measure(&self, blocks: &[Block]) -> Longest {
+    pub fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Longest {
         let mut longest = Longest::default();
         let strip = self.layout.strip as usize;
         for (row, upper) in blocks.chunks_exact(strip).enumerate() {
-            self.measure_within(upper, &mut longest);
+            (kernels.measure_within)(upper, &self.across[0], &mut longest);
             if let Some(lower) = blocks.get((row + 1) * strip..(row + 2) * strip) {
-                self.measure_between(upper, lower, &mut longest);
+                self.measure_between(upper, lower, kernels, &mut longest);
             }
         }
         longest
+    }
+
+    fn measure_between(
+        &self,
+        upper: &[Block],
+        lower: &[Block],
+        kernels: &Kernels,
+        longest: &mut Longest,
+    ) {
+        (kernels.measure_down)(upper, lower, &self.down, longest);
+        if self.has_shear {
+            (kernels.measure_diagonal)(upper, lower, &self.diagonal, longest);
+            (kernels.measure_diagonal)(lower, upper, &self.diagonal, longest);
+        }
     }
 
     /// The largest length over rest length of structural springs, and of structural and shear springs.
@@ -316,58 +288,23 @@ impl GridSweep {
         )
     }
 
-    #[inline(always)]
-    fn measure_within(&self, row: &[Block], longest: &mut Longest) {
-        let softness = &self.across[0].softness;
-        for (pair, softness) in row.windows(2).zip(softness) {
-            measure(
-                pair[0].view(),
-                pair[1].view(),
-                softness,
-                &mut longest.across,
-            );
-        }
-        if let ([first, .., last], Some(softness)) = (row, softness.last()) {
-            measure(last.view(), first.shifted(), softness, &mut longest.across);
-        }
-    }
-
-    #[inline(always)]
-    fn measure_between(&self, upper: &[Block], lower: &[Block], longest: &mut Longest) {
-        for ((a, b), softness) in upper.iter().zip(lower).zip(&self.down.softness) {
-            measure(a.view(), b.view(), softness, &mut longest.down);
-        }
-        if !self.has_shear {
-            return;
-        }
-        let softness = &self.diagonal.softness;
-        for (left, right) in [(upper, lower), (lower, upper)] {
-            for ((a, b), softness) in left.iter().zip(&right[1..]).zip(softness) {
-                measure(a.view(), b.view(), softness, &mut longest.diagonal);
-            }
-            if let (Some(a), Some(b), Some(softness)) =
-                (left.last(), right.first(), softness.last())
-            {
-                measure(a.view(), b.shifted(), softness, &mut longest.diagonal);
-            }
-        }
-    }
-
     /// All stages from row to row as `span` says. `blocks` begin with those of row `first`.
-    #[inline(always)]
-    pub(super) fn wave(
+    fn wave(
         &self,
         blocks: &mut [Block],
         first: usize,
         span: &Span,
-        motion: Motion,
+        motion: &Motion,
         longest: &mut Longest,
     ) {
         let rows = self.layout.rows as usize;
+        let measures = if motion.measures { 0 } else { 2 };
+        let stages = &self.stages[..self.stages.len() - measures];
         let mut done = span.from;
-        loop {
-            let before = done;
-            for (index, stage) in ORDER.into_iter().enumerate() {
+        let mut goes_on = true;
+        while goes_on {
+            goes_on = false;
+            for (index, stage) in stages.iter().enumerate() {
                 loop {
                     let (start, end) = (done[index], stage.end_of(done[index], rows));
                     // Where the stage before went as far as it may, another band goes on with it.
@@ -375,75 +312,74 @@ impl GridSweep {
                     if start >= span.to[index] || !is_ready {
                         break;
                     }
-                    self.run(stage, blocks, first, start..end, motion, longest);
+                    self.run(stage.work, blocks, first, start..end, motion, longest);
                     done[index] = end;
+                    goes_on = true;
                     if index == 0 {
                         break;
                     }
                 }
             }
-            if done == before {
-                return;
-            }
         }
     }
 
-    #[inline(always)]
     fn run(
         &self,
-        stage: Stage,
+        work: Work,
         blocks: &mut [Block],
         first: usize,
         rows: std::ops::Range<usize>,
-        motion: Motion,
+        motion: &Motion,
         longest: &mut Longest,
     ) {
         let strip = self.layout.strip as usize;
         let blocks = &mut blocks[(rows.start - first) * strip..(rows.end - first) * strip];
-        match stage {
-            Stage::Arrive => {
-                integrate(blocks, motion.kept, motion.acceleration_dt2);
+        let kernels = motion.kernels;
+        match work {
+            Work::Arrive => {
+                (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
                 let on_border = rows.start == 0 || rows.end == self.layout.rows as usize;
                 let kind = usize::from(!on_border);
                 if self.has_bend {
-                    bend_across(blocks, &self.bend_across[kind]);
+                    (kernels.bend_across)(blocks, &self.bend_across[kind]);
                 }
-                across(blocks, &self.across[kind]);
+                (kernels.across)(blocks, &self.across[kind]);
             }
-            Stage::BendDown(_) if self.has_bend => {
+            Work::BendDown => {
                 for row in 0..rows.len().saturating_sub(2) {
-                    let (upper, lower) =
-                        blocks[row * strip..(row + 3) * strip].split_at_mut(2 * strip);
-                    down(&mut upper[..strip], lower, &self.bend_down);
+                    let three = &mut blocks[row * strip..(row + 3) * strip];
+                    let (upper, lower) = three.split_at_mut(2 * strip);
+                    (kernels.down)(&mut upper[..strip], lower, &self.bend_down);
                 }
             }
-            Stage::Down(_) if rows.len() == 2 => {
+            Work::Down => {
+                // A first or last row alone has no partner.
                 let (upper, lower) = blocks.split_at_mut(strip);
-                down(upper, lower, &self.down);
+                (kernels.down)(upper, lower, &self.down);
             }
-            Stage::Diagonal(_) if rows.len() == 2 && self.has_shear => {
+            Work::Diagonal => {
                 let (upper, lower) = blocks.split_at_mut(strip);
-                diagonal(upper, lower, &self.diagonal);
-                diagonal(lower, upper, &self.diagonal);
+                if !lower.is_empty() {
+                    (kernels.diagonal)(upper, lower, &self.diagonal);
+                    (kernels.diagonal)(lower, upper, &self.diagonal);
+                }
             }
-            Stage::Finish => {
-                motion
-                    .tethers
-                    .pull(motion.anchors, blocks, rows.start * strip);
-                commit(blocks);
+            Work::Finish => {
+                let first = rows.start * strip;
+                motion.tethers.pull(motion.anchors, blocks, first, kernels);
+                (kernels.commit)(blocks);
             }
-            Stage::Measure(part) if motion.measures => {
-                if part == 0 {
+            Work::MeasureEven | Work::MeasureOdd => {
+                if work == Work::MeasureEven {
                     for row in blocks.chunks_exact(strip) {
-                        self.measure_within(row, longest);
+                        (kernels.measure_within)(row, &self.across[0], longest);
                     }
                 }
-                if rows.len() == 2 {
-                    let (upper, lower) = blocks.split_at(strip);
-                    self.measure_between(upper, lower, longest);
+                let (upper, lower) = blocks.split_at(strip);
+                if !lower.is_empty() {
+                    self.measure_between(upper, lower, kernels, longest);
                 }
             }
-            Stage::BendDown(_) | Stage::Down(_) | Stage::Diagonal(_) | Stage::Measure(_) => {}
         }
     }
 }
@@ -453,63 +389,3 @@ const LEAST_ROWS: usize = 32;
 
 /// More bands than this find no work worth a task.
 const MOST_BANDS: usize = 16;
-
-/// A row's horizontal springs: from even blocks, from odd ones, and from the last block into the first.
-#[inline(always)]
-fn across(row: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    for from in 0..2 {
-        let pairs = row[from..].chunks_exact_mut(2);
-        for (pair, softness) in pairs.zip(run.softness[from..].iter().step_by(2)) {
-            if let [a, b] = pair {
-                relax(a.view_mut(), b.view_mut(), rest, softness);
-            }
-        }
-    }
-    if let ([first, .., last], Some(softness)) = (row, run.softness.last()) {
-        relax(last.view_mut(), first.shifted_mut(), rest, softness);
-    }
-}
-
-/// A row's horizontal bend springs: of every four blocks from the first two, then from the last two, and from the
-/// row's last two blocks into its first two.
-#[inline(always)]
-fn bend_across(row: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    let strip = row.len();
-    for from in [0, 2] {
-        let groups = row[from..].chunks_exact_mut(4);
-        for (group, softness) in groups.zip(run.softness[from..].chunks(4)) {
-            if let ([a, b, c, d], [soft_a, soft_b, ..]) = (group, softness) {
-                relax(a.view_mut(), c.view_mut(), rest, soft_a);
-                relax(b.view_mut(), d.view_mut(), rest, soft_b);
-            }
-        }
-    }
-    if let ([a, b, .., c, d], Some([soft_c, soft_d])) = (row, run.softness[..strip].last_chunk()) {
-        relax(c.view_mut(), a.shifted_mut(), rest, soft_c);
-        relax(d.view_mut(), b.shifted_mut(), rest, soft_d);
-    }
-}
-
-#[inline(always)]
-fn down(upper: &mut [Block], lower: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    for ((a, b), softness) in upper.iter_mut().zip(lower).zip(&run.softness) {
-        relax(a.view_mut(), b.view_mut(), rest, softness);
-    }
-}
-
-/// From each column of one row to the next column of the other.
-#[inline(always)]
-fn diagonal(left: &mut [Block], right: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    for ((a, b), softness) in left.iter_mut().zip(&mut right[1..]).zip(&run.softness) {
-        relax(a.view_mut(), b.view_mut(), rest, softness);
-    }
-    if let (Some(a), Some(b), Some(softness)) =
-        (left.last_mut(), right.first_mut(), run.softness.last())
-    {
-        relax(a.view_mut(), b.shifted_mut(), rest, softness);
-    }
-}
