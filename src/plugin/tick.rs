@@ -101,7 +101,8 @@ pub(super) fn query_collisions(
                 known.is_some_and(|known| known.ball == *ball)
             };
             let touches = |ball: &MovingBall| {
-                let probe = ball.probe(ball.drag(), bounds.particle_radius());
+                // Nothing of the cloth moves towards it.
+                let probe = ball.probe(0.0, bounds.particle_radius());
                 query.finds_any(&topology.tree, bounds, particles, &probe)
             };
             let still = balls().filter(|(collider, ball)| rests_on(*collider, ball));

@@ -87,7 +87,7 @@ impl Control {
         let fails = found > tolerance;
         self.is_capped = fails && self.substeps >= most;
         if fails && !self.is_capped {
-            self.substeps = wanted(found).clamp(self.substeps * 1.25, most);
+            self.substeps = wanted(found).max(self.substeps * 1.25).min(most);
             return Some(self.substeps.ceil() as u32);
         }
         // What it grew by in this tick it may grow by in the next.

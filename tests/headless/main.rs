@@ -1,11 +1,14 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
+mod attach;
 mod faults;
 mod frame;
 mod lifetime;
 mod mesh;
 mod motion;
+mod precision;
 mod rapier;
+mod rest;
 mod schedule;
 mod support;
 mod touch;

@@ -49,7 +49,10 @@ fn a_hanging_cloth_has_the_stretch_that_its_compliance_gives() {
             damping: 0.05,
             ..COLUMNS_ALONE
         };
-        let settings = ClothSettings::substeps(40);
+        let settings = ClothSettings {
+            sleeps: false,
+            ..ClothSettings::substeps(40)
+        };
         let entity = app.world_mut().spawn((cloth, material, settings)).id();
         tick(&mut app, 64 * 12);
         let particles = particles(&app, entity);

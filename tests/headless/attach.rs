@@ -1,0 +1,181 @@
+//! Pins that follow entities, and teleports.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::support::*;
+
+/// A cloth whose left column follows a pole.
+fn flag(pole: Transform) -> (App, Entity, Entity) {
+    let mut app = app();
+    let pole = app.world_mut().spawn(pole).id();
+    let attached = ClothAttachments::new([(Pin::Column(0), pole)]);
+    let flag = (Cloth::new(12, 8, 0.1), Pins::none(), attached);
+    let flag = app
+        .world_mut()
+        .spawn((flag, Transform::from_xyz(1.0, 2.0, 3.0)))
+        .id();
+    tick(&mut app, 1);
+    (app, flag, pole)
+}
+
+fn in_world(app: &App, cloth: Entity, cell: (u32, u32)) -> Vec3 {
+    let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+    frame.to_world(position(app, cloth, cell))
+}
+
+/// Offsets are kept, turned and scaled with the target, wherever the target was when the cloth was attached.
+#[test]
+fn attached_pins_go_where_their_target_takes_them() {
+    let start = Transform::from_xyz(-1.0, 0.5, 0.0).with_rotation(Quat::from_rotation_y(0.7));
+    let (mut app, flag, pole) = flag(start);
+    let rest: Vec<Vec3> = (0..8).map(|row| in_world(&app, flag, (row, 0))).collect();
+    for step in 1..=40 {
+        let step = step as f32;
+        let goal = Transform::from_xyz(-1.0 + 0.02 * step, 0.5, 0.01 * step)
+            .with_rotation(Quat::from_rotation_y(0.7 + 0.02 * step))
+            .with_scale(Vec3::splat(1.0 + 0.002 * step));
+        change::<Transform>(&mut app, pole, |transform| *transform = goal);
+        tick(&mut app, 1);
+        for (row, rest) in rest.iter().enumerate() {
+            let expected = goal.to_matrix() * start.to_matrix().inverse() * rest.extend(1.0);
+            let found = in_world(&app, flag, (row as u32, 0));
+            // Some ten roundings of numbers of a few metres.
+            assert!(
+                found.distance(expected.truncate()) < 1.0e-5,
+                "{found} {expected}"
+            );
+        }
+    }
+    // And what hangs from them follows.
+    assert!(in_world(&app, flag, (0, 1)).distance(in_world(&app, flag, (0, 0))) < 0.2);
+}
+
+/// In the course of a tick they move evenly, so that a target that moves at a steady speed tears at nothing: the
+/// cloth is stretched no more than one whose own transform moves likewise.
+#[test]
+fn they_move_smoothly_over_the_sub_steps() {
+    let stretch = |attached: bool| {
+        let (mut app, flag, pole) = flag(Transform::IDENTITY);
+        if !attached {
+            change::<Pins>(&mut app, flag, |pins| *pins = Pins::new([Pin::Column(0)]));
+            app.world_mut()
+                .entity_mut(flag)
+                .remove::<ClothAttachments>();
+        }
+        let moved = if attached { pole } else { flag };
+        let mut largest = 0.0_f32;
+        for _ in 0..64 {
+            change::<Transform>(&mut app, moved, |t| t.translation.z += 2.0 / 64.0);
+            tick(&mut app, 1);
+            let stats = app.world().get::<ClothStats>(flag).expect("figures");
+            largest = largest.max(stats.stretch.structural);
+        }
+        largest
+    };
+    let (attached, own) = (stretch(true), stretch(false));
+    assert!((attached / own - 1.0).abs() < 0.05, "{attached} {own}");
+}
+
+#[test]
+fn what_is_let_go_falls_and_pins_of_the_games_own_stay() {
+    let (mut app, flag, _) = flag(Transform::IDENTITY);
+    change::<Pins>(&mut app, flag, |pins| *pins = Pins::new([Pin::Cell(0, 11)]));
+    tick(&mut app, 5);
+    let (held, pinned) = (in_world(&app, flag, (4, 0)), in_world(&app, flag, (0, 11)));
+    tick(&mut app, 5);
+    assert_eq!(in_world(&app, flag, (4, 0)), held);
+    app.world_mut()
+        .entity_mut(flag)
+        .remove::<ClothAttachments>();
+    tick(&mut app, 20);
+    assert!(in_world(&app, flag, (4, 0)).distance(held) > 0.1);
+    assert_eq!(in_world(&app, flag, (0, 11)), pinned);
+}
+
+/// A target that is despawned or has no transform is a fault that is named, and mended by another target.
+#[test]
+fn a_target_that_is_gone_is_named() {
+    let (mut app, flag, pole) = flag(Transform::IDENTITY);
+    tick(&mut app, 3);
+    app.world_mut().despawn(pole);
+    tick(&mut app, 3);
+    let fault = app.world().get::<ClothFault>(flag).expect("a fault");
+    let expected = ClothError::NoTarget {
+        pin: Pin::Column(0),
+        target: pole,
+    };
+    assert_eq!(fault.error, expected);
+    assert!(fault.error.to_string().contains(&pole.to_string()));
+    let before = particles(&app, flag).clone();
+    tick(&mut app, 3);
+    assert_eq!(particles(&app, flag), &before);
+
+    let other = app
+        .world_mut()
+        .spawn(Transform::from_xyz(0.0, 1.0, 0.0))
+        .id();
+    let attached = ClothAttachments::new([(Pin::Column(0), other)]);
+    app.world_mut().entity_mut(flag).insert(attached);
+    tick(&mut app, 3);
+    assert!(app.world().get::<ClothFault>(flag).is_none());
+    assert_ne!(particles(&app, flag), &before);
+
+    let outside = ClothAttachments::new([(Pin::Row(8), other)]);
+    app.world_mut().entity_mut(flag).insert(outside);
+    tick(&mut app, 1);
+    let fault = app.world().get::<ClothFault>(flag).expect("a fault");
+    assert!(matches!(fault.error, ClothError::PinOutOfRange { .. }));
+}
+
+/// A teleported cloth is, seen from its entity, what it would have been without: to the last bit, but for gravity's
+/// direction under a rotation.
+#[test]
+fn a_teleport_gives_no_speed() {
+    let run = |teleport: Option<Vec3>| {
+        let mut app = app();
+        let cloth = app.world_mut().spawn(Cloth::default()).id();
+        change::<ClothMaterial>(&mut app, cloth, |material| material.damping = 0.0);
+        change::<ClothSettings>(&mut app, cloth, |settings| settings.sleeps = false);
+        tick(&mut app, 40);
+        if let Some(to) = teleport {
+            let there = (Transform::from_translation(to), ClothTeleport);
+            app.world_mut().entity_mut(cloth).insert(there);
+        }
+        tick(&mut app, 40);
+        assert!(app.world().get::<ClothTeleport>(cloth).is_none());
+        (
+            particles(&app, cloth).clone(),
+            in_world(&app, cloth, (0, 0)),
+        )
+    };
+    let ((stayed, _), (gone, pin)) = (run(None), run(Some(Vec3::new(1000.0, 50.0, -3.0))));
+    assert!(stayed == gone);
+    assert_eq!(pin, Vec3::new(1000.0, 50.0, -3.0));
+}
+
+/// With attachments the cloth goes along with the first one's target, though its own entity stays.
+#[test]
+fn a_cape_teleports_with_its_bearer() {
+    let (mut app, cape, bearer) = flag(Transform::IDENTITY);
+    tick(&mut app, 60);
+    let cells = [(0, 0), (7, 0), (3, 6), (7, 11)];
+    let before = cells.map(|cell| in_world(&app, cape, cell));
+    let speed = particles(&app, cape).largest_speed();
+    let jump = Transform::from_xyz(40.0, 1.0, 2.0).with_rotation(Quat::from_rotation_y(1.0));
+    app.world_mut().entity_mut(cape).insert(ClothTeleport);
+    change::<Transform>(&mut app, bearer, |transform| *transform = jump);
+    tick(&mut app, 1);
+    // What a tick of its own motion comes to, and the rounding of 40 m in some ten operations.
+    let allowed = (speed + GRAVITY * TICK) * TICK * 1.5 + 1.0e-4;
+    for (cell, before) in cells.into_iter().zip(before) {
+        let expected = jump.transform_point(before);
+        let found = in_world(&app, cape, cell);
+        assert!(
+            found.distance(expected) < allowed,
+            "{cell:?}: {found} {expected}"
+        );
+    }
+    let after = particles(&app, cape).largest_speed();
+    assert!(after < speed + 2.0 * GRAVITY * TICK, "{after} {speed}");
+}

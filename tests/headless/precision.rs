@@ -1,0 +1,152 @@
+//! A tolerance in place of sub-steps, many cloths at once, and far from the origin.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::support::*;
+
+/// The example's scene for eight seconds: the paper's ball passes through the cloth and back. Returns the largest
+/// stretch of any tick and the sub-steps a tick on average.
+fn ball_scene(settings: ClothSettings) -> (f32, f64) {
+    let mut app = app_with_moving_balls();
+    let settings = ClothSettings {
+        particle_radius: 0.02,
+        ..settings
+    };
+    let place = Transform::from_xyz(-1.5, 3.7, 0.0);
+    let cloth = app
+        .world_mut()
+        .spawn((Cloth::new(16, 16, 0.2), settings, place))
+        .id();
+    let start = Transform::from_xyz(0.0, 1.75, -2.8);
+    let ball = app
+        .world_mut()
+        .spawn((ClothCollider::ball(1.0), Moving(1.5), start))
+        .id();
+    let (mut largest, mut substeps) = (0.0_f32, 0);
+    for _ in 0..64 * 8 {
+        tick(&mut app, 1);
+        let z = app
+            .world()
+            .get::<Transform>(ball)
+            .expect("a place")
+            .translation
+            .z;
+        if z.abs() >= 2.8 {
+            change::<Moving>(&mut app, ball, |moving| moving.0 = -1.5 * z.signum());
+        }
+        let stats = app.world().get::<ClothStats>(cloth).expect("figures");
+        largest = largest.max(stats.stretch.structural);
+        substeps += stats.substeps;
+        if stats.stretch.structural > 0.008 && settings.precision == Precision::Substeps(100) { 
+            let p = particles(&app, cloth); let mut w = (0.0f32, 0, 0);
+            app.world().get::<bevy_drape::plugin::ClothTopology>(cloth).unwrap().springs().for_each(|_, s| if s.kind == bevy_drape::cloth::SpringKind::Structural { let [a,b] = s.ends.map(|e| p.position(e as usize).unwrap()); let d = a.distance(b)/s.rest_length-1.0; if d > w.0 { w = (d, s.ends[0], s.ends[1]); } });
+            println!("z {z:.2} {:.4} ({},{})-({},{}) contacts {} {}", w.0, w.1/16, w.1%16, w.2/16, w.2%16, stats.contacts, p.position(w.1 as usize).unwrap());
+        }
+    }
+    (largest, f64::from(substeps) / (64.0 * 8.0))
+}
+
+/// One per cent holds in every tick, for fewer sub-steps on average than the smallest fixed number that does.
+#[test]
+fn a_tolerance_holds_while_a_ball_passes() {
+    let awake = |settings: ClothSettings| ClothSettings {
+        sleeps: false,
+        ..settings
+    };
+    let (largest, chosen) = ball_scene(awake(ClothSettings::tolerance(0.01)));
+    println!("chosen {largest} {chosen}");
+    for n in [100, 200] { println!("{n}: {:?}", ball_scene(awake(ClothSettings::substeps(n)))); }
+    let holds = |substeps: &u32| ball_scene(awake(ClothSettings::substeps(*substeps))).0 <= 0.01;
+    let smallest = (4..=100).find(holds).expect("some number holds it");
+    println!(
+        "1 % on the ball scene: {largest} at {chosen} sub-steps, smallest fixed number {smallest}"
+    );
+    assert!(largest <= 0.01, "{largest}");
+    assert!(chosen < f64::from(smallest), "{chosen} {smallest}");
+}
+
+/// What no number of sub-steps gives, rubber under its own weight: the cap is kept, and the cloth goes on.
+#[test]
+fn a_tolerance_out_of_reach_stops_at_the_cap() {
+    let mut app = app();
+    let settings = ClothSettings {
+        precision: Precision::Tolerance {
+            stretch: 0.001,
+            most_substeps: 30,
+        },
+        ..default()
+    };
+    let cloth = (Cloth::default(), ClothMaterial::RUBBER, settings);
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 64);
+    let stats = app.world().get::<ClothStats>(cloth).expect("figures");
+    assert_eq!(stats.substeps, 30);
+    assert!(stats.stretch.structural > 0.001);
+    assert!(app.world().get::<ClothFault>(cloth).is_none());
+}
+
+/// Many cloths, some of them large: solved together they are what each is alone, to the last bit.
+#[test]
+fn many_cloths_are_what_each_is_alone() {
+    let cloths = [(20, 20), (130, 128), (64, 64), (70, 70)];
+    let spawn = |app: &mut App, (columns, rows): (u32, u32)| {
+        app.world_mut().spawn(Cloth::new(columns, rows, 0.05)).id()
+    };
+    let mut together = app();
+    let entities = cloths.map(|size| spawn(&mut together, size));
+    tick(&mut together, 30);
+    for (size, entity) in cloths.into_iter().zip(entities) {
+        let mut alone = app();
+        let cloth = spawn(&mut alone, size);
+        tick(&mut alone, 30);
+        assert!(
+            particles(&together, entity) == particles(&alone, cloth),
+            "{size:?}"
+        );
+    }
+}
+
+/// A kilometre from the origin a cloth moves as at the origin, to the last bit: it is simulated in its own frame.
+#[test]
+fn far_from_the_origin_it_moves_as_at_the_origin() {
+    let run = |place: Vec3| {
+        let mut app = app();
+        let pins = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]);
+        let cloth = app
+            .world_mut()
+            .spawn((Cloth::default(), pins, Transform::from_translation(place)))
+            .id();
+        tick(&mut app, 128);
+        particles(&app, cloth).clone()
+    };
+    assert!(run(Vec3::ZERO) == run(Vec3::new(1000.0, 1000.0, -1000.0)));
+}
+
+/// Tethers leave to the springs what is elastic: a rubber sheet that a ball pushes into is where it is without them.
+#[test]
+fn tethers_do_not_stiffen_rubber() {
+    let run = |tethers: bool| {
+        let mut app = app();
+        let settings = ClothSettings {
+            tethers,
+            ..default()
+        };
+        let material = ClothMaterial {
+            damping: 0.1,
+            ..ClothMaterial::RUBBER
+        };
+        let cloth = (Cloth::default(), material, settings);
+        let cloth = app.world_mut().spawn(cloth).id();
+        app.world_mut().spawn((
+            ClothCollider::ball(0.3),
+            Transform::from_xyz(0.75, -0.8, 0.1),
+        ));
+        tick(&mut app, 64 * 8);
+        particles(&app, cloth).clone()
+    };
+    let (with, without) = (run(true), run(false));
+    for (with, without) in with.positions().zip(without.positions()) {
+        assert!(with.distance(without) < 1.0e-3, "{with} {without}");
+    }
+}
