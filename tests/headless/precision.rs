@@ -5,18 +5,25 @@ use bevy_drape::prelude::*;
 
 use crate::support::*;
 
-/// The example's scene for eight seconds: the paper's ball passes through the cloth and back. Returns the largest
-/// stretch of any tick and the sub-steps a tick on average.
+/// The example's scene for eight seconds: the paper's ball passes through the cloth and back, of cotton whose
+/// threads don't give. (Those of `COTTON` give more than a per cent in the waves that the ball leaves behind, 1.2 to
+/// 2.4 % under 40 to 400 sub-steps: no number of them holds one.) Returns the largest stretch of any tick and the
+/// sub-steps a tick on average.
 fn ball_scene(settings: ClothSettings) -> (f32, f64) {
     let mut app = app_with_moving_balls();
     let settings = ClothSettings {
         particle_radius: 0.02,
+        sleeps: false,
         ..settings
+    };
+    let material = ClothMaterial {
+        stretch_compliance: 0.0,
+        ..ClothMaterial::COTTON
     };
     let place = Transform::from_xyz(-1.5, 3.7, 0.0);
     let cloth = app
         .world_mut()
-        .spawn((Cloth::new(16, 16, 0.2), settings, place))
+        .spawn((Cloth::new(16, 16, 0.2), material, settings, place))
         .id();
     let start = Transform::from_xyz(0.0, 1.75, -2.8);
     let ball = app
@@ -38,11 +45,6 @@ fn ball_scene(settings: ClothSettings) -> (f32, f64) {
         let stats = app.world().get::<ClothStats>(cloth).expect("figures");
         largest = largest.max(stats.stretch.structural);
         substeps += stats.substeps;
-        if stats.stretch.structural > 0.008 && settings.precision == Precision::Substeps(100) { 
-            let p = particles(&app, cloth); let mut w = (0.0f32, 0, 0);
-            app.world().get::<bevy_drape::plugin::ClothTopology>(cloth).unwrap().springs().for_each(|_, s| if s.kind == bevy_drape::cloth::SpringKind::Structural { let [a,b] = s.ends.map(|e| p.position(e as usize).unwrap()); let d = a.distance(b)/s.rest_length-1.0; if d > w.0 { w = (d, s.ends[0], s.ends[1]); } });
-            println!("z {z:.2} {:.4} ({},{})-({},{}) contacts {} {}", w.0, w.1/16, w.1%16, w.2/16, w.2%16, stats.contacts, p.position(w.1 as usize).unwrap());
-        }
     }
     (largest, f64::from(substeps) / (64.0 * 8.0))
 }
@@ -50,14 +52,8 @@ fn ball_scene(settings: ClothSettings) -> (f32, f64) {
 /// One per cent holds in every tick, for fewer sub-steps on average than the smallest fixed number that does.
 #[test]
 fn a_tolerance_holds_while_a_ball_passes() {
-    let awake = |settings: ClothSettings| ClothSettings {
-        sleeps: false,
-        ..settings
-    };
-    let (largest, chosen) = ball_scene(awake(ClothSettings::tolerance(0.01)));
-    println!("chosen {largest} {chosen}");
-    for n in [100, 200] { println!("{n}: {:?}", ball_scene(awake(ClothSettings::substeps(n)))); }
-    let holds = |substeps: &u32| ball_scene(awake(ClothSettings::substeps(*substeps))).0 <= 0.01;
+    let (largest, chosen) = ball_scene(ClothSettings::tolerance(0.01));
+    let holds = |substeps: &u32| ball_scene(ClothSettings::substeps(*substeps)).0 <= 0.01;
     let smallest = (4..=100).find(holds).expect("some number holds it");
     println!(
         "1 % on the ball scene: {largest} at {chosen} sub-steps, smallest fixed number {smallest}"

@@ -1,0 +1,84 @@
+//! The solver's sub-steps and ticks by size, against the layout of a first draft.
+//! `cargo bench --profile dev --bench solver`; an element is a spring in a sub-step.
+
+#![allow(missing_docs, reason = "criterion's macros make public functions")]
+
+mod shared;
+
+use std::time::Duration;
+
+use bevy_drape::solver::Instructions;
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use shared::{Naive, SUBSTEPS, in_motion};
+
+fn sweeps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("sub-steps");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    for side in [16, 32, 64, 128, 256, 512] {
+        let scene = in_motion(side);
+        group.throughput(Throughput::Elements(
+            scene.springs.len() as u64 * u64::from(SUBSTEPS),
+        ));
+        for (name, instructions) in [
+            ("widest instructions", Instructions::Widest),
+            ("baseline instructions", Instructions::Baseline),
+        ] {
+            let mut solver = scene.solver(false);
+            solver.set_instructions(instructions);
+            group.bench_function(BenchmarkId::new(name, side), |bencher| {
+                bencher.iter_batched_ref(
+                    || scene.particles.clone(),
+                    |particles| solver.advance(particles, scene.step(SUBSTEPS), &[], |_, _| false),
+                    criterion::BatchSize::LargeInput,
+                );
+            });
+        }
+        for (name, is_coloured) in [("naive, row by row", false), ("naive, coloured", true)] {
+            if side > 256 {
+                continue;
+            }
+            group.bench_function(BenchmarkId::new(name, side), |bencher| {
+                bencher.iter_batched_ref(
+                    || Naive::new(&scene, is_coloured),
+                    |naive| naive.tick(&scene, SUBSTEPS),
+                    criterion::BatchSize::LargeInput,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+fn ticks(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("tick");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    for side in [16, 32, 64, 128, 256, 512] {
+        let scene = in_motion(side);
+        let mut solver = scene.solver(true);
+        for bands in [1, 2] {
+            solver.set_bands(bands);
+            group.bench_function(
+                BenchmarkId::new(format!("{bands} bands"), side),
+                |bencher| {
+                    bencher.iter_batched_ref(
+                        || scene.particles.clone(),
+                        |particles| {
+                            solver.advance(particles, scene.step(SUBSTEPS), &[], |_, _| false)
+                        },
+                        criterion::BatchSize::LargeInput,
+                    );
+                },
+            );
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, sweeps, ticks);
+criterion_main!(benches);
