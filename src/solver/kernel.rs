@@ -151,6 +151,13 @@ fn diagonal(left: &mut [Block], right: &mut [Block], run: &Run) {
     }
 }
 
+/// Both diagonals between two rows.
+#[inline(always)]
+fn diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run) {
+    diagonal(upper, lower, run);
+    diagonal(lower, upper, run);
+}
+
 /// Pulls each particle back that is farther from its anchor than its tether is long: a unilateral constraint
 /// against a particle that nothing moves.
 #[inline(always)]
@@ -307,7 +314,7 @@ kernels! {
     across(row: &mut [Block], run: &Run),
     bend_across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),
-    diagonal(left: &mut [Block], right: &mut [Block], run: &Run),
+    diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run),
     tether_to_one(row: &mut [Block], anchor: &[Lanes; 3], length_square: &[Lanes]),
     tether_to_each(block: &mut Block, anchor: &[Lanes; 3], length_square: &Lanes),
     measure_within(row: &[Block], run: &Run, longest: &mut Longest),

@@ -4,6 +4,7 @@
 //! once over the springs, which as XPBD constraints hold their rest lengths (Macklin et al. 2016; small steps
 //! instead of many sweeps: Macklin et al. 2019). With one sweep a sub-step no multiplier needs storing.
 
+mod bands;
 mod kernel;
 mod list;
 #[cfg(feature = "methods")]

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::{
     Instructions, Stretch, Tethers,
-    kernel::Longest,
+    bands::with_threads_awake,
     list::ListSweep,
     tether::Anchors,
     wave::{GridSweep, Motion},
@@ -151,45 +151,57 @@ impl Solver {
             Sweep::Grid(sweep) => sweep.soften(dt),
             Sweep::List(sweep) => sweep.soften(dt),
         }
+        let measured = with_threads_awake(self.bands, || {
+            self.substeps(particles, step, pins, &mut respond)
+        });
+        for pin in pins {
+            // Not a rounding beside it.
+            particles.put(pin.particle as usize, pin.to);
+        }
+        measured.unwrap_or_else(|| self.measure(particles))
+    }
+
+    /// All sub-steps of a tick. Returns the stretch where it was measured on the way.
+    fn substeps(
+        &mut self,
+        particles: &mut ClothParticles,
+        step: TickStep,
+        pins: &[PinMotion],
+        respond: &mut impl FnMut(&mut ClothParticles, SubStep) -> bool,
+    ) -> Option<Stretch> {
+        let count = step.substeps.max(1);
+        let dt = step.seconds / count as f32;
+        let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
         let kernels = self.instructions.kernels();
-        let mut longest = Longest::default();
-        let mut is_measured = matches!(self.sweep, Sweep::Grid(_));
+        let mut measured = None;
         for index in 0..count {
             let substep = SubStep { index, count };
             for pin in pins {
                 particles.lead_pin(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
             }
             self.tethers.locate(particles.blocks(), &mut self.anchors);
-            let is_last = index + 1 == count;
             let motion = Motion {
                 kernels: &kernels,
-                kept: (1.0 - step.damping).powf(dt / DAMPING_REFERENCE),
+                kept,
                 acceleration_dt2: (step.acceleration * (dt * dt)).to_array(),
                 tethers: &self.tethers,
                 anchors: &self.anchors,
-                measures: is_last,
+                measures: index + 1 == count,
             };
             let blocks = particles.blocks_mut();
             match &self.sweep {
                 Sweep::Grid(sweep) => {
-                    longest = sweep.substep(blocks, &motion, self.bands);
+                    let longest = sweep.substep(blocks, &motion, self.bands);
+                    let (structural, bound) = sweep.ratios(&longest);
+                    measured = Some(Stretch::of_ratios(structural, bound));
                 }
                 Sweep::List(sweep) => sweep.substep(blocks, &motion),
             }
-            let has_moved = respond(particles, substep);
-            is_measured &= !(is_last && has_moved);
-        }
-        for pin in pins {
-            // Not a rounding beside it.
-            particles.put(pin.particle as usize, pin.to);
-        }
-        match &self.sweep {
-            Sweep::Grid(sweep) if is_measured => {
-                let (structural, bound) = sweep.ratios(&longest);
-                Stretch::of_ratios(structural, bound)
+            if respond(particles, substep) {
+                measured = None;
             }
-            _ => self.measure(particles),
         }
+        measured
     }
 
     /// Measures the stretch of `particles`.

@@ -4,6 +4,7 @@
 //! row only when the stage before is done with it and its neighbours; but the rows stay in the first cache.
 
 use super::{
+    bands::pool,
     kernel::{Kernels, Longest},
     run::Run,
     tether::{Anchors, Tethers},
@@ -222,7 +223,7 @@ impl GridSweep {
         let border = |band: usize| rows * band / bands;
         let span = |band: usize| Span::inside(&self.stages, border(band), border(band + 1), rows);
         let mut found = [longest; MOST_BANDS];
-        bevy::tasks::ComputeTaskPool::get_or_init(Default::default).scope(|scope| {
+        pool().scope(|scope| {
             let mut rest = &mut *blocks;
             for (band, found) in found.iter_mut().enumerate().take(bands) {
                 let first = border(band);
@@ -360,8 +361,7 @@ impl GridSweep {
             Work::Diagonal => {
                 let (upper, lower) = blocks.split_at_mut(strip);
                 if !lower.is_empty() {
-                    (kernels.diagonal)(upper, lower, &self.diagonal);
-                    (kernels.diagonal)(lower, upper, &self.diagonal);
+                    (kernels.diagonals)(upper, lower, &self.diagonal);
                 }
             }
             Work::Finish => {
