@@ -28,7 +28,7 @@ impl Default for ClothDiagnosticsPlugin {
 impl ClothDiagnosticsPlugin {
     /// Time of all sub-steps a tick (ms).
     pub const INTEGRATE: DiagnosticPath = DiagnosticPath::const_new("cloth/integrate");
-    /// Time to bring the bounding spheres up to date, and to measure the stretch that they rely on (ms).
+    /// Time to bring the bounding spheres up to date (ms).
     pub const REBUILD: DiagnosticPath = DiagnosticPath::const_new("cloth/rebuild");
     /// Time of the search (ms).
     pub const QUERY: DiagnosticPath = DiagnosticPath::const_new("cloth/query");
@@ -38,6 +38,10 @@ impl ClothDiagnosticsPlugin {
     pub const LEAF_TESTS: DiagnosticPath = DiagnosticPath::const_new("cloth/leaf_tests");
     /// Particles that were pushed out of a collider.
     pub const CONTACTS: DiagnosticPath = DiagnosticPath::const_new("cloth/contacts");
+    /// Sub-steps, those included that were done again for a tolerance; none of a cloth that sleeps.
+    pub const SUBSTEPS: DiagnosticPath = DiagnosticPath::const_new("cloth/substeps");
+    /// Cloths that sleep.
+    pub const ASLEEP: DiagnosticPath = DiagnosticPath::const_new("cloth/asleep");
     /// The largest stretch of a structural spring (%).
     pub const STRETCH: DiagnosticPath = DiagnosticPath::const_new("cloth/stretch");
 
@@ -54,7 +58,13 @@ impl Plugin for ClothDiagnosticsPlugin {
         for path in [Self::INTEGRATE, Self::REBUILD, Self::QUERY] {
             app.register_diagnostic(Diagnostic::new(path).with_suffix(" ms"));
         }
-        for path in [Self::NODES_VISITED, Self::LEAF_TESTS, Self::CONTACTS] {
+        for path in [
+            Self::NODES_VISITED,
+            Self::LEAF_TESTS,
+            Self::CONTACTS,
+            Self::SUBSTEPS,
+            Self::ASLEEP,
+        ] {
             app.register_diagnostic(Diagnostic::new(path));
         }
         app.register_diagnostic(Diagnostic::new(Self::STRETCH).with_suffix(" %"));
@@ -79,6 +89,10 @@ fn measure(cloths: Query<(&ClothTick, &ClothStats)>, mut diagnostics: Diagnostic
     });
     diagnostics.add_measurement(&Plugin::LEAF_TESTS, || sum(|stats| stats.leaf_tests as f64));
     diagnostics.add_measurement(&Plugin::CONTACTS, || sum(|stats| stats.contacts as f64));
+    diagnostics.add_measurement(&Plugin::SUBSTEPS, || sum(|stats| f64::from(stats.substeps)));
+    diagnostics.add_measurement(&Plugin::ASLEEP, || {
+        sum(|stats| f64::from(u8::from(stats.is_asleep)))
+    });
     diagnostics.add_measurement(&Plugin::STRETCH, || {
         let stretch = sound().map(|stats| f64::from(stats.stretch.structural));
         100.0 * stretch.fold(0.0, f64::max)

@@ -7,6 +7,7 @@ use bevy::{
     },
     asset::{AssetEventSystems, Assets, Handle, RenderAssetUsages},
     ecs::{
+        change_detection::{DetectChanges, Ref, Tick},
         component::Component,
         entity::Entity,
         intern::Interned,
@@ -32,8 +33,12 @@ pub struct ClothMesh {
     grid: ClothGrid,
     /// Positions as the last tick began, in the cloth's frame.
     previous: Vec<Vec3>,
+    /// Whether those were remembered from a cloth that slept.
+    rested: bool,
     /// Positions to be drawn, in the entity's frame.
     drawn: Vec<Vec3>,
+    /// What is drawn of a cloth that sleeps: when its particles were written, and its frame.
+    settled: Option<(Tick, ClothFrame)>,
 }
 
 /// Gives each cloth a mesh with normals and UVs that follows its particles, updated once a rendered frame and
@@ -91,10 +96,14 @@ impl Plugin for ClothMeshPlugin {
     }
 }
 
-fn remember_positions(mut cloths: Query<(&ClothParticles, &mut ClothMesh)>) {
-    for (particles, mut mesh) in &mut cloths {
-        mesh.previous.clear();
-        mesh.previous.extend(particles.positions());
+fn remember_positions(mut cloths: Query<(&ClothParticles, &ClothTick, &mut ClothMesh)>) {
+    for (particles, tick, mut mesh) in &mut cloths {
+        let rests = tick.rest.is_asleep();
+        if !(rests && mesh.rested) {
+            mesh.previous.clear();
+            mesh.previous.extend(particles.positions());
+        }
+        mesh.rested = rests;
     }
 }
 
@@ -159,7 +168,7 @@ fn flat_mesh(grid: &ClothGrid) -> Mesh {
 fn update_meshes(
     mut cloths: Query<(
         &ClothTopology,
-        &ClothParticles,
+        Ref<ClothParticles>,
         &ClothFrame,
         &ClothTick,
         &mut ClothMesh,
@@ -174,9 +183,16 @@ fn update_meshes(
         1.0
     };
     for (topology, particles, frame, tick, mut cloth_mesh) in &mut cloths {
-        if !tick.sound || !topology.fits(particles) {
+        if !tick.sound || !topology.fits(&particles) {
             continue;
         }
+        // What sleeps is drawn once.
+        let state = (tick.rest.is_asleep() && cloth_mesh.rested)
+            .then_some((particles.last_changed(), *frame));
+        if state.is_some() && cloth_mesh.settled == state {
+            continue;
+        }
+        cloth_mesh.settled = state;
         let Some(mut mesh) = meshes.get_mut(&cloth_mesh.handle) else {
             continue;
         };
@@ -186,7 +202,7 @@ fn update_meshes(
         if mesh.count_vertices() != particles.len() {
             continue;
         }
-        interpolate(drawn, previous, particles, fraction, &frame.to_entity());
+        interpolate(drawn, previous, &particles, fraction, &frame.to_entity());
         if let Ok(VertexAttributeValues::Float32x3(values)) =
             mesh.try_attribute_mut(Mesh::ATTRIBUTE_POSITION)
         {

@@ -188,19 +188,13 @@ fn tether(view: &mut View, anchor: &[Lanes; 3], length_square: &Lanes) {
     }
 }
 
-/// All particles of a row to one anchor.
+/// A row's tethers, each block's to those of `anchors` that `anchor_of` says.
 #[inline(always)]
-fn tether_to_one(row: &mut [Block], anchor: &[Lanes; 3], length_square: &[Lanes]) {
-    for (block, length_square) in row.iter_mut().zip(length_square) {
-        tether(block.view_mut(), anchor, length_square);
+fn tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_square: &[Lanes]) {
+    for ((block, anchor), length_square) in row.iter_mut().zip(anchor_of).zip(length_square) {
+        tether(block.view_mut(), &anchors[*anchor as usize], length_square);
         one_block_at_a_time();
     }
-}
-
-/// A block's particles, each to an anchor of its own.
-#[inline(always)]
-fn tether_to_each(block: &mut Block, anchor: &[Lanes; 3], length_square: &Lanes) {
-    tether(block.view_mut(), anchor, length_square);
 }
 
 /// The largest squared lengths found (m²), lane by lane.
@@ -315,8 +309,7 @@ kernels! {
     bend_across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),
     diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run),
-    tether_to_one(row: &mut [Block], anchor: &[Lanes; 3], length_square: &[Lanes]),
-    tether_to_each(block: &mut Block, anchor: &[Lanes; 3], length_square: &Lanes),
+    tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_square: &[Lanes]),
     measure_within(row: &[Block], run: &Run, longest: &mut Longest),
     measure_down(upper: &[Block], lower: &[Block], run: &Run, longest: &mut Longest),
     measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Longest),

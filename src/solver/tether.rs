@@ -5,8 +5,6 @@
 //! (long range attachments, Kim, Chentanez and Müller 2012). It takes away energy or none: it acts only against
 //! what is beyond its length, and a pin does not move.
 
-use bevy::math::Vec3;
-
 use super::kernel::Kernels;
 use crate::cloth::{Block, ClothGrid, ClothMaterial, ClothParticles, LANES, Lanes, Layout, Slot};
 
@@ -30,22 +28,18 @@ pub struct Tethers {
 /// One tether for each particle.
 #[derive(Debug, Clone, PartialEq)]
 struct Layer {
-    /// Index of the pin, of each particle or the same for all.
-    pins: LayerPins,
+    /// Indices of the pins that the particles of a block are tethered to: most blocks of a column have the same.
+    patterns: Vec<[u32; LANES]>,
+    /// Which of these each block has.
+    pattern_of: Vec<u32>,
     /// Squared length (m²), block by block.
     length_square: Vec<Lanes>,
 }
 
-#[derive(Debug, Clone, PartialEq)]
-enum LayerPins {
-    Shared(usize),
-    Nearest(Vec<[u32; LANES]>),
-}
-
-/// Where the pins are in a sub-step.
+/// Where the pins are in a sub-step: x, y and z of each layer's patterns, one layer's after the other's.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Anchors {
-    position: Vec<Vec3>,
+    patterns: Vec<[Lanes; 3]>,
 }
 
 impl Tethers {
@@ -93,22 +87,30 @@ impl Tethers {
             };
             (longest * longest).min(ENDLESS)
         };
-        let layer = |choose: &dyn Fn((u32, u32)) -> usize, pins: LayerPins| Layer {
-            length_square: by_block(grid, layout, ENDLESS, |cell| {
-                length(cell, &pinned[choose(cell)])
-            }),
-            pins,
+        let layer = |choose: &dyn Fn((u32, u32)) -> usize| {
+            let pins = by_block(grid, layout, 0, |cell| choose(cell) as u32);
+            let mut patterns = pins.clone();
+            patterns.sort_unstable();
+            patterns.dedup();
+            // Every block's pattern is among them.
+            let index = |pins| patterns.binary_search(pins).unwrap_or(0) as u32;
+            Layer {
+                pattern_of: pins.iter().map(index).collect(),
+                patterns,
+                length_square: by_block(grid, layout, ENDLESS, |cell| {
+                    length(cell, &pinned[choose(cell)])
+                }),
+            }
         };
         let layers = if pinned.is_empty() || pinned.len() == grid.len() {
             Vec::new()
         } else if pinned.len() <= FEW_PINS {
-            let one = |pin: usize| layer(&|_| pin, LayerPins::Shared(pin));
-            (0..pinned.len()).map(one).collect()
+            (0..pinned.len()).map(|pin| layer(&|_| pin)).collect()
         } else {
             let nearest = nearest_pins(grid, &pinned);
-            let index = |(row, column)| nearest[grid.index(row, column) as usize] as usize;
-            let pins = by_block(grid, layout, 0, |cell| index(cell) as u32);
-            vec![layer(&index, LayerPins::Nearest(pins))]
+            vec![layer(&|(row, column)| {
+                nearest[grid.index(row, column) as usize] as usize
+            })]
         };
         Self {
             pins: pinned.iter().map(|&(.., slot)| slot).collect(),
@@ -132,10 +134,8 @@ impl Tethers {
         for layer in &self.layers {
             for (index, lengths) in layer.length_square.iter().enumerate() {
                 for (lane, length) in lengths.iter().enumerate() {
-                    let pin = self.pins[match &layer.pins {
-                        LayerPins::Shared(pin) => *pin,
-                        LayerPins::Nearest(pins) => pins[index][lane] as usize,
-                    }];
+                    let pattern = layer.patterns[layer.pattern_of[index] as usize];
+                    let pin = self.pins[pattern[lane] as usize];
                     let anchor = particles.blocks()[pin.block].position(pin.lane);
                     let position = particles.blocks()[index].position(lane);
                     let ratio = position.distance_squared(anchor) / length;
@@ -148,13 +148,17 @@ impl Tethers {
 
     /// Takes over where the pins are at the end of this sub-step.
     pub(super) fn locate(&self, blocks: &[Block], anchors: &mut Anchors) {
-        let position = |slot: &Slot| {
+        let position = |pin: u32| {
+            let slot = self.pins[pin as usize];
             let block = &blocks[slot.block];
             block.position(slot.lane) + block.displacement(slot.lane)
         };
-        anchors.position.clear();
-        if !self.layers.is_empty() {
-            anchors.position.extend(self.pins.iter().map(position));
+        anchors.patterns.clear();
+        for pattern in self.layers.iter().flat_map(|layer| &layer.patterns) {
+            let at = pattern.map(position);
+            anchors
+                .patterns
+                .push([at.map(|at| at.x), at.map(|at| at.y), at.map(|at| at.z)]);
         }
     }
 
@@ -166,28 +170,13 @@ impl Tethers {
         first: usize,
         kernels: &Kernels,
     ) {
+        let mut patterns = &anchors.patterns[..];
         for layer in &self.layers {
-            let lengths = &layer.length_square[first..first + blocks.len()];
-            match &layer.pins {
-                LayerPins::Shared(pin) => {
-                    let anchor = anchors.position[*pin]
-                        .to_array()
-                        .map(|value| [value; LANES]);
-                    (kernels.tether_to_one)(blocks, &anchor, lengths);
-                }
-                LayerPins::Nearest(pins) => {
-                    let pins = &pins[first..first + blocks.len()];
-                    for ((block, length), pins) in blocks.iter_mut().zip(lengths).zip(pins) {
-                        let position = pins.map(|pin| anchors.position[pin as usize]);
-                        let anchor = [
-                            position.map(|position| position.x),
-                            position.map(|position| position.y),
-                            position.map(|position| position.z),
-                        ];
-                        (kernels.tether_to_each)(block, &anchor, length);
-                    }
-                }
-            }
+            let (own, others) = patterns.split_at(layer.patterns.len());
+            patterns = others;
+            let these = first..first + blocks.len();
+            let pattern_of = &layer.pattern_of[these.clone()];
+            (kernels.tethers)(blocks, own, pattern_of, &layer.length_square[these]);
         }
     }
 }
