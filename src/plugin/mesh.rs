@@ -81,7 +81,7 @@ impl Plugin for ClothMeshPlugin {
             .add_systems(
                 self.schedule,
                 remember_positions
-                    .after(ClothSystems::Prepare)
+                    .after(ClothSystems::Query)
                     .before(ClothSystems::Integrate),
             )
             // Before the asset events, from which Bevy's culling takes the new bounds.

@@ -2,7 +2,7 @@
 
 use crate::cloth::{ClothGrid, Compliances, Lanes, Layout, rest_length};
 
-/// What is added to w_a + w_b (1/kg): nothing to speak of, but it keeps a spring between two pins from dividing
+/// What is added to `w_a + w_b` (1/kg): nothing to speak of, but it keeps a spring between two pins from dividing
 /// by zero.
 pub(super) const LEAST_SOFTNESS: f32 = 1.0e-18;
 

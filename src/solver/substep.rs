@@ -78,7 +78,7 @@ pub struct Solver {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Sweep {
-    Grid(GridSweep),
+    Grid(Box<GridSweep>),
     List(ListSweep),
 }
 
@@ -93,7 +93,9 @@ impl Solver {
     /// Solves `springs` between `particles`. Without tethers, on one thread.
     pub fn new(springs: &Springs, particles: &ClothParticles) -> Self {
         Self::of(match springs.weave() {
-            Weave::Grid(grid, compliances) => Sweep::Grid(GridSweep::new(grid, compliances)),
+            Weave::Grid(grid, compliances) => {
+                Sweep::Grid(Box::new(GridSweep::new(grid, compliances)))
+            }
             Weave::List(springs, colours) => {
                 Sweep::List(ListSweep::new(springs, colours, particles.layout()))
             }

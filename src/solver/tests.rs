@@ -12,7 +12,7 @@ const STEP: TickStep = TickStep {
     damping: 0.01,
 };
 
-/// SplitMix64, from −1 to 1.
+/// `SplitMix64`, from −1 to 1.
 fn random(seed: &mut u64) -> f32 {
     *seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let z = (*seed ^ (*seed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

@@ -220,7 +220,7 @@ fn a_change_of_substeps_keeps_the_speed() {
     let cloth = app.world_mut().spawn(cloth).id();
     for (second, substeps) in [(0.5, 20), (1.0, 3), (1.5, 7)] {
         change::<ClothSettings>(&mut app, cloth, |settings| {
-            settings.precision = Precision::Substeps(substeps)
+            settings.precision = Precision::Substeps(substeps);
         });
         tick(&mut app, 32);
         let speed = -particles(&app, cloth).velocity(9).expect("a particle").y;
@@ -247,7 +247,7 @@ fn huge_and_changing_steps_are_survived() {
             .set_timestep_seconds(seconds);
         for substeps in [1, 20, 3] {
             change::<ClothSettings>(&mut app, cloth, |settings| {
-                settings.precision = Precision::Substeps(substeps)
+                settings.precision = Precision::Substeps(substeps);
             });
             (0..20).for_each(|_| app.update());
             let particles = particles(&app, cloth);

@@ -2,14 +2,18 @@
 
 use bevy::{
     ecs::component::Component,
-    math::{Isometry3d, Vec3},
+    math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
 use super::{
     ClothError, ClothGrid, ClothMaterial, Pins,
-    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X},
+    lanes::{Block, Layout, Slot},
 };
+
+#[cfg(test)]
+mod tests;
+mod upkeep;
 
 /// The sub-step that displacements span until the first tick says otherwise: 20 a tick of Bevy's 64 Hz.
 const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
@@ -65,15 +69,6 @@ impl Default for ClothParticles {
     }
 }
 
-/// What one pass over the particles finds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Survey {
-    /// Whether all is as [`ClothParticles::validate`] wants it.
-    pub is_sound: bool,
-    /// Speed of the fastest particle (m/s).
-    pub largest_speed: f32,
-}
-
 impl ClothParticles {
     /// The particles of `grid`, at rest, all of them free and with masses from `material`.
     ///
@@ -119,42 +114,6 @@ impl ClothParticles {
             blocks: vec![Block::EMPTY; layout.blocks()],
             substep: DEFAULT_SUBSTEP,
         }
-    }
-
-    /// Sets the inverse masses from the grid's areas, the material's density and the pins.
-    ///
-    /// # Errors
-    /// A mass that a float can't hold or invert; a pin out of range. Nothing is changed then.
-    pub(crate) fn weigh(
-        &mut self,
-        grid: &ClothGrid,
-        material: &ClothMaterial,
-        pins: &Pins,
-    ) -> Result<(), ClothError> {
-        pins.validate(grid)?;
-        Self::check_mass(grid, material)?;
-        for ((row, column), slot) in grid.cells().zip(self.layout.slots()) {
-            let mass = material.areal_density * grid.tributary_area(row, column);
-            self.blocks[slot.block].set_inverse_mass(slot.lane, 1.0 / mass);
-        }
-        pins.for_each(grid, |index| self.pin(index));
-        Ok(())
-    }
-
-    /// Has nothing but its pin move a particle.
-    pub(crate) fn pin(&mut self, index: usize) {
-        let slot = self.layout.slot_of(index);
-        self.blocks[slot.block].set_inverse_mass(slot.lane, 0.0);
-    }
-
-    fn check_mass(grid: &ClothGrid, material: &ClothMaterial) -> Result<(), ClothError> {
-        ClothError::check(
-            material.areal_density * grid.tributary_area(0, 0),
-            |corner| (1.0e-15..1.0e15).contains(&corner),
-            "the mass of a particle (kg)",
-            "from 10⁻¹⁵ to 10¹⁵",
-        )?;
-        Ok(())
     }
 
     /// Number of particles.
@@ -327,116 +286,9 @@ impl ClothParticles {
         })
     }
 
-    /// Looks at every particle once.
-    pub(crate) fn survey(&self) -> Survey {
-        let mut sound = [true; LANES];
-        let mut largest = [0.0_f32; LANES];
-        for block in &self.blocks {
-            let view = block.view();
-            let square = |from: usize, lane: usize| {
-                let [a, b, c] = [0, LANES, 2 * LANES].map(|next| view[from + next + lane]);
-                a * a + b * b + c * c
-            };
-            for lane in 0..LANES {
-                let moved = square(DX, lane);
-                sound[lane] &= is_sound(square(X, lane) + moved, view[W + lane]);
-                largest[lane] = if moved > largest[lane] {
-                    moved
-                } else {
-                    largest[lane]
-                };
-            }
-        }
-        Survey {
-            is_sound: sound == [true; LANES],
-            largest_speed: largest.into_iter().fold(0.0, f32::max).sqrt() / self.substep,
-        }
-    }
-
     /// The largest speed of a particle (m/s).
     pub fn largest_speed(&self) -> f32 {
         self.survey().largest_speed
-    }
-
-    /// Whether there are as many as `grid` has, in as many columns.
-    pub(crate) fn fit(&self, grid: &ClothGrid) -> bool {
-        (self.rows(), self.columns()) == (grid.rows(), grid.columns())
-    }
-
-    /// Position (m) of a particle that exists.
-    pub(crate) fn position_at(&self, index: usize) -> Vec3 {
-        let Slot { block, lane } = self.layout.slot_of(index);
-        self.blocks[block].position(lane)
-    }
-
-    /// How the particles lie in memory.
-    pub(crate) fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    /// The memory that they lie in.
-    pub(crate) fn blocks(&self) -> &[Block] {
-        &self.blocks
-    }
-
-    /// The memory that they lie in.
-    pub(crate) fn blocks_mut(&mut self) -> &mut [Block] {
-        &mut self.blocks
-    }
-
-    /// Forgets what the pinned particles were moved by.
-    pub(crate) fn still_pins(&mut self) {
-        for block in &mut self.blocks {
-            let view = block.view_mut();
-            for from in [DX, DY, DZ] {
-                for lane in 0..LANES {
-                    let moved = view[from + lane];
-                    view[from + lane] = if view[W + lane] > 0.0 { moved } else { 0.0 };
-                }
-            }
-        }
-    }
-
-    /// Has a pinned particle be at `position` when the sub-step ends.
-    pub(crate) fn lead_pin(&mut self, index: usize, position: Vec3) {
-        let Slot { block, lane } = self.layout.slot_of(index);
-        let block = &mut self.blocks[block];
-        block.set_displacement(lane, position - block.position(lane));
-    }
-
-    /// Moves all particles as one body, velocities along with it.
-    pub(crate) fn transform(&mut self, by: Isometry3d) {
-        for slot in self.layout.slots() {
-            let block = &mut self.blocks[slot.block];
-            block.set_position(slot.lane, by * block.position(slot.lane));
-            block.set_displacement(slot.lane, by.rotation * block.displacement(slot.lane));
-        }
-    }
-
-    /// Becomes what `other` is, in the memory that it has.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.layout = other.layout;
-        self.blocks.clone_from(&other.blocks);
-        self.substep = other.substep;
-    }
-
-    /// Puts a particle somewhere.
-    pub(crate) fn put(&mut self, index: usize, position: Vec3) {
-        let Slot { block, lane } = self.layout.slot_of(index);
-        self.blocks[block].set_position(lane, position);
-    }
-
-    /// Has displacements span `substep` seconds from now on, at the same velocities.
-    pub(crate) fn respan(&mut self, substep: f32) {
-        if substep != self.substep {
-            let ratio = substep / self.substep;
-            for block in &mut self.blocks {
-                for displacement in &mut block.view_mut()[DX..] {
-                    *displacement *= ratio;
-                }
-            }
-            self.substep = substep;
-        }
     }
 
     fn slot(&self, id: impl Into<ParticleId>) -> Option<Slot> {
@@ -455,84 +307,5 @@ impl ClothParticles {
 /// Whether a particle's numbers are, by the squares of position and displacement (m²) and its inverse mass
 /// (1/kg). False for NaN too.
 fn is_sound(squares: f32, inverse_mass: f32) -> bool {
-    (squares < FARTHEST * FARTHEST) & (inverse_mass >= 0.0) & (inverse_mass < f32::INFINITY)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cloth::Cloth;
-
-    fn particles() -> ClothParticles {
-        let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("a sound grid");
-        ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material")
-    }
-
-    #[test]
-    fn index_and_cell_name_the_same_particle() {
-        let mut particles = particles();
-        assert_eq!(particles.index((2, 1)), Some(9));
-        assert_eq!(particles.position(9), particles.position((2, 1)));
-        particles.set_velocity((2, 1), Vec3::X).expect("it exists");
-        assert!((particles.velocity(9).expect("it exists") - Vec3::X).length() < 1e-6);
-        assert_eq!((particles.columns(), particles.rows()), (4, 3));
-        assert_eq!(
-            particles.index((0, 4)),
-            None,
-            "a column too far is not the next row"
-        );
-        assert!(matches!(
-            particles.set_position((3, 0), Vec3::ZERO),
-            Err(ClothError::NoSuchParticle { rows: 3, .. })
-        ));
-    }
-
-    #[test]
-    fn masses_add_up_to_density_times_area() {
-        let mass: f32 = particles().inverse_masses().map(f32::recip).sum();
-        assert!((mass - 0.15 * 1.5).abs() < 1e-6);
-    }
-
-    #[test]
-    fn respan_keeps_velocities() {
-        let mut particles = particles();
-        particles
-            .set_velocity(5, Vec3::new(1.0, -2.0, 3.0))
-            .expect("it exists");
-        particles.respan(0.01);
-        let velocity = particles.velocity(5).expect("it exists");
-        assert!((velocity - Vec3::new(1.0, -2.0, 3.0)).length() < 1e-6);
-        assert!((particles.displacement(5).expect("it exists").x - 0.01).abs() < 1e-8);
-    }
-
-    #[test]
-    fn each_number_that_is_not_finite_is_found() {
-        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0e30] {
-            let mut particles = particles();
-            particles
-                .set_position(7, Vec3::new(0.0, bad, 0.0))
-                .expect("it exists");
-            assert!(matches!(
-                particles.validate(),
-                Err(ClothError::ParticleNotFinite { index: 7, .. })
-            ));
-            let mut particles = self::particles();
-            particles
-                .set_displacement(11, Vec3::new(0.0, 0.0, bad))
-                .expect("it exists");
-            assert!(matches!(
-                particles.validate(),
-                Err(ClothError::ParticleNotFinite { index: 11, .. })
-            ));
-        }
-        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0] {
-            let mut particles = particles();
-            particles.set_inverse_mass(0, bad).expect("it exists");
-            assert!(matches!(
-                particles.validate(),
-                Err(ClothError::ParticleNotFinite { index: 0, .. })
-            ));
-        }
-        assert_eq!(particles().validate(), Ok(()));
-    }
+    (squares < FARTHEST * FARTHEST) & (0.0..f32::INFINITY).contains(&inverse_mass)
 }

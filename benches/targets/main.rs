@@ -3,6 +3,7 @@
 //! Whatever is compared is timed in turns within one run; each figure is the median of its turns.
 
 mod forms;
+#[path = "../shared/mod.rs"]
 mod shared;
 
 use std::time::Instant;

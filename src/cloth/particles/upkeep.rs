@@ -1,0 +1,162 @@
+//! What the solver and the plugin do to all particles at once.
+
+use bevy::math::{Isometry3d, Vec3};
+
+use super::{ClothParticles, is_sound};
+use crate::cloth::{
+    Block, ClothError, ClothGrid, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, W, X,
+};
+
+/// What one pass over the particles finds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Survey {
+    /// Whether all is as [`ClothParticles::validate`] wants it.
+    pub is_sound: bool,
+    /// Speed of the fastest particle (m/s).
+    pub largest_speed: f32,
+}
+
+impl ClothParticles {
+    /// Sets the inverse masses from the grid's areas, the material's density and the pins.
+    ///
+    /// # Errors
+    /// A mass that a float can't hold or invert; a pin out of range. Nothing is changed then.
+    pub(crate) fn weigh(
+        &mut self,
+        grid: &ClothGrid,
+        material: &ClothMaterial,
+        pins: &Pins,
+    ) -> Result<(), ClothError> {
+        pins.validate(grid)?;
+        Self::check_mass(grid, material)?;
+        for ((row, column), slot) in grid.cells().zip(self.layout.slots()) {
+            let mass = material.areal_density * grid.tributary_area(row, column);
+            self.blocks[slot.block].set_inverse_mass(slot.lane, 1.0 / mass);
+        }
+        pins.for_each(grid, |index| self.pin(index));
+        Ok(())
+    }
+
+    /// Has nothing but its pin move a particle.
+    pub(crate) fn pin(&mut self, index: usize) {
+        let slot = self.layout.slot_of(index);
+        self.blocks[slot.block].set_inverse_mass(slot.lane, 0.0);
+    }
+
+    pub(super) fn check_mass(grid: &ClothGrid, material: &ClothMaterial) -> Result<(), ClothError> {
+        ClothError::check(
+            material.areal_density * grid.tributary_area(0, 0),
+            |corner| (1.0e-15..1.0e15).contains(&corner),
+            "the mass of a particle (kg)",
+            "from 10⁻¹⁵ to 10¹⁵",
+        )?;
+        Ok(())
+    }
+
+    /// Looks at every particle once.
+    pub(crate) fn survey(&self) -> Survey {
+        let mut sound = [true; LANES];
+        let mut largest = [0.0_f32; LANES];
+        for block in &self.blocks {
+            let view = block.view();
+            let square = |from: usize, lane: usize| {
+                let [a, b, c] = [0, LANES, 2 * LANES].map(|next| view[from + next + lane]);
+                a * a + b * b + c * c
+            };
+            for lane in 0..LANES {
+                let moved = square(DX, lane);
+                sound[lane] &= is_sound(square(X, lane) + moved, view[W + lane]);
+                largest[lane] = if moved > largest[lane] {
+                    moved
+                } else {
+                    largest[lane]
+                };
+            }
+        }
+        Survey {
+            is_sound: sound == [true; LANES],
+            largest_speed: largest.into_iter().fold(0.0, f32::max).sqrt() / self.substep,
+        }
+    }
+
+    /// Whether there are as many as `grid` has, in as many columns.
+    pub(crate) fn fit(&self, grid: &ClothGrid) -> bool {
+        (self.rows(), self.columns()) == (grid.rows(), grid.columns())
+    }
+
+    /// Position (m) of a particle that exists.
+    pub(crate) fn position_at(&self, index: usize) -> Vec3 {
+        let Slot { block, lane } = self.layout.slot_of(index);
+        self.blocks[block].position(lane)
+    }
+
+    /// How the particles lie in memory.
+    pub(crate) fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The memory that they lie in.
+    pub(crate) fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// The memory that they lie in.
+    pub(crate) fn blocks_mut(&mut self) -> &mut [Block] {
+        &mut self.blocks
+    }
+
+    /// Forgets what the pinned particles were moved by.
+    pub(crate) fn still_pins(&mut self) {
+        for block in &mut self.blocks {
+            let view = block.view_mut();
+            for from in [DX, DY, DZ] {
+                for lane in 0..LANES {
+                    let moved = view[from + lane];
+                    view[from + lane] = if view[W + lane] > 0.0 { moved } else { 0.0 };
+                }
+            }
+        }
+    }
+
+    /// Has a pinned particle be at `position` when the sub-step ends.
+    pub(crate) fn lead_pin(&mut self, index: usize, position: Vec3) {
+        let Slot { block, lane } = self.layout.slot_of(index);
+        let block = &mut self.blocks[block];
+        block.set_displacement(lane, position - block.position(lane));
+    }
+
+    /// Moves all particles as one body, velocities along with it.
+    pub(crate) fn transform(&mut self, by: Isometry3d) {
+        for slot in self.layout.slots() {
+            let block = &mut self.blocks[slot.block];
+            block.set_position(slot.lane, by * block.position(slot.lane));
+            block.set_displacement(slot.lane, by.rotation * block.displacement(slot.lane));
+        }
+    }
+
+    /// Becomes what `other` is, in the memory that it has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.layout = other.layout;
+        self.blocks.clone_from(&other.blocks);
+        self.substep = other.substep;
+    }
+
+    /// Puts a particle somewhere.
+    pub(crate) fn put(&mut self, index: usize, position: Vec3) {
+        let Slot { block, lane } = self.layout.slot_of(index);
+        self.blocks[block].set_position(lane, position);
+    }
+
+    /// Has displacements span `substep` seconds from now on, at the same velocities.
+    pub(crate) fn respan(&mut self, substep: f32) {
+        if substep != self.substep {
+            let ratio = substep / self.substep;
+            for block in &mut self.blocks {
+                for displacement in &mut block.view_mut()[DX..] {
+                    *displacement *= ratio;
+                }
+            }
+            self.substep = substep;
+        }
+    }
+}
