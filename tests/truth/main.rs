@@ -2,6 +2,7 @@
 //! the figures.
 
 mod catenary;
+mod compliance;
 mod energy;
 mod precision;
 mod scenes;
