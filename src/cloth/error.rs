@@ -59,7 +59,7 @@ pub enum ClothError {
     },
     /// A particle whose position, displacement or inverse mass is not a finite number, or beyond all measure.
     #[error(
-        "particle {index} is not finite, or beyond 10¹⁸ m: position {position}, displacement {displacement}, inverse mass {inverse_mass}"
+        "particle {index} is not finite, beyond 10¹⁸ m, or lighter than 10⁻¹⁵ kg: position {position}, displacement {displacement}, inverse mass {inverse_mass}"
     )]
     ParticleNotFinite {
         /// Index of the first such particle.
@@ -124,6 +124,7 @@ impl ClothError {
     pub(crate) fn is_same_fault(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Quantity { quantity: a, .. }, Self::Quantity { quantity: b, .. }) => a == b,
+            (Self::NoTarget { .. }, Self::NoTarget { .. }) => self == other,
             _ => discriminant(self) == discriminant(other),
         }
     }

@@ -9,7 +9,7 @@ use bevy::{
 
 use super::{ClothFrame, frame::global_transform, prepare::PreparingItem};
 use crate::{
-    cloth::{ClothError, Pin},
+    cloth::{ClothError, Pin, Pins},
     solver::PinMotion,
 };
 
@@ -63,12 +63,42 @@ pub(super) struct Attached {
     offset: Vec3,
 }
 
+/// Where an attachment's target is.
+///
+/// # Errors
+/// [`ClothError::NoTarget`] for one that does not exist, has no transform, or is scaled to nothing.
+fn target(
+    (pin, target): &(Pin, Entity),
+    transforms: &TransformHelper,
+) -> Result<Affine3A, ClothError> {
+    let transform = global_transform(transforms, *target).ok();
+    let affine = transform.map(|transform| transform.affine());
+    affine
+        .filter(|affine| affine.inverse().is_finite())
+        .ok_or_else(|| ClothError::NoTarget {
+            pin: pin.clone(),
+            target: *target,
+        })
+}
+
 impl PreparingItem<'_, '_> {
-    /// Has attached particles move to where their targets take them in this tick.
+    /// Whether the attachments can be followed: asked before anything is moved.
+    pub(super) fn check_targets(&self, transforms: &TransformHelper) -> Result<(), ClothError> {
+        let wanted = self
+            .attachments
+            .map_or(&[][..], |attachments| &attachments.0);
+        for attachment in wanted {
+            target(attachment, transforms)?;
+        }
+        Pins::new(wanted.iter().map(|(pin, _)| pin.clone())).validate(&self.topology.grid)
+    }
+
+    /// Has attached particles move to where their targets take them in this tick. A teleport, from the frame that the
+    /// cloth had before, takes them there at once, and the others along.
     pub(super) fn follow_targets(
         &mut self,
         transforms: &TransformHelper,
-        teleports: bool,
+        teleport_from: Option<ClothFrame>,
     ) -> Result<(), ClothError> {
         let wanted = self
             .attachments
@@ -76,76 +106,65 @@ impl PreparingItem<'_, '_> {
         if wanted.is_empty() && self.tick.attachments.is_empty() {
             return Ok(());
         }
-        let target = |(pin, target): &(Pin, Entity)| {
-            let transform = global_transform(transforms, *target).ok();
-            let affine = transform.map(|transform| transform.affine());
-            affine
-                .filter(|affine| affine.inverse().is_finite())
-                .ok_or_else(|| ClothError::NoTarget {
-                    pin: pin.clone(),
-                    target: *target,
-                })
-        };
-        for attachment in wanted {
-            target(attachment)?;
-        }
         if self.tick.attachments != wanted {
-            self.attach(wanted, &target)?;
-        }
-        if let Some(first) = wanted.first() {
-            let (_, rotation, translation) = target(first)?.to_scale_rotation_translation();
-            let pose = Isometry3d::new(translation, rotation.normalize());
-            if let Some(was) = self.tick.first_target.replace(pose)
-                && teleports
-            {
-                self.jump(was, pose);
-            }
+            self.attach(wanted, transforms)?;
         }
         let frame = *self.frame;
-        for index in 0..self.tick.attached.len() {
-            let attached = self.tick.attached[index];
-            let affine = target(&wanted[attached.attachment])?;
-            let to = frame.from_world(affine.transform_point3(attached.offset));
-            let from = self.particles.position_at(attached.particle as usize);
-            if teleports {
-                self.particles.put(attached.particle as usize, to);
-            } else if from != to
-                || self
-                    .tick
-                    .pins
-                    .iter()
-                    .any(|pin| pin.particle == attached.particle)
-            {
-                // A later motion of the same particle is the one that counts.
-                self.tick.pins.push(PinMotion {
-                    particle: attached.particle,
-                    from,
-                    to,
-                });
+        if let Some(first) = wanted.first() {
+            let (_, rotation, translation) =
+                target(first, transforms)?.to_scale_rotation_translation();
+            let pose = Isometry3d::new(translation, rotation.normalize());
+            let was = self.tick.first_target.replace(pose);
+            if let (Some(was), Some(before)) = (was, teleport_from) {
+                let jump = pose * was.inverse();
+                let (from, to) = (before.isometry(), frame.isometry());
+                self.particles.transform(to.inverse() * jump * from);
+            }
+        }
+        let is_carried = !self.tick.pins.is_empty();
+        for (index, attachment) in wanted.iter().enumerate() {
+            let affine = target(attachment, transforms)?;
+            let tick = &mut *self.tick;
+            for attached in tick.attached.iter().filter(|each| each.attachment == index) {
+                let particle = attached.particle as usize;
+                let to = frame.from_world(affine.transform_point3(attached.offset));
+                let from = self.particles.position_at(particle);
+                if teleport_from.is_some() {
+                    self.particles.put(particle, to);
+                } else if is_carried || from != to {
+                    // A later motion of the same particle is the one that counts.
+                    tick.pins.push(PinMotion {
+                        particle: attached.particle,
+                        from,
+                        to,
+                    });
+                }
             }
         }
         Ok(())
     }
 
-    /// Takes over other attachments.
+    /// Takes over other attachments. Those that stay keep their offsets; what is let go gets its mass back.
     fn attach(
         &mut self,
         wanted: &[(Pin, Entity)],
-        target: &dyn Fn(&(Pin, Entity)) -> Result<Affine3A, ClothError>,
+        transforms: &TransformHelper,
     ) -> Result<(), ClothError> {
         let grid = self.topology.grid;
-        let pins = crate::cloth::Pins::new(wanted.iter().map(|(pin, _)| pin.clone()));
-        pins.validate(&grid)?;
-        // Let go of what was attached; what the game pinned stays so.
-        if let Some((_, material, pins)) = &self.topology.woven
-            && !self.tick.attached.is_empty()
-        {
-            self.particles.weigh(&grid, material, pins)?;
-        }
-        self.tick.attached.clear();
+        let before = std::mem::take(&mut self.tick.attached);
+        let known = std::mem::take(&mut self.tick.attachments);
         for (attachment, each) in wanted.iter().enumerate() {
-            let from_world = target(each)?.inverse();
-            crate::cloth::Pins::new([each.0.clone()]).for_each(&grid, |index| {
+            if let Some(old) = known.iter().position(|known| known == each) {
+                let kept = before.iter().filter(|attached| attached.attachment == old);
+                let kept = kept.map(|attached| Attached {
+                    attachment,
+                    ..*attached
+                });
+                self.tick.attached.extend(kept);
+                continue;
+            }
+            let from_world = target(each, transforms)?.inverse();
+            Pins::new([each.0.clone()]).for_each(&grid, |index| {
                 let position = self.frame.to_world(self.particles.position_at(index));
                 self.tick.attached.push(Attached {
                     particle: index as u32,
@@ -154,20 +173,21 @@ impl PreparingItem<'_, '_> {
                 });
             });
         }
+        if let Some((_, material, pins)) = &self.topology.woven {
+            for attached in before {
+                self.particles
+                    .reweigh(attached.particle as usize, &grid, material, pins);
+            }
+        }
         for attached in &self.tick.attached {
             self.particles.pin(attached.particle as usize);
         }
+        if known.first() != wanted.first() {
+            self.tick.first_target = None;
+        }
         self.tick.attachments = wanted.to_vec();
-        self.tick.first_target = None;
         self.tick.tethered = None;
         self.tick.rest.disturb();
         Ok(())
-    }
-
-    /// Moves all particles as one body, in the world, from one pose of something to another.
-    fn jump(&mut self, from: Isometry3d, to: Isometry3d) {
-        let frame: ClothFrame = *self.frame;
-        let jump = frame.isometry().inverse() * to * from.inverse() * frame.isometry();
-        self.particles.transform(jump);
     }
 }

@@ -132,8 +132,8 @@ pub(super) struct ClothTick {
     pub rest: Rest,
     /// Speed of the fastest particle as the tick begins (m/s).
     pub largest_speed: f32,
-    /// What disturbs a cloth at rest when it changes, besides what it is woven from: settings and acceleration.
-    pub known: Option<(ClothSettings, Vec3)>,
+    /// What disturbs a cloth at rest when it changes, besides what it is woven from.
+    pub known: Option<(ClothSettings, BoundRule, Vec3)>,
     /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
     pub tethered: Option<(bool, f32)>,
     /// What `attached` was made from.

@@ -192,7 +192,7 @@ fn update_meshes(
         if state.is_some() && cloth_mesh.settled == state {
             continue;
         }
-        cloth_mesh.settled = state;
+        cloth_mesh.settled = None;
         let Some(mut mesh) = meshes.get_mut(&cloth_mesh.handle) else {
             continue;
         };
@@ -223,6 +223,7 @@ fn update_meshes(
                 .zip(normals)
                 .for_each(|(value, normal)| *value = normal.to_array());
         }
+        cloth_mesh.settled = state;
     }
 }
 

@@ -54,6 +54,9 @@ pub(super) fn prepare_cloths(
             cloth.prepare(&transform, &transforms, gravity.0, time.delta_secs())
         });
         cloth.tick.sound = outcome.is_ok();
+        if outcome.is_err() {
+            cloth.tick.rest.disturb();
+        }
         if cloth.teleport.is_some() && outcome.is_ok() {
             commands.entity(cloth.entity).try_remove::<ClothTeleport>();
         }
@@ -84,29 +87,28 @@ impl PreparingItem<'_, '_> {
             ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
         }
         let was_woven = self.weave(&material, scale)?;
-        let by_game = self.tick.written != Some(self.particles.last_changed());
-        // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
-        if by_game || !self.tick.rest.is_asleep() {
-            let survey = self.particles.survey();
-            if !survey.is_sound {
-                return self.particles.validate();
-            }
-            self.tick.largest_speed = survey.largest_speed;
-        }
-        self.tick.pins.clear();
+        let before = *self.frame;
         if !was_woven {
             *self.frame = frame;
-        } else if self.teleport.is_some() {
+        }
+        let was_written = self.tick.written != Some(self.particles.last_changed());
+        // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
+        if was_written || !self.tick.rest.is_asleep() {
+            self.tick.largest_speed = self.look_at_particles()?;
+        }
+        self.check_targets(transforms)?;
+        let teleports = self.teleport.is_some();
+        self.tick.pins.clear();
+        if teleports {
             *self.frame = frame;
-            self.tick.rest.disturb();
         } else if seconds > 0.0 && *self.frame != frame {
             self.carry(self.frame.isometry(), frame.isometry());
             *self.frame = frame;
         }
-        if seconds > 0.0 || !was_woven {
-            self.follow_targets(transforms, self.teleport.is_some())?;
+        if seconds > 0.0 || !was_woven || teleports {
+            self.follow_targets(transforms, teleports.then_some(before))?;
         }
-        if by_game {
+        if was_written || teleports {
             self.tick.stretch = self.tick.solver.measure(&self.particles);
             self.stats.stretch = self.tick.stretch;
             if !self.tick.solver.tethers().are_of(&self.particles) {
@@ -115,9 +117,11 @@ impl PreparingItem<'_, '_> {
             self.tick.rest.disturb();
         }
         let acceleration = self.frame.isometry().rotation.inverse() * gravity;
-        self.tether(settings.tethers, &material, acceleration.length());
-        let known = Some((settings, acceleration));
+        self.tether(settings.tethers, &material, gravity.length());
+        let rule = self.rule.copied().unwrap_or_default();
+        let known = Some((settings, rule, acceleration));
         if self.tick.known != known || !self.tick.pins.is_empty() || !settings.sleeps {
+            self.tick.cap_is_told &= self.tick.known == known;
             self.tick.known = known;
             self.tick.rest.disturb();
         } else if !self.tick.rest.is_asleep() {
@@ -132,11 +136,23 @@ impl PreparingItem<'_, '_> {
             acceleration,
             damping: material.damping,
         });
-        self.tick.rule = self.rule.copied().unwrap_or_default();
+        self.tick.rule = rule;
         self.tick.friction = material.friction;
         self.tick.particle_radius = settings.particle_radius;
         self.tick.reach = self.reach(acceleration.length(), seconds);
         Ok(())
+    }
+
+    /// The speed of the fastest particle (m/s), if all are sound.
+    fn look_at_particles(&mut self) -> Result<f32, ClothError> {
+        let survey = self.particles.survey();
+        if survey.is_sound {
+            return Ok(survey.largest_speed);
+        }
+        self.particles.validate()?;
+        // What was not sound has been mended, but for what it left beside the particles.
+        self.particles.clear_padding();
+        Ok(self.particles.survey().largest_speed)
     }
 
     /// How far a particle may get in the tick by itself (m): by its speed and gravity, by what carries its
@@ -153,6 +169,7 @@ impl PreparingItem<'_, '_> {
     /// course of the tick.
     fn carry(&mut self, old: Isometry3d, new: Isometry3d) {
         let new_from_old = new.inverse() * old;
+        self.tick.rest.disturb();
         let tick = &mut *self.tick;
         for (index, inverse_mass) in self.particles.inverse_masses().enumerate() {
             if inverse_mass == 0.0 {

@@ -221,7 +221,7 @@ impl IntegratingItem<'_, '_> {
         let settings = self
             .tick
             .known
-            .map_or_else(ClothSettings::default, |(settings, _)| settings);
+            .map_or_else(ClothSettings::default, |(settings, ..)| settings);
         let bands = if self.particles.len() < LEAST_TO_SPLIT {
             1
         } else {

@@ -51,6 +51,8 @@ impl PreparingItem<'_, '_> {
         self.tick.solver = Solver::new(&springs, &particles);
         self.tick.tethered = None;
         self.tick.attached.clear();
+        self.tick.attachments.clear();
+        self.tick.first_target = None;
         *self.particles = particles;
         *self.topology = ClothTopology {
             grid,

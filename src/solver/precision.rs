@@ -70,8 +70,8 @@ impl Control {
         }
     }
 
-    /// Takes the stretch that the tick ended with. Returns with how many sub-steps to do it again, if it has to
-    /// be.
+    /// Takes the stretch that the tick ended with. Returns with how many sub-steps to do it again, from where it
+    /// began, if it has to be.
     pub fn observe(&mut self, precision: Precision, stretch: Stretch) -> Option<u32> {
         let Precision::Tolerance {
             stretch: tolerance,

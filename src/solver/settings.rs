@@ -22,8 +22,8 @@ pub struct ClothSettings {
     /// radius of the tree's leaves. About spacing² / (4 × the ball's radius) keeps the flat triangles between
     /// the particles from sinking into a ball.
     pub particle_radius: f32,
-    /// Whether no particle may be farther from the pins than the cloth between them is long. That takes most of
-    /// the stretch out of a fine cloth for a tenth of the cost more, and leaves to the springs what is elastic: see
+    /// Whether no particle may be farther from the pins than the cloth between them is long, with room for what the
+    /// material gives. That takes most of the stretch out of a fine cloth for a fifth of the cost more: see
     /// [`Tethers`](super::Tethers).
     pub tethers: bool,
     /// Whether a cloth that has come to rest sleeps: it costs next to nothing, stays as it is to the last bit,

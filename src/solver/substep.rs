@@ -9,7 +9,7 @@ use super::{
     tether::Anchors,
     wave::{GridSweep, Motion},
 };
-use crate::cloth::{ClothParticles, Springs, Weave};
+use crate::cloth::{ClothParticles, Layout, Springs, Weave};
 
 /// The time step for which the paper's damping D is given (s).
 const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
@@ -66,9 +66,11 @@ pub struct PinMotion {
     pub to: Vec3,
 }
 
-/// Moves the particles that it was made for, a tick at a time, without allocating.
+/// Moves the particles that it was made for, a tick at a time. On one thread it does not allocate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solver {
+    /// Of the particles.
+    layout: Layout,
     sweep: Sweep,
     tethers: Tethers,
     anchors: Anchors,
@@ -85,25 +87,32 @@ enum Sweep {
 impl Default for Solver {
     /// Of no springs.
     fn default() -> Self {
-        Self::of(Sweep::List(ListSweep::default()))
+        Self::of(Layout::default(), Sweep::List(ListSweep::default()))
     }
 }
 
 impl Solver {
     /// Solves `springs` between `particles`. Without tethers, on one thread.
+    ///
+    /// # Panics
+    /// If the springs are those of another grid, or between more particles than there are.
     pub fn new(springs: &Springs, particles: &ClothParticles) -> Self {
-        Self::of(match springs.weave() {
+        let layout = particles.layout();
+        if let Weave::Grid(grid, _) = springs.weave() {
+            assert!(particles.fit(grid), "springs and particles of one grid");
+        }
+        let sweep = match springs.weave() {
             Weave::Grid(grid, compliances) => {
                 Sweep::Grid(Box::new(GridSweep::new(grid, compliances)))
             }
-            Weave::List(springs, colours) => {
-                Sweep::List(ListSweep::new(springs, colours, particles.layout()))
-            }
-        })
+            Weave::List(springs, colours) => Sweep::List(ListSweep::new(springs, colours, layout)),
+        };
+        Self::of(layout, sweep)
     }
 
-    fn of(sweep: Sweep) -> Self {
+    fn of(layout: Layout, sweep: Sweep) -> Self {
         Self {
+            layout,
             sweep,
             tethers: Tethers::default(),
             anchors: Anchors::default(),
@@ -112,7 +121,7 @@ impl Solver {
         }
     }
 
-    /// With tethers from now on.
+    /// With tethers from now on, which must be those of the solver's particles.
     pub fn set_tethers(&mut self, tethers: Tethers) {
         self.tethers = tethers;
     }
@@ -134,7 +143,7 @@ impl Solver {
     }
 
     /// Moves `particles` by one tick and measures the stretch that it ends with. `respond` is called at the end of
-    /// each sub-step, to push particles out of what they touch, and says whether it moved any.
+    /// each sub-step, to push particles out of what they touch, and says whether it moved any. No time, no motion.
     ///
     /// # Panics
     /// If the particles are others than those that the solver was made for.
@@ -145,17 +154,26 @@ impl Solver {
         pins: &[PinMotion],
         mut respond: impl FnMut(&mut ClothParticles, SubStep) -> bool,
     ) -> Stretch {
-        let count = step.substeps.max(1);
-        let dt = step.seconds / count as f32;
+        assert!(
+            particles.layout() == self.layout,
+            "particles of the solver's own"
+        );
+        if step.seconds <= 0.0 {
+            return self.measure(particles);
+        }
+        let dt = step.seconds / step.substeps.max(1) as f32;
         particles.respan(dt);
         particles.still_pins();
         match &mut self.sweep {
             Sweep::Grid(sweep) => sweep.soften(dt),
             Sweep::List(sweep) => sweep.soften(dt),
         }
-        let measured = with_threads_awake(self.bands, || {
-            self.substeps(particles, step, pins, &mut respond)
-        });
+        let bands = match &self.sweep {
+            Sweep::Grid(sweep) => sweep.bands(self.bands),
+            Sweep::List(_) => 1,
+        };
+        let measured =
+            with_threads_awake(bands, || self.substeps(particles, step, pins, &mut respond));
         for pin in pins {
             // Not a rounding beside it.
             particles.put(pin.particle as usize, pin.to);
@@ -194,8 +212,10 @@ impl Solver {
             match &self.sweep {
                 Sweep::Grid(sweep) => {
                     let longest = sweep.substep(blocks, &motion, self.bands);
-                    let (structural, bound) = sweep.ratios(&longest);
-                    measured = Some(Stretch::of_ratios(structural, bound));
+                    if motion.measures {
+                        let (structural, bound) = sweep.ratios(&longest);
+                        measured = Some(Stretch::of_ratios(structural, bound));
+                    }
                 }
                 Sweep::List(sweep) => sweep.substep(blocks, &motion),
             }

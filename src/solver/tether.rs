@@ -15,6 +15,9 @@ const FEW_PINS: usize = 4;
 /// they leave to the springs what is elastic: swings and colliders pull harder than weight.
 const MARGIN: f32 = 4.0;
 
+/// What a cloth is taken to weigh at least (m/s²): without gravity it is pulled at, too.
+const LEAST_ACCELERATION: f32 = 9.81;
+
 /// The length of what has none.
 const ENDLESS: f32 = f32::MAX;
 
@@ -45,7 +48,8 @@ pub(super) struct Anchors {
 impl Tethers {
     /// Tethers from the particles of `grid` to those of them that are pinned. Each is as long as the straight line
     /// between them at rest, times what the material gives under four times the weight of the whole cloth hung
-    /// by its pins, under an `acceleration` (m/s²); where threads can shear, up to the way along the threads.
+    /// by its pins, under an `acceleration` (m/s²) of at least 9.81; where threads can shear, up to the way along the
+    /// threads. The particles must be those of `grid`.
     pub fn new(
         grid: &ClothGrid,
         material: &ClothMaterial,
@@ -66,14 +70,17 @@ impl Tethers {
             .sum::<f32>();
         // N/m along what the pins hold.
         let width = pinned.len() as f32 * spacing.min_element();
+        let acceleration = acceleration.max(LEAST_ACCELERATION);
         let tension = MARGIN * material.areal_density * area * acceleration / width;
         let length = |(row, column): (u32, u32), pin: &(u32, u32, Slot)| {
+            // Nothing moves a pin, however far it is from others.
+            let slot = layout.slot(row, column);
+            if particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0 {
+                return ENDLESS;
+            }
             let across = row_distance(column, pin.1) * spacing.x;
             let down = row_distance(row, pin.0) * spacing.y;
             let square = across * across + down * down;
-            if square == 0.0 {
-                return ENDLESS;
-            }
             let straight = square.sqrt();
             let bias = 2.0 * across * down / square;
             let stretch = 1.0 + material.stretch_compliance * tension;

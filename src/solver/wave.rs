@@ -210,12 +210,18 @@ impl GridSweep {
         }
     }
 
+    /// How many bands there are where so many are wanted.
+    pub fn bands(&self, wanted: usize) -> usize {
+        let rows = self.layout.rows as usize;
+        wanted.min(rows / LEAST_ROWS).min(MOST_BANDS)
+    }
+
     /// One sub-step. With several `bands` of rows, each is done by a task of its own as far as it can be alone,
     /// then what is left between them: the same operations on each particle in the same order.
     pub fn substep(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Longest {
         let rows = self.layout.rows as usize;
         let mut longest = Longest::default();
-        let bands = bands.min(rows / LEAST_ROWS).min(MOST_BANDS);
+        let bands = self.bands(bands);
         if bands <= 1 {
             self.wave(blocks, 0, &Span::whole(rows), motion, &mut longest);
             return longest;

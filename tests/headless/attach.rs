@@ -128,6 +128,21 @@ fn a_target_that_is_gone_is_named() {
     assert!(matches!(fault.error, ClothError::PinOutOfRange { .. }));
 }
 
+/// A cloth that is woven anew is attached anew, where it then is.
+#[test]
+fn attachments_outlast_a_new_weave() {
+    let (mut app, flag, pole) = flag(Transform::IDENTITY);
+    change::<ClothParticles>(&mut app, flag, |particles| *particles = default());
+    tick(&mut app, 1);
+    change::<Cloth>(&mut app, flag, |cloth| cloth.rows = 6);
+    tick(&mut app, 1);
+    let before = in_world(&app, flag, (3, 0));
+    change::<Transform>(&mut app, pole, |transform| transform.translation.x = 0.05);
+    tick(&mut app, 1);
+    let moved = in_world(&app, flag, (3, 0)) - before;
+    assert!((moved - Vec3::X * 0.05).length() < 1.0e-6, "{moved}");
+}
+
 /// A teleported cloth is, seen from its entity, what it would have been without: to the last bit, but for gravity's
 /// direction under a rotation.
 #[test]
@@ -178,4 +193,65 @@ fn a_cape_teleports_with_its_bearer() {
     }
     let after = particles(&app, cape).largest_speed();
     assert!(after < speed + 2.0 * GRAVITY * TICK, "{after} {speed}");
+}
+
+/// Likewise where its own entity goes along: a cape that is its bearer's child.
+#[test]
+fn a_child_teleports_with_its_bearer() {
+    let mut app = app();
+    let bearer = app.world_mut().spawn(Transform::IDENTITY).id();
+    let attached = ClothAttachments::new([(Pin::Row(0), bearer)]);
+    let cape = (
+        Cloth::new(8, 8, 0.1),
+        Pins::none(),
+        attached,
+        ChildOf(bearer),
+    );
+    let cape = app
+        .world_mut()
+        .spawn((cape, Transform::from_xyz(0.0, 1.5, 0.0)))
+        .id();
+    tick(&mut app, 40);
+    let before = [(0, 0), (7, 7)].map(|cell| in_world(&app, cape, cell));
+    let jump = Transform::from_xyz(-30.0, 0.0, 7.0);
+    app.world_mut().entity_mut(cape).insert(ClothTeleport);
+    change::<Transform>(&mut app, bearer, |transform| *transform = jump);
+    tick(&mut app, 1);
+    for (cell, before) in [(0, 0), (7, 7)].into_iter().zip(before) {
+        let found = in_world(&app, cape, cell);
+        let expected = jump.transform_point(before);
+        assert!(
+            found.distance(expected) < 0.01,
+            "{cell:?}: {found} {expected}"
+        );
+    }
+}
+
+/// A change of one attachment leaves the others' offsets as they are, and masses that the game set.
+#[test]
+fn a_change_of_attachments_leaves_the_others_alone() {
+    let (mut app, flag, pole) = flag(Transform::IDENTITY);
+    tick(&mut app, 5);
+    change::<ClothParticles>(&mut app, flag, |particles| {
+        particles.set_inverse_mass((4, 6), 0.0).expect("a particle");
+    });
+    let held = in_world(&app, flag, (4, 6));
+    let before = in_world(&app, flag, (3, 0));
+    let other = app.world_mut().spawn(Transform::IDENTITY).id();
+    let both = ClothAttachments::new([(Pin::Cell(0, 11), other), (Pin::Column(0), pole)]);
+    app.world_mut().entity_mut(flag).insert(both);
+    // While it changes, the pole moves on.
+    change::<Transform>(&mut app, pole, |transform| transform.translation.y = 0.08);
+    tick(&mut app, 1);
+    let moved = in_world(&app, flag, (3, 0)) - before;
+    assert!((moved - Vec3::Y * 0.08).length() < 1.0e-5, "{moved}");
+    assert_eq!(in_world(&app, flag, (4, 6)), held);
+    app.world_mut()
+        .entity_mut(flag)
+        .remove::<ClothAttachments>();
+    tick(&mut app, 10);
+    assert_eq!(in_world(&app, flag, (4, 6)), held);
+    assert_eq!(particles(&app, flag).is_pinned((3, 0)), Some(false));
+    assert_eq!(particles(&app, flag).is_pinned((0, 11)), Some(false));
+    assert_ne!(in_world(&app, flag, (3, 0)), before + moved);
 }

@@ -146,3 +146,42 @@ fn one_that_may_not_sleep_does_not() {
         assert!(!stats(&app, cloth).is_asleep);
     }
 }
+
+/// A fault wakes it, so that its contacts are found again.
+#[test]
+fn a_fault_wakes_it() {
+    let (mut app, cloth, ball) = asleep();
+    change::<Transform>(&mut app, ball, |t| t.translation.z = 0.1);
+    tick(&mut app, 1);
+    sleep(&mut app, cloth);
+    let gravity = app.world().resource::<ClothGravity>().0;
+    app.world_mut().resource_mut::<ClothGravity>().0 = Vec3::NAN;
+    tick(&mut app, 1);
+    app.world_mut().resource_mut::<ClothGravity>().0 = gravity;
+    tick(&mut app, 1);
+    let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
+    assert!(contacts.with(ball).is_some());
+}
+
+/// What is no number is named, and once each particle is mended the cloth goes on.
+#[test]
+fn a_mended_cloth_goes_on() {
+    let (mut app, cloth, _) = asleep();
+    let sound = particles(&app, cloth).clone();
+    change::<ClothParticles>(&mut app, cloth, |p| {
+        p.set_position((3, 8), Vec3::splat(1.0e17))
+            .expect("a particle");
+    });
+    tick(&mut app, 5);
+    change::<ClothParticles>(&mut app, cloth, |p| {
+        for index in 0..p.len() {
+            let position = sound.position(index).expect("a particle");
+            p.set_position(index, position)
+                .and_then(|()| p.set_displacement(index, Vec3::Z * 1.0e-3))
+                .expect("a particle");
+        }
+    });
+    tick(&mut app, 2);
+    assert!(app.world().get::<ClothFault>(cloth).is_none());
+    assert!(position(&app, cloth, (8, 4)).z > 0.0);
+}

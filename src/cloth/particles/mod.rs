@@ -21,6 +21,9 @@ const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
 /// Where a particle may be at most (m): distances between such can still be squared in `f32`.
 const FARTHEST: f32 = 1.0e18;
 
+/// What an inverse mass may be at most (1/kg).
+const LARGEST_INVERSE_MASS: f32 = 1.0e15;
+
 /// Which particle: an index, or (row, column).
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParticleId {
@@ -255,7 +258,8 @@ impl ClothParticles {
         slots.map(move |Slot { block, lane }| of(&self.blocks[block], lane))
     }
 
-    /// Whether every number is finite, none is beyond all measure (10¹⁸ m), and no inverse mass is negative.
+    /// Whether every number is finite, no length is beyond all measure (10¹⁸ m), and each inverse mass is from 0 to
+    /// 10¹⁵ 1/kg.
     ///
     /// # Errors
     /// [`ClothError::ParticleNotFinite`] for the first particle that is not.
@@ -307,5 +311,5 @@ impl ClothParticles {
 /// Whether a particle's numbers are, by the squares of position and displacement (m²) and its inverse mass
 /// (1/kg). False for NaN too.
 fn is_sound(squares: f32, inverse_mass: f32) -> bool {
-    (squares < FARTHEST * FARTHEST) & (0.0..f32::INFINITY).contains(&inverse_mass)
+    (squares < FARTHEST * FARTHEST) & (0.0..=LARGEST_INVERSE_MASS).contains(&inverse_mass)
 }

@@ -105,6 +105,43 @@ impl ClothParticles {
         &mut self.blocks
     }
 
+    /// Forgets what lanes that hold no particle have come to hold: what is no number spreads into them.
+    pub(crate) fn clear_padding(&mut self) {
+        for index in 0..self.blocks.len() {
+            let mut clean = Block::EMPTY;
+            let was = self.blocks[index];
+            for lane in 0..LANES {
+                let block = index % self.layout.strip as usize;
+                if self.layout.column(block, lane).is_some() {
+                    clean.set_position(lane, was.position(lane));
+                    clean.set_displacement(lane, was.displacement(lane));
+                    clean.set_inverse_mass(lane, was.inverse_mass(lane));
+                }
+            }
+            self.blocks[index] = clean;
+        }
+    }
+
+    /// Gives a particle the mass that grid, material and pins give it.
+    pub(crate) fn reweigh(
+        &mut self,
+        index: usize,
+        grid: &ClothGrid,
+        material: &ClothMaterial,
+        pins: &Pins,
+    ) {
+        let (row, column) = (index as u32 / grid.columns(), index as u32 % grid.columns());
+        let mass = material.areal_density * grid.tributary_area(row, column);
+        let mut inverse_mass = 1.0 / mass;
+        pins.for_each(grid, |pinned| {
+            if pinned == index {
+                inverse_mass = 0.0;
+            }
+        });
+        let Slot { block, lane } = self.layout.slot_of(index);
+        self.blocks[block].set_inverse_mass(lane, inverse_mass);
+    }
+
     /// Forgets what the pinned particles were moved by.
     pub(crate) fn still_pins(&mut self) {
         for block in &mut self.blocks {

@@ -137,7 +137,8 @@ impl Springs {
     }
 
     /// Springs of no grid, between `particles` particles. Each gets the first colour that neither of its ends
-    /// has yet: at most one more than twice as many as meet in one particle.
+    /// has yet: fewer than twice as many colours as springs meet in one particle, while that are 31 or fewer; of
+    /// more than 63 each further spring is a colour by itself.
     ///
     /// # Errors
     /// [`ClothError::BadSpring`] for the first that has an end too many or twice, or a rest length or
@@ -229,7 +230,10 @@ impl Springs {
                 };
                 there(compliances.structural, along(1))
                     + there(compliances.bend, along(2))
-                    + there(compliances.shear, 2 * (columns - 1) * (rows - 1))
+                    + there(
+                        compliances.shear,
+                        2 * columns.saturating_sub(1) * rows.saturating_sub(1),
+                    )
             }
             Weave::List(springs, _) => springs.len(),
         }
