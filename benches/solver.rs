@@ -7,7 +7,10 @@ mod shared;
 
 use std::time::Duration;
 
-use bevy_drape::solver::Instructions;
+use bevy_drape::solver::{
+    Instructions,
+    methods::{Method, Scene, Stepper},
+};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use shared::{Naive, SUBSTEPS, in_motion};
 
@@ -80,5 +83,50 @@ fn ticks(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, sweeps, ticks);
+/// The methods that the solver is compared with, on a swinging cloth of 32² with a compliance that all of them take.
+fn methods(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("methods, a frame of 32²");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    let scene = Scene::swinging(32, 2.0, 0.5, 1.0e-3).expect("a sound scene");
+    let fall = scene.acceleration.to_array();
+    for (name, method, steps) in [
+        ("explicit forces, 200 steps", Method::Hooke, 200_u32),
+        (
+            "position-based, 20 iterations",
+            Method::PositionBased { iterations: 20 },
+            1,
+        ),
+        ("small steps, 20", Method::SmallSteps { substeps: 20 }, 1),
+        (
+            "projective dynamics, 10 iterations",
+            Method::ProjectiveDynamics { iterations: 10 },
+            1,
+        ),
+    ] {
+        let start = scene.network::<f32>().expect("a sound network");
+        let seconds = f64::from(scene.seconds) / f64::from(steps);
+        let mut stepper = Stepper::new(method, &start, seconds).expect("a sound method");
+        group.bench_function(name, |bencher| {
+            bencher.iter_batched_ref(
+                || start.clone(),
+                |network| (0..steps).for_each(|_| stepper.step(network, fall, 0.0)),
+                criterion::BatchSize::LargeInput,
+            );
+        });
+    }
+    let mut solver = scene.solver(false);
+    group.bench_function("the solver, 20 sub-steps", |bencher| {
+        bencher.iter_batched_ref(
+            || scene.particles.clone(),
+            |particles| solver.advance(particles, scene.step(20), &[], |_, _| false),
+            criterion::BatchSize::LargeInput,
+        );
+    });
+    group.finish();
+}
+
+criterion_group!(benches, sweeps, ticks, methods);
 criterion_main!(benches);
