@@ -1,8 +1,6 @@
 //! The solver's sub-steps and ticks by size, against the layout of a first draft.
 //! `cargo bench --profile dev --bench solver`; an element is a spring in a sub-step.
 
-#![allow(missing_docs, reason = "criterion's macros make public functions")]
-
 mod shared;
 
 use std::time::Duration;
