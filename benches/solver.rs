@@ -6,11 +6,25 @@ mod shared;
 use std::time::Duration;
 
 use bevy_drape::solver::{
-    Instructions,
+    Instructions, Solver,
     methods::{Method, Scene, Stepper},
 };
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{
+    BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
+    measurement::WallTime,
+};
 use shared::{Naive, SUBSTEPS, in_motion};
+
+/// Times a tick of the library's own solver.
+fn time(group: &mut BenchmarkGroup<WallTime>, id: BenchmarkId, scene: &Scene, solver: &mut Solver) {
+    group.bench_function(id, |bencher| {
+        bencher.iter_batched_ref(
+            || scene.particles.clone(),
+            |particles| solver.advance(particles, scene.step(SUBSTEPS), &[], |_, _| false),
+            BatchSize::LargeInput,
+        );
+    });
+}
 
 fn sweeps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sub-steps");
@@ -29,13 +43,12 @@ fn sweeps(criterion: &mut Criterion) {
         ] {
             let mut solver = scene.solver(false);
             solver.set_instructions(instructions);
-            group.bench_function(BenchmarkId::new(name, side), |bencher| {
-                bencher.iter_batched_ref(
-                    || scene.particles.clone(),
-                    |particles| solver.advance(particles, scene.step(SUBSTEPS), &[], |_, _| false),
-                    criterion::BatchSize::LargeInput,
-                );
-            });
+            time(
+                &mut group,
+                BenchmarkId::new(name, side),
+                &scene,
+                &mut solver,
+            );
         }
         for (name, is_coloured) in [("naive, row by row", false), ("naive, coloured", true)] {
             if side > 256 {
@@ -45,7 +58,7 @@ fn sweeps(criterion: &mut Criterion) {
                 bencher.iter_batched_ref(
                     || Naive::new(&scene, is_coloured),
                     |naive| naive.tick(&scene, SUBSTEPS),
-                    criterion::BatchSize::LargeInput,
+                    BatchSize::LargeInput,
                 );
             });
         }
@@ -64,18 +77,8 @@ fn ticks(criterion: &mut Criterion) {
         let mut solver = scene.solver(true);
         for bands in [1, 2] {
             solver.set_bands(bands);
-            group.bench_function(
-                BenchmarkId::new(format!("{bands} bands"), side),
-                |bencher| {
-                    bencher.iter_batched_ref(
-                        || scene.particles.clone(),
-                        |particles| {
-                            solver.advance(particles, scene.step(SUBSTEPS), &[], |_, _| false)
-                        },
-                        criterion::BatchSize::LargeInput,
-                    );
-                },
-            );
+            let id = BenchmarkId::new(format!("{bands} bands"), side);
+            time(&mut group, id, &scene, &mut solver);
         }
     }
     group.finish();
@@ -111,18 +114,13 @@ fn methods(criterion: &mut Criterion) {
             bencher.iter_batched_ref(
                 || start.clone(),
                 |network| (0..steps).for_each(|_| stepper.step(network, fall, 0.0)),
-                criterion::BatchSize::LargeInput,
+                BatchSize::LargeInput,
             );
         });
     }
     let mut solver = scene.solver(false);
-    group.bench_function("the solver, 20 sub-steps", |bencher| {
-        bencher.iter_batched_ref(
-            || scene.particles.clone(),
-            |particles| solver.advance(particles, scene.step(20), &[], |_, _| false),
-            criterion::BatchSize::LargeInput,
-        );
-    });
+    let id = BenchmarkId::from_parameter("the solver, 20 sub-steps");
+    time(&mut group, id, &scene, &mut solver);
     group.finish();
 }
 

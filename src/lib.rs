@@ -26,7 +26,7 @@
 //! | module | what lives there |
 //! |---|---|
 //! | [`cloth`] | what a cloth *is*: particles, grid, springs and their colours, material, pins |
-//! | [`solver`] | how it *moves*: Verlet, distance constraints, sub-steps |
+//! | [`solver`] | how it *moves*: Verlet, distance constraints, sub-steps, tethers, tolerance, rest |
 //! | [`hierarchy`] | how it is *searched*: the quad-tree, bound rules, the top-down query |
 //! | [`contact`] | what happens on *touch*: shapes, push-out, friction |
 //! | [`plugin`] | the ECS: plugins, system sets, components, messages, mesh, gizmos, diagnostics, rapier, panel |

@@ -15,7 +15,7 @@ use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pin, Pins, Springs},
     contact::MovingBall,
     hierarchy::{BoundRule, QuadTree, SphereBounds, TopDownQuery},
-    solver::{ClothSettings, Control, PinMotion, Rest, Solver, Stretch, TickStep},
+    solver::{ClothSettings, Control, PinMotion, Precision, Rest, Solver, Stretch, TickStep},
 };
 
 /// What does not change while a cloth moves: its grid, springs and tree. Empty until the first tick.
@@ -128,6 +128,7 @@ pub(super) struct ClothTick {
     /// When the plugin last wrote the particles: whoever wrote them since was the game.
     pub written: Option<Tick>,
     pub solver: Solver,
+    pub precision: Precision,
     pub control: Control,
     pub rest: Rest,
     /// Speed of the fastest particle as the tick begins (m/s).

@@ -136,6 +136,7 @@ impl PreparingItem<'_, '_> {
             acceleration,
             damping: material.damping,
         });
+        self.tick.precision = settings.precision;
         self.tick.rule = rule;
         self.tick.friction = material.friction;
         self.tick.particle_radius = settings.particle_radius;

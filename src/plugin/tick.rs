@@ -20,7 +20,7 @@ use super::{
 use crate::{
     cloth::ClothParticles,
     contact::{MovingBall, push_out},
-    solver::{ClothSettings, Precision, Stretch, TickStep},
+    solver::{Precision, Stretch, TickStep},
 };
 
 /// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.7 at 256².
@@ -218,17 +218,14 @@ impl IntegratingItem<'_, '_> {
 
     /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
     fn solve(&mut self, mut step: TickStep) {
-        let settings = self
-            .tick
-            .known
-            .map_or_else(ClothSettings::default, |(settings, ..)| settings);
+        let precision = self.tick.precision;
         let bands = if self.particles.len() < LEAST_TO_SPLIT {
             1
         } else {
             threads()
         };
         self.tick.solver.set_bands(bands);
-        let may_repeat = matches!(settings.precision, Precision::Tolerance { .. });
+        let may_repeat = matches!(precision, Precision::Tolerance { .. });
         if may_repeat {
             self.tick.backup.copy_from(&self.particles);
         }
@@ -237,7 +234,7 @@ impl IntegratingItem<'_, '_> {
             let stretch = advance(&mut self.particles, &mut self.tick, self.search, step);
             self.stats.substeps += step.substeps;
             self.tick.stretch = stretch;
-            let Some(more) = self.tick.control.observe(settings.precision, stretch) else {
+            let Some(more) = self.tick.control.observe(precision, stretch) else {
                 break;
             };
             step.substeps = more;

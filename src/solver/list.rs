@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::{run::LEAST_SOFTNESS, wave::Motion};
-use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, Slot, Spring, SpringKind};
+use crate::cloth::{Block, LANES, Lanes, Layout, Slot, Spring};
 
 /// Springs of one colour, at most eight.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +22,6 @@ struct Bundle {
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct ListSweep {
     bundles: Vec<Bundle>,
-    springs: Vec<Spring>,
 }
 
 impl ListSweep {
@@ -51,7 +50,6 @@ impl ListSweep {
                 .flat_map(|colour| colour.chunks(LANES))
                 .map(bundle)
                 .collect(),
-            springs: springs.to_vec(),
         }
     }
 
@@ -64,6 +62,7 @@ impl ListSweep {
         }
     }
 
+    /// One sub-step.
     pub fn substep(&self, blocks: &mut [Block], motion: &Motion) {
         let kernels = motion.kernels;
         (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
@@ -86,22 +85,5 @@ impl ListSweep {
         }
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         (kernels.commit)(blocks);
-    }
-
-    /// The largest length over rest length of structural springs, and of structural and shear springs.
-    pub fn ratios(&self, particles: &ClothParticles) -> (f32, f32) {
-        let largest = |kinds: &[SpringKind]| {
-            let springs = self
-                .springs
-                .iter()
-                .filter(|spring| kinds.contains(&spring.kind));
-            let ratios = springs.map(|spring| {
-                let [a, b] = spring.ends.map(|end| particles.position_at(end as usize));
-                a.distance(b) / spring.rest_length
-            });
-            ratios.fold(0.0, f32::max)
-        };
-        let structural = largest(&[SpringKind::Structural]);
-        (structural, structural.max(largest(&[SpringKind::Shear])))
     }
 }

@@ -81,13 +81,17 @@ pub struct Solver {
 #[derive(Debug, Clone, PartialEq)]
 enum Sweep {
     Grid(Box<GridSweep>),
-    List(ListSweep),
+    /// With the springs, for the stretch.
+    List(ListSweep, Springs),
 }
 
 impl Default for Solver {
     /// Of no springs.
     fn default() -> Self {
-        Self::of(Layout::default(), Sweep::List(ListSweep::default()))
+        Self::of(
+            Layout::default(),
+            Sweep::List(ListSweep::default(), Springs::default()),
+        )
     }
 }
 
@@ -105,7 +109,9 @@ impl Solver {
             Weave::Grid(grid, compliances) => {
                 Sweep::Grid(Box::new(GridSweep::new(grid, compliances)))
             }
-            Weave::List(springs, colours) => Sweep::List(ListSweep::new(springs, colours, layout)),
+            Weave::List(list, colours) => {
+                Sweep::List(ListSweep::new(list, colours, layout), springs.clone())
+            }
         };
         Self::of(layout, sweep)
     }
@@ -166,11 +172,11 @@ impl Solver {
         particles.still_pins();
         match &mut self.sweep {
             Sweep::Grid(sweep) => sweep.soften(dt),
-            Sweep::List(sweep) => sweep.soften(dt),
+            Sweep::List(sweep, _) => sweep.soften(dt),
         }
         let bands = match &self.sweep {
             Sweep::Grid(sweep) => sweep.bands(self.bands),
-            Sweep::List(_) => 1,
+            Sweep::List(..) => 1,
         };
         let measured =
             with_threads_awake(bands, || self.substeps(particles, step, pins, &mut respond));
@@ -217,7 +223,7 @@ impl Solver {
                         measured = Some(Stretch::of_ratios(structural, bound));
                     }
                 }
-                Sweep::List(sweep) => sweep.substep(blocks, &motion),
+                Sweep::List(sweep, _) => sweep.substep(blocks, &motion),
             }
             if respond(particles, substep) {
                 measured = None;
@@ -228,13 +234,15 @@ impl Solver {
 
     /// Measures the stretch of `particles`.
     pub fn measure(&self, particles: &ClothParticles) -> Stretch {
-        let (structural, bound) = match &self.sweep {
+        match &self.sweep {
             Sweep::Grid(sweep) => {
-                sweep.ratios(&sweep.measure(particles.blocks(), &self.instructions.kernels()))
+                let kernels = self.instructions.kernels();
+                let (structural, bound) =
+                    sweep.ratios(&sweep.measure(particles.blocks(), &kernels));
+                Stretch::of_ratios(structural, bound)
             }
-            Sweep::List(sweep) => sweep.ratios(particles),
-        };
-        Stretch::of_ratios(structural, bound)
+            Sweep::List(_, springs) => Stretch::measure(springs, particles),
+        }
     }
 }
 
