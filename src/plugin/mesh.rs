@@ -192,7 +192,6 @@ fn update_meshes(
         if state.is_some() && cloth_mesh.settled == state {
             continue;
         }
-        cloth_mesh.settled = None;
         let Some(mut mesh) = meshes.get_mut(&cloth_mesh.handle) else {
             continue;
         };

@@ -144,3 +144,32 @@ fn a_new_grid_gets_a_new_mesh() {
     tick(&mut app, 2);
     assert_eq!(vertices(&app, cloth, Mesh::ATTRIBUTE_POSITION).len(), 25);
 }
+
+/// What sleeps is drawn where it sleeps, and no tick ago, and drawn anew once it is woken.
+#[test]
+fn a_sleeping_cloth_is_drawn_where_it_is() {
+    let mut app = app_that_draws(FixedUpdate);
+    // Still swinging a little as it falls asleep.
+    let place = Transform::from_rotation(Quat::from_rotation_x(0.02));
+    let cloth = (Cloth::new(9, 9, 0.1), place, Visibility::default());
+    let cloth = app.world_mut().spawn(cloth).id();
+    let is_asleep = |app: &App| {
+        let stats = app.world().get::<ClothStats>(cloth).expect("figures");
+        stats.is_asleep
+    };
+    tick(&mut app, 1);
+    for _ in 0..64 * 30 {
+        if !is_asleep(&app) {
+            tick(&mut app, 1);
+        }
+    }
+    assert!(is_asleep(&app));
+    tick(&mut app, 2);
+    let drawn = vertices(&app, cloth, Mesh::ATTRIBUTE_POSITION);
+    for (vertex, particle) in drawn.iter().zip(particles(&app, cloth).positions()) {
+        assert!(vertex.distance(particle) < 1.0e-6, "{vertex} {particle}");
+    }
+    app.world_mut().resource_mut::<ClothGravity>().0.z = 5.0;
+    tick(&mut app, 5);
+    assert_ne!(vertices(&app, cloth, Mesh::ATTRIBUTE_POSITION), drawn);
+}

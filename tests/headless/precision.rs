@@ -82,6 +82,37 @@ fn a_tolerance_out_of_reach_stops_at_the_cap() {
     assert!(app.world().get::<ClothFault>(cloth).is_none());
 }
 
+/// A tick that is done again begins where it began: one that had to be repeated up to its cap is that of a fixed
+/// number, to the last bit.
+#[test]
+fn a_repeated_tick_leaves_no_trace() {
+    let run = |precision: Precision, total: u32| {
+        let mut app = app();
+        let cloth = (Cloth::default(), Pins::new([Pin::Corner(Corner::TopLeft)]));
+        let settings = ClothSettings {
+            precision: Precision::Substeps(30),
+            ..default()
+        };
+        let cloth = app.world_mut().spawn((cloth, settings)).id();
+        app.world_mut().spawn((
+            ClothCollider::ball(0.3),
+            Transform::from_xyz(0.4, -0.9, 0.1),
+        ));
+        tick(&mut app, 40);
+        change::<ClothSettings>(&mut app, cloth, |settings| settings.precision = precision);
+        tick(&mut app, 1);
+        let stats = app.world().get::<ClothStats>(cloth).expect("figures");
+        assert_eq!(stats.substeps, total);
+        (particles(&app, cloth).clone(), stats.contacts)
+    };
+    // It begins with the thirty of the tick before.
+    let tolerance = Precision::Tolerance {
+        stretch: 1.0e-9,
+        most_substeps: 40,
+    };
+    assert!(run(tolerance, 30 + 40) == run(Precision::Substeps(40), 40));
+}
+
 /// Many cloths, some of them large: solved together they are what each is alone, to the last bit.
 #[test]
 fn many_cloths_are_what_each_is_alone() {
