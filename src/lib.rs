@@ -42,8 +42,8 @@ pub mod solver;
 /// What most games need, to be imported with `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Corner, Pin, Pins};
-    pub use crate::contact::ClothCollider;
-    pub use crate::hierarchy::BoundRule;
+    pub use crate::contact::{ClothCollider, NarrowPhase};
+    pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod};
     #[cfg(feature = "rapier")]
     pub use crate::plugin::RapierClothCollider;
     pub use crate::plugin::{

@@ -1,12 +1,13 @@
-//! A step of the solver allocates nothing. Alone in its program: the count is of all threads.
+//! A tick allocates nothing, neither its search nor its sub-steps. Alone in its program: the count is of all threads.
 
 use std::alloc::System;
 
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
-    contact::{MovingBall, push_out},
-    solver::{Control, PinMotion, Precision, Solver, Tethers, TickStep},
+    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
+    solver::{Control, PinMotion, Precision, Solver, Stretch, Tethers, TickStep},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -31,24 +32,40 @@ fn a_step_does_not_allocate() {
         stretch: 0.01,
         most_substeps: 60,
     };
-    let ball = MovingBall {
-        from: Vec3::new(1.0, -1.0, 0.0),
-        to: Vec3::new(1.0, -1.0, 0.02),
+    let ball = MovingCollider {
         turn: Vec3::Y * 0.1,
-        radius: 0.3,
+        ..MovingCollider::ball(0.3, Vec3::new(1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.02))
     };
+    let mut terms = Terms {
+        particle_radius: 0.01,
+        friction: 0.4,
+        ..Default::default()
+    };
+    let tree = QuadTree::of_grid(&grid, true);
     let pins = [PinMotion {
         particle: 0,
         from: Vec3::ZERO,
         to: Vec3::splat(0.01),
     }];
-    let candidates: Vec<u32> = (0..1600).collect();
-    let mut touched = vec![false; 1600];
-    for springs in [&springs, &list] {
+    // The list's particles lie as the grid's do; its sweep differs. The second time against triangles.
+    for (springs, narrow_phase) in [
+        (&springs, NarrowPhase::Particles),
+        (&list, NarrowPhase::Triangles),
+    ] {
+        terms.narrow_phase = narrow_phase;
         let mut solver = Solver::new(springs, &particles);
+        let mut detection = Detection::default();
+        let mut query = TopDownQuery::default();
+        let mut bounds = [const { None::<()> }; 3].map(|_| NodeBounds::default());
+        let mut stretch = Stretch::measure(springs, &particles);
         solver.set_tethers(Tethers::new(&grid, &material, &particles, 9.81));
         let mut control = Control::default();
         let mut pushed = 0.0_f32;
+        let choices = [
+            (BoundingVolume::Sphere, BoundRule::RestShape),
+            (BoundingVolume::Aabb, BoundRule::Refit),
+            (BoundingVolume::Obb, BoundRule::Refit),
+        ];
         let mut ticks = |count: u32| {
             for _ in 0..count {
                 let step = TickStep {
@@ -56,19 +73,26 @@ fn a_step_does_not_allocate() {
                     acceleration: Vec3::NEG_Y * 9.81,
                     ..Default::default()
                 };
-                let stretch = solver.advance(&mut particles, step, &pins, |particles, substep| {
-                    let depth = push_out(
-                        particles,
-                        &candidates,
-                        &mut touched,
-                        &ball,
-                        0.01,
-                        0.4,
-                        substep,
-                    );
-                    pushed = pushed.max(depth);
-                    depth > 0.0
+                let root = tree.root_sphere(&particles, stretch.bound);
+                detection.begin(5.0);
+                let (probe, against) = detection.probe(&ball, &terms, &grid, 0.2, &root);
+                for (bounds, choice) in bounds.iter_mut().zip(choices) {
+                    query.clear();
+                    let known = bounds.rebuild(choice, &tree, &particles, stretch.bound);
+                    known.expect("there is such a rule");
+                    query.search(&tree, bounds, &particles, &probe);
+                }
+                detection.add(0, &ball, against, query.candidates(), &particles, &grid);
+                stretch = solver.advance(&mut particles, step, &pins, |particles, substep| {
+                    assert!(!detection.is_outrun(substep));
+                    detection.respond(particles, &terms, substep)
                 });
+                pushed = pushed.max(
+                    detection
+                        .touches()
+                        .first()
+                        .map_or(0.0, |touch| touch.deepest),
+                );
                 let _ = control.observe(precision, stretch);
             }
         };

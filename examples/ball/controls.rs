@@ -19,7 +19,7 @@ const KEYS: [(&str, &str); 10] = [
     ("N", "single step, while paused"),
     ("L", "next level of the tree"),
     ("G", "springs on, off"),
-    ("B", "next bound rule"),
+    ("B", "next search: volume and rule"),
     ("M", "next material"),
     ("Up, Down", "faster, slower ball"),
     ("R", "new cloth"),
@@ -96,12 +96,12 @@ fn press_cloth_keys(
     keys: Res<ButtonInput<KeyCode>>,
     mut cloths: Query<(
         &mut ShowClothGizmos,
-        &mut BoundRule,
+        &mut SearchMethod,
         &mut ClothMaterial,
         &mut ClothParticles,
     )>,
 ) {
-    for (mut show, mut rule, mut material, mut particles) in &mut cloths {
+    for (mut show, mut method, mut material, mut particles) in &mut cloths {
         if keys.just_pressed(KeyCode::KeyL) {
             // The five levels of 16 × 16 particles, then none.
             show.levels = match show.levels.as_ref().map(|levels| *levels.start()) {
@@ -114,7 +114,9 @@ fn press_cloth_keys(
             show.springs = !show.springs;
         }
         if keys.just_pressed(KeyCode::KeyB) {
-            *rule = next(&BoundRule::ALL, *rule);
+            let place = SearchMethod::ALL.iter().position(|each| *each == *method);
+            *method =
+                SearchMethod::ALL[place.map_or(0, |place| (place + 1) % SearchMethod::ALL.len())];
         }
         if keys.just_pressed(KeyCode::KeyM) {
             *material = next(&ClothMaterial::PRESETS, *material);

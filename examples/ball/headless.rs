@@ -325,9 +325,9 @@ fn look_at_the_worst(
             measured.deepest = measured.deepest.max(contact.deepest_penetration);
         }
         for (transform, collider) in &balls {
-            if let Ok(radius) = collider.scaled_radius(transform.scale) {
-                let centre = frame.from_world(transform.translation);
-                let left = deepest_penetration(particles, centre, radius, settings.particle_radius);
+            if let Ok(shape) = collider.scaled(transform.scale) {
+                let pose = Isometry3d::from_translation(frame.from_world(transform.translation));
+                let left = deepest_penetration(particles, &shape, pose, settings.particle_radius);
                 measured.deepest_left = measured.deepest_left.max(left);
             }
         }

@@ -13,7 +13,7 @@
 //! | N | single step, while paused |
 //! | L | next level of the tree |
 //! | G | springs on and off |
-//! | B | next bound rule: rest shape, refit, paper |
+//! | B | next way to search: volume (sphere, AABB, OBB, k-DOP) and rule (rest shape, refit, paper) |
 //! | M | next material |
 //! | Up, Down | faster and slower ball |
 //! | R | new cloth |

@@ -90,6 +90,8 @@ pub fn cloth() -> impl Bundle {
         Cloth::new(PARTICLES, PARTICLES, SPACING),
         Pins::top_row(),
         ClothMaterial::COTTON,
+        // So small a cloth would be scanned: here the tree is to be seen.
+        SearchMethod::Tree(BoundingVolume::Sphere, BoundRule::RestShape),
         // Keeps the flat triangles between the particles out of the ball.
         ClothSettings {
             particle_radius: 0.02,

@@ -99,6 +99,14 @@ pub enum ClothError {
         /// How many particles there are.
         particles: usize,
     },
+    /// A bounding volume that there is no such rule for.
+    #[error("there is no bound rule `{rule}` for {volume}: refit them, or take spheres or AABBs")]
+    NoSuchBounds {
+        /// The volumes.
+        volume: &'static str,
+        /// The rule.
+        rule: &'static str,
+    },
     /// What a pin is attached to does not exist or has no transform.
     #[error("{pin:?} is attached to {target}, which does not exist or has no transform")]
     NoTarget {

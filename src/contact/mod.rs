@@ -1,7 +1,20 @@
-//! Floor 2: what happens on *touch*: collider shapes, push-out, friction.
+//! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
 
-mod ball;
 mod collider;
+mod depth;
+mod detection;
+mod moving;
+mod particle;
+mod response;
+mod shape;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod triangle;
 
-pub use ball::{MovingBall, deepest_penetration, push_out};
 pub use collider::ClothCollider;
+pub use depth::deepest_penetration;
+pub use detection::{ContactPoint, Detection, Terms, Touch};
+pub use moving::MovingCollider;
+pub use shape::ColliderShape;
+pub use surface::{NarrowPhase, PARTICLES_FROM, meets_triangles};

@@ -1,33 +1,36 @@
-//! Bounding spheres of the tree's nodes under three rules.
+//! Where the bounding volume of each node is, by three rules.
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{Vec3, Vec3A, bounding::BoundingSphere},
+    math::{
+        Vec3,
+        bounding::{Aabb3d, BoundingSphere},
+    },
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::QuadTree;
-use crate::cloth::{ClothGrid, ClothParticles};
+use super::{
+    BoundingVolume, KDop, NodeVolume, Obb, QuadTree,
+    probe::ROUNDING,
+    refit::Pyramid,
+    tree::{GridTree, NetworkTree, Part, Shape},
+    volume::Volume,
+};
+use crate::cloth::{ClothError, ClothParticles, Slot};
 
-/// What a radius grows by so that rounding in `f32` never makes a sphere too small. A sphere's radius and the
-/// test against it take fewer than 20 roundings of half an ε each; this is 84 ε.
-pub(crate) const ROUNDING: f32 = 1.0 + 1.0e-5;
-
-/// Where the sphere of a node is.
-#[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
-#[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
+/// How the bounding volumes of a tree's nodes come about.
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[reflect(Default, Debug, Clone, PartialEq, Hash)]
 pub enum BoundRule {
     /// The paper's Figure 4: the root's radius is (longest side + 1)/2 spacings, each level below has half of
     /// its parent's. Around the mean of the patch's four corners. *Misses contacts*: the radius is less than
-    /// half of a square patch's diagonal.
+    /// half of a square patch's diagonal. Of spheres, and of boxes whose half side it is; of grids.
     Paper,
-    /// The smallest radius around the mean of the children's centres that holds the children's spheres,
-    /// computed bottom up each tick: tight, complete, at the cost of touching every node.
+    /// The smallest around the children's, computed bottom up each tick: tight, complete, at the cost of touching
+    /// every particle. Of every volume.
     Refit,
     /// Around the patch's middle particle; the radius is the largest distance at rest, along the springs, to a
     /// particle of the patch, times 1 + the largest stretch present. Nothing is computed a node, and nothing
-    /// is missed: a way along the springs is never shorter than the straight line, and none is longer than at
-    /// rest by more than the most stretched spring.
+    /// is missed ([proof](super#nothing-is-missed)). Of spheres, and of the boxes around them.
     #[default]
     RestShape,
 }
@@ -39,160 +42,304 @@ impl BoundRule {
         ("refit", Self::Refit),
         ("paper", Self::Paper),
     ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        let is_it = |(_, each): &&(&str, Self)| *each == self;
+        Self::ALL.iter().find(is_it).map_or("", |(name, _)| name)
+    }
+
+    /// Whether there is such a rule for a volume: all can be refitted, spheres and AABBs follow the others, too.
+    pub fn suits(self, volume: BoundingVolume) -> bool {
+        self == Self::Refit || matches!(volume, BoundingVolume::Sphere | BoundingVolume::Aabb)
+    }
 }
 
-/// The bounding spheres of a tree's nodes.
-#[derive(Reflect, Debug, Default, Clone, PartialEq)]
-pub struct SphereBounds {
-    rule: BoundRule,
-    particle_radius: f32,
+/// What a radius at rest grows by. Finite, so that a leaf's, 0 times this, is 0 whatever becomes of the cloth.
+pub(super) fn growth(stretch: f32) -> f32 {
+    ((1.0 + stretch) * ROUNDING).min(f32::MAX)
+}
+
+/// The bounding volumes of one kind.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Bounds<V: Volume> {
+    pub(super) rule: BoundRule,
     /// Of `RestShape`: what a radius at rest grows by.
     growth: f32,
-    /// Of `Refit` and `Paper`.
-    centre: Vec<Vec3>,
-    /// Of `Refit` and `Paper` (m).
-    radius: Vec<f32>,
+    /// Of `Paper` each node's; of `Refit` those of a network's nodes.
+    nodes: Vec<V>,
+    /// Of `Refit` over a grid.
+    pyramid: Pyramid<V>,
 }
 
-impl SphereBounds {
-    /// Brings the spheres up to date with the particles. `stretch` is the largest over structural and shear
-    /// springs ([`Stretch::bound`](crate::solver::Stretch)), `particle_radius` that of the leaves (m).
-    pub fn rebuild(
+impl<V: Volume> Default for Bounds<V> {
+    fn default() -> Self {
+        Self {
+            rule: BoundRule::default(),
+            growth: 1.0,
+            nodes: Vec::new(),
+            pyramid: Pyramid::default(),
+        }
+    }
+}
+
+impl<V: Volume> Bounds<V> {
+    fn rebuild(
         &mut self,
         rule: BoundRule,
         tree: &QuadTree,
-        grid: &ClothGrid,
         particles: &ClothParticles,
         stretch: f32,
-        particle_radius: f32,
     ) {
         self.rule = rule;
-        self.particle_radius = particle_radius;
-        // Finite, so that a leaf's radius at rest, 0 times this, is 0 whatever becomes of the cloth.
-        self.growth = ((1.0 + stretch) * ROUNDING).min(f32::MAX);
-        match rule {
-            BoundRule::RestShape => {}
-            BoundRule::Refit => self.refit(tree, particles),
-            BoundRule::Paper => self.halve(tree, grid, particles),
+        self.growth = growth(stretch);
+        match (rule, &tree.0) {
+            (BoundRule::RestShape, _) => {}
+            (BoundRule::Refit, Shape::Grid(tree)) => self.pyramid.refit(tree, particles.blocks()),
+            (BoundRule::Refit, Shape::Network(tree)) => self.refit_network(tree, particles),
+            (BoundRule::Paper, Shape::Grid(tree)) => self.halve(tree, particles),
+            // Figure 4 is of a grid.
+            (BoundRule::Paper, Shape::Network(_)) => self.rule = BoundRule::RestShape,
         }
     }
 
     /// Bottom up. Children come after their parents in the tree, so one way backwards does it.
-    fn refit(&mut self, tree: &QuadTree, particles: &ClothParticles) {
-        self.centre.resize(tree.nodes().len(), Vec3::ZERO);
-        self.radius.resize(tree.nodes().len(), 0.0);
-        for (index, node) in tree.nodes().iter().enumerate().rev() {
+    fn refit_network(&mut self, tree: &NetworkTree, particles: &ClothParticles) {
+        self.nodes
+            .resize(tree.nodes.len(), V::around(Vec3::ZERO, 0.0));
+        for (index, node) in tree.nodes.iter().enumerate().rev() {
             let children = node.children.start as usize..node.children.end as usize;
-            if children.is_empty() {
-                self.centre[index] = particles.position_at(node.middle as usize);
-                self.radius[index] = self.particle_radius;
-                continue;
-            }
-            let centre = self.centre[children.clone()].iter().sum::<Vec3>() / children.len() as f32;
-            let reach = |child: usize| centre.distance(self.centre[child]) + self.radius[child];
-            self.radius[index] =
-                children.map(reach).fold(0.0, f32::max) * (1.0 + 4.0 * f32::EPSILON);
-            self.centre[index] = centre;
+            let volume = match &self.nodes[children] {
+                [] => V::around(position(particles, tree.slots[node.middle as usize]), 0.0),
+                [a] => *a,
+                [a, b] => V::unite([a, b, a, b]),
+                [a, b, c] => V::unite([a, b, c, c]),
+                [a, b, c, d, ..] => V::unite([a, b, c, d]),
+            };
+            self.nodes[index] = volume;
         }
     }
 
     /// The paper's Figure 4.
-    fn halve(&mut self, tree: &QuadTree, grid: &ClothGrid, particles: &ClothParticles) {
-        self.centre.resize(tree.nodes().len(), Vec3::ZERO);
-        self.radius.resize(tree.nodes().len(), 0.0);
-        let longest = grid.columns().max(grid.rows()) as f32;
-        let mut radius = (longest + 1.0) / 2.0 * grid.spacing().max_element();
-        for level in tree.levels() {
-            for index in level.start as usize..level.end as usize {
-                let node = &tree.nodes()[index];
-                let (left, right) = (node.columns.start, node.columns.end - 1);
-                let (top, bottom) = (node.rows.start, node.rows.end - 1);
-                let corner =
-                    |row, column| particles.position_at(tree.particle(row, column) as usize);
-                self.centre[index] = (corner(top, left)
-                    + corner(top, right)
-                    + corner(bottom, left)
-                    + corner(bottom, right))
-                    / 4.0;
-                self.radius[index] = radius;
+    fn halve(&mut self, tree: &GridTree, particles: &ClothParticles) {
+        self.nodes.clear();
+        let longest = tree.layout.columns.max(tree.layout.rows) as f32;
+        let mut radius = (longest + 1.0) / 2.0 * tree.longest_spacing();
+        for level in &tree.levels {
+            for rows in &level.rows {
+                for columns in &level.columns {
+                    let corner = |row, column| position(particles, tree.layout.slot(row, column));
+                    let (left, right) = (columns.span.start, columns.span.end - 1);
+                    let (top, bottom) = (rows.span.start, rows.span.end - 1);
+                    let sum = corner(top, left)
+                        + corner(top, right)
+                        + corner(bottom, left)
+                        + corner(bottom, right);
+                    self.nodes.push(V::around(sum / 4.0, radius));
+                }
             }
             radius /= 2.0;
         }
     }
 
-    /// The rule by which the spheres were last brought up to date.
-    pub fn rule(&self) -> BoundRule {
-        self.rule
-    }
-
-    /// Radius of each particle (m).
-    pub fn particle_radius(&self) -> f32 {
-        self.particle_radius
-    }
-
-    /// The sphere of a node, in the cloth's frame (m).
-    pub fn sphere(&self, tree: &QuadTree, particles: &ClothParticles, node: u32) -> BoundingSphere {
-        let (centre, radius) = match self.rule {
-            BoundRule::RestShape => self.rest_sphere(tree, particles, node),
-            BoundRule::Refit | BoundRule::Paper => self.stored_sphere(node),
-        };
-        BoundingSphere::new(Vec3A::from(centre), radius)
-    }
-
-    /// The sphere of a node under `RestShape`.
-    pub(crate) fn rest_sphere(
+    /// The volume of a node of a grid's tree that `Paper` or `Refit` has computed.
+    #[inline(always)]
+    pub(super) fn stored(
         &self,
-        tree: &QuadTree,
+        tree: &GridTree,
         particles: &ClothParticles,
-        node: u32,
-    ) -> (Vec3, f32) {
-        let node = &tree.nodes()[node as usize];
-        let radius = node.rest_radius * self.growth + self.particle_radius;
-        (particles.position_at(node.middle as usize), radius)
+        level: usize,
+        [row, column]: [u32; 2],
+    ) -> V {
+        let at = &tree.levels[level];
+        if self.rule == BoundRule::Paper {
+            return self.nodes[at.index(row, column) as usize];
+        }
+        let (rows, columns) = (&at.rows[row as usize], &at.columns[column as usize]);
+        if level + 1 == tree.levels.len() {
+            V::around(middle(particles, rows, columns), 0.0)
+        } else {
+            self.pyramid.volume(at, level, row, column)
+        }
     }
 
-    /// The sphere of a node under `Refit` and `Paper`.
-    pub(crate) fn stored_sphere(&self, node: u32) -> (Vec3, f32) {
-        (self.centre[node as usize], self.radius[node as usize])
+    /// The volume of a node of a network's tree that `Refit` has computed.
+    #[inline(always)]
+    pub(super) fn stored_in_network(&self, node: u32) -> V {
+        self.nodes[node as usize]
     }
 
-    /// Whether each node's sphere holds its particles and, under `Refit`, its children's spheres. Under
-    /// `Paper` that often does not hold.
-    ///
-    /// # Errors
-    /// A sentence that names the node at fault.
-    pub fn validate(&self, tree: &QuadTree, particles: &ClothParticles) -> Result<(), String> {
-        let sphere = |node: u32| {
-            let sphere = self.sphere(tree, particles, node);
-            (
-                Vec3::from(sphere.center).as_dvec3(),
-                f64::from(sphere.radius()),
-            )
-        };
-        let tolerance = f64::from(ROUNDING);
-        for (index, node) in tree.nodes().iter().enumerate() {
-            let (centre, radius) = sphere(index as u32);
-            for row in node.rows.clone() {
-                for column in node.columns.clone() {
-                    let particle = tree.particle(row, column) as usize;
-                    let reach = centre.distance(particles.position_at(particle).as_dvec3())
-                        + f64::from(self.particle_radius);
-                    if reach > radius * tolerance {
-                        return Err(format!(
-                            "node {index} of radius {radius} does not hold particle {particle}, at {reach}"
-                        ));
-                    }
+    /// The radius under `RestShape` (m).
+    #[inline(always)]
+    pub(super) fn grown(&self, rest_radius: f32) -> f32 {
+        rest_radius * self.growth
+    }
+
+    fn volume(&self, tree: &QuadTree, particles: &ClothParticles, node: u32) -> V {
+        let level = tree.level_of(node);
+        let at = tree.node(node);
+        match &tree.0 {
+            _ if self.rule == BoundRule::RestShape => V::around(
+                particles.position_at(at.middle as usize),
+                self.grown(at.rest_radius),
+            ),
+            Shape::Grid(tree) => {
+                let (row, column) = tree.parts(level, node);
+                self.stored(tree, particles, level, [row, column])
+            }
+            Shape::Network(_) => self.stored_in_network(node),
+        }
+    }
+
+    fn validate(&self, tree: &QuadTree, particles: &ClothParticles) -> Result<(), String> {
+        for node in 0..tree.len() as u32 {
+            let volume = self.volume(tree, particles, node);
+            for particle in tree.particles_of(node) {
+                let position = particles.position_at(particle as usize);
+                if !volume.holds(position.as_dvec3(), 0.0) {
+                    return Err(format!(
+                        "node {node}, {volume:?}, does not hold particle {particle} at {position}"
+                    ));
                 }
             }
             if self.rule == BoundRule::Refit {
-                for child in node.children.clone() {
-                    let (child_centre, child_radius) = sphere(child);
-                    if centre.distance(child_centre) + child_radius > radius * tolerance {
-                        return Err(format!("node {index} does not hold its child {child}"));
+                for &child in tree.node(node).children() {
+                    let child_volume = self.volume(tree, particles, child);
+                    if !volume.holds_volume(&child_volume) {
+                        return Err(format!(
+                            "node {node}, {volume:?}, does not hold its child {child}, {child_volume:?}"
+                        ));
                     }
                 }
             }
         }
         Ok(())
+    }
+}
+
+/// Where the particle in the middle of a node is (m).
+#[inline(always)]
+pub(super) fn middle(particles: &ClothParticles, rows: &Part, columns: &Part) -> Vec3 {
+    particles.blocks()[(rows.block + columns.block) as usize].position(columns.lane as usize)
+}
+
+#[inline(always)]
+pub(super) fn position(particles: &ClothParticles, slot: Slot) -> Vec3 {
+    particles.blocks()[slot.block].position(slot.lane)
+}
+
+/// The bounding volumes of a tree's nodes, of a kind and by a rule that are chosen as the program runs.
+#[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[reflect(opaque)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub struct NodeBounds {
+    pub(super) kind: Kind,
+}
+
+/// One of the kinds, so that all that loops over nodes is compiled for it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Kind {
+    Sphere(Bounds<BoundingSphere>),
+    Aabb(Bounds<Aabb3d>),
+    Obb(Bounds<Obb>),
+    KDop14(Bounds<KDop<7>>),
+    KDop18(Bounds<KDop<9>>),
+    KDop26(Bounds<KDop<13>>),
+}
+
+impl Default for Kind {
+    fn default() -> Self {
+        Self::Sphere(Bounds::default())
+    }
+}
+
+/// Runs the same code for whichever kind it is.
+macro_rules! each {
+    ($kind:expr, $bounds:ident => $code:expr) => {
+        match $kind {
+            Kind::Sphere($bounds) => $code,
+            Kind::Aabb($bounds) => $code,
+            Kind::Obb($bounds) => $code,
+            Kind::KDop14($bounds) => $code,
+            Kind::KDop18($bounds) => $code,
+            Kind::KDop26($bounds) => $code,
+        }
+    };
+}
+pub(super) use each;
+
+impl NodeBounds {
+    /// Brings the volumes up to date with the particles. `stretch` is the largest over structural and shear
+    /// springs ([`Stretch::bound`](crate::solver::Stretch)).
+    ///
+    /// # Errors
+    /// [`ClothError::NoSuchBounds`] if there is no such rule for the volume. Nothing is changed then.
+    pub fn rebuild(
+        &mut self,
+        (volume, rule): (BoundingVolume, BoundRule),
+        tree: &QuadTree,
+        particles: &ClothParticles,
+        stretch: f32,
+    ) -> Result<(), ClothError> {
+        if !rule.suits(volume) {
+            return Err(ClothError::NoSuchBounds {
+                volume: volume.name(),
+                rule: rule.name(),
+            });
+        }
+        if self.volume() != volume {
+            self.kind = match volume {
+                BoundingVolume::Sphere => Kind::Sphere(Bounds::default()),
+                BoundingVolume::Aabb => Kind::Aabb(Bounds::default()),
+                BoundingVolume::Obb => Kind::Obb(Bounds::default()),
+                BoundingVolume::KDop14 => Kind::KDop14(Bounds::default()),
+                BoundingVolume::KDop18 => Kind::KDop18(Bounds::default()),
+                BoundingVolume::KDop26 => Kind::KDop26(Bounds::default()),
+            };
+        }
+        each!(&mut self.kind, bounds => bounds.rebuild(rule, tree, particles, stretch));
+        Ok(())
+    }
+
+    /// The kind of volume.
+    pub fn volume(&self) -> BoundingVolume {
+        match self.kind {
+            Kind::Sphere(_) => BoundingVolume::Sphere,
+            Kind::Aabb(_) => BoundingVolume::Aabb,
+            Kind::Obb(_) => BoundingVolume::Obb,
+            Kind::KDop14(_) => BoundingVolume::KDop14,
+            Kind::KDop18(_) => BoundingVolume::KDop18,
+            Kind::KDop26(_) => BoundingVolume::KDop26,
+        }
+    }
+
+    /// The rule by which the volumes were last brought up to date.
+    pub fn rule(&self) -> BoundRule {
+        each!(&self.kind, bounds => bounds.rule)
+    }
+
+    /// The volume of a node around the whole of its particles, which are of a radius (m), in the cloth's frame. The
+    /// paper's volumes are as large as they are, whatever its particles.
+    pub fn node(
+        &self,
+        tree: &QuadTree,
+        particles: &ClothParticles,
+        node: u32,
+        particle_radius: f32,
+    ) -> NodeVolume {
+        let radius = match self.rule() {
+            BoundRule::Paper => 0.0,
+            BoundRule::Refit | BoundRule::RestShape => particle_radius,
+        };
+        each!(&self.kind, bounds => bounds.volume(tree, particles, node).drawn(radius))
+    }
+
+    /// Whether each node's volume holds its particles' centres and, under `Refit`, its children's volumes. Under
+    /// `Paper` that often does not hold.
+    ///
+    /// # Errors
+    /// A sentence that names the node at fault.
+    pub fn validate(&self, tree: &QuadTree, particles: &ClothParticles) -> Result<(), String> {
+        each!(&self.kind, bounds => bounds.validate(tree, particles))
     }
 }

@@ -2,30 +2,16 @@
 
 use std::ops::Range;
 
-use bevy::{math::Vec3, reflect::Reflect};
+use bevy::reflect::Reflect;
 
-use super::{BoundRule, QuadTree, SphereBounds, bounds::ROUNDING};
+use super::{
+    BoundRule, NodeBounds, Probe, QuadTree,
+    bounds::{Bounds, Kind, each, middle, position},
+    scan::scan,
+    tree::{GridTree, NetworkTree, Part, Shape},
+    volume::Volume,
+};
 use crate::cloth::ClothParticles;
-
-/// What is searched for: a ball, in the cloth's frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Probe {
-    /// Centre of the ball (m).
-    pub centre: Vec3,
-    /// Radius of the ball (m), with all that it is inflated by: how far it and the cloth may move.
-    pub radius: f32,
-    /// Radius of each particle (m).
-    pub particle_radius: f32,
-}
-
-impl Probe {
-    /// Equation (4): whether a particle at `position` is nearer to the ball's centre than both radii together.
-    /// In f64, so that it is the same wherever it is asked.
-    pub fn meets(&self, position: Vec3) -> bool {
-        let reach = f64::from(self.radius) + f64::from(self.particle_radius);
-        position.as_dvec3().distance_squared(self.centre.as_dvec3()) < reach * reach
-    }
-}
 
 /// What the last search made of a node.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
@@ -33,9 +19,9 @@ pub enum NodeState {
     /// An ancestor did not touch: the node was not looked at.
     #[default]
     Unvisited,
-    /// Looked at; no ball touches it, and its children were not looked at.
+    /// Looked at; no collider touches it, and its children were not looked at: pruned.
     Untouched,
-    /// Looked at; a ball touches it, or may within the tick.
+    /// Looked at; a collider touches it, or may within the tick.
     Touching,
 }
 
@@ -43,161 +29,207 @@ pub enum NodeState {
 /// allocating once it has grown.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 pub struct TopDownQuery {
-    state: Vec<NodeState>,
-    /// Nodes whose state is set, so that clearing costs what the search did and not what the tree does.
-    marked: Vec<u32>,
-    frontier: Vec<u32>,
+    /// Nodes in the order in which they were looked at, and whether they touched.
+    visits: Vec<(u32, bool)>,
+    /// Children of touching nodes on the level that is looked at, and on the next: from and to which row, from and to
+    /// which column; of a network, from and to which node.
+    frontier: [Vec<[u32; 4]>; 2],
     candidates: Vec<u32>,
-    nodes_visited: usize,
     leaf_tests: usize,
 }
 
 impl TopDownQuery {
-    /// Forgets what was found, for a new tick of `tree`.
-    pub fn clear(&mut self, tree: &QuadTree) {
-        if self.state.len() == tree.nodes().len() {
-            for node in self.marked.drain(..) {
-                self.state[node as usize] = NodeState::Unvisited;
-            }
-        } else {
-            self.marked.clear();
-            self.state.clear();
-            self.state.resize(tree.nodes().len(), NodeState::Unvisited);
-        }
+    /// Forgets what was found.
+    pub fn clear(&mut self) {
+        self.visits.clear();
         self.candidates.clear();
-        self.nodes_visited = 0;
         self.leaf_tests = 0;
     }
 
     /// Searches for `probe`, adds to what was found since [`clear`](Self::clear), and says which of the
-    /// [`candidates`](Self::candidates) are the probe's.
+    /// [`candidates`](Self::candidates) are the probe's. The tree and the bounds must be those of the particles.
     pub fn search(
         &mut self,
         tree: &QuadTree,
-        bounds: &SphereBounds,
+        bounds: &NodeBounds,
         particles: &ClothParticles,
         probe: &Probe,
     ) -> Range<usize> {
-        match bounds.rule() {
-            BoundRule::RestShape => self.descend(tree, particles, probe, |node| {
-                bounds.rest_sphere(tree, particles, node)
-            }),
-            BoundRule::Refit | BoundRule::Paper => {
-                self.descend(tree, particles, probe, |node| bounds.stored_sphere(node))
-            }
+        let first = self.candidates.len();
+        if tree.fits(particles) {
+            each!(&bounds.kind, bounds => match &tree.0 {
+                Shape::Grid(tree) => self.search_grid(tree, bounds, particles, probe),
+                Shape::Network(tree) => self.search_network(tree, bounds, particles, probe),
+            });
         }
+        first..self.candidates.len()
     }
 
-    /// Whether `probe` meets any particle. Leaves what was found as it is.
-    pub fn finds_any(
-        &self,
-        tree: &QuadTree,
-        bounds: &SphereBounds,
+    /// Tests every particle instead, eight at a time: for cloths so small that a tree does not pay.
+    pub fn scan(&mut self, particles: &ClothParticles, probe: &Probe) -> Range<usize> {
+        let first = self.candidates.len();
+        scan(particles, probe, &mut self.candidates);
+        self.leaf_tests += particles.len();
+        first..self.candidates.len()
+    }
+
+    fn search_grid<V: Volume>(
+        &mut self,
+        tree: &GridTree,
+        bounds: &Bounds<V>,
         particles: &ClothParticles,
         probe: &Probe,
-    ) -> bool {
-        // Each level adds three siblings at most, and halving 2²⁴ particles ends after 24 levels and a leaf.
-        let mut stack = [0; 3 * 25 + 1];
-        let mut count = usize::from(!tree.nodes().is_empty());
-        while count > 0 {
-            count -= 1;
-            let index = stack[count];
-            let node = &tree.nodes()[index as usize];
-            let sphere = bounds.sphere(tree, particles, index);
-            let reach = (sphere.radius() + probe.radius) * ROUNDING;
-            if Vec3::from(sphere.center).distance_squared(probe.centre) > reach * reach {
-                continue;
+    ) {
+        let reach = probe.reach() as f32;
+        match bounds.rule {
+            BoundRule::RestShape => {
+                self.descend(tree, particles, probe, |level, _, rows, columns| {
+                    let radius = bounds.grown(tree.levels[level].rest_radius(rows, columns));
+                    V::around(middle(particles, rows, columns), radius).may_reach(probe, reach)
+                })
             }
-            if node.is_leaf() && probe.meets(particles.position_at(node.middle as usize)) {
-                return true;
-            }
-            for child in node.children.clone() {
-                stack[count] = child;
-                count += 1;
-            }
+            BoundRule::Refit => self.descend(tree, particles, probe, |level, at, _, _| {
+                bounds
+                    .stored(tree, particles, level, at)
+                    .may_reach(probe, reach)
+            }),
+            // The paper's volumes are as large as they are, whatever the particles in them.
+            BoundRule::Paper => self.descend(tree, particles, probe, |level, at, _, _| {
+                bounds
+                    .stored(tree, particles, level, at)
+                    .may_reach(probe, probe.radius)
+            }),
         }
-        false
     }
 
     fn descend(
         &mut self,
-        tree: &QuadTree,
+        tree: &GridTree,
         particles: &ClothParticles,
         probe: &Probe,
-        sphere: impl Fn(u32) -> (Vec3, f32),
-    ) -> Range<usize> {
-        let first = self.candidates.len();
-        self.frontier.clear();
-        if !tree.nodes().is_empty() {
-            self.frontier.push(0);
+        touches: impl Fn(usize, [u32; 2], &Part, &Part) -> bool,
+    ) {
+        let Self {
+            visits,
+            frontier: [here, next],
+            candidates,
+            leaf_tests,
+        } = self;
+        here.clear();
+        here.push([0, 1, 0, 1]);
+        let leaves = tree.levels.len() - 1;
+        for (level, parts) in tree.levels.iter().enumerate() {
+            let before = visits.len();
+            next.clear();
+            for &[first_row, end_row, first_column, end_column] in here.iter() {
+                for (row, rows) in (first_row..end_row).zip(&parts.rows[first_row as usize..]) {
+                    for (column, columns) in
+                        (first_column..end_column).zip(&parts.columns[first_column as usize..])
+                    {
+                        let touching = touches(level, [row, column], rows, columns);
+                        visits.push((parts.index(row, column), touching));
+                        if touching && level < leaves {
+                            let (below, beside) = (&rows.children, &columns.children);
+                            next.push([below.start, below.end, beside.start, beside.end]);
+                        } else if touching && probe.meets(middle(particles, rows, columns)) {
+                            candidates.push(rows.middle * tree.layout.columns + columns.middle);
+                        }
+                    }
+                }
+            }
+            if level == leaves {
+                *leaf_tests += visits.len() - before;
+            }
+            std::mem::swap(here, next);
         }
+    }
+
+    fn search_network<V: Volume>(
+        &mut self,
+        tree: &NetworkTree,
+        bounds: &Bounds<V>,
+        particles: &ClothParticles,
+        probe: &Probe,
+    ) {
+        if tree.nodes.is_empty() {
+            return;
+        }
+        let queue = &mut self.frontier[0];
+        queue.clear();
+        queue.push([0, 1, 0, 0]);
         let mut next = 0;
         // Children are put behind what is still to be looked at: level by level.
-        while let Some(&index) = self.frontier.get(next) {
+        while let Some(&[first, end, ..]) = queue.get(next) {
             next += 1;
-            let node = &tree.nodes()[index as usize];
-            let (centre, radius) = sphere(index);
-            let reach = (radius + probe.radius) * ROUNDING;
-            let touching = centre.distance_squared(probe.centre) <= reach * reach;
-            if node.is_leaf() {
-                self.leaf_tests += 1;
-                if touching && probe.meets(particles.position_at(node.middle as usize)) {
-                    self.candidates.push(node.middle);
+            for index in first..end {
+                let node = &tree.nodes[index as usize];
+                let middle = position(particles, tree.slots[node.middle as usize]);
+                let volume = match bounds.rule {
+                    BoundRule::RestShape => V::around(middle, bounds.grown(node.rest_radius)),
+                    BoundRule::Refit | BoundRule::Paper => bounds.stored_in_network(index),
+                };
+                let touching = volume.may_reach(probe, probe.reach() as f32);
+                self.visits.push((index, touching));
+                if node.children.is_empty() {
+                    self.leaf_tests += 1;
+                    if touching && probe.meets(middle) {
+                        self.candidates.push(node.middle);
+                    }
+                } else if touching {
+                    queue.push([node.children.start, node.children.end, 0, 0]);
                 }
-            } else if touching {
-                self.frontier.extend(node.children.clone());
             }
-            self.mark(index, touching);
-        }
-        self.nodes_visited += next;
-        first..self.candidates.len()
-    }
-
-    /// Touched by any ball is touched.
-    fn mark(&mut self, node: u32, touching: bool) {
-        let state = &mut self.state[node as usize];
-        if *state == NodeState::Unvisited {
-            self.marked.push(node);
-        }
-        if touching {
-            *state = NodeState::Touching;
-        } else if *state == NodeState::Unvisited {
-            *state = NodeState::Untouched;
         }
     }
 
-    /// Particles that a ball may meet, in the order of the searches.
+    /// Particles that a probe meets, in the order of the searches.
     pub fn candidates(&self) -> &[u32] {
         &self.candidates
     }
 
-    /// What became of each node of the tree.
-    pub fn states(&self) -> &[NodeState] {
-        &self.state
+    /// Nodes that were looked at, in that order, once for each search, and whether they touched.
+    pub fn visits(&self) -> &[(u32, bool)] {
+        &self.visits
     }
 
-    /// Nodes of `level` that were looked at, and those of them that a ball touches.
+    /// What became of each node of the tree: touched by any collider is touched. Written to `states`.
+    pub fn states_into(&self, tree: &QuadTree, states: &mut Vec<NodeState>) {
+        states.clear();
+        states.resize(tree.len(), NodeState::Unvisited);
+        for &(node, touching) in &self.visits {
+            if let Some(state) = states.get_mut(node as usize) {
+                if touching {
+                    *state = NodeState::Touching;
+                } else if *state == NodeState::Unvisited {
+                    *state = NodeState::Untouched;
+                }
+            }
+        }
+    }
+
+    /// What became of each node of the tree.
+    pub fn states(&self, tree: &QuadTree) -> Vec<NodeState> {
+        let mut states = Vec::new();
+        self.states_into(tree, &mut states);
+        states
+    }
+
+    /// Nodes of `level` that were looked at, once for each search, and those of them that touched.
     pub fn level(&self, tree: &QuadTree, level: usize) -> (usize, usize) {
         let nodes = tree.levels().get(level).cloned().unwrap_or_default();
-        let states = self
-            .state
-            .get(nodes.start as usize..nodes.end as usize)
-            .unwrap_or_default();
-        let count = |wanted: &dyn Fn(NodeState) -> bool| {
-            states.iter().filter(|&&state| wanted(state)).count()
-        };
+        let on_it = || self.visits.iter().filter(|(node, _)| nodes.contains(node));
         (
-            count(&|state| state != NodeState::Unvisited),
-            count(&|state| state == NodeState::Touching),
+            on_it().count(),
+            on_it().filter(|(_, touching)| *touching).count(),
         )
     }
 
-    /// Nodes looked at since [`clear`](Self::clear), leaves included, once for each ball.
+    /// Nodes looked at since [`clear`](Self::clear), leaves included, once for each search.
     pub fn nodes_visited(&self) -> usize {
-        self.nodes_visited
+        self.visits.len()
     }
 
-    /// Leaves among them.
+    /// Particles tested: leaves among the nodes, and all of a scan's.
     pub fn leaf_tests(&self) -> usize {
         self.leaf_tests
     }

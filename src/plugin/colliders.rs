@@ -14,17 +14,19 @@ use bevy::{
 use super::{ClothFault, ClothFrame, fault::Part, frame::global_transform};
 use crate::{
     cloth::ClothError,
-    contact::{ClothCollider, MovingBall},
+    contact::{ClothCollider, MovingCollider},
 };
 
 /// A collider's way through the tick, in the world.
 #[derive(Component, Debug, Default)]
 pub(super) struct ColliderMotion {
-    /// From where to where; `None` before the first tick.
-    way: Option<(Isometry3d, Isometry3d)>,
+    /// Its way; `None` before the first tick.
+    way: Option<MovingCollider>,
     /// Where the last tick with time in it left it.
     last: Option<Isometry3d>,
-    radius: f32,
+    /// Middle of its way (m), and how far it is from there at most to any of the collider's points on it.
+    middle: Vec3,
+    reach: f32,
 }
 
 impl ColliderMotion {
@@ -37,7 +39,7 @@ impl ColliderMotion {
     ) -> Result<(), ClothError> {
         let transform = global_transform(transforms, entity)?;
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-        let radius = collider.scaled_radius(scale)?;
+        let shape = collider.scaled(scale)?;
         if !(translation.is_finite() && rotation.is_finite()) {
             return Err(ClothError::Transform {
                 transform: format!("{transform:?}"),
@@ -45,25 +47,38 @@ impl ColliderMotion {
         }
         let pose = Isometry3d::new(translation, rotation.normalize());
         let from = self.last.unwrap_or(pose);
-        self.way = Some((from, pose));
+        let turned = pose.rotation * from.rotation.inverse();
+        // Of the two quaternions of a rotation, the one of the shorter way round.
+        let turned = if turned.w < 0.0 { -turned } else { turned };
+        let way = MovingCollider {
+            shape,
+            from,
+            to: translation,
+            turn: turned.to_scaled_axis(),
+        };
+        self.middle = translation.midpoint(from.translation.into());
+        self.reach = way.travel() / 2.0 + shape.extent();
+        self.way = Some(way);
         // What is moved while no time passes has its way still before it.
         self.last = Some(if time_passes { pose } else { from });
-        self.radius = radius;
         Ok(())
     }
 
+    /// Whether the collider may come within `reach` of a point of the world (m).
+    pub fn comes_near(&self, point: Vec3, reach: f32) -> bool {
+        let reach = self.reach + reach;
+        self.way.is_some() && self.middle.distance_squared(point) <= reach * reach
+    }
+
     /// The collider's way through the tick in a cloth's frame.
-    pub fn seen_from(&self, frame: &ClothFrame) -> Option<MovingBall> {
-        let (from, to) = self.way?;
+    pub fn seen_from(&self, frame: &ClothFrame) -> Option<MovingCollider> {
+        let way = self.way?;
         let inverse = frame.isometry().inverse();
-        let turned = to.rotation * from.rotation.inverse();
-        // Of the two quaternions of a rotation, the one of the shorter way round.
-        let turned = if turned.w < 0.0 { -turned } else { turned };
-        Some(MovingBall {
-            from: inverse * Vec3::from(from.translation),
-            to: inverse * Vec3::from(to.translation),
-            turn: inverse.rotation * turned.to_scaled_axis(),
-            radius: self.radius,
+        Some(MovingCollider {
+            shape: way.shape,
+            from: inverse * way.from,
+            to: inverse * way.to,
+            turn: inverse.rotation * way.turn,
         })
     }
 }

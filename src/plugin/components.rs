@@ -1,20 +1,18 @@
 //! Components of a cloth that the plugin adds and keeps.
 
-use std::ops::Range;
-
 use bevy::{
     ecs::{
         change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent,
     },
-    math::{Isometry3d, Vec3},
+    math::{Isometry3d, Vec3, bounding::BoundingSphere},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
 use super::attach::Attached;
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pin, Pins, Springs},
-    contact::MovingBall,
-    hierarchy::{BoundRule, QuadTree, SphereBounds, TopDownQuery},
+    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    hierarchy::{NodeBounds, QuadTree, SearchMethod, SearchReason, TopDownQuery},
     solver::{ClothSettings, Control, PinMotion, Precision, Rest, Solver, Stretch, TickStep},
 };
 
@@ -51,16 +49,16 @@ impl ClothTopology {
     }
 }
 
-/// The bounding spheres of the last tick, and what the search through them found.
+/// The bounding volumes of the last tick in which something was near, and what the search through them found.
 #[derive(Component, Debug, Default)]
 pub struct ClothSearch {
-    pub(super) bounds: SphereBounds,
+    pub(super) bounds: NodeBounds,
     pub(super) query: TopDownQuery,
 }
 
 impl ClothSearch {
-    /// The bounding spheres.
-    pub fn bounds(&self) -> &SphereBounds {
+    /// The bounding volumes.
+    pub fn bounds(&self) -> &NodeBounds {
         &self.bounds
     }
 
@@ -76,15 +74,25 @@ impl ClothSearch {
 pub struct ClothStats {
     /// Time of all sub-steps, the stretch measured in the last of them (ms): the solver's call.
     pub integrate_ms: f64,
-    /// Time to bring the bounding spheres up to date (ms).
+    /// Time to bring the bounding volumes up to date (ms).
     pub rebuild_ms: f64,
     /// Time of the search (ms).
     pub query_ms: f64,
+    /// How the cloth was searched: never `Auto`, unless nothing was.
+    pub search: SearchMethod,
+    /// Why so.
+    pub reason: SearchReason,
+    /// Colliders that came near the cloth.
+    pub colliders_near: usize,
+    /// Those of them that were tested against triangles.
+    pub by_triangles: usize,
     /// Nodes of the tree that were looked at.
     pub nodes_visited: usize,
-    /// Leaves among them.
+    /// Particles that were tested: leaves among the nodes, or all by a scan.
     pub leaf_tests: usize,
-    /// Particles that were pushed out of a collider, once for each.
+    /// How often particles moved farther within the tick than was expected, and all were searched again.
+    pub requeries: u32,
+    /// Particles that were pushed out of a collider, once for each; cells where it is tested against triangles.
     pub contacts: usize,
     /// The largest stretch, at the end of the tick.
     pub stretch: Stretch,
@@ -94,16 +102,6 @@ pub struct ClothStats {
     pub is_asleep: bool,
 }
 
-/// A ball that may touch the cloth in this tick, and its candidates.
-#[derive(Debug, Clone)]
-pub(super) struct BallInReach {
-    pub collider: Entity,
-    pub ball: MovingBall,
-    /// Its part of the query's candidates.
-    pub candidates: Range<usize>,
-    pub deepest: f32,
-}
-
 /// What one tick's systems hand on to the next. Kept so that a tick does not allocate.
 #[derive(Component, Debug, Default)]
 pub(super) struct ClothTick {
@@ -111,20 +109,23 @@ pub(super) struct ClothTick {
     pub step: Option<TickStep>,
     /// Whether the last preparation found nothing wrong: what is not sound is neither moved nor drawn.
     pub sound: bool,
-    pub rule: BoundRule,
-    /// Coulomb's μ.
-    pub friction: f32,
-    /// Radius of each particle (m).
-    pub particle_radius: f32,
+    /// What was asked for.
+    pub search: SearchMethod,
+    /// What the cloth is tested with.
+    pub terms: Terms,
     /// As of the positions present: what `RestShape` relies on.
     pub stretch: Stretch,
     /// Pinned particles that the frame or a target carries along.
     pub pins: Vec<PinMotion>,
     /// How far a particle may get in the tick by itself (m).
     pub reach: f32,
-    pub balls: Vec<BallInReach>,
-    /// One flag a candidate: pushed out in this tick.
-    pub touched: Vec<bool>,
+    /// Colliders near the cloth, in its frame. What `detection` calls them by is their place here.
+    pub near: Vec<(Entity, MovingCollider)>,
+    /// The root's rest shape, around every particle's centre (m).
+    pub root: Option<BoundingSphere>,
+    pub detection: Detection,
+    /// What the cloth, asleep, listens with.
+    pub scout: (NodeBounds, TopDownQuery),
     /// When the plugin last wrote the particles: whoever wrote them since was the game.
     pub written: Option<Tick>,
     pub solver: Solver,
@@ -134,7 +135,7 @@ pub(super) struct ClothTick {
     /// Speed of the fastest particle as the tick begins (m/s).
     pub largest_speed: f32,
     /// What disturbs a cloth at rest when it changes, besides what it is woven from.
-    pub known: Option<(ClothSettings, BoundRule, Vec3)>,
+    pub known: Option<(ClothSettings, SearchMethod, NarrowPhase, Vec3)>,
     /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
     pub tethered: Option<(bool, f32)>,
     /// What `attached` was made from.

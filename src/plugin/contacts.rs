@@ -13,6 +13,7 @@ use bevy::{
 };
 
 use super::components::ClothTick;
+use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};
 
 /// A collider that a cloth touches.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
@@ -23,6 +24,15 @@ pub struct ClothContact {
     pub particles: usize,
     /// How deep the deepest of them was found (m), before it was pushed out.
     pub deepest_penetration: f32,
+    /// Area of the cloth that was inside of the collider at the end of a sub-step, the largest of the tick (m²).
+    pub area: f32,
+    /// ∫ depth dA over that area (m³), the largest of the tick: what the cloth had cut off from the collider, while
+    /// it is shallow.
+    pub volume: f32,
+    /// What the collider was tested against.
+    pub narrow_phase: NarrowPhase,
+    /// From where to where its points are.
+    points: [usize; 2],
 }
 
 /// The colliders that a cloth touched in the last tick.
@@ -31,6 +41,7 @@ pub struct ClothContact {
 #[component(clone_behavior = Ignore)]
 pub struct ClothContacts {
     now: Vec<ClothContact>,
+    points: Vec<ContactPoint>,
     /// Those told of, each with the most particles and the deepest penetration since the touch began.
     told: Vec<ClothContact>,
 }
@@ -46,11 +57,37 @@ impl ClothContacts {
         self.now.iter().find(|contact| contact.collider == collider)
     }
 
+    /// The particles near a collider that touches, each with its signed depth.
+    pub fn points(&self, contact: &ClothContact) -> &[ContactPoint] {
+        let [first, end] = contact.points;
+        self.points.get(first..end).unwrap_or_default()
+    }
+
     /// Takes the contacts of a new tick; those of no particle are none.
-    pub(super) fn renew(&mut self, contacts: impl Iterator<Item = ClothContact>) {
+    pub(super) fn renew(&mut self, near: &[(Entity, MovingCollider)], detection: &Detection) {
         self.now.clear();
-        self.now
-            .extend(contacts.filter(|contact| contact.particles > 0));
+        self.points.clear();
+        for touch in detection.touches() {
+            let first = self.points.len();
+            self.points.extend(detection.points(touch));
+            let particles = self.points[first..]
+                .iter()
+                .filter(|point| point.depth > 0.0)
+                .count();
+            let Some((collider, _)) = near.get(touch.id).filter(|_| particles > 0) else {
+                self.points.truncate(first);
+                continue;
+            };
+            self.now.push(ClothContact {
+                collider: *collider,
+                particles,
+                deepest_penetration: touch.deepest,
+                area: touch.area,
+                volume: touch.volume,
+                narrow_phase: touch.narrow_phase,
+                points: [first, self.points.len()],
+            });
+        }
     }
 }
 
@@ -90,7 +127,7 @@ pub(super) fn tell_of_touches(
         if contacts.now.is_empty() && contacts.told.is_empty() {
             continue;
         }
-        let ClothContacts { now, told } = &mut *contacts;
+        let ClothContacts { now, told, .. } = &mut *contacts;
         if !tick.sound {
             now.clear();
         }

@@ -11,6 +11,7 @@ use bevy::{
 };
 
 use super::{ClothStats, ClothSystems, components::ClothTick};
+use crate::hierarchy::{BoundRule, SearchMethod};
 
 /// Measures every tick into Bevy's `DiagnosticsStore`: times and counts added up over all cloths, and the
 /// largest stretch among them.
@@ -28,14 +29,26 @@ impl Default for ClothDiagnosticsPlugin {
 impl ClothDiagnosticsPlugin {
     /// Time of all sub-steps a tick (ms).
     pub const INTEGRATE: DiagnosticPath = DiagnosticPath::const_new("cloth/integrate");
-    /// Time to bring the bounding spheres up to date (ms).
+    /// Time to bring the bounding volumes up to date (ms).
     pub const REBUILD: DiagnosticPath = DiagnosticPath::const_new("cloth/rebuild");
     /// Time of the search (ms).
     pub const QUERY: DiagnosticPath = DiagnosticPath::const_new("cloth/query");
     /// Nodes of the trees that were looked at.
     pub const NODES_VISITED: DiagnosticPath = DiagnosticPath::const_new("cloth/nodes_visited");
-    /// Leaves among them.
+    /// Particles that were tested: leaves among them, and all of a cloth that was scanned.
     pub const LEAF_TESTS: DiagnosticPath = DiagnosticPath::const_new("cloth/leaf_tests");
+    /// Colliders that came near a cloth, once for each.
+    pub const COLLIDERS_NEAR: DiagnosticPath = DiagnosticPath::const_new("cloth/colliders_near");
+    /// Those of them that were tested against triangles.
+    pub const BY_TRIANGLES: DiagnosticPath = DiagnosticPath::const_new("cloth/by_triangles");
+    /// Cloths of which every particle was tested.
+    pub const SCANS: DiagnosticPath = DiagnosticPath::const_new("cloth/scans");
+    /// Cloths whose tree was searched by volumes that need no update.
+    pub const SEARCHES: DiagnosticPath = DiagnosticPath::const_new("cloth/searches");
+    /// Cloths whose tree was refitted and searched.
+    pub const REFITS: DiagnosticPath = DiagnosticPath::const_new("cloth/refits");
+    /// Searches that were done again within a tick, as particles moved farther than was expected.
+    pub const REQUERIES: DiagnosticPath = DiagnosticPath::const_new("cloth/requeries");
     /// Particles that were pushed out of a collider.
     pub const CONTACTS: DiagnosticPath = DiagnosticPath::const_new("cloth/contacts");
     /// Sub-steps, those included that were done again for a tolerance; none of a cloth that sleeps.
@@ -59,6 +72,12 @@ impl Plugin for ClothDiagnosticsPlugin {
             app.register_diagnostic(Diagnostic::new(path).with_suffix(" ms"));
         }
         for path in [
+            Self::COLLIDERS_NEAR,
+            Self::BY_TRIANGLES,
+            Self::SCANS,
+            Self::SEARCHES,
+            Self::REFITS,
+            Self::REQUERIES,
             Self::NODES_VISITED,
             Self::LEAF_TESTS,
             Self::CONTACTS,
@@ -88,6 +107,32 @@ fn measure(cloths: Query<(&ClothTick, &ClothStats)>, mut diagnostics: Diagnostic
         sum(|stats| stats.nodes_visited as f64)
     });
     diagnostics.add_measurement(&Plugin::LEAF_TESTS, || sum(|stats| stats.leaf_tests as f64));
+    let count = |method: fn(SearchMethod) -> bool| {
+        let is_searched = |stats: &&ClothStats| stats.colliders_near > 0 && method(stats.search);
+        sound().filter(is_searched).count() as f64
+    };
+    diagnostics.add_measurement(&Plugin::SCANS, || {
+        count(|method| method == SearchMethod::Scan)
+    });
+    diagnostics.add_measurement(&Plugin::SEARCHES, || {
+        count(|method| method.rule() == Some(BoundRule::RestShape))
+    });
+    diagnostics.add_measurement(&Plugin::REFITS, || {
+        count(|method| {
+            method
+                .rule()
+                .is_some_and(|rule| rule != BoundRule::RestShape)
+        })
+    });
+    diagnostics.add_measurement(&Plugin::COLLIDERS_NEAR, || {
+        sum(|stats| stats.colliders_near as f64)
+    });
+    diagnostics.add_measurement(&Plugin::BY_TRIANGLES, || {
+        sum(|stats| stats.by_triangles as f64)
+    });
+    diagnostics.add_measurement(&Plugin::REQUERIES, || {
+        sum(|stats| f64::from(stats.requeries))
+    });
     diagnostics.add_measurement(&Plugin::CONTACTS, || sum(|stats| stats.contacts as f64));
     diagnostics.add_measurement(&Plugin::SUBSTEPS, || sum(|stats| f64::from(stats.substeps)));
     diagnostics.add_measurement(&Plugin::ASLEEP, || {

@@ -1,4 +1,4 @@
-//! Draws the bounding spheres, red where they touch and green where they don't, and the springs.
+//! Draws the bounding volumes, red where they touch and green where they don't, and the springs.
 
 use std::ops::RangeInclusive;
 
@@ -8,23 +8,28 @@ use bevy::{
     color::{Color, Srgba},
     ecs::{
         component::Component,
+        query::QueryData,
         schedule::IntoScheduleConfigs,
-        system::{Query, Res},
+        system::{Local, Query, Res},
     },
     gizmos::{
         AppGizmoBuilder, GizmoPlugin,
         config::{GizmoConfigGroup, GizmoConfigStore},
         gizmos::Gizmos,
     },
-    math::Isometry3d,
+    math::{Isometry3d, Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
-    transform::TransformSystems,
+    transform::{TransformSystems, components::Transform},
 };
 
-use super::{ClothFrame, ClothSearch, ClothSystems, ClothTopology, components::ClothTick};
+use super::{
+    ClothFrame, ClothSearch, ClothStats, ClothSystems, ClothTopology, components::ClothTick,
+};
 use crate::{
     cloth::{ClothParticles, SpringKind},
-    hierarchy::NodeState,
+    hierarchy::{
+        BoundRule, BoundingVolume, NodeBounds, NodeState, NodeVolume, SearchMethod, TopDownQuery,
+    },
 };
 
 /// How cloths' gizmos look. They show the last tick, whereas the mesh is drawn up to a tick behind it. A gizmo config
@@ -32,18 +37,20 @@ use crate::{
 #[derive(GizmoConfigGroup, Reflect, Debug, Clone)]
 #[reflect(Default, Debug, Clone)]
 pub struct ClothGizmos {
-    /// Draws the spheres of every cloth's finest level, those without a [`ShowClothGizmos`] too.
+    /// Draws the volumes of every cloth's finest level, those without a [`ShowClothGizmos`] too.
     pub draw_all: bool,
-    /// Spheres that nothing touches.
+    /// Volumes that the search did not get to: nothing touches one further up.
+    pub unvisited: Color,
+    /// Volumes that the search looked at and nothing touches: what is below them was pruned.
     pub untouched: Color,
-    /// Spheres that a ball touches, or may touch within the tick.
+    /// Volumes that a collider touches, or may touch within the tick.
     pub touching: Color,
     /// Structural springs; shear and bend springs are drawn fainter.
     pub springs: Color,
     /// Line segments a circle.
     pub resolution: u32,
-    /// Spheres are drawn with at least this radius, in spacings: a leaf's own is that of its particle, too
-    /// small to see.
+    /// Leaves are drawn with at least this radius, in spacings: their own is that of their particle, too small to
+    /// see.
     pub smallest: f32,
 }
 
@@ -51,6 +58,7 @@ impl Default for ClothGizmos {
     fn default() -> Self {
         Self {
             draw_all: false,
+            unvisited: Color::Srgba(Srgba::new(0.3, 0.75, 0.4, 0.35)),
             untouched: Color::Srgba(Srgba::new(0.35, 0.95, 0.45, 1.0)),
             touching: Color::Srgba(Srgba::new(0.9, 0.05, 0.05, 1.0)),
             springs: Color::Srgba(Srgba::new(0.9, 0.8, 0.4, 0.6)),
@@ -64,27 +72,27 @@ impl Default for ClothGizmos {
 #[derive(Component, Reflect, Debug, Clone, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ShowClothGizmos {
-    /// Levels of the tree whose spheres are drawn, 0 for the root; those deeper than the tree are its leaves'.
-    /// `None` for no spheres.
+    /// Levels of the tree whose volumes are drawn, 0 for the root; those deeper than the tree are its leaves'.
+    /// `None` for no volumes. They are those that the cloth's [`SearchMethod`] asks for, by default spheres.
     pub levels: Option<RangeInclusive<usize>>,
     /// Whether the springs are drawn.
     pub springs: bool,
 }
 
 impl Default for ShowClothGizmos {
-    /// The spheres of the leaves.
+    /// The volumes of the leaves.
     fn default() -> Self {
         Self::level(usize::MAX)
     }
 }
 
 impl ShowClothGizmos {
-    /// The spheres of one level.
+    /// The volumes of one level.
     pub fn level(level: usize) -> Self {
         Self::levels(level..=level)
     }
 
-    /// The spheres of several levels.
+    /// The volumes of several levels.
     pub fn levels(levels: RangeInclusive<usize>) -> Self {
         Self {
             levels: Some(levels),
@@ -92,7 +100,7 @@ impl ShowClothGizmos {
         }
     }
 
-    /// The springs and no spheres.
+    /// The springs and no volumes.
     pub fn springs() -> Self {
         Self {
             levels: None,
@@ -123,66 +131,177 @@ impl Plugin for ClothGizmosPlugin {
     }
 }
 
+/// What a cloth is drawn by, kept from frame to frame: the tick's own search may have touched no volume at all.
+#[derive(Default)]
+struct Drawing {
+    bounds: NodeBounds,
+    query: TopDownQuery,
+    states: Vec<NodeState>,
+}
+
+#[derive(QueryData)]
+struct Drawn {
+    topology: &'static ClothTopology,
+    particles: &'static ClothParticles,
+    frame: &'static ClothFrame,
+    search: &'static ClothSearch,
+    show: Option<&'static ShowClothGizmos>,
+    visible: Option<&'static ViewVisibility>,
+    tick: &'static ClothTick,
+    stats: &'static ClothStats,
+}
+
 fn draw_cloths(
-    cloths: Query<(
-        &ClothTopology,
-        &ClothParticles,
-        &ClothSearch,
-        &ClothFrame,
-        Option<&ShowClothGizmos>,
-        Option<&ViewVisibility>,
-        &ClothTick,
-    )>,
+    cloths: Query<Drawn>,
     store: Res<GizmoConfigStore>,
+    mut drawing: Local<Drawing>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
     let look = store.config::<ClothGizmos>().1;
     let everywhere = look.draw_all.then(ShowClothGizmos::default);
-    for (topology, particles, search, frame, show, visible, tick) in &cloths {
-        if let Some(show) = show.or(everywhere.as_ref())
-            && tick.sound
-            && topology.fits(particles)
-            && visible.is_none_or(|visible| visible.get())
+    for cloth in &cloths {
+        if let Some(show) = cloth.show.or(everywhere.as_ref())
+            && cloth.tick.sound
+            && cloth.topology.fits(cloth.particles)
+            && cloth.visible.is_none_or(|visible| visible.get())
         {
-            draw_spheres(topology, particles, search, frame, show, look, &mut gizmos);
+            if let Some(levels) = &show.levels {
+                drawing.search(&cloth);
+                drawing.draw(&cloth, levels, look, &mut gizmos);
+            }
             if show.springs {
-                draw_springs(topology, particles, frame, look, &mut gizmos);
+                draw_springs(
+                    cloth.topology,
+                    cloth.particles,
+                    cloth.frame,
+                    look,
+                    &mut gizmos,
+                );
             }
         }
     }
 }
 
-fn draw_spheres(
-    topology: &ClothTopology,
-    particles: &ClothParticles,
-    search: &ClothSearch,
-    frame: &ClothFrame,
-    show: &ShowClothGizmos,
-    look: &ClothGizmos,
+impl Drawing {
+    /// Finds where each volume is now, and what the search made of it.
+    fn search(&mut self, cloth: &DrawnItem) {
+        let ClothTopology { tree, grid, .. } = cloth.topology;
+        let tick = cloth.tick;
+        let choice = match (tick.search, cloth.stats.search) {
+            (SearchMethod::Tree(volume, rule), _) | (_, SearchMethod::Tree(volume, rule)) => {
+                (volume, rule)
+            }
+            _ => (BoundingVolume::Sphere, BoundRule::RestShape),
+        };
+        let stretch = tick.stretch.bound;
+        if self
+            .bounds
+            .rebuild(choice, tree, cloth.particles, stretch)
+            .is_err()
+        {
+            return;
+        }
+        if matches!(cloth.stats.search, SearchMethod::Tree(..)) {
+            cloth.search.query.states_into(tree, &mut self.states);
+            return;
+        }
+        // Nothing was searched, or all particles one by one: what a search would find.
+        self.query.clear();
+        let root = tree.root_sphere(cloth.particles, stretch);
+        for (_, collider) in &tick.near {
+            let (probe, _) = tick
+                .detection
+                .probe(collider, &tick.terms, grid, 0.0, &root);
+            self.query
+                .search(tree, &self.bounds, cloth.particles, &probe);
+        }
+        self.query.states_into(tree, &mut self.states);
+    }
+
+    fn draw(
+        &self,
+        cloth: &DrawnItem,
+        levels: &RangeInclusive<usize>,
+        look: &ClothGizmos,
+        gizmos: &mut Gizmos<ClothGizmos>,
+    ) {
+        let ClothTopology { tree, grid, .. } = cloth.topology;
+        let Some(leaves) = tree.levels().len().checked_sub(1) else {
+            return;
+        };
+        let radius = cloth.tick.terms.particle_radius;
+        let smallest = look.smallest * grid.spacing().min_element();
+        for level in *levels.start().min(&leaves)..=*levels.end().min(&leaves) {
+            let radius = if level == leaves {
+                radius.max(smallest)
+            } else {
+                radius
+            };
+            for node in tree.levels()[level].clone() {
+                let color = match self.states.get(node as usize) {
+                    Some(NodeState::Touching) => look.touching,
+                    Some(NodeState::Untouched) => look.untouched,
+                    Some(NodeState::Unvisited) | None => look.unvisited,
+                };
+                let volume = self.bounds.node(tree, cloth.particles, node, radius);
+                draw_volume(
+                    &volume,
+                    cloth.frame.isometry(),
+                    color,
+                    look.resolution,
+                    gizmos,
+                );
+            }
+        }
+    }
+}
+
+/// Each volume as what it is.
+fn draw_volume(
+    volume: &NodeVolume,
+    frame: Isometry3d,
+    color: Color,
+    resolution: u32,
     gizmos: &mut Gizmos<ClothGizmos>,
 ) {
-    let (tree, states) = (&topology.tree, search.query.states());
-    let (Some(levels), Some(leaves)) = (&show.levels, tree.levels().len().checked_sub(1)) else {
-        return;
+    let mut draw_box = |pose: Isometry3d, size: Vec3| {
+        let pose = frame * pose;
+        let transform = Transform::from_isometry(pose).with_scale(size);
+        gizmos.cube(transform, color);
     };
-    let smallest = look.smallest * topology.grid.spacing().min_element();
-    for level in *levels.start().min(&leaves)..=*levels.end().min(&leaves) {
-        for node in tree.levels()[level].clone() {
-            let touching = states.get(node as usize) == Some(&NodeState::Touching);
-            let color = if touching {
-                look.touching
-            } else {
-                look.untouched
-            };
-            let sphere = search.bounds.sphere(tree, particles, node);
-            let place = Isometry3d::new(
-                frame.to_world(sphere.center.into()),
-                frame.isometry().rotation,
-            );
+    match volume {
+        NodeVolume::Sphere(sphere) => {
+            let place = frame * Isometry3d::from_translation(sphere.center);
             gizmos
-                .sphere(place, sphere.radius().max(smallest), color)
-                .resolution(look.resolution);
+                .sphere(place, sphere.radius(), color)
+                .resolution(resolution);
         }
+        NodeVolume::Aabb(aabb) => {
+            let size = Vec3::from(aabb.max - aabb.min);
+            draw_box(
+                Isometry3d::from_translation(aabb.min.midpoint(aabb.max)),
+                size,
+            );
+        }
+        NodeVolume::Obb(obb) => {
+            let rotation = Quat::from_mat3(&obb.axes);
+            draw_box(Isometry3d::new(obb.centre, rotation), 2.0 * obb.half_size);
+        }
+        NodeVolume::KDop14(polytope) => draw_faces(&polytope.faces(), frame, color, gizmos),
+        NodeVolume::KDop18(polytope) => draw_faces(&polytope.faces(), frame, color, gizmos),
+        NodeVolume::KDop26(polytope) => draw_faces(&polytope.faces(), frame, color, gizmos),
+    }
+}
+
+fn draw_faces(
+    faces: &[Vec<Vec3>],
+    frame: Isometry3d,
+    color: Color,
+    gizmos: &mut Gizmos<ClothGizmos>,
+) {
+    for face in faces {
+        let corners = face.iter().chain(face.first());
+        gizmos.linestrip(corners.map(|&corner| frame * corner), color);
     }
 }
 

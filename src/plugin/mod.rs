@@ -16,6 +16,7 @@ mod panel;
 mod prepare;
 #[cfg(feature = "rapier")]
 mod rapier;
+mod search;
 mod simulation;
 mod tick;
 mod weave;

@@ -29,7 +29,8 @@ use super::{
 };
 use crate::{
     cloth::ClothMaterial,
-    hierarchy::BoundRule,
+    contact::NarrowPhase,
+    hierarchy::{SearchMethod, SearchReason},
     solver::{ClothSettings, Precision},
 };
 
@@ -52,7 +53,7 @@ impl Default for ClothPanel {
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothColliderSpeed(pub f32);
 
-/// Shows a panel on the primary window: level shown, bound rule, sub-steps, material, gravity, the speed of
+/// Shows a panel on the primary window: level shown, search method and what it chose, sub-steps, material, gravity, the speed of
 /// each collider with a [`ClothColliderSpeed`], pause and single step (of the fixed schedules), time a tick, nodes visited, contacts.
 ///
 /// Adds `EguiPlugin` if the app has none yet.
@@ -79,7 +80,8 @@ struct PanelCloth {
     name: Option<&'static Name>,
     settings: &'static mut ClothSettings,
     material: &'static mut ClothMaterial,
-    rule: &'static mut BoundRule,
+    search_method: &'static mut SearchMethod,
+    narrow_phase: &'static mut NarrowPhase,
     show: Option<&'static mut ShowClothGizmos>,
     topology: &'static ClothTopology,
     search: &'static ClothSearch,
@@ -195,13 +197,18 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
         "{} contacts · {} of {} nodes visited · stretch {:.1} % · {}",
         stats.contacts,
         stats.nodes_visited,
-        tree.nodes().len(),
+        tree.len(),
         100.0 * stats.stretch.structural,
         if stats.is_asleep {
             "asleep".to_string()
         } else {
             format!("{} sub-steps", stats.substeps)
         },
+    ));
+
+    ui.label(search_text(stats)).on_hover_text(format!(
+        "{} particles tested, {} colliders near, {} of them against triangles, {} searches again within the tick",
+        stats.leaf_tests, stats.colliders_near, stats.by_triangles, stats.requeries,
     ));
 
     let deepest = tree.levels().len().saturating_sub(1);
@@ -214,7 +221,7 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
         .as_ref()
         .map(|levels| (*levels.start()).min(deepest));
     let text = level.map_or_else(|| "none".to_string(), |level| level_name(cloth, level));
-    ComboBox::from_label("spheres")
+    ComboBox::from_label("volumes")
         .selected_text(text)
         .show_ui(ui, |ui| {
             ui.selectable_value(&mut shown.levels, None, "none");
@@ -237,19 +244,30 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
         None => {}
     }
 
-    let mut rule = *cloth.rule;
-    let name = BoundRule::ALL
-        .iter()
-        .find(|(_, each)| *each == rule)
-        .map_or("", |(name, _)| name);
-    ComboBox::from_label("bound rule")
-        .selected_text(name)
+    let mut method = *cloth.search_method;
+    ComboBox::from_label("search")
+        .selected_text(method.to_string())
         .show_ui(ui, |ui| {
-            for (name, each) in BoundRule::ALL {
-                ui.selectable_value(&mut rule, each, name);
+            for each in SearchMethod::ALL {
+                ui.selectable_value(&mut method, each, each.to_string());
             }
         });
-    cloth.rule.set_if_neq(rule);
+    cloth.search_method.set_if_neq(method);
+
+    let mut narrow_phase = *cloth.narrow_phase;
+    let is_it = |(_, each): &&(&'static str, NarrowPhase)| *each == narrow_phase;
+    let name = NarrowPhase::ALL
+        .iter()
+        .find(is_it)
+        .map_or("", |(name, _)| name);
+    ComboBox::from_label("contact by")
+        .selected_text(name)
+        .show_ui(ui, |ui| {
+            for (name, each) in NarrowPhase::ALL {
+                ui.selectable_value(&mut narrow_phase, each, name);
+            }
+        });
+    cloth.narrow_phase.set_if_neq(narrow_phase);
 
     let mut settings = *cloth.settings;
     show_precision(ui, &mut settings.precision);
@@ -260,6 +278,14 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
     let mut material = *cloth.material;
     show_material(ui, &mut material);
     cloth.material.set_if_neq(material);
+}
+
+/// What was chosen, and why.
+fn search_text(stats: &ClothStats) -> String {
+    match stats.reason {
+        SearchReason::NothingNear | SearchReason::Asleep => format!("no search: {}", stats.reason),
+        reason => format!("search: {} ({reason})", stats.search),
+    }
 }
 
 fn show_precision(ui: &mut Ui, precision: &mut Precision) {

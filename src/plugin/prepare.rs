@@ -18,7 +18,8 @@ use super::{
 };
 use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
-    hierarchy::BoundRule,
+    contact::{NarrowPhase, Terms},
+    hierarchy::SearchMethod,
     solver::{ClothSettings, PinMotion, TickStep},
 };
 
@@ -31,7 +32,8 @@ pub(super) struct Preparing {
     pub(super) pins: Option<&'static Pins>,
     pub(super) attachments: Option<&'static ClothAttachments>,
     settings: Option<&'static ClothSettings>,
-    rule: Option<&'static BoundRule>,
+    search: Option<&'static SearchMethod>,
+    narrow_phase: Option<&'static NarrowPhase>,
     pub(super) particles: &'static mut ClothParticles,
     pub(super) topology: &'static mut ClothTopology,
     pub(super) frame: &'static mut ClothFrame,
@@ -82,6 +84,9 @@ impl PreparingItem<'_, '_> {
         let settings = self.settings.copied().unwrap_or_default();
         let material = self.material.copied().unwrap_or_default();
         settings.validate()?;
+        let search = self.search.copied().unwrap_or_default();
+        search.validate()?;
+        let narrow_phase = self.narrow_phase.copied().unwrap_or_default();
         let gravity = settings.gravity.unwrap_or(gravity);
         for value in gravity.to_array() {
             ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
@@ -118,8 +123,7 @@ impl PreparingItem<'_, '_> {
         }
         let acceleration = self.frame.isometry().rotation.inverse() * gravity;
         self.tether(settings.tethers, &material, gravity.length());
-        let rule = self.rule.copied().unwrap_or_default();
-        let known = Some((settings, rule, acceleration));
+        let known = Some((settings, search, narrow_phase, acceleration));
         if self.tick.known != known || !self.tick.pins.is_empty() || !settings.sleeps {
             self.tick.cap_is_told &= self.tick.known == known;
             self.tick.known = known;
@@ -137,9 +141,12 @@ impl PreparingItem<'_, '_> {
             damping: material.damping,
         });
         self.tick.precision = settings.precision;
-        self.tick.rule = rule;
-        self.tick.friction = material.friction;
-        self.tick.particle_radius = settings.particle_radius;
+        self.tick.search = search;
+        self.tick.terms = Terms {
+            particle_radius: settings.particle_radius,
+            friction: material.friction,
+            narrow_phase,
+        };
         self.tick.reach = self.reach(acceleration.length(), seconds);
         Ok(())
     }

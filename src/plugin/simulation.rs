@@ -23,12 +23,13 @@ use super::{
     contacts::{tell_of_removed_cloths, tell_of_touches},
     fault::Part,
     prepare::prepare_cloths,
-    tick::{integrate, query_collisions, rebuild_hierarchies},
+    search::{query_collisions, rebuild_hierarchies},
+    tick::integrate,
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Pins},
-    contact::ClothCollider,
-    hierarchy::BoundRule,
+    contact::{ClothCollider, NarrowPhase},
+    hierarchy::SearchMethod,
     solver::ClothSettings,
 };
 
@@ -40,7 +41,7 @@ use crate::{
 pub enum ClothSystems {
     /// Weaves new cloths, checks every input, takes over transforms, gravity and colliders.
     Prepare,
-    /// Brings the bounding spheres up to date.
+    /// Finds which colliders are near, chooses how to search, and brings the bounding volumes up to date.
     Rebuild,
     /// Searches the trees from the top down, with bounds inflated by how far cloth and ball can move in the
     /// tick: candidates.
@@ -91,7 +92,8 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothParticles>()
             .register_type::<Pins>()
             .register_type::<ClothSettings>()
-            .register_type::<BoundRule>()
+            .register_type::<SearchMethod>()
+            .register_type::<NarrowPhase>()
             .register_type::<ClothCollider>()
             .register_type::<ClothContacts>()
             .register_type::<ClothFrame>()
@@ -100,7 +102,8 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothTeleport>()
             .register_type::<ClothGravity>();
         app.register_required_components::<Cloth, ClothSettings>()
-            .register_required_components::<Cloth, BoundRule>()
+            .register_required_components::<Cloth, SearchMethod>()
+            .register_required_components::<Cloth, NarrowPhase>()
             .register_required_components::<Cloth, ClothTopology>()
             .register_required_components::<Cloth, ClothFrame>()
             .register_required_components::<Cloth, ClothSearch>()

@@ -81,14 +81,20 @@ fn one_block_at_a_time() {
     std::hint::black_box(());
 }
 
-/// Ends a sub-step: displacements become positions.
+/// Ends a sub-step: displacements become positions. Raises `farthest` to the largest squared displacements (m²).
 #[inline(always)]
-fn commit(row: &mut [Block]) {
+fn commit(row: &mut [Block], farthest: &mut Lanes) {
     for block in row {
         let view = block.view_mut();
         for at in X..W {
             view[at] += view[DX + at];
         }
+        for l in 0..LANES {
+            let (x, y, z) = (view[DX + l], view[DY + l], view[DZ + l]);
+            let q = x * x + y * y + z * z;
+            farthest[l] = if q > farthest[l] { q } else { farthest[l] };
+        }
+        one_block_at_a_time();
     }
 }
 
@@ -197,9 +203,10 @@ fn tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_
     }
 }
 
-/// The largest squared lengths found (m²), lane by lane.
+/// The largest squared lengths found (m²), lane by lane: of springs, and of displacements.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Longest {
+    pub moved: Lanes,
     pub across: Lanes,
     pub down: Lanes,
     pub diagonal: Lanes,
@@ -303,7 +310,7 @@ macro_rules! kernels {
 
 kernels! {
     integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]),
-    commit(row: &mut [Block]),
+    commit(row: &mut [Block], farthest: &mut Lanes),
     springs(a: &mut Block, b: &mut Block, rest_square: &Lanes, softness: &Lanes),
     across(row: &mut [Block], run: &Run),
     bend_across(row: &mut [Block], run: &Run),

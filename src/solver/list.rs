@@ -62,8 +62,8 @@ impl ListSweep {
         }
     }
 
-    /// One sub-step.
-    pub fn substep(&self, blocks: &mut [Block], motion: &Motion) {
+    /// One sub-step. Returns the largest squared displacements (m²).
+    pub fn substep(&self, blocks: &mut [Block], motion: &Motion) -> Lanes {
         let kernels = motion.kernels;
         (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
         for bundle in &self.bundles {
@@ -84,6 +84,8 @@ impl ListSweep {
             }
         }
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
-        (kernels.commit)(blocks);
+        let mut farthest = [0.0; LANES];
+        (kernels.commit)(blocks, &mut farthest);
+        farthest
     }
 }

@@ -46,6 +46,8 @@ pub struct SubStep {
     pub index: u32,
     /// How many there are.
     pub count: u32,
+    /// How far the particle that moved farthest in it has moved (m).
+    pub farthest_move: f32,
 }
 
 impl SubStep {
@@ -201,7 +203,11 @@ impl Solver {
         let kernels = self.instructions.kernels();
         let mut measured = None;
         for index in 0..count {
-            let substep = SubStep { index, count };
+            let mut substep = SubStep {
+                index,
+                count,
+                farthest_move: 0.0,
+            };
             for pin in pins {
                 particles.lead_pin(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
             }
@@ -215,16 +221,18 @@ impl Solver {
                 measures: index + 1 == count,
             };
             let blocks = particles.blocks_mut();
-            match &self.sweep {
+            let farthest = match &self.sweep {
                 Sweep::Grid(sweep) => {
                     let longest = sweep.substep(blocks, &motion, self.bands);
                     if motion.measures {
                         let (structural, bound) = sweep.ratios(&longest);
                         measured = Some(Stretch::of_ratios(structural, bound));
                     }
+                    longest.moved
                 }
                 Sweep::List(sweep, _) => sweep.substep(blocks, &motion),
-            }
+            };
+            substep.farthest_move = farthest.into_iter().fold(0.0, f32::max).sqrt();
             if respond(particles, substep) {
                 measured = None;
             }

@@ -157,6 +157,7 @@ pub(super) struct Motion<'a> {
 impl Longest {
     fn merge(&mut self, other: &Self) {
         for (a, b) in [
+            (&mut self.moved, &other.moved),
             (&mut self.across, &other.across),
             (&mut self.down, &other.down),
             (&mut self.diagonal, &other.diagonal),
@@ -373,7 +374,7 @@ impl GridSweep {
             Work::Finish => {
                 let first = rows.start * strip;
                 motion.tethers.pull(motion.anchors, blocks, first, kernels);
-                (kernels.commit)(blocks);
+                (kernels.commit)(blocks, &mut longest.moved);
             }
             Work::MeasureEven | Work::MeasureOdd => {
                 if work == Work::MeasureEven {

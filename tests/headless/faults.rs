@@ -287,7 +287,7 @@ fn a_cloth_that_is_a_collider_too() {
     expect_fault(
         (
             Cloth::default(),
-            ClothCollider::ball(0.1),
+            ClothCollider::ball(0.05),
             aside,
             Pins::new([Pin::Row(99)]),
         ),

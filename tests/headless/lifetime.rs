@@ -105,7 +105,7 @@ fn components_may_be_removed() {
     tick(&mut app, 30);
     assert!(position(&app, cloth, (0, 0)).y < -0.1, "nothing holds it");
     let mut entity = app.world_mut().entity_mut(cloth);
-    entity.remove::<(ClothMaterial, ClothSettings, BoundRule)>();
+    entity.remove::<(ClothMaterial, ClothSettings, SearchMethod, NarrowPhase)>();
     let before = position(&app, cloth, (0, 0));
     tick(&mut app, 5);
     assert!(

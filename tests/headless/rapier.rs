@@ -81,7 +81,8 @@ fn radius_and_scale_are_rapiers() {
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     tick(&mut app, 30);
     let collider = app.world().get::<ClothCollider>(ball).expect("adopted");
-    let radius = collider.scaled_radius(Vec3::splat(3.0)).expect("a radius");
+    let shape = collider.scaled(Vec3::splat(3.0)).expect("a sound one");
+    let radius = shape.radius().expect("a ball's");
     assert!((radius - 0.6).abs() < 1e-6, "{radius}");
     let centre = Vec3::new(0.7, -0.7, 0.0);
     let nearest = particles(&app, cloth)

@@ -71,7 +71,8 @@ fn particles_may_vanish_anywhere() {
         for rule in [BoundRule::RestShape, BoundRule::Refit, BoundRule::Paper] {
             let mut app = app_with_gizmos();
             app.add_systems(FixedUpdate, vanish.after(set));
-            let cloth = (Cloth::default(), ShowClothGizmos::default(), rule);
+            let method = SearchMethod::Tree(BoundingVolume::Sphere, rule);
+            let cloth = (Cloth::default(), ShowClothGizmos::default(), method);
             app.world_mut().spawn(cloth);
             let place = Transform::from_xyz(0.7, -0.7, 0.95);
             app.world_mut().spawn((ClothCollider::default(), place));
@@ -177,7 +178,8 @@ fn a_paused_clock_stops_the_cloth() {
 #[test]
 fn diagnostics_are_measured() {
     let mut app = app();
-    app.world_mut().spawn(Cloth::default());
+    let method = SearchMethod::Tree(BoundingVolume::Sphere, BoundRule::RestShape);
+    app.world_mut().spawn((Cloth::default(), method));
     app.world_mut().spawn((
         ClothCollider::default(),
         Transform::from_xyz(0.7, -0.7, 0.95),
@@ -196,6 +198,9 @@ fn diagnostics_are_measured() {
     assert!(value(&Plugin::NODES_VISITED) > value(&Plugin::LEAF_TESTS));
     assert!(value(&Plugin::LEAF_TESTS) >= value(&Plugin::CONTACTS));
     assert!(value(&Plugin::CONTACTS) > 0.0);
+    assert_eq!(value(&Plugin::COLLIDERS_NEAR), 1.0);
+    assert_eq!(value(&Plugin::SEARCHES), 1.0);
+    assert_eq!(value(&Plugin::SCANS) + value(&Plugin::REFITS), 0.0);
     let stretch = value(&Plugin::STRETCH);
     assert!(stretch > 0.0 && stretch < 20.0, "{stretch} %");
 }

@@ -1,6 +1,6 @@
 //! What the solver and the plugin do to all particles at once.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::math::{Isometry3d, Vec3, bounding::BoundingSphere};
 
 use super::{ClothParticles, is_sound};
 use crate::cloth::{
@@ -176,6 +176,36 @@ impl ClothParticles {
         self.layout = other.layout;
         self.blocks.clone_from(&other.blocks);
         self.substep = other.substep;
+    }
+
+    /// A sphere around all of them (m).
+    pub(crate) fn bounding_sphere(&self) -> BoundingSphere {
+        let low = self.positions().fold(Vec3::MAX, Vec3::min);
+        let high = self.positions().fold(Vec3::MIN, Vec3::max);
+        let radius = low.distance(high) / 2.0 * (1.0 + 1.0e-5);
+        BoundingSphere::new(low.midpoint(high), radius.max(0.0))
+    }
+
+    /// The longest way from a particle to a neighbour to the right, below, or across (m).
+    pub(crate) fn longest_edge(&self) -> f32 {
+        let layout = self.layout;
+        let position = |row: u32, column: u32| {
+            let Slot { block, lane } = layout.slot(row, column);
+            self.blocks[block].position(lane)
+        };
+        let mut longest = 0.0_f32;
+        for row in 0..layout.rows {
+            for column in 0..layout.columns {
+                let from = position(row, column);
+                let (below, right) = (row + 1 < layout.rows, column + 1 < layout.columns);
+                let ways = [(below, (1, 0)), (right, (0, 1)), (below && right, (1, 1))];
+                for (_, (down, across)) in ways.into_iter().filter(|(exists, _)| *exists) {
+                    longest =
+                        longest.max(from.distance_squared(position(row + down, column + across)));
+                }
+            }
+        }
+        longest.sqrt()
     }
 
     /// Puts a particle somewhere.

@@ -1,0 +1,315 @@
+//! Which particles each collider may touch in a tick, kept true while the tick goes on, and what came of it.
+
+use std::ops::Range;
+
+use bevy::{
+    math::{Vec3, bounding::BoundingSphere},
+    reflect::Reflect,
+};
+
+use super::{
+    MovingCollider, NarrowPhase,
+    particle::{Found, push_particles},
+    surface::push_triangles,
+};
+use crate::{
+    cloth::{ClothGrid, ClothParticles},
+    hierarchy::{Probe, TopDownQuery},
+    solver::SubStep,
+};
+
+/// A particle that a collider may touch in the tick; with triangles, the first of a cell's four.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Candidate {
+    pub particle: u32,
+    pub block: u32,
+    pub lane: u32,
+    /// The part of the cloth's area that it stands for (m²).
+    pub area: f32,
+    /// The deepest that it has been found (m); negative if it has only come so near.
+    pub depth: f32,
+}
+
+/// A particle near a collider, and how near it came.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint {
+    /// Index of the particle; where the collider is tested against triangles, of the first of a cell's four.
+    pub particle: u32,
+    /// How deep it was found inside in the tick at most (m); negative if it was only so near, and −∞ if it was not
+    /// looked at, being pinned or far away.
+    pub depth: f32,
+}
+
+/// A collider that may touch the cloth in this tick.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Touch {
+    /// Which of the caller's colliders.
+    pub id: usize,
+    /// Its way.
+    pub collider: MovingCollider,
+    /// What it is tested against: never `Auto`.
+    pub narrow_phase: NarrowPhase,
+    /// How deep the deepest was found (m), 0 if none was inside.
+    pub deepest: f32,
+    /// The largest area of the cloth that was inside at the end of a sub-step (m²).
+    pub area: f32,
+    /// The largest ∫ depth dA over it (m³).
+    pub volume: f32,
+    candidates: Range<usize>,
+}
+
+/// What a cloth is tested with in a tick.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub struct Terms {
+    /// Radius of each particle (m).
+    pub particle_radius: f32,
+    /// Coulomb's μ.
+    pub friction: f32,
+    /// What colliders are tested against.
+    pub narrow_phase: NarrowPhase,
+}
+
+/// Which particles each collider may touch in a tick.
+///
+/// They are those that come within the collider, all along its way, as far as a *margin*. Nothing is missed while no
+/// particle has moved farther than the margin since: that is watched from sub-step to sub-step, and if one has, all
+/// particles are searched again from where they are then.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub struct Detection {
+    touches: Vec<Touch>,
+    candidates: Vec<Candidate>,
+    /// How far a particle may move before the candidates are searched for again (m).
+    margin: f32,
+    /// How far one may have moved since they were (m).
+    moved: f32,
+    requeries: u32,
+    found: TopDownQuery,
+    known: Vec<(usize, ContactPoint)>,
+}
+
+impl Detection {
+    /// Begins a tick in which no particle is expected to move farther than `margin` (m).
+    pub fn begin(&mut self, margin: f32) {
+        self.touches.clear();
+        self.candidates.clear();
+        self.margin = margin;
+        self.moved = 0.0;
+        self.requeries = 0;
+    }
+
+    /// How far a particle may move in the tick before the candidates are searched for again (m).
+    pub fn margin(&self) -> f32 {
+        self.margin
+    }
+
+    /// What to search for, for this collider to be tested in the tick, and against what it then is tested. Triangles
+    /// reach `longest_edge` (m) from the particle that stands for them.
+    pub fn probe(
+        &self,
+        collider: &MovingCollider,
+        terms: &Terms,
+        grid: &ClothGrid,
+        longest_edge: f32,
+        cloth: &BoundingSphere,
+    ) -> (Probe, NarrowPhase) {
+        let spacing = grid.spacing().max_element();
+        let narrow_phase = terms.narrow_phase.chosen(collider.shape.radius(), spacing);
+        let cover = match narrow_phase {
+            NarrowPhase::Triangles => longest_edge,
+            NarrowPhase::Auto | NarrowPhase::Particles => 0.0,
+        };
+        // What each sub-step's rounding of a position may add to its move.
+        let rounding = (Vec3::from(cloth.center).length() + cloth.radius()) * 1.0e-5;
+        let probe = collider.probe(self.margin + cover + rounding, terms.particle_radius, cloth);
+        (probe, narrow_phase)
+    }
+
+    /// Takes over which particles the search has found for a collider, which is the caller's number `id`.
+    pub fn add(
+        &mut self,
+        id: usize,
+        collider: &MovingCollider,
+        narrow_phase: NarrowPhase,
+        found: &[u32],
+        particles: &ClothParticles,
+        grid: &ClothGrid,
+    ) {
+        if found.is_empty() {
+            return;
+        }
+        let first = self.candidates.len();
+        let layout = particles.layout();
+        self.candidates.extend(found.iter().map(|&particle| {
+            let (row, column) = (particle / layout.columns, particle % layout.columns);
+            let slot = layout.slot(row, column);
+            Candidate {
+                particle,
+                block: slot.block as u32,
+                lane: slot.lane as u32,
+                area: grid.tributary_area(row, column),
+                depth: f32::NEG_INFINITY,
+            }
+        }));
+        // In the order of the cloth, whatever the search's: so the result is the same whichever it is.
+        self.candidates[first..].sort_unstable_by_key(|candidate| candidate.particle);
+        let candidates = first..self.candidates.len();
+        if let Some(touch) = self.touches.iter_mut().find(|touch| touch.id == id) {
+            touch.candidates = candidates;
+        } else {
+            self.touches.push(Touch {
+                id,
+                collider: *collider,
+                narrow_phase,
+                deepest: 0.0,
+                area: 0.0,
+                volume: 0.0,
+                candidates,
+            });
+        }
+    }
+
+    /// Begins the tick anew, from the same particles: for one that is done again.
+    pub fn restart(&mut self) {
+        for touch in &mut self.touches {
+            (touch.deepest, touch.area, touch.volume) = (0.0, 0.0, 0.0);
+        }
+        for candidate in &mut self.candidates {
+            candidate.depth = f32::NEG_INFINITY;
+        }
+        // What was searched for on the way was found where the particles were then.
+        self.moved = if self.requeries > 0 {
+            f32::INFINITY
+        } else {
+            0.0
+        };
+    }
+
+    /// Whether particles may have moved so far in the tick, this sub-step included, that candidates are missing.
+    pub fn is_outrun(&mut self, substep: SubStep) -> bool {
+        self.moved += substep.farthest_move;
+        // Not a number is no less.
+        !(self.moved <= self.margin)
+    }
+
+    /// Searches for the candidates of all colliders again, among the particles as they are.
+    pub fn search_again(
+        &mut self,
+        particles: &ClothParticles,
+        colliders: &[(usize, MovingCollider)],
+        terms: &Terms,
+        grid: &ClothGrid,
+    ) {
+        self.requeries += 1;
+        // Twice as much as did not suffice: a tick has few of these, however wild it is.
+        let needed = if self.moved.is_finite() {
+            self.moved
+        } else {
+            self.margin
+        };
+        self.margin = 2.0 * needed.max(self.margin);
+        self.moved = 0.0;
+        self.known.clear();
+        for touch in &mut self.touches {
+            let candidates = self.candidates[touch.candidates.clone()].iter();
+            let looked_at = candidates.filter(|candidate| candidate.depth > f32::NEG_INFINITY);
+            self.known.extend(looked_at.map(|candidate| {
+                (
+                    touch.id,
+                    ContactPoint {
+                        particle: candidate.particle,
+                        depth: candidate.depth,
+                    },
+                )
+            }));
+            touch.candidates = 0..0;
+        }
+        self.candidates.clear();
+        let cloth = particles.bounding_sphere();
+        let longest_edge = particles.longest_edge();
+        let mut found = std::mem::take(&mut self.found);
+        for (id, collider) in colliders {
+            let (probe, narrow_phase) = self.probe(collider, terms, grid, longest_edge, &cloth);
+            found.clear();
+            found.scan(particles, &probe);
+            // What was looked at stays, so that nothing that touched is forgotten.
+            let known = self
+                .known
+                .iter()
+                .filter(|(known, _)| known == id)
+                .map(|(_, point)| point.particle);
+            let mut all: Vec<u32> = known.chain(found.candidates().iter().copied()).collect();
+            all.sort_unstable();
+            all.dedup();
+            self.add(*id, collider, narrow_phase, &all, particles, grid);
+        }
+        self.found = found;
+        for &(id, point) in &self.known {
+            let Some(touch) = self.touches.iter().find(|touch| touch.id == id) else {
+                continue;
+            };
+            let candidates = &mut self.candidates[touch.candidates.clone()];
+            if let Ok(at) =
+                candidates.binary_search_by_key(&point.particle, |candidate| candidate.particle)
+            {
+                candidates[at].depth = point.depth;
+            }
+        }
+    }
+
+    /// Pushes what is inside of a collider out, at the end of a sub-step. Returns whether anything moved.
+    pub fn respond(
+        &mut self,
+        particles: &mut ClothParticles,
+        terms: &Terms,
+        substep: SubStep,
+    ) -> bool {
+        let mut farthest = 0.0_f32;
+        for touch in &mut self.touches {
+            let push = match touch.narrow_phase {
+                NarrowPhase::Triangles => push_triangles,
+                NarrowPhase::Auto | NarrowPhase::Particles => push_particles,
+            };
+            let candidates = &mut self.candidates[touch.candidates.clone()];
+            let Found {
+                deepest,
+                farthest_push,
+                area,
+                volume,
+            } = push(
+                particles,
+                candidates,
+                &touch.collider,
+                terms.particle_radius,
+                terms.friction,
+                substep,
+            );
+            touch.deepest = touch.deepest.max(deepest);
+            touch.area = touch.area.max(area);
+            touch.volume = touch.volume.max(volume);
+            // One may be pushed by several.
+            farthest += farthest_push;
+        }
+        self.moved += farthest;
+        farthest > 0.0
+    }
+
+    /// The colliders that may touch.
+    pub fn touches(&self) -> &[Touch] {
+        &self.touches
+    }
+
+    /// The particles near a collider.
+    pub fn points(&self, touch: &Touch) -> impl ExactSizeIterator<Item = ContactPoint> + '_ {
+        self.candidates[touch.candidates.clone()]
+            .iter()
+            .map(|candidate| ContactPoint {
+                particle: candidate.particle,
+                depth: candidate.depth,
+            })
+    }
+
+    /// How often in the tick particles moved farther than the margin.
+    pub fn requeries(&self) -> u32 {
+        self.requeries
+    }
+}

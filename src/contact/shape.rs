@@ -1,0 +1,155 @@
+//! Shapes that a cloth can touch, and how far a point is from them.
+
+use bevy::{
+    math::{Isometry3d, Vec3},
+    reflect::Reflect,
+};
+
+use crate::hierarchy::Core;
+
+/// The shape of a collider, scaled, in its own frame.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+pub enum ColliderShape {
+    /// A ball around the origin.
+    Ball {
+        /// Radius (m).
+        radius: f32,
+    },
+    /// All that is nearer than a radius to a segment along the y axis.
+    Capsule {
+        /// Radius (m).
+        radius: f32,
+        /// Half of the segment's length (m).
+        half_length: f32,
+    },
+    /// A box around the origin.
+    Cuboid {
+        /// Half of its lengths (m).
+        half_size: Vec3,
+    },
+    /// All below the plane through the origin whose normal is the y axis.
+    HalfSpace,
+}
+
+/// How a point lies to a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Nearest {
+    /// Distance from the surface (m), negative inside.
+    pub distance: f32,
+    /// Away from the shape, of length 1.
+    pub normal: Vec3,
+}
+
+impl ColliderShape {
+    /// The shape in a pose, as the neighbourhood of a core.
+    pub fn core(&self, pose: Isometry3d) -> (Core, f32) {
+        let centre = Vec3::from(pose.translation);
+        match *self {
+            Self::Ball { radius } => (Core::Point(centre), radius),
+            Self::Capsule {
+                radius,
+                half_length,
+            } => {
+                let half = pose.rotation * Vec3::Y * half_length;
+                (Core::Segment([centre - half, centre + half]), radius)
+            }
+            Self::Cuboid { half_size } => (Core::Cuboid { pose, half_size }, 0.0),
+            Self::HalfSpace => {
+                let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
+                (
+                    Core::HalfSpace {
+                        point: centre,
+                        normal,
+                    },
+                    0.0,
+                )
+            }
+        }
+    }
+
+    /// Distance from the origin to what is farthest from it (m); infinite for a half-space.
+    pub fn extent(&self) -> f32 {
+        match *self {
+            Self::Ball { radius } => radius,
+            Self::Capsule {
+                radius,
+                half_length,
+            } => radius + half_length,
+            Self::Cuboid { half_size } => half_size.length(),
+            Self::HalfSpace => f32::INFINITY,
+        }
+    }
+
+    /// How deep a point may get without being nearer to the other side (m); infinite for a half-space.
+    pub fn thickness(&self) -> f32 {
+        match *self {
+            Self::Ball { radius } | Self::Capsule { radius, .. } => radius,
+            Self::Cuboid { half_size } => half_size.min_element(),
+            Self::HalfSpace => f32::INFINITY,
+        }
+    }
+
+    /// The radius that triangles are tested against (m); a box and a half-space have none.
+    pub fn radius(&self) -> Option<f32> {
+        match *self {
+            Self::Ball { radius } | Self::Capsule { radius, .. } => Some(radius),
+            Self::Cuboid { .. } | Self::HalfSpace => None,
+        }
+    }
+
+    /// How a point lies to the shape in a pose.
+    #[inline]
+    pub(super) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
+        let offset = point - Vec3::from(pose.translation);
+        match *self {
+            Self::Ball { radius } => around(offset, radius),
+            Self::Capsule {
+                radius,
+                half_length,
+            } => {
+                let axis = pose.rotation * Vec3::Y;
+                let along = offset.dot(axis).clamp(-half_length, half_length);
+                around(offset - axis * along, radius)
+            }
+            Self::Cuboid { half_size } => {
+                let local = pose.rotation.inverse() * offset;
+                let outside = local - local.clamp(-half_size, half_size);
+                let (distance, normal) = if outside == Vec3::ZERO {
+                    let left = half_size - local.abs();
+                    let axis = left.min_position();
+                    let mut normal = Vec3::ZERO;
+                    normal[axis] = 1.0_f32.copysign(local[axis]);
+                    (-left[axis], normal)
+                } else {
+                    let distance = outside.length();
+                    (distance, outside / distance)
+                };
+                Nearest {
+                    distance,
+                    normal: pose.rotation * normal,
+                }
+            }
+            Self::HalfSpace => {
+                let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
+                Nearest {
+                    distance: offset.dot(normal),
+                    normal,
+                }
+            }
+        }
+    }
+}
+
+fn around(offset: Vec3, radius: f32) -> Nearest {
+    let distance = offset.length();
+    // A particle in the very centre may leave either way.
+    let normal = if distance > 0.0 {
+        offset / distance
+    } else {
+        Vec3::Y
+    };
+    Nearest {
+        distance: distance - radius,
+        normal,
+    }
+}

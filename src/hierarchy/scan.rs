@@ -1,0 +1,35 @@
+//! The search without a tree: all particles, eight at a time.
+
+use multiversion::multiversion;
+
+use super::Probe;
+use crate::cloth::{Block, ClothParticles, LANES, Layout};
+
+/// Appends the indices of all particles that `probe` meets.
+pub(super) fn scan(particles: &ClothParticles, probe: &Probe, found: &mut Vec<u32>) {
+    scan_blocks(particles.blocks(), particles.layout(), probe, found);
+}
+
+#[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
+fn scan_blocks(blocks: &[Block], layout: Layout, probe: &Probe, found: &mut Vec<u32>) {
+    let reach = probe.reach() as f32;
+    for (index, block) in blocks.iter().enumerate() {
+        if probe.core.may_reach_any(block.view(), reach) {
+            meet(block, index, layout, probe, found);
+        }
+    }
+}
+
+/// Those of a block that the probe meets to the last digit.
+#[cold]
+#[inline(never)]
+fn meet(block: &Block, index: usize, layout: Layout, probe: &Probe, found: &mut Vec<u32>) {
+    let (row, place) = (index as u32 / layout.strip, index % layout.strip as usize);
+    for lane in 0..LANES {
+        if let Some(column) = layout.column(place, lane)
+            && probe.meets(block.position(lane))
+        {
+            found.push(row * layout.columns + column);
+        }
+    }
+}

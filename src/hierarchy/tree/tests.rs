@@ -1,0 +1,189 @@
+//! Trees of grids of any size, and of networks.
+
+use std::ops::Range;
+
+use bevy::math::Vec3;
+
+use super::*;
+use crate::cloth::{Cloth, ClothMaterial, SpringKind, Springs};
+
+fn grid(columns: u32, rows: u32) -> ClothGrid {
+    Cloth::new(columns, rows, 0.5)
+        .grid(Vec3::ONE)
+        .expect("a sound grid")
+}
+
+#[test]
+fn every_grid_size_gives_a_sound_tree() {
+    let sizes = (2..20).flat_map(|columns| (2..20).map(move |rows| (columns, rows)));
+    for (columns, rows) in sizes.chain([
+        (33, 2),
+        (2, 33),
+        (40, 5),
+        (65, 7),
+        (100, 3),
+        (128, 2),
+        (130, 2),
+    ]) {
+        let grid = grid(columns, rows);
+        let tree = QuadTree::of_grid(&grid, true);
+        assert_eq!(tree.validate(grid.len()), Ok(()), "{columns} × {rows}");
+        let depth = columns.max(rows).next_power_of_two().ilog2() as usize;
+        assert_eq!(tree.levels().len(), depth + 1, "{columns} × {rows}");
+    }
+}
+
+#[test]
+fn the_papers_cloth_has_256_leaves_on_its_fourth_level() {
+    let tree = QuadTree::of_grid(&grid(16, 16), true);
+    let counts: Vec<usize> = tree.levels().iter().map(Range::len).collect();
+    assert_eq!(counts, [1, 4, 16, 64, 256]);
+    for (level, range) in tree.levels().iter().enumerate() {
+        assert!(range.clone().all(|node| tree.level_of(node) == level));
+    }
+}
+
+/// Dijkstra would say the same; on a grid the shortest way is known: diagonals first, then straight on.
+#[test]
+fn rest_radius_reaches_the_farthest_corner() {
+    let tree = QuadTree::of_grid(&grid(16, 16), true);
+    // From (7, 7) to (15, 15): eight diagonals of 0.5 √2 m.
+    assert!((tree.node(0).rest_radius - 4.0 * 2.0_f32.sqrt()).abs() < 1e-6);
+    let tree = QuadTree::of_grid(&grid(16, 16), false);
+    assert_eq!(tree.node(0).rest_radius, 8.0);
+    let tree = QuadTree::of_grid(&grid(3, 9), true);
+    // From (4, 1) to (8, 2): one diagonal and three rows.
+    assert!((tree.node(0).rest_radius - 0.5 * 2.0_f32.sqrt() - 1.5).abs() < 1e-6);
+    let leaves = tree.levels().last().expect("leaves").clone();
+    assert!(
+        leaves
+            .into_iter()
+            .all(|leaf| tree.node(leaf).rest_radius == 0.0)
+    );
+}
+
+/// The same springs as a list: radii are those of the shortest ways, which a search over all pairs finds, too.
+#[test]
+fn a_networks_radii_are_shortest_ways() {
+    for (columns, rows, diagonals) in [(2, 2, true), (5, 4, true), (7, 6, false), (9, 3, true)] {
+        let grid = grid(columns, rows);
+        let shear_compliance = if diagonals { 0.0 } else { f32::INFINITY };
+        let material = ClothMaterial {
+            shear_compliance,
+            ..ClothMaterial::COTTON
+        };
+        let springs = Springs::of_grid(&grid, &material).to_vec();
+        let rest: Vec<Vec3> = grid
+            .cells()
+            .map(|(row, column)| grid.rest_position(row, column))
+            .collect();
+        let tree = QuadTree::of_network(&rest, &springs).expect("sound springs");
+        assert_eq!(tree.validate(rest.len()), Ok(()));
+        // Floyd and Warshall.
+        let count = rest.len();
+        let mut way = vec![vec![f64::INFINITY; count]; count];
+        for (index, ways) in way.iter_mut().enumerate() {
+            ways[index] = 0.0;
+        }
+        for spring in springs
+            .iter()
+            .filter(|spring| spring.kind != SpringKind::Bend)
+        {
+            let [a, b] = spring.ends.map(|end| end as usize);
+            way[a][b] = f64::from(spring.rest_length);
+            way[b][a] = way[a][b];
+        }
+        for via in 0..count {
+            for from in 0..count {
+                for to in 0..count {
+                    way[from][to] = way[from][to].min(way[from][via] + way[via][to]);
+                }
+            }
+        }
+        for index in 0..tree.len() as u32 {
+            let node = tree.node(index);
+            let ways = tree
+                .particles_of(index)
+                .into_iter()
+                .map(|particle| way[node.middle as usize][particle as usize]);
+            let farthest = ways.fold(0.0, f64::max);
+            let radius = f64::from(node.rest_radius);
+            assert!(
+                radius >= farthest && radius <= farthest * (1.0 + 1e-6),
+                "{radius} {farthest}"
+            );
+        }
+    }
+}
+
+/// A network in two pieces has no way from one to the other: its root reaches without end, and holds everything.
+#[test]
+fn a_network_in_pieces_is_bounded_piece_by_piece() {
+    let rest: Vec<Vec3> = (0..7).map(|x| Vec3::X * x as f32).collect();
+    let springs: Vec<Spring> = [(0, 1), (1, 2), (3, 4), (4, 5)]
+        .map(|(a, b)| Spring {
+            kind: SpringKind::Structural,
+            ends: [a, b],
+            rest_length: 1.0,
+            compliance: 0.0,
+        })
+        .into();
+    let tree = QuadTree::of_network(&rest, &springs).expect("sound springs");
+    assert_eq!(tree.validate(7), Ok(()));
+    assert_eq!(tree.node(0).rest_radius, f32::INFINITY);
+    let leaves = tree.levels().last().expect("leaves").clone();
+    assert!(
+        leaves
+            .into_iter()
+            .all(|leaf| tree.node(leaf).rest_radius == 0.0)
+    );
+}
+
+#[test]
+fn a_network_that_is_not_sound_is_refused() {
+    let spring = |ends, rest_length| Spring {
+        kind: SpringKind::Structural,
+        ends,
+        rest_length,
+        compliance: 0.0,
+    };
+    let rest = [Vec3::ZERO, Vec3::X];
+    assert!(QuadTree::of_network(&[], &[]).is_ok_and(|tree| tree.is_empty()));
+    assert!(QuadTree::of_network(&rest[..1], &[]).is_ok_and(|tree| tree.len() == 1));
+    assert!(QuadTree::of_network(&rest, &[spring([0, 1], 1.0)]).is_ok());
+    for bad in [
+        spring([0, 2], 1.0),
+        spring([0, 1], -1.0),
+        spring([0, 1], f32::NAN),
+    ] {
+        let outcome = QuadTree::of_network(&rest, &[spring([0, 1], 1.0), bad]);
+        assert!(
+            matches!(outcome, Err(ClothError::BadSpring { index: 1, .. })),
+            "{outcome:?}"
+        );
+    }
+    let nowhere = QuadTree::of_network(&[Vec3::NAN], &[]);
+    assert!(matches!(
+        nowhere,
+        Err(ClothError::ParticleNotFinite { index: 0, .. })
+    ));
+}
+
+#[test]
+fn validate_finds_what_is_broken() {
+    let grid = grid(5, 3);
+    let break_it = |mend: fn(&mut GridTree)| {
+        let Shape::Grid(mut tree) = QuadTree::of_grid(&grid, true).0 else {
+            panic!("a grid's tree");
+        };
+        mend(&mut tree);
+        QuadTree(Shape::Grid(tree)).validate(15)
+    };
+    assert_eq!(break_it(|_| {}), Ok(()));
+    assert!(break_it(|tree| tree.levels[0].columns[0].children.end -= 1).is_err());
+    assert!(
+        break_it(|tree| tree.levels.last_mut().expect("leaves").columns[4].middle = 0).is_err()
+    );
+    assert!(break_it(|tree| tree.levels[1].rows[0].children = 1..2).is_err());
+    assert!(QuadTree::of_grid(&grid, true).validate(16).is_err());
+}

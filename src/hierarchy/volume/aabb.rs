@@ -1,0 +1,149 @@
+//! Boxes along the axes of the cloth's frame.
+
+use bevy::math::{
+    DVec3, Vec3, Vec3A,
+    bounding::{Aabb3d, BoundingVolume},
+};
+
+use super::{
+    Lane, NodeVolume, Volume,
+    slabs::{self, Slab},
+};
+use crate::{
+    cloth::{LANES, View, X, Y, Z},
+    hierarchy::{Core, Probe, probe::ROUNDING},
+};
+
+impl Volume for Aabb3d {
+    /// Least and greatest coordinates.
+    type Lanes = [[Lane; 3]; 2];
+
+    const UNSET: Self::Lanes = [[[0.0; LANES]; 3]; 2];
+
+    #[inline(always)]
+    fn around(centre: Vec3, radius: f32) -> Self {
+        // A coordinate's own rounding, as the radius is taken from it and added to it. None without a radius.
+        let half = if radius > 0.0 {
+            Vec3::splat(radius) + centre.abs() * f32::EPSILON
+        } else {
+            Vec3::ZERO
+        };
+        Self {
+            min: (centre - half).into(),
+            max: (centre + half).into(),
+        }
+    }
+
+    fn unite(children: [&Self; 4]) -> Self {
+        let [a, b, c, d] = children;
+        a.merge(b).merge(&c.merge(d))
+    }
+
+    #[inline(always)]
+    fn may_reach(&self, probe: &Probe, reach: f32) -> bool {
+        match probe.core {
+            Core::Point(centre) => {
+                let centre = Vec3A::from(centre);
+                let reach = reach * ROUNDING;
+                centre.distance_squared(centre.clamp(self.min, self.max)) <= reach * reach
+            }
+            Core::HalfSpace { point, normal } => {
+                slabs::may_reach_half_space(point, normal, self.min.into(), self.max.into(), reach)
+            }
+            Core::Segment(_) | Core::Cuboid { .. } => {
+                let slab = |at: usize| Slab {
+                    axis: Vec3::AXES[at],
+                    low: self.min[at],
+                    high: self.max[at],
+                };
+                let size = self.min.abs().max(self.max.abs()).max_element();
+                slabs::may_reach([0, 1, 2].into_iter().map(slab), probe, reach, size)
+            }
+        }
+    }
+
+    fn holds(&self, centre: DVec3, radius: f64) -> bool {
+        let (min, max) = (
+            Vec3::from(self.min).as_dvec3(),
+            Vec3::from(self.max).as_dvec3(),
+        );
+        (centre - radius).cmpge(min).all() && (centre + radius).cmple(max).all()
+    }
+
+    fn holds_volume(&self, other: &Self) -> bool {
+        self.contains(other)
+    }
+
+    fn drawn(&self, particle_radius: f32) -> NodeVolume {
+        NodeVolume::Aabb(self.grow(Vec3A::splat(particle_radius)))
+    }
+
+    #[inline(always)]
+    fn of_particles(children: [&View; 4], [low, high]: &mut Self::Lanes) {
+        for (axis, from) in [X, Y, Z].into_iter().enumerate() {
+            let [a, b, c, d] = children.map(|child| coordinates(child, from));
+            for l in 0..LANES {
+                low[axis][l] = least(least(a[l], b[l]), least(c[l], d[l]));
+                high[axis][l] = most(most(a[l], b[l]), most(c[l], d[l]));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn unite_lanes(children: [&Self::Lanes; 4], [low, high]: &mut Self::Lanes) {
+        for axis in 0..3 {
+            unite_slab(
+                children.map(|child| (&child[0][axis], &child[1][axis])),
+                &mut low[axis],
+                &mut high[axis],
+            );
+        }
+    }
+
+    #[inline(always)]
+    fn lane(lanes: &Self::Lanes, lane: usize) -> Self {
+        let corner = |side: &[Lane; 3]| Vec3A::new(side[0][lane], side[1][lane], side[2][lane]);
+        Self {
+            min: corner(&lanes[0]),
+            max: corner(&lanes[1]),
+        }
+    }
+
+    fn set_lane(lanes: &mut Self::Lanes, lane: usize, volume: Self) {
+        for (side, corner) in lanes.iter_mut().zip([volume.min, volume.max]) {
+            for (at, value) in corner.to_array().into_iter().enumerate() {
+                side[at][lane] = value;
+            }
+        }
+    }
+}
+
+/// What begins so far into a block.
+#[inline(always)]
+pub(super) fn coordinates(view: &View, from: usize) -> &Lane {
+    view[from..]
+        .first_chunk()
+        .expect("three times eight of them")
+}
+
+/// From where to where four reach along an axis.
+#[inline(always)]
+pub(super) fn unite_slab(children: [(&Lane, &Lane); 4], low: &mut Lane, high: &mut Lane) {
+    let [a, b, c, d] = children;
+    for l in 0..LANES {
+        low[l] = least(least(a.0[l], b.0[l]), least(c.0[l], d.0[l]));
+        high[l] = most(most(a.1[l], b.1[l]), most(c.1[l], d.1[l]));
+    }
+}
+
+/// As one instruction does it.
+#[inline(always)]
+pub(super) fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// As one instruction does it.
+#[inline(always)]
+pub(super) fn most(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}

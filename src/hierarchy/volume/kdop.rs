@@ -1,0 +1,242 @@
+//! Polytopes between pairs of parallel planes whose directions are the same for all: k-DOPs (Klosowski et al. 1998).
+
+use bevy::math::{DVec3, Vec3};
+
+use super::{
+    Lane, NodeVolume, Volume,
+    aabb::{least, most, unite_slab},
+    slabs::{self, Slab},
+};
+use crate::{
+    cloth::{LANES, View, X, Y, Z},
+    hierarchy::{Core, Probe},
+};
+
+/// Across the faces of a cube, its corners, its edges.
+const AXES: [[f32; 3]; 13] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, 1.0, -1.0],
+];
+
+/// A polytope between `N` pairs of parallel planes: a 14-DOP has 7, an 18-DOP 9, a 26-DOP 13.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KDop<const N: usize> {
+    low: [f32; N],
+    high: [f32; N],
+}
+
+impl<const N: usize> KDop<N> {
+    /// Normals of the pairs of planes, of length 1, √2 or √3.
+    pub fn axes() -> [Vec3; N] {
+        std::array::from_fn(|at| Vec3::from(Self::axis(at)))
+    }
+
+    /// An 18-DOP cuts edges and leaves corners.
+    #[inline(always)]
+    const fn axis(at: usize) -> [f32; 3] {
+        AXES[if N == 9 && at >= 3 { at + 4 } else { at }]
+    }
+
+    /// From where to where it reaches along each axis: the least and greatest products with it (m).
+    pub fn slabs(&self) -> impl Iterator<Item = (Vec3, f32, f32)> + '_ {
+        (0..N).map(|at| (Self::axis(at).into(), self.low[at], self.high[at]))
+    }
+
+    /// The corners of each face, in order; faces of fewer than three are left out.
+    pub fn faces(&self) -> Vec<Vec<Vec3>> {
+        let planes = || {
+            self.slabs()
+                .flat_map(|(axis, low, high)| [(axis, high), (-axis, -low)])
+        };
+        let extent = self
+            .high
+            .iter()
+            .chain(&self.low)
+            .fold(0.0_f32, |most, each| most.max(each.abs()));
+        let slack = extent * 1.0e-5;
+        let face = |(normal, distance): (Vec3, f32)| {
+            // A square of the plane that is larger than all, cut by every other plane.
+            let (u, v) = (normal / normal.length()).any_orthonormal_pair();
+            let middle = normal * (distance / normal.length_squared());
+            let size = 4.0 * extent + 1.0;
+            let mut corners = vec![u + v, v - u, -u - v, u - v];
+            corners
+                .iter_mut()
+                .for_each(|corner| *corner = middle + *corner * size);
+            for (normal, distance) in planes().filter(|other| *other != (normal, distance)) {
+                corners = cut(&corners, normal, distance + slack);
+            }
+            corners
+        };
+        planes()
+            .map(face)
+            .filter(|corners| corners.len() > 2)
+            .collect()
+    }
+
+    fn size(&self) -> f32 {
+        let coordinates = self.low[..3].iter().chain(&self.high[..3]);
+        3.0 * coordinates.fold(0.0_f32, |most, each| most.max(each.abs()))
+    }
+}
+
+/// The part of a convex polygon that is behind a plane (Sutherland and Hodgman 1974).
+fn cut(corners: &[Vec3], normal: Vec3, distance: f32) -> Vec<Vec3> {
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    for (index, &corner) in corners.iter().enumerate() {
+        let next = corners[(index + 1) % corners.len()];
+        let (before, after) = (corner.dot(normal) - distance, next.dot(normal) - distance);
+        if before <= 0.0 {
+            kept.push(corner);
+        }
+        if (before <= 0.0) != (after <= 0.0) {
+            kept.push(corner.lerp(next, before / (before - after)));
+        }
+    }
+    kept
+}
+
+impl<const N: usize> Volume for KDop<N> {
+    /// Least and greatest products.
+    type Lanes = [[Lane; N]; 2];
+
+    const UNSET: Self::Lanes = [[[0.0; LANES]; N]; 2];
+
+    #[inline(always)]
+    fn around(centre: Vec3, radius: f32) -> Self {
+        let (mut low, mut high) = ([0.0; N], [0.0; N]);
+        for at in 0..N {
+            let axis = Vec3::from(Self::axis(at));
+            let half = radius * axis.length() * (1.0 + 2.0 * f32::EPSILON)
+                + centre.abs().dot(axis.abs()) * 2.0 * f32::EPSILON;
+            let middle = centre.dot(axis);
+            (low[at], high[at]) = (middle - half, middle + half);
+        }
+        Self { low, high }
+    }
+
+    fn unite(children: [&Self; 4]) -> Self {
+        Self {
+            low: std::array::from_fn(|at| {
+                children
+                    .iter()
+                    .map(|child| child.low[at])
+                    .fold(f32::INFINITY, f32::min)
+            }),
+            high: std::array::from_fn(|at| {
+                children
+                    .iter()
+                    .map(|child| child.high[at])
+                    .fold(f32::NEG_INFINITY, f32::max)
+            }),
+        }
+    }
+
+    #[inline(always)]
+    fn may_reach(&self, probe: &Probe, reach: f32) -> bool {
+        if let Core::HalfSpace { point, normal } = probe.core {
+            let corner = |side: &[f32; N]| Vec3::new(side[0], side[1], side[2]);
+            return slabs::may_reach_half_space(
+                point,
+                normal,
+                corner(&self.low),
+                corner(&self.high),
+                reach,
+            );
+        }
+        let slabs = self
+            .slabs()
+            .map(|(axis, low, high)| Slab { axis, low, high });
+        slabs::may_reach(slabs, probe, reach, self.size())
+    }
+
+    fn holds(&self, centre: DVec3, radius: f64) -> bool {
+        self.slabs().all(|(axis, low, high)| {
+            let axis = axis.as_dvec3();
+            let (middle, half) = (centre.dot(axis), radius * axis.length());
+            f64::from(low) <= middle - half && middle + half <= f64::from(high)
+        })
+    }
+
+    fn holds_volume(&self, other: &Self) -> bool {
+        (0..N).all(|at| self.low[at] <= other.low[at] && other.high[at] <= self.high[at])
+    }
+
+    fn drawn(&self, particle_radius: f32) -> NodeVolume {
+        let reach = |at: usize| particle_radius * Vec3::from(Self::axis(at)).length();
+        let low = |at: usize| self.low[at] - reach(at);
+        let high = |at: usize| self.high[at] + reach(at);
+        match N {
+            7 => NodeVolume::KDop14(KDop {
+                low: std::array::from_fn(low),
+                high: std::array::from_fn(high),
+            }),
+            9 => NodeVolume::KDop18(KDop {
+                low: std::array::from_fn(low),
+                high: std::array::from_fn(high),
+            }),
+            _ => NodeVolume::KDop26(KDop {
+                low: std::array::from_fn(low),
+                high: std::array::from_fn(high),
+            }),
+        }
+    }
+
+    #[inline(always)]
+    fn of_particles(children: [&View; 4], [low, high]: &mut Self::Lanes) {
+        let [a, b, c, d] = children;
+        let mut slack: Lane = [0.0; LANES];
+        for l in 0..LANES {
+            let size =
+                |child: &View| (child[X + l].abs() + child[Y + l].abs()) + child[Z + l].abs();
+            slack[l] = most(most(size(a), size(b)), most(size(c), size(d))) * (2.0 * f32::EPSILON);
+        }
+        for (at, (low, high)) in low.iter_mut().zip(high).enumerate() {
+            let [x, y, z] = Self::axis(at);
+            for l in 0..LANES {
+                let product =
+                    |child: &View| (x * child[X + l] + y * child[Y + l]) + z * child[Z + l];
+                let [a, b, c, d] = [product(a), product(b), product(c), product(d)];
+                low[l] = least(least(a, b), least(c, d)) - slack[l];
+                high[l] = most(most(a, b), most(c, d)) + slack[l];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn unite_lanes(children: [&Self::Lanes; 4], [low, high]: &mut Self::Lanes) {
+        for at in 0..N {
+            unite_slab(
+                children.map(|child| (&child[0][at], &child[1][at])),
+                &mut low[at],
+                &mut high[at],
+            );
+        }
+    }
+
+    #[inline(always)]
+    fn lane(lanes: &Self::Lanes, lane: usize) -> Self {
+        Self {
+            low: std::array::from_fn(|at| lanes[0][at][lane]),
+            high: std::array::from_fn(|at| lanes[1][at][lane]),
+        }
+    }
+
+    fn set_lane(lanes: &mut Self::Lanes, lane: usize, volume: Self) {
+        for at in 0..N {
+            lanes[0][at][lane] = volume.low[at];
+            lanes[1][at][lane] = volume.high[at];
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Boxes along axes of their own.
+
+use bevy::math::{DVec3, Mat3, Vec3};
+
+use super::{
+    NodeVolume, Volume,
+    slabs::{self, Slab},
+};
+use crate::{
+    cloth::{LANES, View, X, Y, Z},
+    hierarchy::{Core, Probe, probe::ROUNDING},
+};
+
+/// A box along axes of its own: along a patch's rows, its columns, and across it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Obb {
+    /// Its middle (m).
+    pub centre: Vec3,
+    /// Its axes, of length 1 up to rounding.
+    pub axes: Mat3,
+    /// Half of its lengths along them (m).
+    pub half_size: Vec3,
+}
+
+impl Obb {
+    const UNSET: Self = Self {
+        centre: Vec3::ZERO,
+        axes: Mat3::IDENTITY,
+        half_size: Vec3::ZERO,
+    };
+
+    /// How far it reaches from its middle along `axis`, times the axis' length (m).
+    #[inline(always)]
+    fn reach_along(&self, axis: Vec3) -> f32 {
+        let Mat3 {
+            x_axis,
+            y_axis,
+            z_axis,
+        } = self.axes;
+        Vec3::new(x_axis.dot(axis), y_axis.dot(axis), z_axis.dot(axis))
+            .abs()
+            .dot(self.half_size)
+    }
+
+    /// Length (m) to whose rounding its sides are exact.
+    fn size(&self) -> f32 {
+        self.centre.abs().max_element() + self.half_size.max_element()
+    }
+
+    fn position(view: &View, lane: usize) -> Vec3 {
+        Vec3::new(view[X + lane], view[Y + lane], view[Z + lane])
+    }
+}
+
+/// Axes along the rows and columns of a patch whose quarters have these middles, row by row. `None` where they are
+/// one point or on one line.
+fn axes_of([a, b, c, d]: [Vec3; 4]) -> Option<Mat3> {
+    let (across, down) = ((b - a) + (d - c), (c - a) + (d - b));
+    let x = across.try_normalize()?;
+    let z = x.cross(down).try_normalize()?;
+    Some(Mat3::from_cols(x, z.cross(x), z))
+}
+
+impl Volume for Obb {
+    /// One by one: eight at once gain nothing where each has its own axes.
+    type Lanes = [Self; LANES];
+
+    const UNSET: Self::Lanes = [Self::UNSET; LANES];
+
+    fn around(centre: Vec3, radius: f32) -> Self {
+        let half_size = Vec3::splat(radius * ROUNDING);
+        Self {
+            centre,
+            half_size,
+            ..Self::UNSET
+        }
+    }
+
+    fn unite(children: [&Self; 4]) -> Self {
+        let axes = axes_of(children.map(|child| child.centre)).unwrap_or(children[0].axes);
+        // Measured from the first child, so that what is far from the origin loses nothing.
+        let origin = children[0].centre;
+        let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
+        for child in children {
+            let middle = axes.transpose() * (child.centre - origin);
+            let reach = Vec3::new(
+                child.reach_along(axes.x_axis),
+                child.reach_along(axes.y_axis),
+                child.reach_along(axes.z_axis),
+            );
+            (low, high) = (low.min(middle - reach), high.max(middle + reach));
+        }
+        let centre = origin + axes * low.midpoint(high);
+        let size = (high - low).max_element();
+        // The middle is rounded to its coordinates, everything else to the box's size.
+        let rounding = size * 1.0e-6 + centre.abs().max_element() * 2.0 * f32::EPSILON;
+        Self {
+            centre,
+            axes,
+            half_size: (high - low) / 2.0 + rounding,
+        }
+    }
+
+    fn may_reach(&self, probe: &Probe, reach: f32) -> bool {
+        match probe.core {
+            Core::Point(centre) => {
+                let local = self.axes.transpose() * (centre - self.centre);
+                let reach = (reach + self.half_size.max_element() * 1.0e-5) * ROUNDING;
+                local.distance_squared(local.clamp(-self.half_size, self.half_size))
+                    <= reach * reach
+            }
+            Core::HalfSpace { point, normal } => {
+                let offset = self.centre - point;
+                let slack = (offset.length() + self.size()) * 1.0e-6;
+                offset.dot(normal) - self.reach_along(normal) <= reach * ROUNDING + slack
+            }
+            Core::Segment(_) | Core::Cuboid { .. } => {
+                let slab = |axis: Vec3| {
+                    let (middle, half) = (self.centre.dot(axis), self.reach_along(axis));
+                    Slab {
+                        axis,
+                        low: middle - half,
+                        high: middle + half,
+                    }
+                };
+                let Mat3 {
+                    x_axis,
+                    y_axis,
+                    z_axis,
+                } = self.axes;
+                let slabs = [x_axis, y_axis, z_axis].into_iter().map(slab);
+                slabs::may_reach(slabs, probe, reach, 3.0 * self.size())
+            }
+        }
+    }
+
+    fn holds(&self, centre: DVec3, radius: f64) -> bool {
+        let offset = centre - self.centre.as_dvec3();
+        let local = self.axes.as_dmat3().transpose() * offset;
+        // Its axes are of length 1 up to rounding, and so is what is measured along them.
+        let rounding = f64::from(self.half_size.max_element()) * 1.0e-6;
+        (local.abs() + radius)
+            .cmple(self.half_size.as_dvec3() + rounding)
+            .all()
+    }
+
+    fn holds_volume(&self, other: &Self) -> bool {
+        let Mat3 {
+            x_axis,
+            y_axis,
+            z_axis,
+        } = self.axes;
+        [x_axis, y_axis, z_axis]
+            .into_iter()
+            .zip(self.half_size.to_array())
+            .all(|(axis, half)| {
+                let middle =
+                    (other.centre.as_dvec3() - self.centre.as_dvec3()).dot(axis.as_dvec3());
+                middle.abs() as f32 + other.reach_along(axis) <= half * ROUNDING
+            })
+    }
+
+    fn drawn(&self, particle_radius: f32) -> NodeVolume {
+        NodeVolume::Obb(Self {
+            half_size: self.half_size + particle_radius,
+            ..*self
+        })
+    }
+
+    fn of_particles(children: [&View; 4], into: &mut Self::Lanes) {
+        for (lane, obb) in into.iter_mut().enumerate() {
+            let [a, b, c, d] = children.map(|child| Self::around(Self::position(child, lane), 0.0));
+            *obb = Self::unite([&a, &b, &c, &d]);
+        }
+    }
+
+    fn unite_lanes(children: [&Self::Lanes; 4], into: &mut Self::Lanes) {
+        for (lane, obb) in into.iter_mut().enumerate() {
+            *obb = Self::unite(children.map(|child| &child[lane]));
+        }
+    }
+
+    fn lane(lanes: &Self::Lanes, lane: usize) -> Self {
+        lanes[lane]
+    }
+
+    fn set_lane(lanes: &mut Self::Lanes, lane: usize, volume: Self) {
+        lanes[lane] = volume;
+    }
+}

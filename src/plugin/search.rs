@@ -1,0 +1,249 @@
+//! Which colliders are near each cloth, and which particles they may touch within the tick.
+
+use bevy::{
+    ecs::{entity::Entity, query::QueryData, system::Query},
+    math::{Vec3, bounding::BoundingSphere},
+    platform::time::Instant,
+};
+
+use super::{
+    ClothFrame, ClothSearch, ClothStats, ClothTopology, colliders::ColliderMotion,
+    components::ClothTick, tick::milliseconds_since,
+};
+use crate::{
+    cloth::{ClothGrid, ClothParticles},
+    contact::{Detection, MovingCollider, NarrowPhase, Terms, Touch, meets_triangles},
+    hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
+};
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct Searching {
+    topology: &'static ClothTopology,
+    particles: &'static ClothParticles,
+    frame: &'static ClothFrame,
+    search: &'static mut ClothSearch,
+    tick: &'static mut ClothTick,
+    stats: &'static mut ClothStats,
+}
+
+type Colliders<'w, 's> = Query<'w, 's, (Entity, &'static ColliderMotion)>;
+
+/// Finds the colliders near each cloth, by one test of its root each; chooses how to search, and brings the bounding
+/// volumes up to date where that asks for it. What comes near a cloth that sleeps, or leaves it, wakes it.
+pub(super) fn rebuild_hierarchies(mut cloths: Query<Searching>, colliders: Colliders) {
+    for mut cloth in &mut cloths {
+        if cloth.takes_part() {
+            cloth.find_near(&colliders);
+        }
+    }
+}
+
+/// Finds the particles that each collider near may touch within the tick.
+pub(super) fn query_collisions(mut cloths: Query<Searching>) {
+    for mut cloth in &mut cloths {
+        if cloth.takes_part() && !cloth.tick.rest.is_asleep() {
+            cloth.query();
+        }
+    }
+}
+
+impl SearchingItem<'_, '_> {
+    fn takes_part(&self) -> bool {
+        self.tick.step.is_some() && self.topology.fits(self.particles)
+    }
+
+    fn find_near(&mut self, colliders: &Colliders) {
+        let root = self
+            .topology
+            .tree
+            .root_sphere(self.particles, self.tick.stretch.bound);
+        self.tick.root = Some(root);
+        if self.tick.rest.is_asleep() {
+            if self.sleeps_on(&root, colliders) {
+                self.stats.rebuild_ms = 0.0;
+                self.stats.query_ms = 0.0;
+                self.stats.reason = SearchReason::Asleep;
+                return;
+            }
+            self.tick.rest.disturb();
+        }
+        let (reach, particle_radius) = (self.tick.reach, self.tick.terms.particle_radius);
+        let cover = cover(
+            &self.tick.terms,
+            self.tick.stretch.bound,
+            &self.topology.grid,
+        );
+        let around = reach + particle_radius + cover;
+        collect_near(&mut self.tick.near, &root, around, self.frame, colliders);
+        // Besides by itself, a particle may get as far as a collider drags it, of those that come near the cloth.
+        let drags = self
+            .tick
+            .near
+            .iter()
+            .map(|(_, near)| near.drag(near.beyond(&root)));
+        let margin = reach + drags.fold(0.0, f32::max);
+        self.tick.detection.begin(margin);
+        self.stats.colliders_near = self.tick.near.len();
+        if self.tick.near.is_empty() {
+            self.search.query.clear();
+            self.stats.search = SearchMethod::Auto;
+            self.stats.reason = SearchReason::NothingNear;
+            self.stats.rebuild_ms = 0.0;
+            self.stats.query_ms = 0.0;
+            (self.stats.nodes_visited, self.stats.leaf_tests) = (0, 0);
+            self.stats.by_triangles = 0;
+            return;
+        }
+        let stretch = self.tick.stretch.bound;
+        let (count, near) = (self.particles.len(), self.tick.near.len());
+        let (method, reason) = self.tick.search.chosen(count, near, stretch);
+        (self.stats.search, self.stats.reason) = (method, reason);
+        let start = Instant::now();
+        if let SearchMethod::Tree(volume, rule) = method {
+            let ClothTopology { tree, .. } = self.topology;
+            let outcome = self
+                .search
+                .bounds
+                .rebuild((volume, rule), tree, self.particles, stretch);
+            debug_assert!(outcome.is_ok(), "the choice was checked as the tick began");
+        }
+        self.stats.rebuild_ms = milliseconds_since(start);
+    }
+
+    /// Whether all that touched a cloth as it fell asleep still rests where it did, and nothing else has come.
+    fn sleeps_on(&mut self, root: &BoundingSphere, colliders: &Colliders) -> bool {
+        let ClothTick {
+            near,
+            detection,
+            scout,
+            terms,
+            stretch,
+            ..
+        } = &mut *self.tick;
+        let stretch = stretch.bound;
+        let touches = detection.touches();
+        let rests_on = |entity: Entity, collider: &MovingCollider| {
+            let knows = |touch: &Touch| {
+                near.get(touch.id)
+                    .is_some_and(|(known, _)| *known == entity)
+            };
+            touches
+                .iter()
+                .any(|touch| knows(touch) && touch.collider == *collider)
+        };
+        let (bounds, query) = scout;
+        let (centre, radius) = (
+            self.frame.to_world(root.center.into()),
+            root.radius() + terms.particle_radius,
+        );
+        let cover = cover(terms, stretch, &self.topology.grid);
+        let mut still = 0;
+        // Nothing of the cloth moves towards anything.
+        let listening = Detection::default();
+        for (entity, motion) in colliders {
+            let is_near = motion.comes_near(centre, radius + cover);
+            if !is_near && touches.is_empty() {
+                continue;
+            }
+            let Some(collider) = motion.seen_from(self.frame) else {
+                continue;
+            };
+            if rests_on(entity, &collider) {
+                still += 1;
+            } else if is_near {
+                let tree = &self.topology.tree;
+                let rest_shape = (BoundingVolume::Sphere, BoundRule::RestShape);
+                if bounds
+                    .rebuild(rest_shape, tree, self.particles, stretch)
+                    .is_err()
+                {
+                    return false;
+                }
+                let (probe, narrow_phase) =
+                    listening.probe(&collider, terms, &self.topology.grid, cover, root);
+                query.clear();
+                query.search(tree, bounds, self.particles, &probe);
+                let met = match narrow_phase {
+                    NarrowPhase::Triangles => {
+                        let bare = collider.probe(0.0, terms.particle_radius, root);
+                        meets_triangles(self.particles, query.candidates(), &bare)
+                    }
+                    NarrowPhase::Auto | NarrowPhase::Particles => !query.candidates().is_empty(),
+                };
+                if met {
+                    return false;
+                }
+            }
+        }
+        still == touches.len()
+    }
+
+    fn query(&mut self) {
+        if self.tick.near.is_empty() {
+            return;
+        }
+        let start = Instant::now();
+        let tick = &mut *self.tick;
+        let ClothSearch { bounds, query } = &mut *self.search;
+        let ClothTopology { tree, grid, .. } = self.topology;
+        let root = tick
+            .root
+            .unwrap_or_else(|| tree.root_sphere(self.particles, tick.stretch.bound));
+        let cover = cover(&tick.terms, tick.stretch.bound, grid);
+        query.clear();
+        let mut is_dragged = false;
+        for (id, (_, collider)) in tick.near.iter().enumerate() {
+            let (probe, narrow_phase) =
+                tick.detection
+                    .probe(collider, &tick.terms, grid, cover, &root);
+            let found = match self.stats.search {
+                SearchMethod::Tree(..) => query.search(tree, bounds, self.particles, &probe),
+                SearchMethod::Auto | SearchMethod::Scan => query.scan(self.particles, &probe),
+            };
+            is_dragged |= !found.is_empty() && collider.drag(1.0) > 0.0;
+            let found = &query.candidates()[found];
+            tick.detection
+                .add(id, collider, narrow_phase, found, self.particles, grid);
+        }
+        if is_dragged {
+            tick.rest.disturb();
+        }
+        let by_triangles = |touch: &&Touch| touch.narrow_phase == NarrowPhase::Triangles;
+        self.stats.by_triangles = tick.detection.touches().iter().filter(by_triangles).count();
+        self.stats.nodes_visited = query.nodes_visited();
+        self.stats.leaf_tests = query.leaf_tests();
+        self.stats.query_ms = milliseconds_since(start);
+    }
+}
+
+/// How far a triangle reaches from the particle that stands for it (m), at most: along a spring or two.
+fn cover(terms: &Terms, stretch: f32, grid: &ClothGrid) -> f32 {
+    match terms.narrow_phase {
+        NarrowPhase::Particles => 0.0,
+        // Along a diagonal, without shear springs along both sides of it.
+        NarrowPhase::Auto | NarrowPhase::Triangles => {
+            grid.spacing().element_sum() * (1.0 + stretch) * (1.0 + 1.0e-5)
+        }
+    }
+}
+
+/// The colliders that come within `reach` (m) of a cloth in the tick, or drag it from there, in its frame.
+pub(super) fn collect_near(
+    near: &mut Vec<(Entity, MovingCollider)>,
+    root: &BoundingSphere,
+    reach: f32,
+    frame: &ClothFrame,
+    colliders: &Colliders,
+) {
+    near.clear();
+    let centre: Vec3 = frame.to_world(root.center.into());
+    let reach = (root.radius() + reach) * (1.0 + 1.0e-5) + centre.length() * 1.0e-5;
+    for (entity, motion) in colliders {
+        if motion.comes_near(centre, reach)
+            && let Some(collider) = motion.seen_from(frame)
+        {
+            near.push((entity, collider));
+        }
+    }
+}
