@@ -3,12 +3,17 @@
 //! A draped cloth, two waves across it and three spacings high, and a ball of four spacings that touches it. Whatever
 //! is compared is timed in turns within one run; each figure is the median of its turns.
 
+mod ecs;
 mod parry;
 mod scene;
 
 use std::{hint::black_box, time::Instant};
 
-use bevy_drape::hierarchy::{BoundRule, BoundingVolume, NodeBounds, TopDownQuery, brute_force};
+use bevy::math::Vec3;
+use bevy_drape::{
+    hierarchy::{BoundRule, BoundingVolume, NodeBounds, Probe, TopDownQuery, brute_force},
+    solver::{Solver, TickStep},
+};
 use parry::ParryTree;
 use scene::Draped;
 
@@ -31,8 +36,12 @@ const CHOICES: [(BoundingVolume, BoundRule); 10] = [
 
 fn main() {
     one_ball();
+    what_the_stretch_costs();
     volumes(256);
+    visits();
     many_balls(256);
+    many_balls(64);
+    nothing_near();
 }
 
 /// Rebuild and query for one ball, against parry's tree and a scan over the columns.
@@ -133,6 +142,86 @@ fn volumes(side: u32) {
             query.leaf_tests()
         );
     }
+}
+
+/// The rest shape needs the largest stretch: what measuring it costs, by itself, beside a tick of 20 sub-steps whose
+/// last one measures it on the way.
+fn what_the_stretch_costs() {
+    println!("\nthe stretch that the rest shape needs (µs)\n");
+    println!(
+        "{:>6} {:>12} {:>22} {:>9}",
+        "size", "measured", "a tick, 20 sub-steps", "part"
+    );
+    for side in [64, 256, 1024] {
+        let draped = Draped::new(side);
+        let mut solver = Solver::new(&draped.springs, &draped.particles);
+        let mut particles = draped.particles.clone();
+        let mut found = [const { Vec::new() }; 2];
+        for _ in 0..TURNS / 3 {
+            found[0].push(seconds(2.0e-4, || solver.measure(black_box(&particles))));
+            found[1].push(seconds(0.0, || {
+                particles.clone_from(&draped.particles);
+                solver.advance(&mut particles, TickStep::default(), &[], |_, _| false)
+            }));
+        }
+        let [measured, tick] = found.map(|mut times| 1.0e6 * median(&mut times));
+        println!(
+            "{:>6} {measured:>12.1} {tick:>22.1} {:>8.1} %",
+            format!("{side}²"),
+            100.0 * measured / tick
+        );
+    }
+}
+
+/// Nodes looked at and leaves tested, volume by volume, on the same scenes.
+fn visits() {
+    println!("\nnodes visited / leaves tested, one ball of 4 spacings\n");
+    let sides = [16, 64, 256, 1024];
+    print!("{:>10} {:>11}", "volume", "rule");
+    for side in sides {
+        print!(" {:>12}", format!("{side}²"));
+    }
+    println!();
+    let scenes = sides.map(Draped::new);
+    let mut query = TopDownQuery::default();
+    for choice in CHOICES {
+        print!("{:>10} {:>11}", choice.0.name(), choice.1.name());
+        for draped in &scenes {
+            let mut bounds = NodeBounds::default();
+            draped.rebuild(&mut bounds, choice);
+            query.clear();
+            query.search(&draped.tree, &bounds, &draped.particles, &draped.ball());
+            print!(
+                " {:>12}",
+                format!("{} / {}", query.nodes_visited(), query.leaf_tests())
+            );
+        }
+        println!();
+    }
+}
+
+/// A thousand cloths, and a ball that is far away from all: what rebuild and query take a cloth.
+fn nothing_near() {
+    let draped = Draped::new(64);
+    let far = Probe::ball(Vec3::splat(1.0e3), 1.0, 0.0);
+    let mut times: Vec<f64> = (0..TURNS)
+        .map(|_| {
+            seconds(2.0e-4, || {
+                let root = draped.tree.root_sphere(black_box(&draped.particles), 0.1);
+                let reach = root.radius() + far.radius;
+                far.core.middle().distance_squared(root.center.into()) <= reach * reach
+            })
+        })
+        .collect();
+    println!("\nno collider near\n");
+    println!(
+        "the root's test alone: {:.1} ns",
+        1.0e9 * median(&mut times)
+    );
+    println!(
+        "both systems, of 1000 cloths, a cloth: {:.1} ns",
+        ecs::nanoseconds_a_cloth(1000)
+    );
 }
 
 /// Balls all over the cloth: when does a refit pay?

@@ -13,6 +13,7 @@ const SPACING: f32 = 0.05;
 pub struct Draped {
     pub tree: QuadTree,
     pub particles: ClothParticles,
+    pub springs: Springs,
     stretch: f32,
     side: u32,
 }
@@ -37,6 +38,7 @@ impl Draped {
             tree: QuadTree::of_grid(&grid, true),
             stretch: Stretch::measure(&springs, &particles).bound,
             particles,
+            springs,
             side,
         }
     }

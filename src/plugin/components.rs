@@ -4,7 +4,7 @@ use bevy::{
     ecs::{
         change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent,
     },
-    math::{Isometry3d, Vec3, bounding::BoundingSphere},
+    math::{Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
@@ -102,6 +102,23 @@ pub struct ClothStats {
     pub is_asleep: bool,
 }
 
+/// Where a cloth may be touched in the tick. Small, so that a thousand cloths which nothing comes near are passed over
+/// without a look at anything else.
+#[derive(Component, Debug, Default, Clone, Copy)]
+pub(super) struct Vicinity {
+    /// Around the whole of it, as far as it may get in the tick, in the world (m).
+    pub centre: Vec3,
+    pub radius: f32,
+    /// Whether the cloth takes part in the tick.
+    pub takes_part: bool,
+    /// Whether it sleeps, touching something that may have gone.
+    pub listens: bool,
+    /// Whether there is something to search for.
+    pub is_searched: bool,
+    /// Whether what an earlier search found is still there.
+    pub is_stale: bool,
+}
+
 /// What one tick's systems hand on to the next. Kept so that a tick does not allocate.
 #[derive(Component, Debug, Default)]
 pub(super) struct ClothTick {
@@ -121,8 +138,6 @@ pub(super) struct ClothTick {
     pub reach: f32,
     /// Colliders near the cloth, in its frame. What `detection` calls them by is their place here.
     pub near: Vec<(Entity, MovingCollider)>,
-    /// The root's rest shape, around every particle's centre (m).
-    pub root: Option<BoundingSphere>,
     pub detection: Detection,
     /// What the cloth, asleep, listens with.
     pub scout: (NodeBounds, TopDownQuery),

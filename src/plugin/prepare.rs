@@ -12,14 +12,18 @@ use bevy::{
     transform::{components::GlobalTransform, helper::TransformHelper},
 };
 
+use super::search::cover;
 use super::{
-    ClothAttachments, ClothFault, ClothFrame, ClothGravity, ClothStats, ClothTeleport,
-    ClothTopology, components::ClothTick, fault::Part, frame::global_transform,
+    ClothAttachments, ClothFault, ClothFrame, ClothGravity, ClothSearch, ClothStats, ClothTeleport,
+    ClothTopology,
+    components::{ClothTick, Vicinity},
+    fault::Part,
+    frame::global_transform,
 };
 use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
     contact::{NarrowPhase, Terms},
-    hierarchy::SearchMethod,
+    hierarchy::{SearchMethod, SearchReason},
     solver::{ClothSettings, PinMotion, TickStep},
 };
 
@@ -32,13 +36,15 @@ pub(super) struct Preparing {
     pub(super) pins: Option<&'static Pins>,
     pub(super) attachments: Option<&'static ClothAttachments>,
     settings: Option<&'static ClothSettings>,
-    search: Option<&'static SearchMethod>,
+    method: Option<&'static SearchMethod>,
     narrow_phase: Option<&'static NarrowPhase>,
     pub(super) particles: &'static mut ClothParticles,
     pub(super) topology: &'static mut ClothTopology,
     pub(super) frame: &'static mut ClothFrame,
     stats: &'static mut ClothStats,
     pub(super) tick: &'static mut ClothTick,
+    vicinity: &'static mut Vicinity,
+    search: &'static mut ClothSearch,
     teleport: Option<&'static ClothTeleport>,
     fault: Option<&'static ClothFault>,
 }
@@ -56,6 +62,7 @@ pub(super) fn prepare_cloths(
             cloth.prepare(&transform, &transforms, gravity.0, time.delta_secs())
         });
         cloth.tick.sound = outcome.is_ok();
+        cloth.vicinity.takes_part = outcome.is_ok();
         if outcome.is_err() {
             cloth.tick.rest.disturb();
         }
@@ -84,7 +91,7 @@ impl PreparingItem<'_, '_> {
         let settings = self.settings.copied().unwrap_or_default();
         let material = self.material.copied().unwrap_or_default();
         settings.validate()?;
-        let search = self.search.copied().unwrap_or_default();
+        let search = self.method.copied().unwrap_or_default();
         search.validate()?;
         let narrow_phase = self.narrow_phase.copied().unwrap_or_default();
         let gravity = settings.gravity.unwrap_or(gravity);
@@ -148,7 +155,57 @@ impl PreparingItem<'_, '_> {
             narrow_phase,
         };
         self.tick.reach = self.reach(acceleration.length(), seconds);
+        self.look_around();
         Ok(())
+    }
+
+    /// How far around the cloth anything may be touched in the tick. Nothing is near until it is found to be.
+    fn look_around(&mut self) {
+        let expected = self.tick.reach;
+        let ClothTick {
+            terms,
+            stretch,
+            rest,
+            near,
+            detection,
+            ..
+        } = &mut *self.tick;
+        let root = self
+            .topology
+            .tree
+            .root_sphere(&self.particles, stretch.bound);
+        let centre = self.frame.to_world(root.center.into());
+        let around =
+            expected + terms.particle_radius + cover(terms, stretch.bound, &self.topology.grid);
+        let is_asleep = rest.is_asleep();
+        // Its colliders stay those that it fell asleep on.
+        let listens = is_asleep && !detection.touches().is_empty();
+        let mut is_stale = self.vicinity.is_searched || self.vicinity.is_stale;
+        if !is_asleep {
+            near.clear();
+            detection.begin(expected);
+            if is_stale {
+                self.search.query.clear();
+                is_stale = false;
+            }
+        }
+        *self.vicinity = Vicinity {
+            centre,
+            radius: (root.radius() + around) * (1.0 + 1.0e-5) + centre.length() * 1.0e-5,
+            takes_part: true,
+            listens,
+            is_searched: false,
+            is_stale,
+        };
+        self.stats.search = SearchMethod::Auto;
+        self.stats.reason = if is_asleep {
+            SearchReason::Asleep
+        } else {
+            SearchReason::NothingNear
+        };
+        (self.stats.rebuild_ms, self.stats.query_ms) = (0.0, 0.0);
+        (self.stats.nodes_visited, self.stats.leaf_tests) = (0, 0);
+        (self.stats.colliders_near, self.stats.by_triangles) = (0, 0);
     }
 
     /// The speed of the fastest particle (m/s), if all are sound.

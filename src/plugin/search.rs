@@ -2,18 +2,20 @@
 
 use bevy::{
     ecs::{entity::Entity, query::QueryData, system::Query},
-    math::{Vec3, bounding::BoundingSphere},
+    math::bounding::BoundingSphere,
     platform::time::Instant,
 };
 
 use super::{
-    ClothFrame, ClothSearch, ClothStats, ClothTopology, colliders::ColliderMotion,
-    components::ClothTick, tick::milliseconds_since,
+    ClothFrame, ClothSearch, ClothStats, ClothTopology,
+    colliders::ColliderMotion,
+    components::{ClothTick, Vicinity},
+    tick::milliseconds_since,
 };
 use crate::{
     cloth::{ClothGrid, ClothParticles},
     contact::{Detection, MovingCollider, NarrowPhase, Terms, Touch, meets_triangles},
-    hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
+    hierarchy::{BoundRule, BoundingVolume, SearchMethod},
 };
 
 #[derive(QueryData)]
@@ -25,6 +27,7 @@ pub(super) struct Searching {
     search: &'static mut ClothSearch,
     tick: &'static mut ClothTick,
     stats: &'static mut ClothStats,
+    vicinity: &'static mut Vicinity,
 }
 
 type Colliders<'w, 's> = Query<'w, 's, (Entity, &'static ColliderMotion)>;
@@ -33,7 +36,15 @@ type Colliders<'w, 's> = Query<'w, 's, (Entity, &'static ColliderMotion)>;
 /// volumes up to date where that asks for it. What comes near a cloth that sleeps, or leaves it, wakes it.
 pub(super) fn rebuild_hierarchies(mut cloths: Query<Searching>, colliders: Colliders) {
     for mut cloth in &mut cloths {
-        if cloth.takes_part() {
+        let Vicinity {
+            centre,
+            radius,
+            takes_part,
+            listens,
+            ..
+        } = *cloth.vicinity;
+        let is_near = |(_, motion): (Entity, &ColliderMotion)| motion.comes_near(centre, radius);
+        if takes_part && (listens || colliders.iter().any(is_near)) {
             cloth.find_near(&colliders);
         }
     }
@@ -42,73 +53,67 @@ pub(super) fn rebuild_hierarchies(mut cloths: Query<Searching>, colliders: Colli
 /// Finds the particles that each collider near may touch within the tick.
 pub(super) fn query_collisions(mut cloths: Query<Searching>) {
     for mut cloth in &mut cloths {
-        if cloth.takes_part() && !cloth.tick.rest.is_asleep() {
+        if cloth.vicinity.is_searched && cloth.topology.fits(cloth.particles) {
             cloth.query();
         }
     }
 }
 
 impl SearchingItem<'_, '_> {
-    fn takes_part(&self) -> bool {
-        self.tick.step.is_some() && self.topology.fits(self.particles)
+    fn root(&self) -> BoundingSphere {
+        self.topology
+            .tree
+            .root_sphere(self.particles, self.tick.stretch.bound)
     }
 
     fn find_near(&mut self, colliders: &Colliders) {
-        let root = self
-            .topology
-            .tree
-            .root_sphere(self.particles, self.tick.stretch.bound);
-        self.tick.root = Some(root);
+        if !self.topology.fits(self.particles) {
+            return;
+        }
+        let root = self.root();
         if self.tick.rest.is_asleep() {
             if self.sleeps_on(&root, colliders) {
-                self.stats.rebuild_ms = 0.0;
-                self.stats.query_ms = 0.0;
-                self.stats.reason = SearchReason::Asleep;
                 return;
             }
             self.tick.rest.disturb();
         }
-        let (reach, particle_radius) = (self.tick.reach, self.tick.terms.particle_radius);
-        let cover = cover(
-            &self.tick.terms,
-            self.tick.stretch.bound,
-            &self.topology.grid,
-        );
-        let around = reach + particle_radius + cover;
-        collect_near(&mut self.tick.near, &root, around, self.frame, colliders);
-        // Besides by itself, a particle may get as far as a collider drags it, of those that come near the cloth.
-        let drags = self
-            .tick
-            .near
+        let Vicinity { centre, radius, .. } = *self.vicinity;
+        let ClothTick {
+            near,
+            detection,
+            reach,
+            ..
+        } = &mut *self.tick;
+        near.clear();
+        let comes_near = colliders
             .iter()
-            .map(|(_, near)| near.drag(near.beyond(&root)));
-        let margin = reach + drags.fold(0.0, f32::max);
-        self.tick.detection.begin(margin);
-        self.stats.colliders_near = self.tick.near.len();
-        if self.tick.near.is_empty() {
-            self.search.query.clear();
-            self.stats.search = SearchMethod::Auto;
-            self.stats.reason = SearchReason::NothingNear;
-            self.stats.rebuild_ms = 0.0;
-            self.stats.query_ms = 0.0;
-            (self.stats.nodes_visited, self.stats.leaf_tests) = (0, 0);
-            self.stats.by_triangles = 0;
+            .filter(|(_, motion)| motion.comes_near(centre, radius));
+        let seen = |(entity, motion): (Entity, &ColliderMotion)| {
+            Some((entity, motion.seen_from(self.frame)?))
+        };
+        near.extend(comes_near.filter_map(seen));
+        // Besides by itself, a particle may get as far as a collider drags it, of those that come near the cloth.
+        let drags = near.iter().map(|(_, near)| near.drag(near.beyond(&root)));
+        detection.begin(*reach + drags.fold(0.0, f32::max));
+        let near = near.len();
+        self.stats.colliders_near = near;
+        if near == 0 {
             return;
         }
+        self.vicinity.is_searched = true;
         let stretch = self.tick.stretch.bound;
-        let (count, near) = (self.particles.len(), self.tick.near.len());
-        let (method, reason) = self.tick.search.chosen(count, near, stretch);
+        let (method, reason) = self.tick.search.chosen(self.particles.len(), near, stretch);
         (self.stats.search, self.stats.reason) = (method, reason);
-        let start = Instant::now();
         if let SearchMethod::Tree(volume, rule) = method {
+            let start = Instant::now();
             let ClothTopology { tree, .. } = self.topology;
             let outcome = self
                 .search
                 .bounds
                 .rebuild((volume, rule), tree, self.particles, stretch);
             debug_assert!(outcome.is_ok(), "the choice was checked as the tick began");
+            self.stats.rebuild_ms = milliseconds_since(start);
         }
-        self.stats.rebuild_ms = milliseconds_since(start);
     }
 
     /// Whether all that touched a cloth as it fell asleep still rests where it did, and nothing else has come.
@@ -180,16 +185,11 @@ impl SearchingItem<'_, '_> {
     }
 
     fn query(&mut self) {
-        if self.tick.near.is_empty() {
-            return;
-        }
         let start = Instant::now();
+        let root = self.root();
         let tick = &mut *self.tick;
         let ClothSearch { bounds, query } = &mut *self.search;
         let ClothTopology { tree, grid, .. } = self.topology;
-        let root = tick
-            .root
-            .unwrap_or_else(|| tree.root_sphere(self.particles, tick.stretch.bound));
         let cover = cover(&tick.terms, tick.stretch.bound, grid);
         query.clear();
         let mut is_dragged = false;
@@ -218,32 +218,12 @@ impl SearchingItem<'_, '_> {
 }
 
 /// How far a triangle reaches from the particle that stands for it (m), at most: along a spring or two.
-fn cover(terms: &Terms, stretch: f32, grid: &ClothGrid) -> f32 {
+pub(super) fn cover(terms: &Terms, stretch: f32, grid: &ClothGrid) -> f32 {
     match terms.narrow_phase {
         NarrowPhase::Particles => 0.0,
         // Along a diagonal, without shear springs along both sides of it.
         NarrowPhase::Auto | NarrowPhase::Triangles => {
             grid.spacing().element_sum() * (1.0 + stretch) * (1.0 + 1.0e-5)
-        }
-    }
-}
-
-/// The colliders that come within `reach` (m) of a cloth in the tick, or drag it from there, in its frame.
-pub(super) fn collect_near(
-    near: &mut Vec<(Entity, MovingCollider)>,
-    root: &BoundingSphere,
-    reach: f32,
-    frame: &ClothFrame,
-    colliders: &Colliders,
-) {
-    near.clear();
-    let centre: Vec3 = frame.to_world(root.center.into());
-    let reach = (root.radius() + reach) * (1.0 + 1.0e-5) + centre.length() * 1.0e-5;
-    for (entity, motion) in colliders {
-        if motion.comes_near(centre, reach)
-            && let Some(collider) = motion.seen_from(frame)
-        {
-            near.push((entity, collider));
         }
     }
 }

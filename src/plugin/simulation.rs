@@ -19,7 +19,7 @@ use super::{
     ClothAttachments, ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats,
     ClothTeleport, ClothTopology, ClothTouchStarted, ClothTouchStopped,
     colliders::{ColliderMotion, prepare_colliders},
-    components::ClothTick,
+    components::{ClothTick, Vicinity},
     contacts::{tell_of_removed_cloths, tell_of_touches},
     fault::Part,
     prepare::prepare_cloths,
@@ -110,6 +110,7 @@ impl Plugin for ClothPlugin {
             .register_required_components::<Cloth, ClothContacts>()
             .register_required_components::<Cloth, ClothStats>()
             .register_required_components::<Cloth, ClothTick>()
+            .register_required_components::<Cloth, Vicinity>()
             .register_required_components::<ClothCollider, ColliderMotion>();
         app.init_resource::<ClothGravity>()
             .add_message::<ClothTouchStarted>()
@@ -157,6 +158,7 @@ fn clear_removed_cloth(
         ClothContacts,
         ClothStats,
         ClothTick,
+        Vicinity,
     )>();
     let known = faults.get(removed.entity).ok();
     ClothFault::report(&mut commands, removed.entity, known, Part::Cloth, Ok(()));

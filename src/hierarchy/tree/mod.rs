@@ -12,7 +12,7 @@ use bevy::{
     reflect::Reflect,
 };
 
-use super::bounds::growth;
+use super::bounds::{growth, middle, position};
 use crate::cloth::{ClothError, ClothGrid, ClothParticles, Spring};
 
 pub(super) use grid::{GridTree, Level, Part};
@@ -122,12 +122,22 @@ impl QuadTree {
     /// A sphere around all of its particles' centres, without touching more than one of them: the root's rest shape
     /// at a stretch ([`Stretch::bound`](crate::solver::Stretch)).
     pub fn root_sphere(&self, particles: &ClothParticles, stretch: f32) -> BoundingSphere {
-        if self.is_empty() || !self.fits(particles) {
-            return BoundingSphere::new(Vec3::ZERO, 0.0);
-        }
-        let root = self.node(0);
-        let centre = particles.position_at(root.middle as usize);
-        BoundingSphere::new(centre, (root.rest_radius * growth(stretch)).max(0.0))
+        let root = match &self.0 {
+            _ if !self.fits(particles) => None,
+            Shape::Grid(tree) => tree.levels.first().map(|root| {
+                let (rows, columns) = (&root.rows[0], &root.columns[0]);
+                (
+                    middle(particles, rows, columns),
+                    root.rest_radius(rows, columns),
+                )
+            }),
+            Shape::Network(tree) => tree.nodes.first().map(|root| {
+                let slot = tree.slots[root.middle as usize];
+                (position(particles, slot), root.rest_radius)
+            }),
+        };
+        let (centre, rest_radius) = root.unwrap_or_default();
+        BoundingSphere::new(centre, (rest_radius * growth(stretch)).max(0.0))
     }
 
     /// Indices of the particles that a node holds.

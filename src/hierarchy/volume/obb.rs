@@ -93,7 +93,7 @@ impl Volume for Obb {
         let centre = origin + axes * low.midpoint(high);
         let size = (high - low).max_element();
         // The middle is rounded to its coordinates, everything else to the box's size.
-        let rounding = size * 1.0e-6 + centre.abs().max_element() * 2.0 * f32::EPSILON;
+        let rounding = size * 2.0e-6 + centre.abs().max_element() * 8.0 * f32::EPSILON;
         Self {
             centre,
             axes,
@@ -156,7 +156,8 @@ impl Volume for Obb {
             .all(|(axis, half)| {
                 let middle =
                     (other.centre.as_dvec3() - self.centre.as_dvec3()).dot(axis.as_dvec3());
-                middle.abs() as f32 + other.reach_along(axis) <= half * ROUNDING
+                middle.abs() as f32 + other.reach_along(axis)
+                    <= half * ROUNDING + self.half_size.max_element() * 1.0e-6
             })
     }
 

@@ -1,0 +1,148 @@
+//! Particles or triangles? `cargo bench --profile dev --bench contact`, as CSV.
+//!
+//! A ball is pressed six spacings deep into the middle of a cell of a cloth that is held by its rim, and held there. How
+//! deep the flat triangles then are inside of the ball, and what a sub-step's response takes, by either narrow phase.
+
+use std::time::Instant;
+
+use bevy::math::{Vec3, bounding::BoundingSphere};
+use bevy_drape::{
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
+    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    hierarchy::TopDownQuery,
+    solver::{Solver, TickStep},
+};
+
+const SIDE: u32 = 33;
+const SPACING: f32 = 0.05;
+const TICKS: u32 = 128;
+
+fn main() {
+    println!(
+        "radius_over_spacing,test,deepest_triangle_percent_of_radius,fallen_through,us_a_substep,candidates"
+    );
+    for ratio in [0.3, 0.5, 0.7, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0] {
+        for narrow_phase in [NarrowPhase::Particles, NarrowPhase::Triangles] {
+            let pressed = press(ratio * SPACING, narrow_phase);
+            println!(
+                "{ratio},{},{:.2},{},{:.2},{}",
+                if narrow_phase == NarrowPhase::Particles {
+                    "particles"
+                } else {
+                    "triangles"
+                },
+                100.0 * pressed.deepest / (ratio * SPACING),
+                pressed.deepest >= ratio * SPACING,
+                1.0e6 * pressed.seconds,
+                pressed.candidates,
+            );
+        }
+    }
+}
+
+struct Pressed {
+    /// How deep the deepest point of a triangle is inside of the ball (m).
+    deepest: f32,
+    /// Of one sub-step's response (s).
+    seconds: f64,
+    candidates: usize,
+}
+
+fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
+    let grid = Cloth::new(SIDE, SIDE, SPACING)
+        .grid(Vec3::ONE)
+        .expect("a sound grid");
+    let material = ClothMaterial {
+        stretch_compliance: 5.0e-3,
+        shear_compliance: 1.0e-2,
+        damping: 0.05,
+        ..ClothMaterial::COTTON
+    };
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+    let rim = |row: u32, column: u32| row % (SIDE - 1) == 0 || column % (SIDE - 1) == 0;
+    let pinned: Vec<(u32, u32)> = grid
+        .cells()
+        .filter(|&(row, column)| rim(row, column))
+        .collect();
+    for cell in pinned {
+        particles.set_inverse_mass(cell, 0.0).expect("it exists");
+    }
+    let mut solver = Solver::new(&Springs::of_grid(&grid, &material), &particles);
+    let terms = Terms {
+        particle_radius: 0.0,
+        friction: 0.3,
+        narrow_phase,
+        ..Default::default()
+    };
+    let mut detection = Detection::default();
+    let mut query = TopDownQuery::default();
+    // Over the middle of a cell, and not quite: nothing in the field is symmetric.
+    let at = |height: f32| Vec3::new(16.48 * SPACING, -16.53 * SPACING, height);
+    let height = |tick: u32| {
+        radius + 0.01
+            - (radius + 0.01 + 6.0 * SPACING) * (tick as f32 / (0.75 * TICKS as f32)).min(1.0)
+    };
+    let (mut spent, mut substeps, mut candidates) = (0.0, 0, 0);
+    for tick in 0..TICKS {
+        let ball = MovingCollider::ball(radius, at(height(tick)), at(height(tick + 1)));
+        detection.begin(0.1);
+        let cloth = BoundingSphere::new(at(0.0), 2.0);
+        let (probe, against) = detection.probe(&ball, &terms, &grid, 4.0 * SPACING, &cloth);
+        query.clear();
+        query.scan(&particles, &probe);
+        detection.add(0, &ball, against, query.candidates(), &particles, &grid);
+        candidates = query.candidates().len();
+        let step = TickStep {
+            acceleration: Vec3::NEG_Z * 9.81,
+            damping: material.damping,
+            ..Default::default()
+        };
+        solver.advance(&mut particles, step, &[], |particles, substep| {
+            if detection.is_outrun(substep) {
+                detection.search_again(particles, &[(0, ball)], &terms, &grid);
+            }
+            let start = Instant::now();
+            let moved = detection.respond(particles, &terms, substep);
+            spent += start.elapsed().as_secs_f64();
+            substeps += 1;
+            moved
+        });
+    }
+    let centre = at(height(TICKS));
+    Pressed {
+        deepest: deepest_triangle(&particles, &grid, centre, radius),
+        seconds: spent / f64::from(substeps),
+        candidates,
+    }
+}
+
+/// Over a fine net of points of every triangle. A cloth above the ball's centre has let it through.
+fn deepest_triangle(
+    particles: &ClothParticles,
+    grid: &ClothGrid,
+    centre: Vec3,
+    radius: f32,
+) -> f32 {
+    const PARTS: u32 = 24;
+    let mut deepest = f32::MIN;
+    for triangle in grid.triangles() {
+        let [a, b, c] =
+            triangle.map(|index| particles.position(index as usize).expect("it exists"));
+        if a.distance(centre) > radius + 3.0 * SPACING {
+            continue;
+        }
+        for u in 0..=PARTS {
+            for v in 0..=PARTS - u {
+                let [u, v] = [u, v].map(|part| part as f32 / PARTS as f32);
+                let point = a + (b - a) * u + (c - a) * v;
+                deepest = deepest.max(radius - point.distance(centre));
+            }
+        }
+    }
+    // Pressed down, the cloth has to be below: a ball that nothing touches fell through.
+    if deepest < -0.5 * SPACING {
+        radius
+    } else {
+        deepest
+    }
+}
