@@ -78,8 +78,8 @@ impl QuadTree {
     /// shortest ways along the springs (Dijkstra 1959). Takes O(n log² n) time.
     ///
     /// # Errors
-    /// [`ClothError::BadSpring`] for the first with an end that is no particle, or with a rest length that is
-    /// negative or not finite; [`ClothError::ParticleNotFinite`] for a position that is not.
+    /// [`ClothError::BadSpring`] for the first with an end that is no particle, or with a rest length that is not from
+    /// 10⁻⁹ to 10¹² m: what has no length at rest says nothing of how far it stretches; [`ClothError::ParticleNotFinite`] for a position that is not.
     pub fn of_network(rest: &[Vec3], springs: &[Spring]) -> Result<Self, ClothError> {
         NetworkTree::new(rest, springs).map(|tree| Self(Shape::Network(tree)))
     }

@@ -152,8 +152,7 @@ impl Ways {
     fn new(particles: usize, springs: &[Spring]) -> Result<Self, ClothError> {
         let is_sound = |spring: &Spring| {
             spring.ends.iter().all(|&end| (end as usize) < particles)
-                && spring.rest_length >= 0.0
-                && spring.rest_length.is_finite()
+                && (1.0e-9..=1.0e12).contains(&spring.rest_length)
         };
         if let Some(index) = springs.iter().position(|spring| !is_sound(spring)) {
             return Err(ClothError::BadSpring {

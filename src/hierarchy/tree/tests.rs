@@ -154,6 +154,7 @@ fn a_network_that_is_not_sound_is_refused() {
     for bad in [
         spring([0, 2], 1.0),
         spring([0, 1], -1.0),
+        spring([0, 1], 0.0),
         spring([0, 1], f32::NAN),
     ] {
         let outcome = QuadTree::of_network(&rest, &[spring([0, 1], 1.0), bad]);
