@@ -98,11 +98,8 @@ fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
             ..Default::default()
         };
         solver.advance(&mut particles, step, &[], |particles, substep| {
-            if detection.is_outrun(substep) {
-                detection.search_again(particles, &[(0, ball)], &terms, &grid);
-            }
             let start = Instant::now();
-            let moved = detection.respond(particles, &terms, substep);
+            let moved = detection.respond(particles, &terms, substep, |_| {});
             spent += start.elapsed().as_secs_f64();
             substeps += 1;
             moved

@@ -9,11 +9,11 @@ use bevy::{
 
 use super::{
     MovingCollider, NarrowPhase,
-    particle::{Found, push_particles},
-    surface::push_triangles,
+    particle::push_particles,
+    surface::{Course, Cursor, push_triangles},
 };
 use crate::{
-    cloth::{ClothGrid, ClothParticles},
+    cloth::{ClothGrid, ClothParticles, Slot},
     hierarchy::{Probe, TopDownQuery},
     solver::SubStep,
 };
@@ -22,8 +22,9 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Candidate {
     pub particle: u32,
-    pub block: u32,
-    pub lane: u32,
+    pub slot: Slot,
+    /// Its right neighbour's, if there is such a one and one below: if it begins a cell.
+    pub beside: Option<Slot>,
     /// The part of the cloth's area that it stands for (m²).
     pub area: f32,
     /// The deepest that it has been found (m); negative if it has only come so near.
@@ -59,7 +60,7 @@ pub struct Touch {
 }
 
 /// What a cloth is tested with in a tick.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Terms {
     /// Radius of each particle (m).
     pub particle_radius: f32,
@@ -67,6 +68,20 @@ pub struct Terms {
     pub friction: f32,
     /// What colliders are tested against.
     pub narrow_phase: NarrowPhase,
+    /// Whether what moves fast is tested all along its way; only comparisons turn this off.
+    pub is_swept: bool,
+}
+
+impl Default for Terms {
+    /// Points without friction.
+    fn default() -> Self {
+        Self {
+            particle_radius: 0.0,
+            friction: 0.0,
+            narrow_phase: NarrowPhase::Auto,
+            is_swept: true,
+        }
+    }
 }
 
 /// Which particles each collider may touch in a tick.
@@ -76,12 +91,18 @@ pub struct Terms {
 /// particles are searched again from where they are then.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Detection {
+    /// In the order of their numbers, so that the result is the same whenever they were found.
     touches: Vec<Touch>,
     candidates: Vec<Candidate>,
+    /// All that were searched for, touching or not, and among what: to search again.
+    colliders: Vec<(usize, MovingCollider)>,
+    grid: ClothGrid,
     /// How far a particle may move before the candidates are searched for again (m).
     margin: f32,
     /// How far one may have moved since they were (m).
     moved: f32,
+    /// How far of that in this sub-step: the way that is swept lies so far behind (m).
+    moved_now: f32,
     requeries: u32,
     found: TopDownQuery,
     known: Vec<(usize, ContactPoint)>,
@@ -92,8 +113,9 @@ impl Detection {
     pub fn begin(&mut self, margin: f32) {
         self.touches.clear();
         self.candidates.clear();
+        self.colliders.clear();
         self.margin = margin;
-        self.moved = 0.0;
+        (self.moved, self.moved_now) = (0.0, 0.0);
         self.requeries = 0;
     }
 
@@ -113,18 +135,23 @@ impl Detection {
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
         let spacing = grid.spacing().max_element();
-        let narrow_phase = terms.narrow_phase.chosen(collider.shape.radius(), spacing);
+        let narrow_phase =
+            terms
+                .narrow_phase
+                .chosen(collider.shape.radius(), collider.travel(), spacing);
         let cover = match narrow_phase {
             NarrowPhase::Triangles => longest_edge,
             NarrowPhase::Auto | NarrowPhase::Particles => 0.0,
         };
         // What each sub-step's rounding of a position may add to its move.
-        let rounding = (Vec3::from(cloth.center).length() + cloth.radius()) * 1.0e-5;
+        let farthest = Vec3::from(cloth.center).length() + cloth.radius();
+        let rounding = (farthest + collider.beyond(cloth)) * 1.0e-5;
         let probe = collider.probe(self.margin + cover + rounding, terms.particle_radius, cloth);
         (probe, narrow_phase)
     }
 
-    /// Takes over which particles the search has found for a collider, which is the caller's number `id`.
+    /// Takes over which particles the search has found for a collider, which is the caller's number `id`. To be called
+    /// for each collider, whether any were found or not: others may yet push some to it.
     pub fn add(
         &mut self,
         id: usize,
@@ -134,18 +161,35 @@ impl Detection {
         particles: &ClothParticles,
         grid: &ClothGrid,
     ) {
+        self.grid = *grid;
+        if self.colliders.iter().all(|(known, _)| *known != id) {
+            self.colliders.push((id, *collider));
+        }
+        self.hold(id, collider, narrow_phase, found, particles);
+    }
+
+    fn hold(
+        &mut self,
+        id: usize,
+        collider: &MovingCollider,
+        narrow_phase: NarrowPhase,
+        found: &[u32],
+        particles: &ClothParticles,
+    ) {
         if found.is_empty() {
             return;
         }
+        let grid = self.grid;
         let first = self.candidates.len();
         let layout = particles.layout();
         self.candidates.extend(found.iter().map(|&particle| {
             let (row, column) = (particle / layout.columns, particle % layout.columns);
-            let slot = layout.slot(row, column);
+            let slot = |column| layout.slot(row, column);
             Candidate {
                 particle,
-                block: slot.block as u32,
-                lane: slot.lane as u32,
+                slot: slot(column),
+                beside: (row + 1 < layout.rows && column + 1 < layout.columns)
+                    .then(|| slot(column + 1)),
                 area: grid.tributary_area(row, column),
                 depth: f32::NEG_INFINITY,
             }
@@ -153,18 +197,20 @@ impl Detection {
         // In the order of the cloth, whatever the search's: so the result is the same whichever it is.
         self.candidates[first..].sort_unstable_by_key(|candidate| candidate.particle);
         let candidates = first..self.candidates.len();
-        if let Some(touch) = self.touches.iter_mut().find(|touch| touch.id == id) {
-            touch.candidates = candidates;
-        } else {
-            self.touches.push(Touch {
-                id,
-                collider: *collider,
-                narrow_phase,
-                deepest: 0.0,
-                area: 0.0,
-                volume: 0.0,
-                candidates,
-            });
+        match self.touches.binary_search_by_key(&id, |touch| touch.id) {
+            Ok(at) => self.touches[at].candidates = candidates,
+            Err(at) => self.touches.insert(
+                at,
+                Touch {
+                    id,
+                    collider: *collider,
+                    narrow_phase,
+                    deepest: 0.0,
+                    area: 0.0,
+                    volume: 0.0,
+                    candidates,
+                },
+            ),
         }
     }
 
@@ -184,21 +230,14 @@ impl Detection {
         };
     }
 
-    /// Whether particles may have moved so far in the tick, this sub-step included, that candidates are missing.
-    pub fn is_outrun(&mut self, substep: SubStep) -> bool {
-        self.moved += substep.farthest_move;
+    /// Whether particles may have moved so far that candidates are missing.
+    fn is_outrun(&self) -> bool {
         // Not a number is no less.
         !(self.moved <= self.margin)
     }
 
     /// Searches for the candidates of all colliders again, among the particles as they are.
-    pub fn search_again(
-        &mut self,
-        particles: &ClothParticles,
-        colliders: &[(usize, MovingCollider)],
-        terms: &Terms,
-        grid: &ClothGrid,
-    ) {
+    fn search(&mut self, particles: &ClothParticles, terms: &Terms) {
         self.requeries += 1;
         // Twice as much as did not suffice: a tick has few of these, however wild it is.
         let needed = if self.moved.is_finite() {
@@ -207,7 +246,9 @@ impl Detection {
             self.margin
         };
         self.margin = 2.0 * needed.max(self.margin);
-        self.moved = 0.0;
+        self.moved = Some(self.moved_now)
+            .filter(|m| m.is_finite())
+            .unwrap_or(0.0);
         self.known.clear();
         for touch in &mut self.touches {
             let candidates = self.candidates[touch.candidates.clone()].iter();
@@ -227,8 +268,10 @@ impl Detection {
         let cloth = particles.bounding_sphere();
         let longest_edge = particles.longest_edge();
         let mut found = std::mem::take(&mut self.found);
-        for (id, collider) in colliders {
-            let (probe, narrow_phase) = self.probe(collider, terms, grid, longest_edge, &cloth);
+        let colliders = std::mem::take(&mut self.colliders);
+        for (id, collider) in &colliders {
+            let (probe, narrow_phase) =
+                self.probe(collider, terms, &self.grid, longest_edge, &cloth);
             found.clear();
             found.scan(particles, &probe);
             // What was looked at stays, so that nothing that touched is forgotten.
@@ -240,13 +283,15 @@ impl Detection {
             let mut all: Vec<u32> = known.chain(found.candidates().iter().copied()).collect();
             all.sort_unstable();
             all.dedup();
-            self.add(*id, collider, narrow_phase, &all, particles, grid);
+            self.hold(*id, collider, narrow_phase, &all, particles);
         }
+        self.colliders = colliders;
         self.found = found;
         for &(id, point) in &self.known {
-            let Some(touch) = self.touches.iter().find(|touch| touch.id == id) else {
+            let Ok(at) = self.touches.binary_search_by_key(&id, |touch| touch.id) else {
                 continue;
             };
+            let touch = &self.touches[at];
             let candidates = &mut self.candidates[touch.candidates.clone()];
             if let Ok(at) =
                 candidates.binary_search_by_key(&point.particle, |candidate| candidate.particle)
@@ -257,40 +302,63 @@ impl Detection {
     }
 
     /// Pushes what is inside of a collider out, at the end of a sub-step. Returns whether anything moved.
+    ///
+    /// Where particles may have moved farther than the margin, by themselves or by a push, all are searched again before
+    /// anything else is done; `others` then adds the colliders with their numbers that were never [added](Self::add), as
+    /// they seemed to be too far away.
     pub fn respond(
         &mut self,
         particles: &mut ClothParticles,
         terms: &Terms,
         substep: SubStep,
+        mut others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
-        let mut farthest = 0.0_f32;
-        for touch in &mut self.touches {
-            let push = match touch.narrow_phase {
-                NarrowPhase::Triangles => push_triangles,
-                NarrowPhase::Auto | NarrowPhase::Particles => push_particles,
+        self.moved += substep.farthest_move;
+        self.moved_now = substep.farthest_move;
+        let mut is_pushed = false;
+        let (mut next, mut from) = (0, Cursor::default());
+        let (mut area, mut volume) = (0.0, 0.0);
+        loop {
+            if self.is_outrun() {
+                others(&mut self.colliders);
+                self.search(particles, terms);
+            }
+            let Some(touch) = self.touches.iter_mut().find(|touch| touch.id >= next) else {
+                return is_pushed;
             };
             let candidates = &mut self.candidates[touch.candidates.clone()];
-            let Found {
-                deepest,
-                farthest_push,
-                area,
-                volume,
-            } = push(
-                particles,
-                candidates,
-                &touch.collider,
-                terms.particle_radius,
-                terms.friction,
-                substep,
-            );
-            touch.deepest = touch.deepest.max(deepest);
+            let collider = &touch.collider;
+            let (found, stopped) = match touch.narrow_phase {
+                NarrowPhase::Triangles => {
+                    let room = self.margin - self.moved;
+                    let course = Course::new(collider, terms, substep);
+                    push_triangles(particles, candidates, &course, from, room)
+                }
+                NarrowPhase::Auto | NarrowPhase::Particles => (
+                    push_particles(particles, candidates, collider, terms, substep),
+                    None,
+                ),
+            };
+            // One may be pushed by several.
+            self.moved += found.farthest_push;
+            self.moved_now += found.farthest_push;
+            is_pushed |= found.farthest_push > 0.0;
+            touch.deepest = touch.deepest.max(found.deepest);
+            area += found.area;
+            volume += found.volume;
+            from = stopped.unwrap_or_default();
+            if stopped.is_some() {
+                next = touch.id;
+                continue;
+            }
             touch.area = touch.area.max(area);
             touch.volume = touch.volume.max(volume);
-            // One may be pushed by several.
-            farthest += farthest_push;
+            (area, volume) = (0.0, 0.0);
+            let Some(after) = touch.id.checked_add(1) else {
+                return is_pushed;
+            };
+            next = after;
         }
-        self.moved += farthest;
-        farthest > 0.0
     }
 
     /// The colliders that may touch.

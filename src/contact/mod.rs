@@ -1,9 +1,11 @@
 //! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
 
 mod collider;
+mod corners;
 mod depth;
 mod detection;
 mod moving;
+mod narrow_phase;
 mod particle;
 mod response;
 mod shape;
@@ -13,8 +15,9 @@ mod tests;
 mod triangle;
 
 pub use collider::ClothCollider;
+pub use corners::meets_triangles;
 pub use depth::deepest_penetration;
 pub use detection::{ContactPoint, Detection, Terms, Touch};
 pub use moving::MovingCollider;
+pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
 pub use shape::ColliderShape;
-pub use surface::{NarrowPhase, PARTICLES_FROM, meets_triangles};

@@ -74,6 +74,31 @@ impl MovingCollider {
         self.travel() + swing
     }
 
+    /// How far its turn alone moves any point of its core in the tick (m): nothing in a ball.
+    pub(super) fn swing(&self) -> f32 {
+        let turn = self.turn.length();
+        if turn > 0.0 {
+            turn * self.shape.core_extent()
+        } else {
+            0.0
+        }
+    }
+
+    /// What its motion from one part of the tick to a later one makes of a point that moves with it (m), and of a
+    /// normal. A ball's normals do not turn with it: it is the same all around.
+    pub(super) fn carry(&self, [from, to]: [f32; 2], point: Vec3, normal: Vec3) -> (Vec3, Vec3) {
+        let (before, after) = (self.pose(from), self.pose(to));
+        let rotation = match self.shape {
+            ColliderShape::Ball { .. } => Quat::IDENTITY,
+            _ => after.rotation * before.rotation.inverse(),
+        };
+        let offset = point - Vec3::from(before.translation);
+        (
+            Vec3::from(after.translation) + rotation * offset,
+            rotation * normal,
+        )
+    }
+
     /// The collider all along its way, inflated by `margin` (m), as what a query searches for among particles of a
     /// radius (m) that are all inside of `cloth`. A ball's is its exact way, a capsule along it.
     ///
@@ -90,7 +115,8 @@ impl MovingCollider {
             | ColliderShape::HalfSpace => {
                 let pose = self.pose(0.5);
                 let (core, radius) = self.shape.core(pose);
-                (core, radius + self.drag(self.beyond(cloth)) / 2.0)
+                // Particles may leave the sphere as far as the margin.
+                (core, radius + self.drag(self.beyond(cloth) + margin) / 2.0)
             }
         };
         Probe {

@@ -4,12 +4,12 @@ use bevy::math::{Isometry3d, Vec3};
 
 use super::{
     MovingCollider,
-    detection::Candidate,
+    detection::{Candidate, Terms},
     response::{Contact, MOST_STEPS, first_touch},
     shape::Nearest,
 };
 use crate::{
-    cloth::{Block, ClothParticles},
+    cloth::{Block, ClothParticles, Slot},
     solver::SubStep,
 };
 
@@ -33,20 +33,20 @@ pub(super) fn push_particles(
     particles: &mut ClothParticles,
     candidates: &mut [Candidate],
     collider: &MovingCollider,
-    particle_radius: f32,
-    friction: f32,
+    terms: &Terms,
     substep: SubStep,
 ) -> Found {
+    let particle_radius = terms.particle_radius;
     let pose = collider.pose(substep.end());
     let centre = Vec3::from(pose.translation);
     let thickness = collider.shape.thickness() + particle_radius;
-    let sweep = Sweep::new(collider, substep, particle_radius, thickness);
+    let sweep = Sweep::new(collider, substep, terms, thickness);
     let mut side = None;
     let mut found = Found::default();
     for index in 0..candidates.len() {
         let candidate = candidates[index];
-        let lane = candidate.lane as usize;
-        let block = &particles.blocks()[candidate.block as usize];
+        let Slot { block, lane } = candidate.slot;
+        let block = &particles.blocks()[block];
         if block.inverse_mass(lane) == 0.0 {
             continue;
         }
@@ -71,8 +71,8 @@ pub(super) fn push_particles(
                 )
             });
             if normal.dot(side) < 0.0 {
-                depth = way_out(collider, pose, position, side, particle_radius);
-                normal = side;
+                let way = way_out(collider, pose, position, side, particle_radius);
+                (normal, depth) = way.map_or((normal, depth), |depth| (side, depth));
             }
         }
         candidates[index].depth = candidate.depth.max(depth.min(thickness));
@@ -90,8 +90,8 @@ pub(super) fn push_particles(
             depth,
             relative,
         }
-        .push(friction);
-        let block = &mut particles.blocks_mut()[candidate.block as usize];
+        .push(terms.friction);
+        let block = &mut particles.blocks_mut()[candidate.slot.block];
         block.set_position(lane, position + push.position);
         block.set_displacement(lane, displacement + push.displacement);
         found.deepest = found.deepest.max(depth.min(thickness));
@@ -111,23 +111,20 @@ struct Sweep<'a> {
     /// How far the collider moves in the sub-step, and any of its points turns (m).
     slide: Vec3,
     swing: f32,
+    is_on: bool,
 }
 
 impl<'a> Sweep<'a> {
-    fn new(
-        collider: &'a MovingCollider,
-        substep: SubStep,
-        particle_radius: f32,
-        thickness: f32,
-    ) -> Self {
+    fn new(collider: &'a MovingCollider, substep: SubStep, terms: &Terms, thickness: f32) -> Self {
         let count = substep.count as f32;
         Self {
             collider,
             substep,
-            particle_radius,
+            particle_radius: terms.particle_radius,
             thickness,
             slide: (collider.to - Vec3::from(collider.from.translation)) / count,
-            swing: collider.drag(f32::INFINITY) / count - collider.travel() / count,
+            swing: collider.swing() / count,
+            is_on: terms.is_swept,
         }
     }
 
@@ -137,7 +134,7 @@ impl<'a> Sweep<'a> {
     fn hit(&self, position: Vec3, displacement: Vec3) -> Option<(Vec3, f32)> {
         let speed = (displacement - self.slide).length() + self.swing;
         // Who came less far than to half of the thickness is still on the side that it came from.
-        if speed <= self.thickness / 2.0 || !speed.is_finite() {
+        if !self.is_on || speed <= self.thickness / 2.0 || !speed.is_finite() {
             return None;
         }
         let start = position - displacement;
@@ -146,17 +143,22 @@ impl<'a> Sweep<'a> {
             let passed = begin + part / self.substep.count as f32;
             self.collider.nearest(passed, start + displacement * part)
         };
-        let tolerance = 1.0e-3 * self.thickness;
-        let touch = self.particle_radius + tolerance;
-        if nearest(0.0).distance < self.particle_radius - tolerance {
+        // From what was so deep already, nobody knows from which side it came.
+        if nearest(0.0).distance < self.particle_radius - self.thickness / 2.0 {
             return None;
         }
-        let part = first_touch(speed, touch, |part| nearest(part).distance)?;
-        let normal = nearest(part).normal;
-        let at = start + displacement * part;
-        let centre = Vec3::from(self.collider.pose(begin).translation);
-        let surface = self.collider.surface_motion(self.substep, centre, at);
-        let depth = (1.0 - part) * normal.dot(surface - displacement);
+        let tolerance = 1.0e-3 * self.thickness;
+        let part = first_touch(speed, self.particle_radius, tolerance, |part| {
+            nearest(part).distance
+        })?;
+        let Nearest { distance, normal } = nearest(part);
+        // Where it would be if it had gone on with the surface, which keeps it in front of all that is convex.
+        let passed = begin + part / self.substep.count as f32;
+        let way = [passed, self.substep.end()];
+        let (carried, normal) = self
+            .collider
+            .carry(way, start + displacement * part, normal);
+        let depth = normal.dot(carried - position) + (self.particle_radius - distance);
         (depth > 0.0).then_some((normal, depth))
     }
 }
@@ -171,7 +173,7 @@ fn side_of(
     particle_radius: f32,
 ) -> Vec3 {
     let inside = candidates.iter().filter_map(|candidate| {
-        let position = blocks[candidate.block as usize].position(candidate.lane as usize);
+        let position = blocks[candidate.slot.block].position(candidate.slot.lane);
         let nearest = collider.shape.nearest(pose, position);
         // Those that were pushed out already are on the surface.
         (nearest.distance < particle_radius + 1.0e-3 * thickness).then_some(nearest.normal)
@@ -179,14 +181,14 @@ fn side_of(
     inside.sum::<Vec3>().normalize_or_zero()
 }
 
-/// How far it is along `side` to the surface (m).
+/// How far it is along `side` to the surface (m), unless it is too far along the inside of a box to tell.
 fn way_out(
     collider: &MovingCollider,
     pose: Isometry3d,
     position: Vec3,
     side: Vec3,
     particle_radius: f32,
-) -> f32 {
+) -> Option<f32> {
     let mut gone = 0.0;
     for _ in 0..MOST_STEPS {
         let depth = particle_radius
@@ -195,9 +197,9 @@ fn way_out(
                 .nearest(pose, position + side * gone)
                 .distance;
         if depth <= 1.0e-6 * gone {
-            break;
+            return Some(gone);
         }
         gone += depth;
     }
-    gone
+    None
 }

@@ -49,17 +49,23 @@ impl Contact {
 /// How many steps are taken along a way towards what may be hit on it.
 pub(super) const MOST_STEPS: u32 = 32;
 
-/// The part of a sub-step, from 0 to 1, after which two surfaces first are as near as `touch` (m), stepping no
-/// farther at a time than can be without meeting (conservative advancement; Mirtich 1996). `distance` is that of the
-/// surfaces when a part has passed (m), `speed` the most that it changes by in the whole sub-step (m).
+/// The part of a sub-step, from 0 to 1, after which two things first are as near as `touch` (m), to a `tolerance` (m)
+/// above it, stepping no farther at a time than can be without coming nearer (conservative advancement; Mirtich
+/// 1996). `distance` is that between them when a part has passed (m), `speed` the most that it changes by in the
+/// whole sub-step (m).
 ///
 /// `None` if they do not meet, or if they pass each other so closely that the steps run out: as they do when what
 /// moves slides along.
-pub(super) fn first_touch(speed: f32, touch: f32, distance: impl Fn(f32) -> f32) -> Option<f32> {
+pub(super) fn first_touch(
+    speed: f32,
+    touch: f32,
+    tolerance: f32,
+    distance: impl Fn(f32) -> f32,
+) -> Option<f32> {
     let mut part = 0.0;
     for _ in 0..MOST_STEPS {
-        let left = distance(part);
-        if left <= touch {
+        let left = distance(part) - touch;
+        if left <= tolerance {
             return Some(part);
         }
         part += left / speed;

@@ -80,6 +80,15 @@ impl ColliderShape {
         }
     }
 
+    /// Distance from the origin to what is farthest from it in the core (m); infinite for a half-space.
+    pub(super) fn core_extent(&self) -> f32 {
+        match *self {
+            Self::Ball { .. } => 0.0,
+            Self::Capsule { half_length, .. } => half_length,
+            Self::Cuboid { .. } | Self::HalfSpace => self.extent(),
+        }
+    }
+
     /// How deep a point may get without being nearer to the other side (m); infinite for a half-space.
     pub fn thickness(&self) -> f32 {
         match *self {

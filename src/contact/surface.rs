@@ -1,271 +1,194 @@
 //! The narrow phase by triangles, for what is so small that it would slip between particles.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::math::Vec3;
 
+pub(super) use super::corners::Course;
 use super::{
-    MovingCollider,
+    corners::{Corners, Touching, triangles_of},
     detection::Candidate,
     particle::Found,
-    response::{Contact, first_touch},
-    triangle::{NearestPoints, area_within, at, nearest},
+    response::{Contact, Push},
+    triangle::{area_within, at},
 };
-use crate::{
-    cloth::{ClothParticles, Layout, Slot},
-    hierarchy::{Core, Probe},
-    solver::SubStep,
-};
+use crate::cloth::ClothParticles;
 
-/// From so many spacings of radius on, a collider is tested against particles, below against triangles.
-///
-/// A ball of radius R that rests between four particles of a square of spacing s dips R − √(R² − s²/2) into it: 6.5 %
-/// of R at 2 s, 2.9 % at 3 s, and falls through below 0.71 s. Where this ratio is from: `cargo bench --profile dev
-/// --bench contact -- triangles`.
-pub const PARTICLES_FROM: f32 = 2.5;
+/// How many triangles a particle may be a corner of, and be pushed by.
+const MOST_TRIANGLES: f32 = 6.0;
 
-/// What a cloth's colliders are tested against. A component of the cloth.
-#[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
-#[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
-pub enum NarrowPhase {
-    /// Triangles for balls and capsules of a radius below [`PARTICLES_FROM`] spacings, else particles.
-    #[default]
-    Auto,
-    /// Particles: exact while the collider is large against the spacing.
-    Particles,
-    /// Triangles, for balls and capsules; boxes and planes are tested against particles all the same.
-    Triangles,
-}
+/// How many times as far as a triangle's point one of its corners is pushed at most. Corners that are all free, with the
+/// masses of a grid, up to four times each other's, go no more than 2.0 times as far.
+const MOST_SHARE: f32 = 2.0;
 
-impl NarrowPhase {
-    /// The choices with their names, for menus.
-    pub const ALL: [(&str, Self); 3] = [
-        ("auto", Self::Auto),
-        ("particles", Self::Particles),
-        ("triangles", Self::Triangles),
-    ];
+/// How often all triangles are gone through at most, while any is hit on a fast way: one that was passed by may have been
+/// moved into the way by another's corners.
+const MOST_PASSES: u32 = 4;
 
-    /// What a collider of `radius` (m) is tested against, on a cloth of a spacing (m).
-    pub fn chosen(self, radius: Option<f32>, spacing: f32) -> Self {
-        match (self, radius) {
-            (Self::Triangles, Some(_)) => Self::Triangles,
-            (Self::Auto, Some(radius)) if radius < PARTICLES_FROM * spacing => Self::Triangles,
-            _ => Self::Particles,
-        }
-    }
-}
-
-/// A triangle's particles at the end of a sub-step.
-struct Corners {
-    slots: [Slot; 3],
-    positions: [Vec3; 3],
-    displacements: [Vec3; 3],
-    inverse_masses: [f32; 3],
-}
-
-impl Corners {
-    fn of(particles: &ClothParticles, slots: [Slot; 3]) -> Self {
-        let block = |slot: Slot| &particles.blocks()[slot.block];
-        Self {
-            slots,
-            positions: slots.map(|slot| block(slot).position(slot.lane)),
-            displacements: slots.map(|slot| block(slot).displacement(slot.lane)),
-            inverse_masses: slots.map(|slot| block(slot).inverse_mass(slot.lane)),
-        }
-    }
-
-    /// When a part of the sub-step has passed.
-    fn when(&self, part: f32) -> [Vec3; 3] {
-        [0, 1, 2].map(|corner| self.positions[corner] - self.displacements[corner] * (1.0 - part))
-    }
-}
-
-/// The two triangles of the cell whose first particle this is, if it begins one.
-fn triangles_of(layout: Layout, particle: u32) -> Option<[[Slot; 3]; 2]> {
-    let (row, column) = (particle / layout.columns, particle % layout.columns);
-    if row + 1 >= layout.rows || column + 1 >= layout.columns {
-        return None;
-    }
-    let [a, b] = [column, column + 1].map(|column| layout.slot(row, column));
-    let [c, d] = [column, column + 1].map(|column| layout.slot(row + 1, column));
-    Some([[a, c, b], [b, c, d]])
+/// What to go on with.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Cursor {
+    pass: u32,
+    /// A cell's first particle, and which of its triangles.
+    at: (u32, usize),
+    /// Whether one was hit on a fast way in this pass.
+    is_swept: bool,
 }
 
 /// Pushes the triangles out of `collider` that it touches or passed through in this sub-step, each by moving its
 /// corners as much as they have a part in the nearest point, and mass allows.
+///
+/// Goes on `from` a triangle. Once a particle may have been pushed farther than there is `room` (m), candidates may be
+/// missing: it stops then, and says with which triangle to go on.
 pub(super) fn push_triangles(
     particles: &mut ClothParticles,
     candidates: &mut [Candidate],
-    collider: &MovingCollider,
-    particle_radius: f32,
-    friction: f32,
-    substep: SubStep,
-) -> Found {
-    let reach = collider.shape.radius().unwrap_or(0.0) + particle_radius;
+    course: &Course,
+    from: Cursor,
+    room: f32,
+) -> (Found, Option<Cursor>) {
+    let reach = course.reach;
     let layout = particles.layout();
     let mut found = Found::default();
-    for candidate in candidates {
-        for slots in triangles_of(layout, candidate.particle)
-            .into_iter()
-            .flatten()
-        {
-            let corners = Corners::of(particles, slots);
-            let Some((touch, depth)) = touch(&corners, collider, reach, substep) else {
+    // The farthest that one triangle has pushed in this pass (m).
+    let mut passed = 0.0_f32;
+    let mut cursor = from;
+    while cursor.pass < MOST_PASSES {
+        for candidate in candidates.iter_mut() {
+            let Some(beside) = candidate.beside else {
                 continue;
             };
-            candidate.depth = candidate.depth.max(depth.min(reach));
-            if depth <= 0.0 {
+            if course.is_beyond(particles, candidate, beside) {
                 continue;
             }
-            let Touching {
-                weights,
-                normal,
-                centre,
-            } = touch;
-            let mobility: f32 = (0..3)
-                .map(|corner| weights[corner] * weights[corner] * corners.inverse_masses[corner])
-                .sum();
-            if mobility == 0.0 {
-                continue;
-            }
-            let point = at(corners.positions, weights);
-            let origin = Vec3::from(collider.pose(substep.end()).translation);
-            let surface = collider.surface_motion(
-                substep,
-                origin,
-                point + normal * (depth - particle_radius),
-            );
-            let relative = at(corners.displacements, weights) - surface;
-            let push = Contact {
-                normal,
-                depth,
-                relative,
-            }
-            .push(friction);
-            for corner in 0..3 {
-                let share = weights[corner] * corners.inverse_masses[corner] / mobility;
-                let Slot { block, lane } = corners.slots[corner];
-                let block = &mut particles.blocks_mut()[block];
-                if share > 0.0 {
-                    block.set_position(lane, corners.positions[corner] + push.position * share);
-                    block.set_displacement(
-                        lane,
-                        corners.displacements[corner] + push.displacement * share,
-                    );
-                    found.farthest_push = found.farthest_push.max(push.position.length() * share);
+            let triangles = triangles_of(layout, candidate.slot, beside);
+            for (which, slots) in triangles.into_iter().enumerate() {
+                if (candidate.particle, which) < cursor.at {
+                    continue;
+                }
+                let corners = Corners::of(particles, slots);
+                let Some((touch, depth)) = course.touch(&corners) else {
+                    continue;
+                };
+                candidate.depth = candidate.depth.max(depth.min(reach));
+                if depth <= 0.0 {
+                    continue;
+                }
+                let pushed = if touch.is_swept {
+                    push_corners(particles, &corners, &touch, course)
+                } else {
+                    push_point(particles, &corners, &touch, depth, course)
+                };
+                if pushed == 0.0 {
+                    continue;
+                }
+                cursor.is_swept |= touch.is_swept;
+                passed = passed.max(pushed);
+                let depth = depth.min(reach);
+                found.deepest = found.deepest.max(depth);
+                if cursor.pass == 0 {
+                    let (area, volume) = cap(corners.positions, touch.centre, reach);
+                    found.area += area;
+                    found.volume += volume;
+                }
+                if found.farthest_push + passed * MOST_TRIANGLES > room {
+                    found.farthest_push += passed * MOST_TRIANGLES;
+                    cursor.at = (candidate.particle, which + 1);
+                    return (found, Some(cursor));
                 }
             }
-            let depth = depth.min(reach);
-            found.deepest = found.deepest.max(depth);
-            let (area, volume) = cap(corners.positions, centre, reach);
-            found.area += area;
-            found.volume += volume;
         }
-    }
-    found
-}
-
-/// Whether a probe meets a triangle of those cells, as the particles lie now. Of a box or a half-space, it does where
-/// it meets the particles themselves.
-pub fn meets_triangles(particles: &ClothParticles, cells: &[u32], probe: &Probe) -> bool {
-    let segment = match probe.core {
-        Core::Point(centre) => [centre; 2],
-        Core::Segment(ends) => ends,
-        Core::Cuboid { .. } | Core::HalfSpace { .. } => return !cells.is_empty(),
-    };
-    let reach = probe.reach() as f32;
-    let triangles = cells
-        .iter()
-        .filter_map(|&cell| triangles_of(particles.layout(), cell));
-    triangles.flatten().any(|slots| {
-        let corners = Corners::of(particles, slots);
-        nearest(corners.positions, segment).offset.length_squared() < reach * reach
-    })
-}
-
-/// Where a triangle touches.
-struct Touching {
-    weights: [f32; 3],
-    normal: Vec3,
-    /// The core's point (m).
-    centre: Vec3,
-}
-
-/// How a triangle lies to the collider at the end of the sub-step, or where it was hit in it; and how far its nearest
-/// point has to go along the normal (m), negative if it is outside.
-fn touch(
-    corners: &Corners,
-    collider: &MovingCollider,
-    reach: f32,
-    substep: SubStep,
-) -> Option<(Touching, f32)> {
-    let count = substep.count as f32;
-    let begin = substep.index as f32 / count;
-    let segment = |part: f32| match collider.shape.core(collider.pose(begin + part / count)).0 {
-        Core::Point(centre) => [centre; 2],
-        Core::Segment(ends) => ends,
-        Core::Cuboid { .. } | Core::HalfSpace { .. } => [Vec3::NAN; 2],
-    };
-    let touching = |nearest: NearestPoints, [start, end]: [Vec3; 2], triangle: [Vec3; 3]| {
-        let (normal, distance) = match nearest.offset.length() {
-            0.0 => (face_normal(triangle, start.midpoint(end)), 0.0),
-            distance => (nearest.offset / distance, distance),
+        found.farthest_push += passed * MOST_TRIANGLES;
+        passed = 0.0;
+        if !cursor.is_swept {
+            break;
+        }
+        cursor = Cursor {
+            pass: cursor.pass + 1,
+            ..Cursor::default()
         };
-        let centre = start.lerp(end, nearest.along);
-        (
-            Touching {
-                weights: nearest.weights,
-                normal,
-                centre,
-            },
-            distance,
-        )
-    };
-    let slide = (collider.to - Vec3::from(collider.from.translation)) / count;
-    let swing = (collider.drag(f32::INFINITY) - collider.travel()) / count;
-    let speeds = corners
-        .displacements
-        .map(|displacement| (displacement - slide).length());
-    let speed = speeds[0].max(speeds[1]).max(speeds[2]) + swing;
-    let at_end = segment(1.0);
-    let nearest_at_end = nearest(corners.positions, at_end);
-    // Most candidates are too far away to have been met.
-    let distance = nearest_at_end.offset.length();
-    if !(distance - speed <= reach) {
-        return None;
     }
-    // What came less far than to half of the radius is still on the side that it came from.
-    if speed > reach / 2.0 && speed.is_finite() {
-        let distance = |part: f32| nearest(corners.when(part), segment(part)).offset.length();
-        let tolerance = 1.0e-3 * reach;
-        if distance(0.0) >= reach - tolerance
-            && let Some(part) = first_touch(speed, reach + tolerance, |part| distance(part) - 0.0)
-        {
-            let (triangle, core) = (corners.when(part), segment(part));
-            let (touch, _) = touching(nearest(triangle, core), core, triangle);
-            let origin = Vec3::from(collider.pose(begin).translation);
-            let surface = collider.surface_motion(substep, origin, at(triangle, touch.weights));
-            let moved = at(corners.displacements, touch.weights);
-            let depth = (1.0 - part) * touch.normal.dot(surface - moved);
-            if depth > 0.0 {
-                return Some((touch, depth));
-            }
-        }
-    }
-    let (touch, distance) = touching(nearest_at_end, at_end, corners.positions);
-    Some((touch, reach - distance))
+    (found, None)
 }
 
-/// Of a triangle that goes through the core's point: across it, away from the core's middle.
-fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
-    let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
-    if normal.dot(a - middle) < 0.0 {
-        -normal
-    } else {
-        normal
+/// Pushes a triangle's nearest point out, by moving its corners as much as they have a part in it, and mass allows.
+/// Returns how far the farthest has moved (m).
+fn push_point(
+    particles: &mut ClothParticles,
+    corners: &Corners,
+    &Touching {
+        weights, normal, ..
+    }: &Touching,
+    depth: f32,
+    &Course {
+        collider,
+        terms,
+        substep,
+        ..
+    }: &Course,
+) -> f32 {
+    let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
+    let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
+    // One that hardly has a part, beside pins, can't make up for them: it would be thrown away.
+    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MOST_SHARE);
+    if mobility == 0.0 {
+        return 0.0;
     }
+    let point = at(corners.positions, weights) + normal * (depth - terms.particle_radius);
+    let origin = Vec3::from(collider.pose(substep.end()).translation);
+    let surface = collider.surface_motion(substep, origin, point);
+    let push = Contact {
+        normal,
+        depth,
+        relative: at(corners.displacements, weights) - surface,
+    }
+    .push(terms.friction);
+    let mut farthest = 0.0_f32;
+    for (corner, part) in parts.into_iter().enumerate() {
+        let share = part / mobility;
+        if share > 0.0 {
+            let push = Push {
+                position: push.position * share,
+                displacement: push.displacement * share,
+            };
+            farthest = farthest.max(corners.push(corner, particles, push));
+        }
+    }
+    farthest
+}
+
+/// Pushes each corner of a triangle that was hit on its way in front of the surface's plane there, which keeps all of
+/// it on its side. Its point alone is not enough: a corner that has hardly a part in it would stay behind, and the
+/// triangle would turn out of a fast collider's way. Returns how far the farthest has moved (m).
+fn push_corners(
+    particles: &mut ClothParticles,
+    corners: &Corners,
+    &Touching { normal, centre, .. }: &Touching,
+    &Course {
+        collider,
+        terms,
+        substep,
+        reach,
+        ..
+    }: &Course,
+) -> f32 {
+    let origin = Vec3::from(collider.pose(substep.end()).translation);
+    let mut farthest = 0.0_f32;
+    for corner in 0..3 {
+        let position = corners.positions[corner];
+        let depth = reach - normal.dot(position - centre);
+        if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
+            continue;
+        }
+        let point = position + normal * (depth - terms.particle_radius);
+        let surface = collider.surface_motion(substep, origin, point);
+        let push = Contact {
+            normal,
+            depth,
+            relative: corners.displacements[corner] - surface,
+        }
+        .push(terms.friction);
+        farthest = farthest.max(corners.push(corner, particles, push));
+    }
+    farthest
 }
 
 /// Area of the triangle inside of a ball (m²), and ∫ depth dA over it (m³) with the mean depth of a cap, half of its

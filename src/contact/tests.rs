@@ -1,1 +1,86 @@
+//! Contact against closed forms, against `f64`, and against brute force.
 
+mod deep;
+mod fast;
+mod moving;
+mod particle;
+mod random;
+mod shapes;
+mod sweep;
+mod time;
+mod triangle;
+mod triangles;
+mod volume;
+
+use bevy::math::{Isometry3d, Vec3};
+
+use super::{Detection, MovingCollider, Terms};
+use crate::{
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles},
+    solver::SubStep,
+};
+
+/// The only sub-step of a tick in which nothing moves by itself.
+const ONLY: SubStep = SubStep {
+    index: 0,
+    count: 1,
+    farthest_move: 0.0,
+};
+
+fn weave(columns: u32, rows: u32, spacing: f32) -> (ClothGrid, ClothParticles) {
+    let grid = Cloth::new(columns, rows, spacing)
+        .grid(Vec3::ONE)
+        .expect("a sound grid");
+    let particles =
+        ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
+    (grid, particles)
+}
+
+/// A tick in which every particle is a candidate of every collider: nothing can be missed.
+fn all_of(
+    colliders: &[MovingCollider],
+    terms: &Terms,
+    grid: &ClothGrid,
+    particles: &ClothParticles,
+) -> Detection {
+    let mut detection = Detection::default();
+    detection.begin(f32::INFINITY);
+    let all: Vec<u32> = (0..particles.len() as u32).collect();
+    let cloth = particles.bounding_sphere();
+    for (id, collider) in colliders.iter().enumerate() {
+        let (_, narrow_phase) = detection.probe(collider, terms, grid, 0.0, &cloth);
+        detection.add(id, collider, narrow_phase, &all, particles, grid);
+    }
+    detection
+}
+
+/// How deep the deepest free particle is inside of a collider when a part of the tick has passed (m).
+fn deepest_at(
+    particles: &ClothParticles,
+    collider: &MovingCollider,
+    part: f32,
+    particle_radius: f32,
+) -> f64 {
+    super::deepest_penetration(
+        particles,
+        &collider.shape,
+        collider.pose(part),
+        particle_radius,
+    )
+}
+
+/// Particles of no grid at rest, of mass 1 kg.
+fn loose(positions: &[Vec3], displacements: &[Vec3]) -> ClothParticles {
+    let mut particles =
+        ClothParticles::new(positions, &vec![1.0; positions.len()]).expect("sound particles");
+    for (index, &displacement) in displacements.iter().enumerate() {
+        particles
+            .set_displacement(index, displacement)
+            .expect("it exists");
+    }
+    particles
+}
+
+fn at(place: Vec3) -> Isometry3d {
+    Isometry3d::from_translation(place)
+}

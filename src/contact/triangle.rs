@@ -32,6 +32,14 @@ pub(super) fn at([a, b, c]: [Vec3; 3], [u, v, w]: [f32; 3]) -> Vec3 {
 /// an edge or the face (Ericson 2005, chapter 5).
 pub(super) fn nearest_to_point([a, b, c]: [Vec3; 3], point: Vec3) -> [f32; 3] {
     let (ab, ac) = (b - a, c - a);
+    let longest = ab
+        .length_squared()
+        .max(ac.length_squared())
+        .max(b.distance_squared(c));
+    // Of a line or a point, the regions are lost in rounding: the nearest of the edges.
+    if ab.cross(ac).length_squared() <= 1.0e-9 * longest * longest {
+        return nearest_of_edges([a, b, c], point);
+    }
     let from_a = point - a;
     let (d1, d2) = (ab.dot(from_a), ac.dot(from_a));
     if d1 <= 0.0 && d2 <= 0.0 {
@@ -67,7 +75,23 @@ pub(super) fn nearest_to_point([a, b, c]: [Vec3; 3], point: Vec3) -> [f32; 3] {
     [1.0 - v - w, v, w]
 }
 
-/// A triangle without area has parts of nothing.
+/// Weights of the point of a triangle's edges that is nearest to `point`.
+fn nearest_of_edges(triangle: [Vec3; 3], point: Vec3) -> [f32; 3] {
+    let mut nearest = ([1.0, 0.0, 0.0], f32::INFINITY);
+    for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+        let along = triangle[to] - triangle[from];
+        let part = ratio((point - triangle[from]).dot(along), along.length_squared());
+        let mut weights = [0.0; 3];
+        (weights[from], weights[to]) = (1.0 - part, part);
+        let distance = at(triangle, weights).distance_squared(point);
+        if distance < nearest.1 {
+            nearest = (weights, distance);
+        }
+    }
+    nearest.0
+}
+
+/// An edge without length has parts of nothing.
 fn ratio(part: f32, whole: f32) -> f32 {
     if whole == 0.0 {
         0.0

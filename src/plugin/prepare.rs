@@ -153,6 +153,7 @@ impl PreparingItem<'_, '_> {
             particle_radius: settings.particle_radius,
             friction: material.friction,
             narrow_phase,
+            ..Terms::default()
         };
         self.tick.reach = self.reach(acceleration.length(), seconds);
         self.look_around();

@@ -13,7 +13,6 @@ use super::{
 };
 use crate::{
     cloth::ClothParticles,
-    contact::MovingCollider,
     solver::{Precision, Stretch, TickStep},
 };
 
@@ -140,28 +139,18 @@ impl IntegratingItem<'_, '_> {
             terms,
             ..
         } = &mut *self.tick;
-        let (frame, grid) = (self.frame, &self.topology.grid);
+        let frame = self.frame;
         solver.advance(&mut self.particles, step, pins, |particles, substep| {
-            if detection.is_outrun(substep) {
+            detection.respond(particles, terms, substep, |numbered| {
                 // Those that were far away may be near now; who is known keeps its number.
-                let is_known = |entity: Entity, near: &[(Entity, MovingCollider)]| {
-                    near.iter().any(|(known, _)| *known == entity)
-                };
                 for (entity, motion) in colliders {
-                    if !is_known(entity, near)
-                        && let Some(collider) = motion.seen_from(frame)
-                    {
+                    let is_known = near.iter().any(|(known, _)| *known == entity);
+                    if !is_known && let Some(collider) = motion.seen_from(frame) {
+                        numbered.push((near.len(), collider));
                         near.push((entity, collider));
                     }
                 }
-                let numbered: Vec<_> = near
-                    .iter()
-                    .map(|(_, collider)| *collider)
-                    .enumerate()
-                    .collect();
-                detection.search_again(particles, &numbered, terms, grid);
-            }
-            detection.respond(particles, terms, substep)
+            })
         })
     }
 }

@@ -295,7 +295,7 @@ fn the_candidates_are_complete() {
                 detection.add(id, &ball, terms.narrow_phase, &everything, &by_hand, grid);
             }
             solver.advance(&mut by_hand, step, &[], |particles, substep| {
-                detection.respond(particles, &terms, substep)
+                detection.respond(particles, &terms, substep, |_| {})
             });
             let touches = detection.touches().iter();
             found += touches

@@ -1,0 +1,234 @@
+//! How a triangle of the cloth lies to a collider, at the end of a sub-step and on the way there.
+
+use bevy::math::Vec3;
+
+use super::{
+    MovingCollider,
+    detection::{Candidate, Terms},
+    response::{Push, first_touch},
+    triangle::{NearestPoints, at, nearest},
+};
+use crate::{
+    cloth::{ClothParticles, Layout, Slot},
+    hierarchy::{Core, Probe},
+    solver::SubStep,
+};
+
+/// A triangle's particles at the end of a sub-step.
+pub(super) struct Corners {
+    slots: [Slot; 3],
+    pub positions: [Vec3; 3],
+    pub displacements: [Vec3; 3],
+    pub inverse_masses: [f32; 3],
+}
+
+impl Corners {
+    pub fn of(particles: &ClothParticles, slots: [Slot; 3]) -> Self {
+        let block = |slot: Slot| &particles.blocks()[slot.block];
+        Self {
+            slots,
+            positions: slots.map(|slot| block(slot).position(slot.lane)),
+            displacements: slots.map(|slot| block(slot).displacement(slot.lane)),
+            inverse_masses: slots.map(|slot| block(slot).inverse_mass(slot.lane)),
+        }
+    }
+
+    /// Moves a corner; returns how far (m).
+    pub fn push(&self, corner: usize, particles: &mut ClothParticles, push: Push) -> f32 {
+        let Slot { block, lane } = self.slots[corner];
+        let block = &mut particles.blocks_mut()[block];
+        block.set_position(lane, self.positions[corner] + push.position);
+        block.set_displacement(lane, self.displacements[corner] + push.displacement);
+        push.position.length()
+    }
+
+    /// When a part of the sub-step has passed.
+    fn when(&self, part: f32) -> [Vec3; 3] {
+        [0, 1, 2].map(|corner| self.positions[corner] - self.displacements[corner] * (1.0 - part))
+    }
+}
+
+/// The two triangles of the cell whose first particle and its right neighbour these are.
+pub(super) fn triangles_of(layout: Layout, a: Slot, b: Slot) -> [[Slot; 3]; 2] {
+    let below = |slot: Slot| Slot {
+        block: slot.block + layout.strip as usize,
+        ..slot
+    };
+    let (c, d) = (below(a), below(b));
+    [[a, c, b], [b, c, d]]
+}
+
+/// Where a triangle touches.
+pub(super) struct Touching {
+    pub weights: [f32; 3],
+    pub normal: Vec3,
+    /// The core's point (m).
+    pub centre: Vec3,
+    /// Whether it was hit on a way farther than half of the reach.
+    pub is_swept: bool,
+}
+
+/// A collider's way through a sub-step, as triangles are tested against it.
+pub(super) struct Course<'a> {
+    pub collider: &'a MovingCollider,
+    pub terms: &'a Terms,
+    pub substep: SubStep,
+    /// How near the core may come (m).
+    pub reach: f32,
+    /// How far it moves in the sub-step, and its turn alone moves any point of its core (m).
+    slide: Vec3,
+    swing: f32,
+    /// The core at the end of the sub-step.
+    at_end: [Vec3; 2],
+}
+
+impl<'a> Course<'a> {
+    pub fn new(collider: &'a MovingCollider, terms: &'a Terms, substep: SubStep) -> Self {
+        let count = substep.count as f32;
+        Self {
+            collider,
+            terms,
+            substep,
+            reach: collider.shape.radius().unwrap_or(0.0) + terms.particle_radius,
+            slide: (collider.to - Vec3::from(collider.from.translation)) / count,
+            swing: collider.swing() / count,
+            at_end: segment(collider, substep.end()),
+        }
+    }
+
+    /// Whether nothing of a cell can have come near in the sub-step: most candidates are too far away.
+    pub fn is_beyond(
+        &self,
+        particles: &ClothParticles,
+        candidate: &Candidate,
+        beside: Slot,
+    ) -> bool {
+        let layout = particles.layout();
+        let below = |slot: Slot| Slot {
+            block: slot.block + layout.strip as usize,
+            ..slot
+        };
+        let four = [candidate.slot, beside, below(candidate.slot), below(beside)];
+        let positions = four.map(|slot| particles.blocks()[slot.block].position(slot.lane));
+        let displacements = four.map(|slot| particles.blocks()[slot.block].displacement(slot.lane));
+        let most = |squares: [f32; 4]| squares.into_iter().fold(0.0, f32::max).sqrt();
+        let edge = most(positions.map(|position| position.distance_squared(positions[0])));
+        let speed =
+            most(displacements.map(|displacement| displacement.distance_squared(self.slide)));
+        let [start, end] = self.at_end;
+        let along = end - start;
+        let part = ((positions[0] - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        let nearest = if part > 0.0 {
+            start + along * part
+        } else {
+            start
+        };
+        let distance = positions[0].distance(nearest);
+        // A little more than rounding. What is not a number is looked at.
+        distance * (1.0 - 1.0e-5) > self.reach + edge + speed + self.swing
+    }
+
+    /// How a triangle lies to the collider at the end of the sub-step, or where it was hit in it; and how far its nearest
+    /// point has to go along the normal (m), negative if it is outside.
+    pub fn touch(&self, corners: &Corners) -> Option<(Touching, f32)> {
+        let reach = self.reach;
+        let count = self.substep.count as f32;
+        let begin = self.substep.index as f32 / count;
+        let segment = |part: f32| segment(self.collider, begin + part / count);
+        let touching = |nearest: NearestPoints, [start, end]: [Vec3; 2], triangle: [Vec3; 3]| {
+            let (normal, distance) = match nearest.offset.length() {
+                0.0 => (face_normal(triangle, start.midpoint(end)), 0.0),
+                distance => (nearest.offset / distance, distance),
+            };
+            let centre = start.lerp(end, nearest.along);
+            (
+                Touching {
+                    weights: nearest.weights,
+                    normal,
+                    centre,
+                    is_swept: false,
+                },
+                distance,
+            )
+        };
+        let speeds = corners
+            .displacements
+            .map(|displacement| (displacement - self.slide).length());
+        let speed = speeds[0].max(speeds[1]).max(speeds[2]) + self.swing;
+        let nearest_at_end = nearest(corners.positions, self.at_end);
+        // Most candidates are too far away to have been met.
+        let distance = nearest_at_end.offset.length();
+        if !(distance - speed <= reach) {
+            return None;
+        }
+        // What came less far than to half of the reach, and is not nearer, is still on the side that it came from.
+        let is_plain = speed <= reach / 2.0 && distance >= reach / 2.0;
+        if self.terms.is_swept && !is_plain && speed.is_finite() {
+            let tolerance = 1.0e-3 * reach;
+            let hit = first_touch(speed, reach, tolerance, |part| {
+                nearest(corners.when(part), segment(part)).offset.length()
+            });
+            if let Some(part) = hit {
+                let (triangle, core) = (corners.when(part), segment(part));
+                let (mut touch, _) = touching(nearest(triangle, core), core, triangle);
+                touch.is_swept = speed > reach / 2.0;
+                // Where it would be if it had gone on with the surface.
+                let way = [begin + part / count, self.substep.end()];
+                (touch.centre, touch.normal) = self.collider.carry(way, touch.centre, touch.normal);
+                let offset = at(corners.positions, touch.weights) - touch.centre;
+                let depth = reach - touch.normal.dot(offset);
+                if depth > 0.0 {
+                    return Some((touch, depth));
+                }
+            }
+        }
+        let (touch, distance) = touching(nearest_at_end, self.at_end, corners.positions);
+        Some((touch, reach - distance))
+    }
+}
+
+/// The core of a ball or a capsule when a part of the tick has passed.
+fn segment(collider: &MovingCollider, part: f32) -> [Vec3; 2] {
+    match collider.shape.core(collider.pose(part)).0 {
+        Core::Point(centre) => [centre; 2],
+        Core::Segment(ends) => ends,
+        Core::Cuboid { .. } | Core::HalfSpace { .. } => [Vec3::NAN; 2],
+    }
+}
+
+/// Of a triangle that goes through the core's point: across it, away from the core's middle.
+fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
+    let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
+    if normal.dot(a - middle) < 0.0 {
+        -normal
+    } else {
+        normal
+    }
+}
+
+/// Whether a probe meets a triangle of those cells, as the particles lie now. Of a box or a half-space, it does where
+/// it meets the particles themselves.
+pub fn meets_triangles(particles: &ClothParticles, cells: &[u32], probe: &Probe) -> bool {
+    let segment = match probe.core {
+        Core::Point(centre) => [centre; 2],
+        Core::Segment(ends) => ends,
+        Core::Cuboid { .. } | Core::HalfSpace { .. } => return !cells.is_empty(),
+    };
+    let reach = probe.reach() as f32;
+    let layout = particles.layout();
+    let triangles = cells.iter().filter_map(|&cell| {
+        let (row, column) = (cell / layout.columns, cell % layout.columns);
+        let begins_cell = row + 1 < layout.rows && column + 1 < layout.columns;
+        begins_cell.then(|| {
+            triangles_of(
+                layout,
+                layout.slot(row, column),
+                layout.slot(row, column + 1),
+            )
+        })
+    });
+    triangles.flatten().any(|slots| {
+        let corners = Corners::of(particles, slots);
+        nearest(corners.positions, segment).offset.length_squared() < reach * reach
+    })
+}
