@@ -53,6 +53,7 @@ fn a_step_does_not_allocate() {
         (&list, NarrowPhase::Triangles),
     ] {
         terms.narrow_phase = narrow_phase;
+        let mut particles = particles.clone();
         let mut solver = Solver::new(springs, &particles);
         let mut detection = Detection::default();
         let mut query = TopDownQuery::default();
@@ -74,7 +75,7 @@ fn a_step_does_not_allocate() {
                     ..Default::default()
                 };
                 let root = tree.root_sphere(&particles, stretch.bound);
-                detection.begin(5.0);
+                detection.begin(50.0);
                 let (probe, against) = detection.probe(&ball, &terms, &grid, 0.2, &root);
                 for (bounds, choice) in bounds.iter_mut().zip(choices) {
                     query.clear();

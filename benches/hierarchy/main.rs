@@ -116,7 +116,7 @@ fn volumes(side: u32) {
         let mut found = [const { Vec::new() }; 3];
         for _ in 0..TURNS {
             found[0].push(seconds(2.0e-4, || {
-                draped.rebuild(black_box(&mut bounds), choice)
+                draped.rebuild(black_box(&mut bounds), choice);
             }));
             found[1].push(seconds(2.0e-4, || {
                 query.clear();

@@ -4,12 +4,12 @@ use bevy::math::Vec3;
 
 use super::{
     MovingCollider,
-    detection::{Candidate, Terms},
+    detection::Terms,
     response::{Push, first_touch},
     triangle::{NearestPoints, at, nearest},
 };
 use crate::{
-    cloth::{ClothParticles, Layout, Slot},
+    cloth::{Block, ClothParticles, Layout, Slot},
     hierarchy::{Core, Probe},
     solver::SubStep,
 };
@@ -97,35 +97,31 @@ impl<'a> Course<'a> {
     }
 
     /// Whether nothing of a cell can have come near in the sub-step: most candidates are too far away.
-    pub fn is_beyond(
-        &self,
-        particles: &ClothParticles,
-        candidate: &Candidate,
-        beside: Slot,
-    ) -> bool {
-        let layout = particles.layout();
-        let below = |slot: Slot| Slot {
-            block: slot.block + layout.strip as usize,
-            ..slot
-        };
-        let four = [candidate.slot, beside, below(candidate.slot), below(beside)];
-        let positions = four.map(|slot| particles.blocks()[slot.block].position(slot.lane));
-        let displacements = four.map(|slot| particles.blocks()[slot.block].displacement(slot.lane));
-        let most = |squares: [f32; 4]| squares.into_iter().fold(0.0, f32::max).sqrt();
-        let edge = most(positions.map(|position| position.distance_squared(positions[0])));
-        let speed =
-            most(displacements.map(|displacement| displacement.distance_squared(self.slide)));
+    #[inline]
+    pub fn is_beyond(&self, blocks: &[Block], strip: usize, a: Slot, b: Slot) -> bool {
+        let first = blocks[a.block].position(a.lane);
+        let (mut edge, mut speed) = (0.0_f32, 0.0_f32);
+        for (block, lane) in [
+            (a.block, a.lane),
+            (b.block, b.lane),
+            (a.block + strip, a.lane),
+            (b.block + strip, b.lane),
+        ] {
+            let block = &blocks[block];
+            edge = edge.max(block.position(lane).distance_squared(first));
+            speed = speed.max(block.displacement(lane).distance_squared(self.slide));
+        }
         let [start, end] = self.at_end;
         let along = end - start;
-        let part = ((positions[0] - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        let part = ((first - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
         let nearest = if part > 0.0 {
             start + along * part
         } else {
             start
         };
-        let distance = positions[0].distance(nearest);
         // A little more than rounding. What is not a number is looked at.
-        distance * (1.0 - 1.0e-5) > self.reach + edge + speed + self.swing
+        let near = (self.reach + edge.sqrt() + speed.sqrt() + self.swing) * (1.0 + 1.0e-5);
+        first.distance_squared(nearest) > near * near
     }
 
     /// How a triangle lies to the collider at the end of the sub-step, or where it was hit in it; and how far its nearest
@@ -158,7 +154,7 @@ impl<'a> Course<'a> {
         let nearest_at_end = nearest(corners.positions, self.at_end);
         // Most candidates are too far away to have been met.
         let distance = nearest_at_end.offset.length();
-        if !(distance - speed <= reach) {
+        if distance.is_nan() || distance - speed > reach {
             return None;
         }
         // What came less far than to half of the reach, and is not nearer, is still on the side that it came from.

@@ -232,8 +232,7 @@ impl Detection {
 
     /// Whether particles may have moved so far that candidates are missing.
     fn is_outrun(&self) -> bool {
-        // Not a number is no less.
-        !(self.moved <= self.margin)
+        self.moved > self.margin || self.moved.is_nan()
     }
 
     /// Searches for the candidates of all colliders again, among the particles as they are.

@@ -56,7 +56,12 @@ pub(super) fn push_triangles(
             let Some(beside) = candidate.beside else {
                 continue;
             };
-            if course.is_beyond(particles, candidate, beside) {
+            if course.is_beyond(
+                particles.blocks(),
+                layout.strip as usize,
+                candidate.slot,
+                beside,
+            ) {
                 continue;
             }
             let triangles = triangles_of(layout, candidate.slot, beside);

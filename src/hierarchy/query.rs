@@ -86,7 +86,7 @@ impl TopDownQuery {
                 self.descend(tree, particles, probe, |level, _, rows, columns| {
                     let radius = bounds.grown(tree.levels[level].rest_radius(rows, columns));
                     V::around(middle(particles, rows, columns), radius).may_reach(probe, reach)
-                })
+                });
             }
             BoundRule::Refit => self.descend(tree, particles, probe, |level, at, _, _| {
                 bounds

@@ -232,15 +232,18 @@ fn a_change_of_substeps_keeps_the_speed() {
     }
 }
 
-/// Neither a huge step nor a change of its length blows a cloth up.
+/// Neither a huge step nor a change of its length blows a cloth up. In steps of seconds, in which a particle falls
+/// hundreds of metres, a cloth may come to lie around the ball in rings that cannot leave it, as nothing passes through
+/// a ball any more: it hangs sound again as soon as that is gone.
 #[test]
 fn huge_and_changing_steps_are_survived() {
     let mut app = app();
     let cloth = app.world_mut().spawn(Cloth::default()).id();
-    app.world_mut().spawn((
+    let ball = (
         ClothCollider::ball(0.4),
         Transform::from_xyz(0.7, -1.0, 0.1),
-    ));
+    );
+    let ball = app.world_mut().spawn(ball).id();
     for seconds in [1.0 / 64.0, 1.0, 1.0 / 1000.0, 10.0, 1.0 / 64.0] {
         app.world_mut()
             .resource_mut::<Time<Fixed>>()
@@ -256,6 +259,7 @@ fn huge_and_changing_steps_are_survived() {
         }
     }
     change::<ClothSettings>(&mut app, cloth, |settings| *settings = default());
+    app.world_mut().despawn(ball);
     tick(&mut app, 64 * 20);
     let stretch = app
         .world()
@@ -263,6 +267,6 @@ fn huge_and_changing_steps_are_survived() {
         .expect("figures")
         .stretch
         .structural;
-    // Draped over the ball it comes to rest at 1.3 %; one that had blown up would be at hundreds.
+    // It comes to rest below 1 %; one that had blown up would be at hundreds.
     assert!(stretch < 0.05, "{stretch}");
 }

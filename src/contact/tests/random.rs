@@ -15,7 +15,7 @@ pub fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// SplitMix64.
+/// By `SplitMix64`.
 pub struct Random(pub u64);
 
 impl Random {

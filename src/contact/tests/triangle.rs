@@ -13,8 +13,8 @@ const SAMPLES: usize = 24;
 
 /// The nearest of a dense net of points of the triangle, and of the segment (m).
 fn sampled(triangle: [Vec3; 3], ends: [Vec3; 2]) -> f64 {
-    let [a, b, c] = triangle.map(|corner| corner.as_dvec3());
-    let [start, end] = ends.map(|end| end.as_dvec3());
+    let [a, b, c] = triangle.map(Vec3::as_dvec3);
+    let [start, end] = ends.map(Vec3::as_dvec3);
     let along = end - start;
     let to_segment = |point: DVec3| {
         let t = ((point - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
@@ -29,7 +29,7 @@ fn sampled(triangle: [Vec3; 3], ends: [Vec3; 2]) -> f64 {
 }
 
 fn longest(triangle: [Vec3; 3]) -> f64 {
-    let [a, b, c] = triangle.map(|corner| corner.as_dvec3());
+    let [a, b, c] = triangle.map(Vec3::as_dvec3);
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 

@@ -216,11 +216,11 @@ impl<const N: usize> Volume for KDop<N> {
 
     #[inline(always)]
     fn unite_lanes(children: [&Self::Lanes; 4], [low, high]: &mut Self::Lanes) {
-        for at in 0..N {
+        for (at, (low, high)) in low.iter_mut().zip(high).enumerate() {
             unite_slab(
                 children.map(|child| (&child[0][at], &child[1][at])),
-                &mut low[at],
-                &mut high[at],
+                low,
+                high,
             );
         }
     }
@@ -234,9 +234,10 @@ impl<const N: usize> Volume for KDop<N> {
     }
 
     fn set_lane(lanes: &mut Self::Lanes, lane: usize, volume: Self) {
-        for at in 0..N {
-            lanes[0][at][lane] = volume.low[at];
-            lanes[1][at][lane] = volume.high[at];
+        for (side, values) in lanes.iter_mut().zip([volume.low, volume.high]) {
+            for (axis, value) in side.iter_mut().zip(values) {
+                axis[lane] = value;
+            }
         }
     }
 }
