@@ -10,7 +10,7 @@ struct TimesReported(usize);
 
 /// Runs a good cloth and ball beside `bad`, which must end with a fault that `is_expected`, reported once; then
 /// mends it, and expects it to be simulated.
-fn expect_fault(
+pub fn expect_fault(
     bad: impl Bundle,
     spoil: impl FnOnce(&mut App, Entity),
     is_expected: fn(&ClothError) -> bool,

@@ -10,5 +10,7 @@ mod precision;
 mod rapier;
 mod rest;
 mod schedule;
+mod search;
+mod shapes;
 mod support;
 mod touch;
