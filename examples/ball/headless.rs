@@ -1,37 +1,20 @@
 //! The same app without a window: as fast as it can, with a report and a picture.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::ExitCode,
-    time::{Duration, Instant},
-};
+use std::{process::ExitCode, time::Instant};
 
-use bevy::{
-    prelude::*,
-    render::{
-        render_resource::TextureFormat,
-        renderer::RenderAdapterInfo,
-        view::screenshot::{Captured, Screenshot, save_to_disk},
-    },
-    time::TimeUpdateStrategy,
-};
+use bevy::prelude::*;
 use bevy_drape::{contact::deepest_penetration, plugin::ClothTopology, prelude::*};
 use bevy_rapier3d::prelude::PhysicsSet;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::{
     scene::{self, Ball, ScenePlugin},
-    view::View,
+    shared::{
+        headless::{Picture, Run, median, print, ticks_in},
+        start::Options,
+        view::View,
+    },
 };
-
-/// Frames that a renderer gets to finish a picture in.
-const FRAMES_FOR_A_PICTURE: usize = 60;
-
-/// Fixed ticks that share one update of the app, and with it one idle frame of the renderer: 0.25 s, the most
-/// that Bevy's virtual time takes at once.
-const TICKS_AN_UPDATE: u64 = 16;
 
 /// What is printed: times are medians over all ticks, the rest is the largest of any tick.
 #[derive(Serialize)]
@@ -59,10 +42,8 @@ struct Report {
     deepest_penetration_mm: f32,
     /// How deep any particle was at the end of a tick, by brute force in f64.
     deepest_left_mm: f64,
-    picture: Option<PathBuf>,
-    /// Why there is no picture.
-    no_picture: Option<String>,
-    adapter: Option<String>,
+    #[serde(flatten)]
+    picture: Picture,
 }
 
 /// What is measured on the way.
@@ -82,10 +63,10 @@ struct Measured {
     deepest_left: f64,
 }
 
-/// Simulates `seconds`, prints the report, and saves `ball.png` in `out` if `view` can draw.
-pub fn run(view: View, seconds: f64, out: &Path, json: bool) -> ExitCode {
+/// Simulates, prints the report, and saves `ball.png` if `view` can draw.
+pub fn run(view: View, options: &Options) -> ExitCode {
     let mut app = App::new();
-    app.add_plugins((view.plugins(), ScenePlugin))
+    app.add_plugins((view.plugins("the ball and the cloth"), ScenePlugin))
         .init_resource::<Measured>()
         .add_systems(
             FixedUpdate,
@@ -98,63 +79,18 @@ pub fn run(view: View, seconds: f64, out: &Path, json: bool) -> ExitCode {
             ),
         )
         .add_systems(FixedLast, look_at_the_worst);
-    app.finish();
-    app.cleanup();
-
-    let timestep = app
-        .world()
-        .resource::<Time<Fixed>>()
-        .timestep()
-        .as_secs_f64();
-    let ticks = (seconds / timestep).round().max(1.0) as u64;
-    let picture_tick = (scene::best_moment(seconds) / timestep).round() as u64;
-    let bar = ProgressBar::new(ticks).with_style(
-        ProgressStyle::with_template("{bar:40} {pos}/{len} ticks, {eta} left")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
+    let ticks = ticks_in(&app, options.seconds).max(1);
+    let picture_tick = ticks_in(&app, scene::best_moment(options.seconds)).clamp(1, ticks);
+    let mut run = Run::new(app, view, ticks);
     let start = Instant::now();
-    let mut drawing = Duration::ZERO;
-    let mut picture = None;
-    let done = |app: &App| app.world().resource::<Measured>().tick_ms.len() as u64;
-    for stop in [picture_tick.clamp(1, ticks), ticks] {
-        while done(&app) < stop {
-            let together = (stop - done(&app)).min(TICKS_AN_UPDATE) as u32;
-            app.insert_resource(TimeUpdateStrategy::FixedTimesteps(together));
-            app.update();
-            bar.set_position(done(&app));
-        }
-        if view == View::Offscreen && picture.is_none() {
-            let start = Instant::now();
-            picture = Some(take_picture(&mut app, out));
-            drawing = start.elapsed();
-        }
-    }
-    bar.finish_and_clear();
-
-    let adapter = app
-        .world()
-        .get_resource::<RenderAdapterInfo>()
-        .map(|info| info.name.clone());
-    let report = report(
-        &mut app,
-        ticks,
-        seconds,
-        (start.elapsed() - drawing).as_secs_f64(),
-        picture,
-        adapter,
-    );
-    if json {
-        match serde_json::to_string(&report) {
-            Ok(text) => println!("{text}"),
-            Err(error) => {
-                eprintln!("The report could not be written as JSON: {error}");
-                return ExitCode::FAILURE;
-            }
-        }
-    } else {
-        print_report(&report);
-    }
-    ExitCode::SUCCESS
+    run.until(picture_tick);
+    let before = Instant::now();
+    let picture = run.take_picture(scene::SHOT, &options.out, "ball.png");
+    let drawing = before.elapsed();
+    run.until(ticks);
+    let wall_seconds = (start.elapsed() - drawing).as_secs_f64();
+    let report = report(&mut run.app, ticks, options.seconds, wall_seconds, picture);
+    print(&report, options.json, print_report)
 }
 
 fn report(
@@ -162,14 +98,8 @@ fn report(
     ticks: u64,
     simulated_seconds: f64,
     wall_seconds: f64,
-    picture: Option<Result<PathBuf, String>>,
-    adapter: Option<String>,
+    picture: Picture,
 ) -> Report {
-    let no_adapter = || Err("no graphics adapter found".into());
-    let (picture, no_picture) = match picture.unwrap_or_else(no_adapter) {
-        Ok(path) => (Some(path), None),
-        Err(why) => (None, Some(why)),
-    };
     let mut cloths = app.world_mut().query::<&ClothTopology>();
     let (particles, springs) = cloths
         .iter(app.world())
@@ -194,8 +124,6 @@ fn report(
         deepest_penetration_mm: 1.0e3 * measured.deepest,
         deepest_left_mm: 1.0e3 * measured.deepest_left,
         picture,
-        no_picture,
-        adapter,
     }
 }
 
@@ -232,56 +160,7 @@ fn print_report(report: &Report) {
         "  deepest penetration  {:.2} mm found within a tick, {:.4} mm left after one",
         report.deepest_penetration_mm, report.deepest_left_mm
     );
-    let picture = match (&report.picture, &report.adapter, &report.no_picture) {
-        (Some(path), Some(adapter), _) => format!("{}, drawn by {adapter}", path.display()),
-        (_, _, Some(why)) => format!("none: {why}"),
-        _ => "none".into(),
-    };
-    println!("  picture              {picture}");
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// Draws one frame into an image and saves it, while time stands still.
-fn take_picture(app: &mut App, out: &Path) -> Result<PathBuf, String> {
-    let path = out.join("ball.png");
-    fs::create_dir_all(out)
-        .map_err(|error| format!("{} could not be made: {error}", out.display()))?;
-    // One left by an earlier run must not pass for this one's.
-    if path.exists() {
-        fs::remove_file(&path)
-            .map_err(|error| format!("{} could not be replaced: {error}", path.display()))?;
-    }
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
-    let target = Image::new_target_texture(1280, 720, TextureFormat::Rgba8UnormSrgb, None);
-    let target = app.world_mut().resource_mut::<Assets<Image>>().add(target);
-    let camera = app
-        .world_mut()
-        .spawn(scene::camera(Some(target.clone())))
-        .id();
-    // A few frames, for assets, pipelines and shadows to be ready.
-    (0..8).for_each(|_| app.update());
-    let screenshot = app
-        .world_mut()
-        .spawn(Screenshot::image(target))
-        .observe(save_to_disk(path.clone()))
-        .id();
-    for _ in 0..FRAMES_FOR_A_PICTURE {
-        app.update();
-        let world = app.world();
-        if world.get_entity(screenshot).is_err() || world.get::<Captured>(screenshot).is_some() {
-            break;
-        }
-    }
-    app.world_mut().despawn(camera);
-    if path.is_file() {
-        Ok(path)
-    } else {
-        Err(format!("{} could not be drawn or saved", path.display()))
-    }
+    println!("  picture              {}", report.picture);
 }
 
 fn start_tick(mut measured: ResMut<Measured>) {

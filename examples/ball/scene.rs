@@ -1,13 +1,14 @@
 //! The cloth, the ball that rapier moves, light, and a floor to cast shadows on.
 
-use bevy::{
-    camera::RenderTarget, core_pipeline::tonemapping::Tonemapping,
-    ecs::schedule::SingleThreadedExecutor, prelude::*,
-};
+use std::f32::consts::FRAC_PI_4;
+
+use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{
     Collider, NoUserData, PhysicsSet, RapierPhysicsPlugin, RigidBody, TimestepMode, Velocity,
 };
+
+use crate::shared::stage::{Shot, StagePlugin};
 
 /// Particles along either side, as in the paper.
 const PARTICLES: u32 = 16;
@@ -37,39 +38,24 @@ impl Plugin for ScenePlugin {
             .add_plugins((
                 RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
                 DrapePlugins::default(),
+                StagePlugin {
+                    has_floor: true,
+                    light_from: Vec3::new(4.0, 8.0, 3.0),
+                },
             ))
-            // A tick is one chain of short systems: waking threads for each would cost as much as they do.
-            .edit_schedule(FixedUpdate, |schedule| {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            })
-            .insert_resource(ClearColor(Color::srgb(0.87, 0.91, 0.95)))
-            .insert_resource(GlobalAmbientLight {
-                brightness: 700.0,
-                ..default()
-            })
-            .add_systems(Startup, (spawn_surroundings, spawn_ball, spawn_cloth))
+            .add_systems(Startup, (spawn_ball, spawn_cloth))
             .add_systems(FixedFirst, remember_ball)
             .add_systems(FixedUpdate, drive_ball.before(PhysicsSet::SyncBackend))
             .add_systems(Update, smooth_ball);
     }
 }
 
-/// The camera of either view, with its image if it has one.
-pub fn camera(target: Option<Handle<Image>>) -> impl Bundle {
-    let target = target.map_or_else(RenderTarget::default, |image| {
-        RenderTarget::Image(image.into())
-    });
-    (
-        Camera3d::default(),
-        target,
-        // Needs no look-up table, unlike Bevy's default.
-        Tonemapping::AcesFitted,
-        Transform::from_xyz(5.2, 2.9, 2.75).looking_at(FOCUS, Vec3::Y),
-    )
-}
-
-/// What the camera looks at.
-pub const FOCUS: Vec3 = Vec3::new(0.0, 1.95, 0.2);
+/// The whole cloth, a little from the side.
+pub const SHOT: Shot = Shot {
+    from: Vec3::new(5.2, 2.9, 2.75),
+    focus: Vec3::new(0.0, 1.95, 0.2),
+    fov: FRAC_PI_4,
+};
 
 /// When the ball last is this far past the cloth's plane, within `seconds` of simulation: the cloth is well
 /// wrapped around it.
@@ -181,28 +167,4 @@ fn smooth_ball(
             transform.translation = back * (1.0 - time.overstep_fraction());
         }
     }
-}
-
-fn spawn_surroundings(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    commands.spawn((
-        Name::new("floor"),
-        Mesh3d(meshes.add(Plane3d::default().mesh().size(40.0, 40.0))),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: Color::srgb(0.36, 0.38, 0.42),
-            perceptual_roughness: 0.95,
-            ..default()
-        })),
-    ));
-    commands.spawn((
-        DirectionalLight {
-            illuminance: 7_000.0,
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_xyz(4.0, 8.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
 }

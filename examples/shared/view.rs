@@ -26,8 +26,8 @@ pub enum View {
 }
 
 impl View {
-    /// Bevy's plugins for this view.
-    pub fn plugins(self) -> PluginGroupBuilder {
+    /// Bevy's plugins for this view; a window has a title.
+    pub fn plugins(self, title: &str) -> PluginGroupBuilder {
         let log = LogPlugin {
             // Without a renderer, Bevy's own plugins complain that there is none.
             filter: match self {
@@ -40,7 +40,7 @@ impl View {
         let plugins = DefaultPlugins.set(log);
         if self == Self::Window {
             let window = Window {
-                title: "bevy_drape: the ball and the cloth".into(),
+                title: format!("bevy_drape: {title}"),
                 ..default()
             };
             return plugins.set(WindowPlugin {
@@ -72,7 +72,7 @@ impl View {
 
     /// Builds the plugins: panics, or worse, where a display or an adapter is missing.
     pub fn try_out(self) {
-        App::new().add_plugins(self.plugins());
+        App::new().add_plugins(self.plugins("trying out"));
     }
 
     /// Whether [`try_out`](Self::try_out) goes well. Asked of another process, since neither winit nor wgpu

@@ -1,0 +1,175 @@
+//! An example without a window: as fast as it can, with a report and a picture.
+
+use std::{
+    fmt, fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Duration,
+};
+
+use bevy::{
+    prelude::*,
+    render::{
+        render_resource::TextureFormat,
+        renderer::RenderAdapterInfo,
+        view::screenshot::{Captured, Screenshot, save_to_disk},
+    },
+    time::TimeUpdateStrategy,
+};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::{stage::Shot, view::View};
+
+/// Frames that a renderer gets to finish a picture in.
+const FRAMES_FOR_A_PICTURE: usize = 60;
+
+/// Fixed ticks that share one update of the app, and with it one idle frame of the renderer: 0.25 s, the most
+/// that Bevy's virtual time takes at once.
+const TICKS_AN_UPDATE: u64 = 16;
+
+/// An app and how far it has come.
+pub struct Run {
+    pub app: App,
+    view: View,
+    done: u64,
+    bar: ProgressBar,
+}
+
+impl Run {
+    /// Of an app with all its plugins and systems, for so many ticks.
+    pub fn new(mut app: App, view: View, ticks: u64) -> Self {
+        app.finish();
+        app.cleanup();
+        let bar = ProgressBar::new(ticks).with_style(
+            ProgressStyle::with_template("{bar:40} {pos}/{len} ticks, {eta} left")
+                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        Self {
+            app,
+            view,
+            done: 0,
+            bar,
+        }
+    }
+
+    /// Goes on until so many ticks are done.
+    pub fn until(&mut self, ticks: u64) {
+        while self.done < ticks {
+            let together = (ticks - self.done).min(TICKS_AN_UPDATE) as u32;
+            self.app
+                .insert_resource(TimeUpdateStrategy::FixedTimesteps(together));
+            self.app.update();
+            let time = self.app.world().resource::<Time<Fixed>>();
+            self.done = ticks_in(&self.app, time.elapsed_secs_f64());
+            self.bar.set_position(self.done);
+        }
+    }
+
+    /// Draws one frame into an image and saves it, while time stands still.
+    pub fn take_picture(&mut self, shot: Shot, out: &Path, file: &str) -> Picture {
+        self.bar.finish_and_clear();
+        let drawn = if self.view == View::Offscreen {
+            draw(&mut self.app, shot, out, file)
+        } else {
+            Err("no graphics adapter found".into())
+        };
+        let adapter = self.app.world().get_resource::<RenderAdapterInfo>();
+        let (picture, no_picture) = match drawn {
+            Ok(path) => (Some(path), None),
+            Err(why) => (None, Some(why)),
+        };
+        Picture {
+            picture,
+            no_picture,
+            adapter: adapter.map(|info| info.name.clone()),
+        }
+    }
+}
+
+/// Fixed ticks in so many seconds.
+pub fn ticks_in(app: &App, seconds: f64) -> u64 {
+    let timestep = app.world().resource::<Time<Fixed>>().timestep();
+    (seconds / timestep.as_secs_f64()).round() as u64
+}
+
+/// What became of the picture.
+#[derive(Serialize, Default)]
+pub struct Picture {
+    picture: Option<PathBuf>,
+    /// Why there is no picture.
+    no_picture: Option<String>,
+    adapter: Option<String>,
+}
+
+impl fmt::Display for Picture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.picture, &self.adapter, &self.no_picture) {
+            (Some(path), Some(adapter), _) => write!(f, "{}, drawn by {adapter}", path.display()),
+            (_, _, Some(why)) => write!(f, "none: {why}"),
+            _ => write!(f, "none"),
+        }
+    }
+}
+
+fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, String> {
+    let path = out.join(file);
+    fs::create_dir_all(out)
+        .map_err(|error| format!("{} could not be made: {error}", out.display()))?;
+    // One left by an earlier run must not pass for this one's.
+    if path.exists() {
+        fs::remove_file(&path)
+            .map_err(|error| format!("{} could not be replaced: {error}", path.display()))?;
+    }
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    let target = Image::new_target_texture(1280, 720, TextureFormat::Rgba8UnormSrgb, None);
+    let target = app.world_mut().resource_mut::<Assets<Image>>().add(target);
+    let camera = app
+        .world_mut()
+        .spawn(shot.camera(Some(target.clone())))
+        .id();
+    // A few frames, for assets, pipelines and shadows to be ready.
+    (0..8).for_each(|_| app.update());
+    let screenshot = app
+        .world_mut()
+        .spawn(Screenshot::image(target))
+        .observe(save_to_disk(path.clone()))
+        .id();
+    for _ in 0..FRAMES_FOR_A_PICTURE {
+        app.update();
+        let world = app.world();
+        if world.get_entity(screenshot).is_err() || world.get::<Captured>(screenshot).is_some() {
+            break;
+        }
+    }
+    app.world_mut().despawn(camera);
+    if path.is_file() {
+        Ok(path)
+    } else {
+        Err(format!("{} could not be drawn or saved", path.display()))
+    }
+}
+
+/// Prints a report, for a program to read or for a person.
+pub fn print<R: Serialize>(report: &R, json: bool, as_text: fn(&R)) -> ExitCode {
+    if !json {
+        as_text(report);
+        return ExitCode::SUCCESS;
+    }
+    match serde_json::to_string(report) {
+        Ok(text) => {
+            println!("{text}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("The report could not be written as JSON: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The value in the middle; 0 of none.
+pub fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,7 @@
+//! What the examples share: options, the window with its keys, the run without one, light and floor.
+
+pub mod headless;
+pub mod stage;
+pub mod start;
+pub mod view;
+pub mod window;

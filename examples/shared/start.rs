@@ -1,0 +1,74 @@
+//! The options of every example, and the choice between a window and none.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use clap::{CommandFactory, FromArgMatches, Parser};
+
+use super::view::View;
+
+/// Opens a window where it can, and runs headless otherwise.
+#[derive(Parser)]
+pub struct Options {
+    /// Run without a window, as fast as possible, and print a report
+    #[arg(long)]
+    headless: bool,
+    /// Headless: how long to simulate (s)
+    #[arg(long, value_name = "S", default_value_t = 12.0, value_parser = seconds)]
+    pub seconds: f64,
+    /// Headless: folder that the picture is saved in, made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Headless: print the report as one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Only try whether this view can be had; what the program asks of itself
+    #[arg(long, hide = true)]
+    probe: Option<View>,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("expected a number of seconds from 0.1 to 3600".into()),
+    }
+}
+
+/// An example.
+pub struct Example {
+    pub name: &'static str,
+    pub about: &'static str,
+    /// How long it simulates without a window, unless asked (s).
+    pub seconds: &'static str,
+    pub window: fn() -> ExitCode,
+    pub headless: fn(View, &Options) -> ExitCode,
+}
+
+impl Example {
+    /// Does as the command line says.
+    pub fn run(self) -> ExitCode {
+        let command = Options::command()
+            .name(self.name)
+            .about(self.about)
+            .mut_arg("seconds", |seconds| seconds.default_value(self.seconds));
+        let options = match Options::from_arg_matches(&command.get_matches()) {
+            Ok(options) => options,
+            Err(error) => error.exit(),
+        };
+        if let Some(view) = options.probe {
+            view.try_out();
+            return ExitCode::SUCCESS;
+        }
+        if !options.headless {
+            if View::Window.can_be_had() {
+                return (self.window)();
+            }
+            eprintln!("No window can be opened here: running headless.");
+        }
+        let view = if View::Offscreen.can_be_had() {
+            View::Offscreen
+        } else {
+            View::Nothing
+        };
+        (self.headless)(view, &options)
+    }
+}
