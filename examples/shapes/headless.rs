@@ -1,0 +1,232 @@
+//! The same app without a window: a report of who touched what, and a picture.
+
+use std::process::ExitCode;
+
+use bevy::{ecs::query::QueryData, platform::collections::HashMap, prelude::*};
+use bevy_drape::{contact::deepest_penetration, plugin::ClothContact, prelude::*};
+use serde::Serialize;
+
+use crate::{
+    scene::{self, ScenePlugin},
+    shared::{
+        headless::{Picture, Run, median, print, ticks_in},
+        start::Options,
+        view::View,
+    },
+};
+
+/// What is printed.
+#[derive(Serialize)]
+struct Report {
+    ticks: u64,
+    simulated_seconds: f64,
+    particles: usize,
+    /// Each way that the cloth was searched, with the reason and the number of ticks.
+    searches: Vec<(String, u64)>,
+    /// Medians over the ticks that had something near, and were not asleep.
+    colliders_near: f64,
+    nodes_visited: f64,
+    particles_tested: f64,
+    rebuild_ms: f64,
+    query_ms: f64,
+    solver_ms: f64,
+    /// Searches that were done again within a tick, in all.
+    requeries: u64,
+    largest_stretch_percent: f32,
+    shapes: Vec<Shape>,
+    #[serde(flatten)]
+    picture: Picture,
+}
+
+/// One collider's contact.
+#[derive(Serialize, Default, Clone)]
+struct Shape {
+    name: String,
+    /// What it was tested against.
+    narrow_phase: &'static str,
+    /// Particles, or cells of two triangles: the most of any tick, and those of the last.
+    most: usize,
+    last: usize,
+    /// The deepest found in a sub-step, before it was pushed out (mm).
+    deepest_found_mm: f32,
+    /// The deepest that any particle was as a tick ended, by brute force in f64 (mm).
+    deepest_left_mm: f64,
+    /// What the cloth covers of it: the largest area inside at the end of a sub-step (cm²), and ∫ depth dA (cm³).
+    area_cm2: f32,
+    volume_cm3: f32,
+}
+
+/// What is measured on the way.
+#[derive(Resource, Default)]
+struct Measured {
+    searches: Vec<(String, u64)>,
+    shapes: HashMap<Entity, Shape>,
+    near: Vec<f64>,
+    visited: Vec<f64>,
+    tested: Vec<f64>,
+    rebuild_ms: Vec<f64>,
+    query_ms: Vec<f64>,
+    solver_ms: Vec<f64>,
+    requeries: u64,
+    largest_stretch: f32,
+}
+
+/// Simulates, prints the report, and saves `shapes.png` if `view` can draw.
+pub fn run(view: View, options: &Options) -> ExitCode {
+    let mut app = App::new();
+    app.add_plugins((view.plugins("a cloth over every shape"), ScenePlugin))
+        .init_resource::<Measured>()
+        .add_systems(FixedLast, measure);
+    let ticks = ticks_in(&app, options.seconds).max(1);
+    let mut run = Run::new(app, view, ticks);
+    run.until(ticks);
+    let picture = run.take_picture(scene::SHOT, &options.out, "shapes.png");
+
+    let world = run.app.world_mut();
+    let mut cloths = world.query::<&ClothParticles>();
+    let particles = cloths.iter(world).map(ClothParticles::len).sum();
+    let mut measured = world.resource_mut::<Measured>();
+    let mut shapes: Vec<Shape> = measured.shapes.values().cloned().collect();
+    shapes.sort_by(|a, b| a.name.cmp(&b.name));
+    let report = Report {
+        ticks,
+        simulated_seconds: options.seconds,
+        particles,
+        searches: measured.searches.clone(),
+        colliders_near: median(&mut measured.near),
+        nodes_visited: median(&mut measured.visited),
+        particles_tested: median(&mut measured.tested),
+        rebuild_ms: median(&mut measured.rebuild_ms),
+        query_ms: median(&mut measured.query_ms),
+        solver_ms: median(&mut measured.solver_ms),
+        requeries: measured.requeries,
+        largest_stretch_percent: 100.0 * measured.largest_stretch,
+        shapes,
+        picture,
+    };
+    print(&report, options.json, print_report)
+}
+
+fn print_report(report: &Report) {
+    println!("A cloth over every shape, headless");
+    println!(
+        "  cloth          {} particles, stretched by {:.2} % at most",
+        report.particles, report.largest_stretch_percent
+    );
+    println!(
+        "  ticks          {} ({} s simulated)",
+        report.ticks, report.simulated_seconds
+    );
+    for (how, ticks) in &report.searches {
+        println!("  search         {ticks} ticks: {how}");
+    }
+    println!(
+        "  a search       {} colliders near, {} nodes visited, {} particles tested (medians)",
+        report.colliders_near, report.nodes_visited, report.particles_tested
+    );
+    println!(
+        "  searched again {} times within a tick, for particles that outran it",
+        report.requeries
+    );
+    println!(
+        "  a tick         {:.4} ms to refit, {:.4} ms to search, {:.4} ms to solve (medians)",
+        report.rebuild_ms, report.query_ms, report.solver_ms
+    );
+    println!(
+        "  {:<14} {:>10} {:>6} {:>6} {:>10} {:>10} {:>10} {:>10}",
+        "touched", "by", "most", "last", "found, mm", "left, mm", "area, cm²", "cut, cm³"
+    );
+    for shape in &report.shapes {
+        println!(
+            "  {:<14} {:>10} {:>6} {:>6} {:>10.2} {:>10.5} {:>10.1} {:>10.3}",
+            shape.name,
+            shape.narrow_phase,
+            shape.most,
+            shape.last,
+            shape.deepest_found_mm,
+            shape.deepest_left_mm,
+            shape.area_cm2,
+            shape.volume_cm3
+        );
+    }
+    println!("  picture        {}", report.picture);
+}
+
+#[derive(QueryData)]
+struct Measuring {
+    stats: &'static ClothStats,
+    contacts: &'static ClothContacts,
+    frame: &'static ClothFrame,
+    particles: &'static ClothParticles,
+    settings: &'static ClothSettings,
+}
+
+fn measure(
+    cloths: Query<Measuring>,
+    colliders: Query<(Entity, &Name, &Transform, &ClothCollider)>,
+    mut measured: ResMut<Measured>,
+) {
+    let measured = &mut *measured;
+    for cloth in &cloths {
+        measured.count_search(cloth.stats);
+        if cloth.stats.colliders_near > 0 && !cloth.stats.is_asleep {
+            measured.add(cloth.stats);
+        }
+        for (entity, name, transform, collider) in &colliders {
+            let shape = measured.shapes.entry(entity).or_insert_with(|| Shape {
+                name: name.to_string(),
+                narrow_phase: "-",
+                ..default()
+            });
+            shape.last = 0;
+            if let Some(contact) = cloth.contacts.with(entity) {
+                shape.see(contact);
+            }
+            let pose = cloth.frame.isometry().inverse() * transform.to_isometry();
+            if let Ok(solid) = collider.scaled(transform.scale) {
+                let radius = cloth.settings.particle_radius;
+                let left = deepest_penetration(cloth.particles, &solid, pose, radius);
+                shape.deepest_left_mm = shape.deepest_left_mm.max(1.0e3 * left);
+            }
+        }
+    }
+}
+
+impl Measured {
+    fn count_search(&mut self, stats: &ClothStats) {
+        let how = if stats.search == SearchMethod::Auto {
+            format!("none, {}", stats.reason)
+        } else {
+            format!("{} ({})", stats.search, stats.reason)
+        };
+        match self.searches.iter_mut().find(|(known, _)| *known == how) {
+            Some((_, ticks)) => *ticks += 1,
+            None => self.searches.push((how, 1)),
+        }
+    }
+
+    fn add(&mut self, stats: &ClothStats) {
+        self.near.push(stats.colliders_near as f64);
+        self.visited.push(stats.nodes_visited as f64);
+        self.tested.push(stats.leaf_tests as f64);
+        self.rebuild_ms.push(stats.rebuild_ms);
+        self.query_ms.push(stats.query_ms);
+        self.solver_ms.push(stats.integrate_ms);
+        self.requeries += u64::from(stats.requeries);
+        self.largest_stretch = self.largest_stretch.max(stats.stretch.structural);
+    }
+}
+
+impl Shape {
+    fn see(&mut self, contact: &ClothContact) {
+        let is_it = |(_, each): &&(&'static str, NarrowPhase)| *each == contact.narrow_phase;
+        let by = NarrowPhase::ALL.iter().find(is_it);
+        self.narrow_phase = by.map_or("-", |(name, _)| name);
+        self.last = contact.particles;
+        self.most = self.most.max(contact.particles);
+        let found = 1.0e3 * contact.deepest_penetration;
+        self.deepest_found_mm = self.deepest_found_mm.max(found);
+        self.area_cm2 = self.area_cm2.max(1.0e4 * contact.area);
+        self.volume_cm3 = self.volume_cm3.max(1.0e6 * contact.volume);
+    }
+}

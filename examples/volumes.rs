@@ -1,0 +1,267 @@
+//! The same cloth and the same ball six times, searched by each kind of volume: sphere, AABB, OBB, and k-DOPs of 14,
+//! 18 and 26 faces. One level of the tree is drawn: red volumes touch the ball or may do so within the tick, green
+//! ones were looked at and nothing touches them, and faint ones were never looked at, for what is above them is green.
+//!
+//! Each cloth has a `SearchMethod` and a `ShowClothGizmos`; the labels are Bevy's text gizmos, with the figures of
+//! `ClothStats`. The motion is the same in all six, to the last bit.
+//!
+//! ```sh
+//! cargo run --example volumes               # a window, or a report where there is none
+//! cargo run --example volumes -- --headless # a report and a picture
+//! ```
+//!
+//! | control | what it does |
+//! |---|---|
+//! | left drag, right drag, wheel | orbit, pan, zoom |
+//! | Space | pause and go on |
+//! | N | single step, while paused |
+//! | L | next level of the tree |
+//! | G | springs on and off |
+//! | B | each cloth's next way to search: all particles, a tree of some volume and rule, what is best |
+//! | C | contact by particles or triangles, or as the ball's size asks for |
+//! | M | next material |
+//! | R | new cloths |
+//! | P | panel on and off |
+
+#[path = "shared/mod.rs"]
+mod shared;
+
+use std::{f32::consts::TAU, process::ExitCode};
+
+use bevy::{color::palettes::css, light::NotShadowCaster, prelude::*};
+use bevy_drape::prelude::*;
+use serde::Serialize;
+
+use crate::shared::{
+    headless::{Picture, Run, median, print, ticks_in},
+    stage::{Shot, StagePlugin},
+    start::{Example, Options},
+    view::View,
+    window,
+};
+
+/// Particles along either side of a cloth, and the distance between them (m). This and all places are sums of few powers
+/// of two, so that the cloths differ by nothing, not even by rounding.
+const PARTICLES: u32 = 32;
+const SPACING: f32 = 3.0 / 64.0;
+/// The level that is drawn first: patches of 4 × 4 particles.
+const LEVEL: usize = 3;
+/// The ball's radius (m).
+const RADIUS: f32 = 0.3;
+/// Distance between the cloths (m).
+const PITCH: Vec2 = Vec2::new(2.5, 2.25);
+
+const SHOT: Shot = Shot {
+    from: Vec3::new(-2.6, 1.6, 12.0),
+    focus: Vec3::new(0.0, 0.12, 0.0),
+    fov: 0.375,
+};
+
+struct ScenePlugin;
+
+impl Plugin for ScenePlugin {
+    fn build(&self, app: &mut App) {
+        let stage = StagePlugin {
+            has_floor: false,
+            light_from: Vec3::new(4.0, 8.0, 3.0),
+        };
+        app.add_plugins((stage, DrapePlugins::default()))
+            .insert_resource(ClearColor(Color::srgb(0.1, 0.11, 0.13)))
+            .add_systems(Startup, spawn_panels)
+            .add_systems(FixedUpdate, swing.before(ClothSystems::Prepare))
+            .add_systems(Update, write_labels);
+    }
+}
+
+/// Where a ball swings.
+#[derive(Component)]
+struct Swing(Vec3);
+
+fn spawn_panels(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut store: ResMut<GizmoConfigStore>,
+) {
+    let (config, look) = store.config_mut::<ClothGizmos>();
+    config.line.width = 1.6;
+    look.unvisited = Color::srgba(0.5, 0.6, 0.7, 0.12);
+    let cloth_material = materials.add(StandardMaterial {
+        // The ball, behind, is seen through it.
+        base_color: Color::srgba(0.33, 0.43, 0.72, 0.6),
+        alpha_mode: AlphaMode::Blend,
+        perceptual_roughness: 0.9,
+        double_sided: true,
+        cull_mode: None,
+        ..default()
+    });
+    let ball_material = materials.add(Color::srgb(0.95, 0.6, 0.2));
+    let ball_mesh = meshes.add(Sphere::new(RADIUS).mesh().uv(64, 32));
+    let width = SPACING * (PARTICLES - 1) as f32;
+    for (place, (_, volume)) in BoundingVolume::ALL.into_iter().enumerate() {
+        let (row, column) = ((place / 3) as f32, (place % 3) as f32);
+        let middle = Vec3::new((column - 1.0) * PITCH.x, (0.5 - row) * PITCH.y, 0.0);
+        commands.spawn((
+            Name::new(volume.name()),
+            Cloth::new(PARTICLES, PARTICLES, SPACING),
+            SearchMethod::Tree(volume, BoundRule::Refit),
+            ShowClothGizmos::level(LEVEL),
+            MeshMaterial3d(cloth_material.clone()),
+            NotShadowCaster,
+            Transform::from_translation(middle + Vec3::new(-width / 2.0, width / 2.0, 0.0)),
+        ));
+        let rest = middle + Vec3::new(0.125, -0.1875, 0.0);
+        commands.spawn((
+            ClothCollider::ball(RADIUS),
+            Swing(rest),
+            Mesh3d(ball_mesh.clone()),
+            MeshMaterial3d(ball_material.clone()),
+            Transform::from_translation(rest + Vec3::NEG_Z),
+        ));
+    }
+}
+
+/// From behind into the cloth and back, every six seconds.
+fn swing(mut balls: Query<(&Swing, &mut Transform)>, time: Res<Time>) {
+    let angle = TAU * time.elapsed_secs() / 6.0;
+    for (swing, mut transform) in &mut balls {
+        transform.translation = swing.0 + Vec3::NEG_Z * (0.4 + 0.5 * angle.cos());
+    }
+}
+
+fn write_labels(
+    cloths: Query<(&Transform, &SearchMethod, &ClothStats), With<Cloth>>,
+    mut gizmos: Gizmos,
+) {
+    let width = SPACING * (PARTICLES - 1) as f32;
+    for (transform, method, stats) in &cloths {
+        let mut write = |text: &str, size: f32, up: f32, color: Color| {
+            let place = transform.translation + Vec3::new(width / 2.0, up, 0.0);
+            gizmos.text(
+                Isometry3d::from_translation(place),
+                text,
+                size,
+                Vec2::ZERO,
+                color,
+            );
+        };
+        let name = method.to_string();
+        write(&name, 0.13, 0.28, Color::WHITE);
+        let figures = format!("{} nodes visited", stats.nodes_visited);
+        write(&figures, 0.09, 0.12, css::LIGHT_GRAY.into());
+    }
+}
+
+/// What is printed of one cloth: the most of any tick, and medians over those in which it was searched.
+#[derive(Serialize, Default)]
+struct Row {
+    search: String,
+    nodes_visited: f64,
+    particles_tested: f64,
+    rebuild_ms: f64,
+    query_ms: f64,
+}
+
+#[derive(Serialize)]
+struct Report {
+    ticks: u64,
+    particles: u32,
+    cloths: Vec<Row>,
+    /// Whether all cloths ended the same, bit by bit.
+    same: bool,
+    #[serde(flatten)]
+    picture: Picture,
+}
+
+/// Nodes, particles, and the times of refit and search (ms).
+#[derive(Component, Default)]
+struct Measured([Vec<f64>; 4]);
+
+fn measure(mut cloths: Query<(&ClothStats, &mut Measured)>) {
+    for (stats, mut measured) in &mut cloths {
+        if stats.leaf_tests > 0 {
+            let figures = [
+                stats.nodes_visited as f64,
+                stats.leaf_tests as f64,
+                stats.rebuild_ms,
+                stats.query_ms,
+            ];
+            for (all, figure) in measured.0.iter_mut().zip(figures) {
+                all.push(figure);
+            }
+        }
+    }
+}
+
+fn headless(view: View, options: &Options) -> ExitCode {
+    let mut app = App::new();
+    app.add_plugins((view.plugins("volumes"), ScenePlugin))
+        .register_required_components::<Cloth, Measured>()
+        .add_systems(FixedLast, measure);
+    let ticks = ticks_in(&app, options.seconds).max(1);
+    let mut run = Run::new(app, view, ticks);
+    run.until(ticks);
+    let picture = run.take_picture(SHOT, &options.out, "volumes.png");
+    let world = run.app.world_mut();
+    let mut cloths = world.query::<(&SearchMethod, &mut Measured, &ClothParticles)>();
+    let mut first: Option<Vec<Vec3>> = None;
+    let mut same = true;
+    let mut rows = Vec::new();
+    for (method, mut measured, particles) in cloths.iter_mut(world) {
+        let [nodes, tested, rebuild, query] = &mut measured.0;
+        let most = |figures: &[f64]| figures.iter().copied().fold(0.0, f64::max);
+        rows.push(Row {
+            search: method.to_string(),
+            nodes_visited: most(nodes),
+            particles_tested: most(tested),
+            rebuild_ms: median(rebuild),
+            query_ms: median(query),
+        });
+        let positions: Vec<Vec3> = particles.positions().collect();
+        same &= *first.get_or_insert_with(|| positions.clone()) == positions;
+    }
+    let report = Report {
+        ticks,
+        particles: PARTICLES * PARTICLES,
+        cloths: rows,
+        same,
+        picture,
+    };
+    print(&report, options.json, print_report)
+}
+
+fn print_report(report: &Report) {
+    println!("One cloth, one ball, six volumes, headless");
+    println!(
+        "  ticks    {}, of {} particles each",
+        report.ticks, report.particles
+    );
+    println!(
+        "  {:<18} {:>8} {:>10} {:>10} {:>10}",
+        "searched by", "nodes", "particles", "refit, ms", "search, ms"
+    );
+    for row in &report.cloths {
+        println!(
+            "  {:<18} {:>8} {:>10} {:>10.4} {:>10.4}",
+            row.search, row.nodes_visited, row.particles_tested, row.rebuild_ms, row.query_ms
+        );
+    }
+    let same = if report.same {
+        "the same, bit by bit"
+    } else {
+        "not the same"
+    };
+    println!("  motion   {same}");
+    println!("  picture  {}", report.picture);
+}
+
+fn main() -> ExitCode {
+    Example {
+        name: "volumes",
+        about: "Six kinds of bounding volume, side by side. Opens a window where it can, and runs headless otherwise.",
+        seconds: "3",
+        window: || window::run(window::app("volumes", ScenePlugin, SHOT, &[])),
+        headless,
+    }
+    .run()
+}
