@@ -59,7 +59,8 @@ fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
         ..ClothMaterial::COTTON
     };
     let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
-    let rim = |row: u32, column: u32| row.is_multiple_of(SIDE - 1) || column.is_multiple_of(SIDE - 1);
+    let rim =
+        |row: u32, column: u32| row.is_multiple_of(SIDE - 1) || column.is_multiple_of(SIDE - 1);
     let pinned: Vec<(u32, u32)> = grid
         .cells()
         .filter(|&(row, column)| rim(row, column))

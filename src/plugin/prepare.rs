@@ -207,6 +207,7 @@ impl PreparingItem<'_, '_> {
         (self.stats.rebuild_ms, self.stats.query_ms) = (0.0, 0.0);
         (self.stats.nodes_visited, self.stats.leaf_tests) = (0, 0);
         (self.stats.colliders_near, self.stats.by_triangles) = (0, 0);
+        self.stats.requeries = 0;
     }
 
     /// The speed of the fastest particle (m/s), if all are sound.

@@ -244,6 +244,7 @@ fn what_outruns_its_search_is_searched_again() {
             particle_radius: settings.particle_radius,
             friction: stiff.friction,
             narrow_phase: NarrowPhase::Particles,
+            ..default()
         };
         let mut detection = Detection::default();
         detection.begin(f32::INFINITY);
@@ -260,7 +261,7 @@ fn what_outruns_its_search_is_searched_again() {
         };
         let mut solver = Solver::new(topology.springs(), &by_hand);
         solver.advance(&mut by_hand, step, &[], |particles, substep| {
-            detection.respond(particles, &terms, substep)
+            detection.respond(particles, &terms, substep, |_| {})
         });
         assert_eq!(particles(&app, cloth), &by_hand);
         let stats = stats(&app, cloth);
