@@ -336,9 +336,15 @@ fn shoot(radius: f32, speed: f32, substeps: u32) -> (f32, f64) {
 #[test]
 fn a_fast_ball_takes_the_cloth_along() {
     for (radius, fastest) in [(0.3, 400.0), (0.06, 100.0)] {
-        for speed in [10.0, 50.0, 100.0, 200.0, 400.0].into_iter().filter(|speed| *speed <= fastest) {
+        for speed in [10.0, 50.0, 100.0, 200.0, 400.0]
+            .into_iter()
+            .filter(|speed| *speed <= fastest)
+        {
             let (ahead, left) = shoot(radius, speed, 20);
-            assert!(ahead > 0.0, "{radius} m at {speed} m/s: {ahead} m in front of it");
+            assert!(
+                ahead > 0.0,
+                "{radius} m at {speed} m/s: {ahead} m in front of it"
+            );
             assert!(left < 1.0e-5, "{left} m left inside");
         }
     }

@@ -50,15 +50,16 @@ impl Volume for Aabb3d {
             Core::HalfSpace { point, normal } => {
                 slabs::may_reach_half_space(point, normal, self.min.into(), self.max.into(), reach)
             }
-            Core::Segment(_) | Core::Cuboid { .. } => {
-                let slab = |at: usize| Slab {
-                    axis: Vec3::AXES[at],
-                    low: self.min[at],
-                    high: self.max[at],
-                };
-                let size = self.min.abs().max(self.max.abs()).max_element();
-                slabs::may_reach([0, 1, 2].into_iter().map(slab), probe, reach, size)
+            Core::Segment([start, end]) => {
+                // A ball around the segment as well: of a collider that moves less than it is large, that is the tighter.
+                let ball = Probe::ball(
+                    start.midpoint(end),
+                    reach + start.distance(end) / 2.0 * ROUNDING,
+                    0.0,
+                );
+                self.may_reach(&ball, ball.radius) && slabs_may_reach(self, probe, reach)
             }
+            Core::Cuboid { .. } => slabs_may_reach(self, probe, reach),
         }
     }
 
@@ -116,6 +117,17 @@ impl Volume for Aabb3d {
             }
         }
     }
+}
+
+/// The test of a box's three pairs of planes.
+fn slabs_may_reach(aabb: &Aabb3d, probe: &Probe, reach: f32) -> bool {
+    let slab = |at: usize| Slab {
+        axis: Vec3::AXES[at],
+        low: aabb.min[at],
+        high: aabb.max[at],
+    };
+    let size = aabb.min.abs().max(aabb.max.abs()).max_element();
+    slabs::may_reach([0, 1, 2].into_iter().map(slab), probe, reach, size)
 }
 
 /// What begins so far into a block.

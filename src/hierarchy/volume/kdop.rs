@@ -1,6 +1,6 @@
 //! Polytopes between pairs of parallel planes whose directions are the same for all: k-DOPs (Klosowski et al. 1998).
 
-use bevy::math::{DVec3, Vec3};
+use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
 
 use super::{
     Lane, NodeVolume, Volume,
@@ -145,19 +145,20 @@ impl<const N: usize> Volume for KDop<N> {
 
     #[inline(always)]
     fn may_reach(&self, probe: &Probe, reach: f32) -> bool {
-        if let Core::HalfSpace { point, normal } = probe.core {
-            let corner = |side: &[f32; N]| Vec3::new(side[0], side[1], side[2]);
-            return slabs::may_reach_half_space(
-                point,
-                normal,
-                corner(&self.low),
-                corner(&self.high),
-                reach,
-            );
+        // Its first three pairs of planes are a box, whose test is the tighter near its edges.
+        let corner = |side: &[f32; N]| Vec3A::new(side[0], side[1], side[2]);
+        let aabb = Aabb3d {
+            min: corner(&self.low),
+            max: corner(&self.high),
+        };
+        if !aabb.may_reach(probe, reach) {
+            return false;
         }
-        let slabs = self
-            .slabs()
-            .map(|(axis, low, high)| Slab { axis, low, high });
+        if let Core::HalfSpace { .. } = probe.core {
+            return true;
+        }
+        let slabs = self.slabs().skip(3);
+        let slabs = slabs.map(|(axis, low, high)| Slab { axis, low, high });
         slabs::may_reach(slabs, probe, reach, self.size())
     }
 

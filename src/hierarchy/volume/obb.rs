@@ -47,6 +47,25 @@ impl Obb {
         self.centre.abs().max_element() + self.half_size.max_element()
     }
 
+    /// The test of its three pairs of planes.
+    fn slabs_may_reach(&self, probe: &Probe, reach: f32) -> bool {
+        let slab = |axis: Vec3| {
+            let (middle, half) = (self.centre.dot(axis), self.reach_along(axis));
+            Slab {
+                axis,
+                low: middle - half,
+                high: middle + half,
+            }
+        };
+        let Mat3 {
+            x_axis,
+            y_axis,
+            z_axis,
+        } = self.axes;
+        let slabs = [x_axis, y_axis, z_axis].into_iter().map(slab);
+        slabs::may_reach(slabs, probe, reach, 3.0 * self.size())
+    }
+
     fn position(view: &View, lane: usize) -> Vec3 {
         Vec3::new(view[X + lane], view[Y + lane], view[Z + lane])
     }
@@ -114,23 +133,16 @@ impl Volume for Obb {
                 let slack = (offset.length() + self.size()) * 1.0e-6;
                 offset.dot(normal) - self.reach_along(normal) <= reach * ROUNDING + slack
             }
-            Core::Segment(_) | Core::Cuboid { .. } => {
-                let slab = |axis: Vec3| {
-                    let (middle, half) = (self.centre.dot(axis), self.reach_along(axis));
-                    Slab {
-                        axis,
-                        low: middle - half,
-                        high: middle + half,
-                    }
-                };
-                let Mat3 {
-                    x_axis,
-                    y_axis,
-                    z_axis,
-                } = self.axes;
-                let slabs = [x_axis, y_axis, z_axis].into_iter().map(slab);
-                slabs::may_reach(slabs, probe, reach, 3.0 * self.size())
+            Core::Segment([start, end]) => {
+                // A ball around the segment as well: of a collider that moves less than it is large, that is the tighter.
+                let ball = Probe::ball(
+                    start.midpoint(end),
+                    reach + start.distance(end) / 2.0 * ROUNDING,
+                    0.0,
+                );
+                self.may_reach(&ball, ball.radius) && self.slabs_may_reach(probe, reach)
             }
+            Core::Cuboid { .. } => self.slabs_may_reach(probe, reach),
         }
     }
 
