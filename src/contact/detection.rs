@@ -99,8 +99,11 @@ pub struct Detection {
     grid: ClothGrid,
     /// How far a particle may move before the candidates are searched for again (m).
     margin: f32,
-    /// How far one may have moved since they were (m).
+    /// How far one may have moved since they were (m): as the largest moves and pushes add up, or as measured.
     moved: f32,
+    /// The particles as they were then, if anything was searched for.
+    origin: ClothParticles,
+    has_origin: bool,
     /// How far of that in this sub-step: the way that is swept lies so far behind (m).
     moved_now: f32,
     requeries: u32,
@@ -116,6 +119,7 @@ impl Detection {
         self.colliders.clear();
         self.margin = margin;
         (self.moved, self.moved_now) = (0.0, 0.0);
+        self.has_origin = false;
         self.requeries = 0;
     }
 
@@ -162,6 +166,9 @@ impl Detection {
         grid: &ClothGrid,
     ) {
         self.grid = *grid;
+        if !self.has_origin {
+            self.remember(particles);
+        }
         if self.colliders.iter().all(|(known, _)| *known != id) {
             self.colliders.push((id, *collider));
         }
@@ -230,24 +237,35 @@ impl Detection {
         };
     }
 
-    /// Whether particles may have moved so far that candidates are missing.
-    fn is_outrun(&self) -> bool {
-        self.moved > self.margin || self.moved.is_nan()
+    fn remember(&mut self, particles: &ClothParticles) {
+        self.origin.copy_from(particles);
+        self.has_origin = true;
+    }
+
+    /// Whether particles have moved so far that candidates may be missing. The sum of all moves says so first; it counts
+    /// every jitter, so what it says is measured.
+    fn is_outrun(&mut self, particles: &ClothParticles) -> bool {
+        // Not a number is no less.
+        let is_beyond = |moved: f32, margin: f32| moved > margin || moved.is_nan();
+        if !is_beyond(self.moved, self.margin) {
+            return false;
+        }
+        if self.has_origin {
+            self.moved = particles.farthest_from(&self.origin);
+        }
+        is_beyond(self.moved, self.margin)
     }
 
     /// Searches for the candidates of all colliders again, among the particles as they are.
     fn search(&mut self, particles: &ClothParticles, terms: &Terms) {
         self.requeries += 1;
         // Twice as much as did not suffice: a tick has few of these, however wild it is.
-        let needed = if self.moved.is_finite() {
-            self.moved
-        } else {
-            self.margin
-        };
-        self.margin = 2.0 * needed.max(self.margin);
-        self.moved = Some(self.moved_now)
-            .filter(|m| m.is_finite())
-            .unwrap_or(0.0);
+        let finite = |length: f32| if length.is_finite() { length } else { 0.0 };
+        let moved_now = finite(self.moved_now);
+        self.margin = 2.0 * finite(self.moved).max(moved_now).max(self.margin);
+        // The way of this sub-step lies behind.
+        self.moved = moved_now;
+        self.remember(particles);
         self.known.clear();
         for touch in &mut self.touches {
             let candidates = self.candidates[touch.candidates.clone()].iter();
@@ -318,7 +336,7 @@ impl Detection {
         let (mut next, mut from) = (0, Cursor::default());
         let (mut area, mut volume) = (0.0, 0.0);
         loop {
-            if self.is_outrun() {
+            if self.is_outrun(particles) {
                 others(&mut self.colliders);
                 self.search(particles, terms);
             }

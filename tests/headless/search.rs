@@ -183,11 +183,11 @@ fn a_sleeping_cloth_is_not_searched() {
     assert!(stats.contacts > 0, "what it lies on, it lies on still");
 }
 
-/// A game pulls a stiff cloth out to twenty times its size, beside a ball that is on its way: it snaps back within the
-/// tick, farther than was expected, and is searched again. Whatever the search, nothing is missed: bit by bit the
-/// motion is that of testing every particle in every sub-step, by hand.
+/// A game pulls a stiff cloth out to twenty times its size, beside a ball that is on its way, and it snaps back. Whatever
+/// the search, nothing is missed: bit by bit the motion is that of testing every particle in every sub-step, by hand.
+/// (That what outruns its search is searched again, is tested beside it, where the margin can be chosen.)
 #[test]
-fn what_outruns_its_search_is_searched_again() {
+fn what_snaps_back_is_not_missed() {
     let stiff = ClothMaterial {
         stretch_compliance: 0.0,
         shear_compliance: 0.0,
@@ -233,7 +233,7 @@ fn what_outruns_its_search_is_searched_again() {
     };
 
     let (mut app, cloth, balls) = start(SearchMethod::Scan);
-    let (mut truth, mut requeries, mut contacts) = (Vec::new(), 0, 0);
+    let (mut truth, mut contacts) = (Vec::new(), 0);
     for _ in 0..30 {
         let mut by_hand = particles(&app, cloth).clone();
         let from = places(&app, balls);
@@ -265,11 +265,10 @@ fn what_outruns_its_search_is_searched_again() {
         });
         assert_eq!(particles(&app, cloth), &by_hand);
         let stats = stats(&app, cloth);
-        requeries += stats.requeries;
         contacts += stats.contacts;
         truth.push(by_hand);
     }
-    assert!(requeries > 0 && contacts > 30, "{requeries} {contacts}");
+    assert!(contacts > 30, "{contacts}");
 
     for method in SearchMethod::ALL {
         let (mut app, cloth, _) = start(method);

@@ -178,6 +178,36 @@ impl ClothParticles {
         self.substep = other.substep;
     }
 
+    /// How far the particle that is farthest from where it was in `other`, or was before its last displacement, is from
+    /// there (m). Not a number if any is.
+    pub(crate) fn farthest_from(&self, other: &Self) -> f32 {
+        let mut largest = [0.0_f32; LANES];
+        for (block, was) in self.blocks.iter().zip(&other.blocks) {
+            let (view, was) = (block.view(), was.view());
+            for lane in 0..LANES {
+                let (mut now, mut before) = (0.0, 0.0);
+                for axis in [0, LANES, 2 * LANES] {
+                    let moved = view[X + axis + lane] - was[X + axis + lane];
+                    let came = moved - view[DX + axis + lane];
+                    now += moved * moved;
+                    before += came * came;
+                }
+                let farther = if now > before { now } else { before };
+                // The larger, or what is not a number.
+                largest[lane] = if farther <= largest[lane] {
+                    largest[lane]
+                } else {
+                    farther
+                };
+            }
+        }
+        let farthest = largest.into_iter().fold(
+            0.0,
+            |most: f32, each| if each <= most { most } else { each },
+        );
+        farthest.sqrt() * (1.0 + 1.0e-6)
+    }
+
     /// A sphere around all of them (m).
     pub(crate) fn bounding_sphere(&self) -> BoundingSphere {
         let low = self.positions().fold(Vec3::MAX, Vec3::min);
