@@ -63,8 +63,9 @@
 //! 3. Rounding is on the safe side. Radii and reaches grow by 10⁻⁵ each, which is more than all roundings of
 //!    a bound and its test together. Leaves are tested in `f64`.
 //! 4. Within a tick, particles move on. The probe is the collider along all of its way, inflated by a
-//!    *margin*. Each sub-step adds its largest displacement, and its largest pushes, to a sum. Before a
-//!    response, that sum is compared with the margin; if larger, all particles are searched again.
+//!    *margin*. The largest displacement of each sub-step and the largest pushes are added up. Where the sum
+//!    exceeds the margin, how far particles are from where they were searched is measured; if that exceeds it
+//!    too, all of them are searched again before anything else is done.
 //!
 //! What need not hold: the cloth need not be flat, convex or smooth; it may be folded, crumpled, or passed
 //! through itself. A network's path may leave its patch, as *s* is that of the whole cloth.
@@ -88,23 +89,23 @@
 //!
 //! | volume, rule | rebuild (µs) | query (µs) | nodes visited |
 //! |---|---|---|---|
-//! | spheres, `RestShape` | 0.01 | 1.0 | 141 |
-//! | AABBs, `RestShape` | 0.01 | 1.7 | 209 |
-//! | spheres, `Refit` | 45 | 0.8 | 109 |
-//! | AABBs, `Refit` | 53 | 0.3 | 37 |
-//! | OBBs, `Refit` | 2300 | 0.75 | 33 |
-//! | 14-DOPs, `Refit` | 390 | 6.8 | 89 |
-//! | 18-DOPs, `Refit` | 510 | 4.3 | 45 |
-//! | 26-DOPs, `Refit` | 720 | 6 | 45 |
+//! | spheres, `RestShape` | 0.01 | 0.9 | 141 |
+//! | AABBs, `RestShape` | 0.01 | 2.1 | 209 |
+//! | spheres, `Refit` | 49 | 0.8 | 109 |
+//! | AABBs, `Refit` | 55 | 0.4 | 37 |
+//! | OBBs, `Refit` | 2500 | 0.8 | 33 |
+//! | 14-DOPs, `Refit` | 420 | 1.4 | 37 |
+//! | 18-DOPs, `Refit` | 540 | 1.8 | 37 |
+//! | 26-DOPs, `Refit` | 760 | 2.4 | 37 |
+//!
+//! `cargo bench --profile dev --bench hierarchy` prints these.
 //!
 //! For one ball, take spheres by the rest shape, at any size: a refit costs more than testing every particle.
 //! Below about 64 × 64 particles a scan of all of them, eight at a time, is as fast, and simpler. A refit is
 //! paid once a tick, a query once a collider. So from about one collider for every 600 particles on, AABBs by
 //! `Refit` pay. Stretch counts as colliders do: what a search at rest radii visits grows with (1 + *s*)².
 //! OBBs and k-DOPs fit closer than spheres do, but a node of theirs costs more to keep and to test than its
-//! pruning saves here. A k-DOP is tested slab by slab, which is not exact near its corners: so it prunes less
-//! than an AABB, whose test against a ball is. Both are for comparison and study. [`SearchMethod::Auto`]
-//! chooses by these figures.
+//! pruning saves here; they are for comparison and study. [`SearchMethod::Auto`] chooses by these figures.
 
 mod bounds;
 mod brute;
