@@ -42,13 +42,14 @@ pub mod solver;
 /// What most games need, to be imported with `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Corner, Pin, Pins};
-    pub use crate::contact::{ClothCollider, NarrowPhase};
-    pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod};
+    pub use crate::contact::{ClothCollider, ContactPoint, NarrowPhase};
+    pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
     #[cfg(feature = "rapier")]
     pub use crate::plugin::RapierClothCollider;
     pub use crate::plugin::{
-        ClothAttachments, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothStats,
-        ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, DrapePlugins,
+        ClothAttachments, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity,
+        ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped,
+        DrapePlugins,
     };
     #[cfg(feature = "egui")]
     pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};

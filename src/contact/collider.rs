@@ -17,8 +17,8 @@ use crate::cloth::ClothError;
 /// the cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To move it without any
 /// speed, a teleport, insert this component anew.
 ///
-/// However fast it is, cloth does not pass through it: what moves farther in a sub-step than half of its thickness
-/// is tested all along its way.
+/// However fast it is: what moves farther in a sub-step than half of its thickness is tested all along its way, so that
+/// nothing that a ball or a capsule meets passes through it, nor any particle that a box or a plane meets.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Transform)]

@@ -4,8 +4,8 @@ use bevy::math::Vec3;
 
 use super::{
     MovingCollider,
-    detection::Terms,
     response::{Push, first_touch},
+    touch::Terms,
     triangle::{NearestPoints, at, nearest},
 };
 use crate::{

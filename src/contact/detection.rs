@@ -1,88 +1,21 @@
 //! Which particles each collider may touch in a tick, kept true while the tick goes on, and what came of it.
 
-use std::ops::Range;
-
-use bevy::{
-    math::{Vec3, bounding::BoundingSphere},
-    reflect::Reflect,
-};
+use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
     MovingCollider, NarrowPhase,
     particle::push_particles,
     surface::{Course, Cursor, push_triangles},
+    touch::{Candidate, ContactPoint, Terms, Touch},
 };
 use crate::{
-    cloth::{ClothGrid, ClothParticles, Slot},
+    cloth::{ClothGrid, ClothParticles},
     hierarchy::{Probe, TopDownQuery},
     solver::SubStep,
 };
 
-/// A particle that a collider may touch in the tick; with triangles, the first of a cell's four.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Candidate {
-    pub particle: u32,
-    pub slot: Slot,
-    /// Its right neighbour's, if there is such a one and one below: if it begins a cell.
-    pub beside: Option<Slot>,
-    /// The part of the cloth's area that it stands for (m²).
-    pub area: f32,
-    /// The deepest that it has been found (m); negative if it has only come so near.
-    pub depth: f32,
-}
-
-/// A particle near a collider, and how near it came.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
-pub struct ContactPoint {
-    /// Index of the particle; where the collider is tested against triangles, of the first of a cell's four.
-    pub particle: u32,
-    /// How deep it was found inside in the tick at most (m); negative if it was only so near, and −∞ if it was not
-    /// looked at, being pinned or far away.
-    pub depth: f32,
-}
-
-/// A collider that may touch the cloth in this tick.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Touch {
-    /// Which of the caller's colliders.
-    pub id: usize,
-    /// Its way.
-    pub collider: MovingCollider,
-    /// What it is tested against: never `Auto`.
-    pub narrow_phase: NarrowPhase,
-    /// How deep the deepest was found (m), 0 if none was inside.
-    pub deepest: f32,
-    /// The largest area of the cloth that was inside at the end of a sub-step (m²).
-    pub area: f32,
-    /// The largest ∫ depth dA over it (m³).
-    pub volume: f32,
-    candidates: Range<usize>,
-}
-
-/// What a cloth is tested with in a tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Terms {
-    /// Radius of each particle (m).
-    pub particle_radius: f32,
-    /// Coulomb's μ.
-    pub friction: f32,
-    /// What colliders are tested against.
-    pub narrow_phase: NarrowPhase,
-    /// Whether what moves fast is tested all along its way; only comparisons turn this off.
-    pub is_swept: bool,
-}
-
-impl Default for Terms {
-    /// Points without friction.
-    fn default() -> Self {
-        Self {
-            particle_radius: 0.0,
-            friction: 0.0,
-            narrow_phase: NarrowPhase::Auto,
-            is_swept: true,
-        }
-    }
-}
+/// How often a sub-step measures how far particles have moved, before it searches again.
+const MOST_MEASURED: u32 = 2;
 
 /// Which particles each collider may touch in a tick.
 ///
@@ -104,6 +37,12 @@ pub struct Detection {
     /// The particles as they were then, if anything was searched for.
     origin: ClothParticles,
     has_origin: bool,
+    /// Whether the sum of moves has exceeded the margin in this tick, and whether it had in the last: to remember all
+    /// particles is worth it then.
+    was_outrun: bool,
+    expects: bool,
+    /// How often it was measured in this sub-step.
+    measured: u32,
     /// How far of that in this sub-step: the way that is swept lies so far behind (m).
     moved_now: f32,
     requeries: u32,
@@ -120,6 +59,7 @@ impl Detection {
         self.margin = margin;
         (self.moved, self.moved_now) = (0.0, 0.0);
         self.has_origin = false;
+        self.expects = std::mem::take(&mut self.was_outrun);
         self.requeries = 0;
     }
 
@@ -166,10 +106,12 @@ impl Detection {
         grid: &ClothGrid,
     ) {
         self.grid = *grid;
-        if !self.has_origin {
+        if self.expects && !self.has_origin {
             self.remember(particles);
         }
-        if self.colliders.iter().all(|(known, _)| *known != id) {
+        // Most callers count upwards.
+        let is_new = self.colliders.last().is_none_or(|(last, _)| *last < id);
+        if is_new || self.colliders.iter().all(|(known, _)| *known != id) {
             self.colliders.push((id, *collider));
         }
         self.hold(id, collider, narrow_phase, found, particles);
@@ -250,7 +192,10 @@ impl Detection {
         if !is_beyond(self.moved, self.margin) {
             return false;
         }
-        if self.has_origin {
+        self.was_outrun = true;
+        // Searching again widens the margin: cheaper than to measure for every push.
+        if self.has_origin && self.measured < MOST_MEASURED {
+            self.measured += 1;
             self.moved = particles.farthest_from(&self.origin);
         }
         is_beyond(self.moved, self.margin)
@@ -258,6 +203,11 @@ impl Detection {
 
     /// Searches for the candidates of all colliders again, among the particles as they are.
     fn search(&mut self, particles: &ClothParticles, terms: &Terms) {
+        if self.colliders.is_empty() {
+            // There is nothing to miss.
+            self.margin = f32::INFINITY;
+            return;
+        }
         self.requeries += 1;
         // Twice as much as did not suffice: a tick has few of these, however wild it is.
         let finite = |length: f32| if length.is_finite() { length } else { 0.0 };
@@ -290,7 +240,12 @@ impl Detection {
             let (probe, narrow_phase) =
                 self.probe(collider, terms, &self.grid, longest_edge, &cloth);
             found.clear();
-            found.scan(particles, &probe);
+            if probe
+                .core
+                .may_reach(cloth.center.into(), cloth.radius() + probe.reach() as f32)
+            {
+                found.scan(particles, &probe);
+            }
             // What was looked at stays, so that nothing that touched is forgotten.
             let known = self
                 .known
@@ -332,6 +287,7 @@ impl Detection {
     ) -> bool {
         self.moved += substep.farthest_move;
         self.moved_now = substep.farthest_move;
+        self.measured = 0;
         let mut is_pushed = false;
         let (mut next, mut from) = (0, Cursor::default());
         let (mut area, mut volume) = (0.0, 0.0);
@@ -340,7 +296,8 @@ impl Detection {
                 others(&mut self.colliders);
                 self.search(particles, terms);
             }
-            let Some(touch) = self.touches.iter_mut().find(|touch| touch.id >= next) else {
+            let at = self.touches.partition_point(|touch| touch.id < next);
+            let Some(touch) = self.touches.get_mut(at) else {
                 return is_pushed;
             };
             let candidates = &mut self.candidates[touch.candidates.clone()];

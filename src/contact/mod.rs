@@ -12,12 +12,14 @@ mod shape;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod touch;
 mod triangle;
 
 pub use collider::ClothCollider;
 pub use corners::meets_triangles;
 pub use depth::deepest_penetration;
-pub use detection::{ContactPoint, Detection, Terms, Touch};
+pub use detection::Detection;
 pub use moving::MovingCollider;
 pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
 pub use shape::ColliderShape;
+pub use touch::{ContactPoint, Terms, Touch};

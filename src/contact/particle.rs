@@ -4,9 +4,9 @@ use bevy::math::{Isometry3d, Vec3};
 
 use super::{
     MovingCollider,
-    detection::{Candidate, Terms},
     response::{Contact, MOST_STEPS, first_touch},
     shape::Nearest,
+    touch::{Candidate, Terms},
 };
 use crate::{
     cloth::{Block, ClothParticles, Slot},

@@ -5,9 +5,9 @@ use bevy::math::Vec3;
 pub(super) use super::corners::Course;
 use super::{
     corners::{Corners, Touching, triangles_of},
-    detection::Candidate,
     particle::Found,
     response::{Contact, Push},
+    touch::Candidate,
     triangle::{area_within, at},
 };
 use crate::cloth::ClothParticles;

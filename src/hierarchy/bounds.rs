@@ -234,6 +234,8 @@ pub(super) fn position(particles: &ClothParticles, slot: Slot) -> Vec3 {
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct NodeBounds {
     pub(super) kind: Kind,
+    /// Of the tree that they were last brought up to date for.
+    size: [usize; 2],
 }
 
 /// One of the kinds, so that all that loops over nodes is compiled for it.
@@ -297,8 +299,14 @@ impl NodeBounds {
                 BoundingVolume::KDop26 => Kind::KDop26(Bounds::default()),
             };
         }
+        self.size = tree.size();
         each!(&mut self.kind, bounds => bounds.rebuild(rule, tree, particles, stretch));
         Ok(())
+    }
+
+    /// Whether they are those of a tree as large as this. The rest shape is anybody's.
+    pub(super) fn fit(&self, tree: &QuadTree) -> bool {
+        self.rule() == BoundRule::RestShape || self.size == tree.size()
     }
 
     /// The kind of volume.

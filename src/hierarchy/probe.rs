@@ -1,7 +1,7 @@
 //! What a tree is searched for.
 
 use bevy::{
-    math::{DQuat, DVec3, Isometry3d, Vec3},
+    math::{DQuat, DVec3, Isometry3d, Mat3, Vec3},
     reflect::Reflect,
 };
 
@@ -117,13 +117,13 @@ impl Core {
         square <= reach * reach
     }
 
-    /// Whether [`may_reach`](Self::may_reach) holds for any of eight particles.
+    /// Whether [`may_reach`](Self::may_reach) holds for any of eight particles, in plain loops.
     #[inline(always)]
     pub(crate) fn may_reach_any(&self, view: &View, reach: f32) -> bool {
+        let reach = reach * ROUNDING + self.size() * 1.0e-5;
+        let mut any = false;
         match *self {
             Self::Point(centre) => {
-                let reach = reach * ROUNDING;
-                let mut any = false;
                 for l in 0..LANES {
                     let (x, y, z) = (
                         view[X + l] - centre.x,
@@ -132,12 +132,58 @@ impl Core {
                     );
                     any |= x * x + y * y + z * z <= reach * reach;
                 }
-                any
             }
-            _ => (0..LANES).any(|l| {
-                self.may_reach_beyond(Vec3::new(view[X + l], view[Y + l], view[Z + l]), reach)
-            }),
+            Self::Segment([a, b]) => {
+                let along = b - a;
+                let square = along.length_squared();
+                let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
+                for l in 0..LANES {
+                    let (x, y, z) = (view[X + l] - a.x, view[Y + l] - a.y, view[Z + l] - a.z);
+                    let t = (x * along.x + y * along.y + z * along.z) * inverse;
+                    let t = if t > 0.0 { t } else { 0.0 };
+                    let t = if t < 1.0 { t } else { 1.0 };
+                    let (x, y, z) = (x - along.x * t, y - along.y * t, z - along.z * t);
+                    any |= x * x + y * y + z * z <= reach * reach;
+                }
+            }
+            Self::Cuboid { pose, half_size } => {
+                let centre = Vec3::from(pose.translation);
+                let Mat3 {
+                    x_axis,
+                    y_axis,
+                    z_axis,
+                } = Mat3::from_quat(pose.rotation);
+                for l in 0..LANES {
+                    let (x, y, z) = (
+                        view[X + l] - centre.x,
+                        view[Y + l] - centre.y,
+                        view[Z + l] - centre.z,
+                    );
+                    let outside = |axis: Vec3, half: f32| {
+                        let beyond = (x * axis.x + y * axis.y + z * axis.z).abs() - half;
+                        if beyond > 0.0 { beyond } else { 0.0 }
+                    };
+                    let (x, y, z) = (
+                        outside(x_axis, half_size.x),
+                        outside(y_axis, half_size.y),
+                        outside(z_axis, half_size.z),
+                    );
+                    any |= x * x + y * y + z * z <= reach * reach;
+                }
+            }
+            Self::HalfSpace { point, normal } => {
+                for l in 0..LANES {
+                    let (x, y, z) = (
+                        view[X + l] - point.x,
+                        view[Y + l] - point.y,
+                        view[Z + l] - point.z,
+                    );
+                    let slack = (x.abs() + y.abs() + z.abs()) * 1.0e-6;
+                    any |= x * normal.x + y * normal.y + z * normal.z <= reach + slack;
+                }
+            }
         }
+        any
     }
 
     /// From where to where the core reaches along `axis`, times its length (m); without end on a half-space's

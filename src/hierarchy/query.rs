@@ -47,7 +47,8 @@ impl TopDownQuery {
     }
 
     /// Searches for `probe`, adds to what was found since [`clear`](Self::clear), and says which of the
-    /// [`candidates`](Self::candidates) are the probe's. The tree and the bounds must be those of the particles.
+    /// [`candidates`](Self::candidates) are the probe's. The tree and the bounds must be those of the
+    /// particles: in others nothing is found.
     pub fn search(
         &mut self,
         tree: &QuadTree,
@@ -56,7 +57,7 @@ impl TopDownQuery {
         probe: &Probe,
     ) -> Range<usize> {
         let first = self.candidates.len();
-        if tree.fits(particles) {
+        if tree.fits(particles) && bounds.fit(tree) {
             each!(&bounds.kind, bounds => match &tree.0 {
                 Shape::Grid(tree) => self.search_grid(tree, bounds, particles, probe),
                 Shape::Network(tree) => self.search_network(tree, bounds, particles, probe),

@@ -63,8 +63,8 @@ proptest! {
     fn every_volume_equals_brute_force(state in states()) {
         let scene = state.weave();
         let mut searcher = Searcher::default();
-        // Slow, and the same for many: every sixteenth.
-        let validates = state.seed % 16 == 0;
+        // Slow on large ones: every sixteenth of them.
+        let validates = state.columns * state.rows < 100 || state.seed.is_multiple_of(16);
         if validates {
             prop_assert_eq!(scene.tree.validate(scene.particles.len()), Ok(()));
         }

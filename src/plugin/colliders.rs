@@ -14,7 +14,7 @@ use bevy::{
 use super::{ClothFault, ClothFrame, fault::Part, frame::global_transform};
 use crate::{
     cloth::ClothError,
-    contact::{ClothCollider, MovingCollider},
+    contact::{ClothCollider, ColliderShape, MovingCollider},
 };
 
 /// A collider's way through the tick, in the world.
@@ -27,6 +27,8 @@ pub(super) struct ColliderMotion {
     /// Middle of its way (m), and how far it is from there at most to any of the collider's points on it.
     middle: Vec3,
     reach: f32,
+    /// Of a half-space that does not turn, its normal: what is far above it is not near.
+    normal: Option<Vec3>,
 }
 
 impl ColliderMotion {
@@ -58,6 +60,11 @@ impl ColliderMotion {
         };
         self.middle = translation.midpoint(from.translation.into());
         self.reach = way.travel() / 2.0 + shape.extent();
+        self.normal = None;
+        if shape == ColliderShape::HalfSpace && way.turn == Vec3::ZERO {
+            self.reach = way.travel() / 2.0;
+            self.normal = Some(pose.rotation * Vec3::Y);
+        }
         self.way = Some(way);
         // What is moved while no time passes has its way still before it.
         self.last = Some(if time_passes { pose } else { from });
@@ -67,7 +74,12 @@ impl ColliderMotion {
     /// Whether the collider may come within `reach` of a point of the world (m).
     pub fn comes_near(&self, point: Vec3, reach: f32) -> bool {
         let reach = self.reach + reach;
-        self.way.is_some() && self.middle.distance_squared(point) <= reach * reach
+        let offset = point - self.middle;
+        let is_near = match self.normal {
+            Some(normal) => normal.dot(offset) <= reach + offset.length() * 1.0e-5,
+            None => offset.length_squared() <= reach * reach,
+        };
+        self.way.is_some() && is_near
     }
 
     /// The collider's way through the tick in a cloth's frame.

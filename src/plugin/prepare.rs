@@ -62,7 +62,11 @@ pub(super) fn prepare_cloths(
             cloth.prepare(&transform, &transforms, gravity.0, time.delta_secs())
         });
         cloth.tick.sound = outcome.is_ok();
-        cloth.vicinity.takes_part = outcome.is_ok();
+        if outcome.is_err() {
+            cloth.vicinity.takes_part = false;
+            cloth.vicinity.is_stale |= cloth.vicinity.is_searched;
+            cloth.vicinity.is_searched = false;
+        }
         if outcome.is_err() {
             cloth.tick.rest.disturb();
         }

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     cloth::{ClothGrid, ClothParticles},
     contact::{Detection, MovingCollider, NarrowPhase, Terms, Touch, meets_triangles},
-    hierarchy::{BoundRule, BoundingVolume, SearchMethod},
+    hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
 };
 
 #[derive(QueryData)]
@@ -84,20 +84,31 @@ impl SearchingItem<'_, '_> {
             reach,
             ..
         } = &mut *self.tick;
-        near.clear();
-        let comes_near = colliders
-            .iter()
-            .filter(|(_, motion)| motion.comes_near(centre, radius));
-        let seen = |(entity, motion): (Entity, &ColliderMotion)| {
-            Some((entity, motion.seen_from(self.frame)?))
-        };
-        near.extend(comes_near.filter_map(seen));
-        // Besides by itself, a particle may get as far as a collider drags it, of those that come near the cloth.
-        let drags = near.iter().map(|(_, near)| near.drag(near.beyond(&root)));
-        detection.begin(*reach + drags.fold(0.0, f32::max));
+        // Besides by itself, a particle may get as far as a collider drags it, to others that may drag it on.
+        let mut dragged = 0.0_f32;
+        loop {
+            near.clear();
+            let comes_near = colliders
+                .iter()
+                .filter(|(_, motion)| motion.comes_near(centre, radius + dragged));
+            let seen = |(entity, motion): (Entity, &ColliderMotion)| {
+                Some((entity, motion.seen_from(self.frame)?))
+            };
+            near.extend(comes_near.filter_map(seen));
+            let drags = near.iter().map(|(_, near)| near.drag(near.beyond(&root)));
+            let farthest = drags.fold(0.0, f32::max);
+            if farthest <= dragged || !farthest.is_finite() {
+                break;
+            }
+            dragged = farthest;
+        }
+        detection.begin(*reach + dragged);
         let near = near.len();
         self.stats.colliders_near = near;
         if near == 0 {
+            // What it slept on has gone.
+            self.stats.reason = SearchReason::NothingNear;
+            self.search.query.clear();
             return;
         }
         self.vicinity.is_searched = true;
@@ -140,7 +151,7 @@ impl SearchingItem<'_, '_> {
         let (bounds, query) = scout;
         let (centre, radius) = (
             self.frame.to_world(root.center.into()),
-            root.radius() + terms.particle_radius,
+            (root.radius() + terms.particle_radius) * (1.0 + 1.0e-5),
         );
         let cover = cover(terms, stretch, &self.topology.grid);
         let mut still = 0;

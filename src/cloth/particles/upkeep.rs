@@ -181,31 +181,30 @@ impl ClothParticles {
     /// How far the particle that is farthest from where it was in `other`, or was before its last displacement, is from
     /// there (m). Not a number if any is.
     pub(crate) fn farthest_from(&self, other: &Self) -> f32 {
-        let mut largest = [0.0_f32; LANES];
+        let (mut largest, mut is_nan) = ([0.0_f32; LANES], [false; LANES]);
         for (block, was) in self.blocks.iter().zip(&other.blocks) {
             let (view, was) = (block.view(), was.view());
             for lane in 0..LANES {
                 let (mut now, mut before) = (0.0, 0.0);
-                for axis in [0, LANES, 2 * LANES] {
-                    let moved = view[X + axis + lane] - was[X + axis + lane];
+                for axis in [X, X + LANES, X + 2 * LANES] {
+                    let moved = view[axis + lane] - was[axis + lane];
                     let came = moved - view[DX + axis + lane];
                     now += moved * moved;
                     before += came * came;
                 }
+                is_nan[lane] |= (now + before).is_nan();
                 let farther = if now > before { now } else { before };
-                // The larger, or what is not a number.
-                largest[lane] = if farther <= largest[lane] {
-                    largest[lane]
-                } else {
+                largest[lane] = if farther > largest[lane] {
                     farther
+                } else {
+                    largest[lane]
                 };
             }
         }
-        let farthest = largest.into_iter().fold(
-            0.0,
-            |most: f32, each| if each <= most { most } else { each },
-        );
-        farthest.sqrt() * (1.0 + 1.0e-6)
+        if is_nan.contains(&true) {
+            return f32::NAN;
+        }
+        largest.into_iter().fold(0.0, f32::max).sqrt() * (1.0 + 1.0e-6)
     }
 
     /// A sphere around all of them (m).

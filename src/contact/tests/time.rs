@@ -129,10 +129,21 @@ impl Scene {
     }
 
     fn run(&self, detection: &mut Detection) -> Outcome {
+        self.run_with(detection, &[])
+    }
+
+    /// With colliders that the detection is told of when it asks.
+    fn run_with(&self, detection: &mut Detection, others: &[(usize, MovingCollider)]) -> Outcome {
         let mut particles = self.particles.clone();
         let mut solver = Solver::new(&self.springs, &particles);
         solver.advance(&mut particles, self.step, &[], |particles, substep| {
-            detection.respond(particles, &self.terms, substep, |_| {})
+            detection.respond(particles, &self.terms, substep, |known| {
+                for other in others {
+                    if known.iter().all(|(id, _)| *id != other.0) {
+                        known.push(*other);
+                    }
+                }
+            })
         });
         let touched = detection.touches().iter().map(|touch| {
             let inside = detection.points(touch).filter(|point| point.depth > 0.0);
@@ -223,6 +234,23 @@ proptest! {
     fn no_triangle_is_missed(seed in any::<u64>()) {
         check(seed, NarrowPhase::Triangles)?;
     }
+}
+
+/// Colliders that seemed too far away as the tick began are asked for as soon as something outruns the margin, and all
+/// that they touch is found.
+#[test]
+fn colliders_from_far_away_are_asked_for() {
+    let mut asked = 0;
+    for seed in 0..300 {
+        let mut near = scene(seed, NarrowPhase::Particles);
+        let truth = near.brute();
+        let others = near.colliders.split_off(1);
+        let mut detection = near.detect(0.0, true);
+        let found = near.run_with(&mut detection, &others);
+        assert!(found == truth, "{seed}: {}", difference(&found, &truth));
+        asked += usize::from(!others.is_empty() && detection.requeries() > 0);
+    }
+    assert!(asked > 100, "{asked}");
 }
 
 /// Most of these scenes do touch, some by several colliders: else they would say little.

@@ -156,6 +156,14 @@ impl QuadTree {
             .collect()
     }
 
+    /// Levels and nodes, or columns and rows: what says which volumes are whose.
+    pub(super) fn size(&self) -> [usize; 2] {
+        match &self.0 {
+            Shape::Grid(tree) => [tree.layout.columns as usize, tree.layout.rows as usize],
+            Shape::Network(tree) => [tree.nodes.len(), 0],
+        }
+    }
+
     /// Whether the tree is one of `particles`.
     pub fn fits(&self, particles: &ClothParticles) -> bool {
         match &self.0 {
