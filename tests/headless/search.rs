@@ -353,9 +353,10 @@ fn what_a_ball_drags_the_cloth_to_is_found() {
     let place = Transform::from_xyz(0.75, -0.75, -4.0);
     let ball = (ClothCollider::ball(0.3), Moving(200.0), place);
     let ball = app.world_mut().spawn(ball).id();
-    let wall = ClothCollider::cuboid(6.0, 6.0, 0.2);
-    let place = Transform::from_xyz(0.75, -0.75, 1.6);
-    let wall = app.world_mut().spawn((wall, place)).id();
+    let wall = ClothCollider::cuboid(1.0, 1.0, 0.2);
+    let place = Transform::from_xyz(0.75, -0.75, 2.6);
+    // Of the ball's kind, so that its turn is after the ball's in each sub-step.
+    let wall = app.world_mut().spawn((wall, Moving(0.0), place)).id();
     tick(&mut app, 2);
     let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
     assert!(
