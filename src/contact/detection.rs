@@ -63,11 +63,6 @@ impl Detection {
         self.requeries = 0;
     }
 
-    /// How far a particle may move in the tick before the candidates are searched for again (m).
-    pub fn margin(&self) -> f32 {
-        self.margin
-    }
-
     /// What to search for, for this collider to be tested in the tick, and against what it then is tested. Triangles
     /// reach `longest_edge` (m) from the particle that stands for them.
     pub fn probe(

@@ -53,6 +53,18 @@ impl BoundRule {
     pub fn suits(self, volume: BoundingVolume) -> bool {
         self == Self::Refit || matches!(volume, BoundingVolume::Sphere | BoundingVolume::Aabb)
     }
+
+    /// # Errors
+    /// [`ClothError::NoSuchBounds`] if there is no such rule for the volume.
+    pub(super) fn check(self, volume: BoundingVolume) -> Result<(), ClothError> {
+        if self.suits(volume) {
+            return Ok(());
+        }
+        Err(ClothError::NoSuchBounds {
+            volume: volume.name(),
+            rule: self.name(),
+        })
+    }
 }
 
 /// What a radius at rest grows by. Finite, so that a leaf's, 0 times this, is 0 whatever becomes of the cloth.
@@ -283,12 +295,7 @@ impl NodeBounds {
         particles: &ClothParticles,
         stretch: f32,
     ) -> Result<(), ClothError> {
-        if !rule.suits(volume) {
-            return Err(ClothError::NoSuchBounds {
-                volume: volume.name(),
-                rule: rule.name(),
-            });
-        }
+        rule.check(volume)?;
         if self.volume() != volume {
             self.kind = match volume {
                 BoundingVolume::Sphere => Kind::Sphere(Bounds::default()),

@@ -64,11 +64,8 @@ impl SearchMethod {
     /// [`ClothError::NoSuchBounds`] for a volume without the rule.
     pub fn validate(self) -> Result<(), ClothError> {
         match self {
-            Self::Tree(volume, rule) if !rule.suits(volume) => Err(ClothError::NoSuchBounds {
-                volume: volume.name(),
-                rule: rule.name(),
-            }),
-            _ => Ok(()),
+            Self::Tree(volume, rule) => rule.check(volume),
+            Self::Auto | Self::Scan => Ok(()),
         }
     }
 

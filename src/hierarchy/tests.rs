@@ -72,12 +72,14 @@ proptest! {
     }
 }
 
-/// The same on a million states, which takes minutes:
-/// `cargo test --lib million -- --ignored --nocapture`.
+/// The same on many more states, other ones in each thread: as many as `BEVY_DRAPE_STATES` says. A million take three
+/// minutes: `BEVY_DRAPE_STATES=1000000 cargo test --lib in_bulk -- --nocapture`.
 #[test]
-#[ignore = "minutes long"]
-fn a_million_states_equal_brute_force() {
-    let per_thread = 1_000_000_usize.div_ceil(threads());
+fn states_in_bulk_equal_brute_force() {
+    let asked = std::env::var("BEVY_DRAPE_STATES");
+    let states_wanted: usize =
+        asked.map_or(20_000, |asked| asked.parse().expect("a number of states"));
+    let per_thread = states_wanted.div_ceil(threads());
     let contacts: usize = std::thread::scope(|scope| {
         let run = |thread: usize| {
             let mut runner = states::runner(thread as u64);

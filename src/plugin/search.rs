@@ -149,16 +149,17 @@ impl SearchingItem<'_, '_> {
                 .any(|touch| knows(touch) && touch.collider == *collider)
         };
         let (bounds, query) = scout;
-        let (centre, radius) = (
-            self.frame.to_world(root.center.into()),
-            (root.radius() + terms.particle_radius) * (1.0 + 1.0e-5),
-        );
+        let tree = &self.topology.tree;
+        let rest_shape = (BoundingVolume::Sphere, BoundRule::RestShape);
+        let outcome = bounds.rebuild(rest_shape, tree, self.particles, stretch);
+        debug_assert!(outcome.is_ok(), "spheres have a rest shape");
+        let Vicinity { centre, radius, .. } = *self.vicinity;
         let cover = cover(terms, stretch, &self.topology.grid);
         let mut still = 0;
         // Nothing of the cloth moves towards anything.
         let listening = Detection::default();
         for (entity, motion) in colliders {
-            let is_near = motion.comes_near(centre, radius + cover);
+            let is_near = motion.comes_near(centre, radius);
             if !is_near && touches.is_empty() {
                 continue;
             }
@@ -168,14 +169,6 @@ impl SearchingItem<'_, '_> {
             if rests_on(entity, &collider) {
                 still += 1;
             } else if is_near {
-                let tree = &self.topology.tree;
-                let rest_shape = (BoundingVolume::Sphere, BoundRule::RestShape);
-                if bounds
-                    .rebuild(rest_shape, tree, self.particles, stretch)
-                    .is_err()
-                {
-                    return false;
-                }
                 let (probe, narrow_phase) =
                     listening.probe(&collider, terms, &self.topology.grid, cover, root);
                 query.clear();
