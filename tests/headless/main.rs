@@ -6,6 +6,7 @@ mod frame;
 mod lifetime;
 mod mesh;
 mod motion;
+mod near;
 mod precision;
 mod rapier;
 mod rest;

@@ -5,10 +5,6 @@ use bevy_drape::prelude::*;
 
 use crate::support::*;
 
-fn stats(app: &App, cloth: Entity) -> ClothStats {
-    *app.world().get(cloth).expect("figures")
-}
-
 /// A small curtain of heavy damping, with a ball far away, ticked until it sleeps.
 fn asleep() -> (App, Entity, Entity) {
     let mut app = app();

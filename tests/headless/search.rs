@@ -17,10 +17,6 @@ use crate::{faults::expect_fault, support::*};
 const SPHERES: SearchMethod = SearchMethod::Tree(BoundingVolume::Sphere, BoundRule::RestShape);
 const BOXES: SearchMethod = SearchMethod::Tree(BoundingVolume::Aabb, BoundRule::Refit);
 
-fn stats(app: &App, cloth: Entity) -> ClothStats {
-    *app.world().get(cloth).expect("figures")
-}
-
 /// OBBs cannot be had from a rest shape, nor k-DOPs from the paper.
 #[test]
 fn a_search_that_does_not_exist_is_named() {
@@ -341,70 +337,5 @@ fn every_search_is_drawn() {
             tick(&mut app, 2);
             assert!(drawn(&app).is_empty());
         }
-    }
-}
-
-/// A fast ball drags the cloth, within one tick, to a wall that is far beyond what the cloth could reach by itself.
-#[test]
-fn what_a_ball_drags_the_cloth_to_is_found() {
-    let mut app = app_with_moving_balls();
-    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
-    // A collider's first way is known from its second tick on, in which it goes 3.1 m.
-    let place = Transform::from_xyz(0.75, -0.75, -4.0);
-    let ball = (ClothCollider::ball(0.3), Moving(200.0), place);
-    let ball = app.world_mut().spawn(ball).id();
-    let wall = ClothCollider::cuboid(1.0, 1.0, 0.2);
-    let place = Transform::from_xyz(0.75, -0.75, 2.6);
-    // Of the ball's kind, so that its turn is after the ball's in each sub-step.
-    let wall = app.world_mut().spawn((wall, Moving(0.0), place)).id();
-    tick(&mut app, 2);
-    let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
-    assert!(
-        contacts.with(ball).is_some() && contacts.with(wall).is_some(),
-        "{contacts:?}"
-    );
-}
-
-/// The ground is below, all of it, but not near.
-#[test]
-fn a_plane_far_below_is_not_near() {
-    let mut app = app();
-    let cloth = app.world_mut().spawn(Cloth::default()).id();
-    let ground = (ClothCollider::plane(), Transform::from_xyz(0.0, -9.0, 0.0));
-    let ground = app.world_mut().spawn(ground).id();
-    tick(&mut app, 5);
-    assert_eq!(stats(&app, cloth).reason, SearchReason::NothingNear);
-    change::<Transform>(&mut app, ground, |place| place.translation.y = -1.3);
-    tick(&mut app, 1);
-    assert_ne!(stats(&app, cloth).reason, SearchReason::NothingNear);
-    assert!(stats(&app, cloth).contacts > 0);
-}
-
-/// A cloth that is woven anew, larger, in the very tick in which something else is wrong with it, is not searched by the
-/// volumes of what it was.
-#[test]
-fn a_cloth_at_fault_is_not_searched() {
-    for method in SearchMethod::ALL {
-        let mut app = app();
-        let target = app.world_mut().spawn(Transform::default()).id();
-        let attached = ClothAttachments::new([(Pin::Cell(0, 0), target)]);
-        let cloth = (Cloth::new(8, 8, 0.1), attached, method);
-        let cloth = app.world_mut().spawn(cloth).id();
-        let ball = (
-            ClothCollider::ball(0.4),
-            Transform::from_xyz(0.3, -0.4, 0.3),
-        );
-        app.world_mut().spawn(ball);
-        tick(&mut app, 5);
-        change::<Cloth>(&mut app, cloth, |cloth| *cloth = Cloth::new(40, 30, 0.1));
-        app.world_mut().despawn(target);
-        tick(&mut app, 3);
-        assert!(app.world().get::<ClothFault>(cloth).is_some(), "{method}");
-        app.world_mut()
-            .entity_mut(cloth)
-            .remove::<ClothAttachments>();
-        tick(&mut app, 3);
-        assert!(app.world().get::<ClothFault>(cloth).is_none(), "{method}");
-        assert_eq!(particles(&app, cloth).len(), 1200);
     }
 }

@@ -154,3 +154,8 @@ pub fn red(app: &App, cloth: Entity) -> Vec<usize> {
         .map(|level| query.level(topology.tree(), level).1)
         .collect()
 }
+
+/// A cloth's figures.
+pub fn stats(app: &App, cloth: Entity) -> ClothStats {
+    *app.world().get(cloth).expect("figures")
+}
