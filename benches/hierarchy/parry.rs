@@ -47,7 +47,7 @@ impl ParryTree {
         let Core::Point(centre) = probe.core else {
             return 0;
         };
-        let ball = around(centre, probe.radius);
+        let ball = around(centre, probe.reach() as f32);
         self.tree
             .intersect_aabb(&ball)
             .filter(|&leaf| {

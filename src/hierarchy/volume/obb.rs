@@ -72,11 +72,19 @@ impl Obb {
 }
 
 /// Axes along the rows and columns of a patch whose quarters have these middles, row by row. `None` where they are
-/// one point or on one line.
+/// one point or on one line. Square to each other up to rounding, as boxes that hold their children need it.
 fn axes_of([a, b, c, d]: [Vec3; 4]) -> Option<Mat3> {
     let (across, down) = ((b - a) + (d - c), (c - a) + (d - b));
     let x = across.try_normalize()?;
     let z = x.cross(down).try_normalize()?;
+    // Of a patch that is nearly a line the product is mostly rounding, and may lean along x: projected once more it is
+    // square, unless it is all rounding.
+    let lean = x.dot(z);
+    let z = if lean.abs() < 0.5 {
+        (z - x * lean).normalize()
+    } else {
+        x.any_orthonormal_vector()
+    };
     Some(Mat3::from_cols(x, z.cross(x), z))
 }
 

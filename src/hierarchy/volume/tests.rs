@@ -1,7 +1,7 @@
 //! Each volume by itself, against f64.
 
 use bevy::math::{
-    Isometry3d, Quat, Vec3,
+    Isometry3d, Mat3, Quat, Vec2, Vec3, Vec3Swizzles,
     bounding::{Aabb3d, BoundingSphere},
 };
 use proptest::prelude::*;
@@ -90,10 +90,15 @@ proptest! {
     #[test]
     fn volumes_hold_and_never_deny(
         points in prop::collection::vec(within(2.0), 16),
+        thinness in prop_oneof![Just(0.0f32), 0.0f32..9.0],
+        turn in within(4.0).prop_map(Quat::from_scaled_axis),
         core in cores(),
         reach in 0.01f32..3.0,
         far_out in any::<bool>(),
     ) {
+        // Some of them nearly on a line: down to rounding.
+        let thin = Vec2::splat(10.0_f32.powf(-thinness)).extend(1.0).zxy();
+        let points: Vec<Vec3> = points.iter().map(|&point| turn * (point * thin)).collect();
         let origin = if far_out { Vec3::new(900.0, -700.0, 800.0) } else { Vec3::ZERO };
         let moved = |point: Vec3| point + origin;
         let core = match core {
@@ -132,6 +137,32 @@ fn an_obb_lies_along_its_patch() {
     );
     assert!(obb.centre.length() < 1e-6);
     assert!((obb.axes.determinant() - 1.0).abs() < 1e-5);
+}
+
+/// The axes of a patch that is nearly a line are square to each other, however thin it is. (The plain cross product of
+/// two nearly parallel sides was not, and boxes lost particles at their faces.)
+#[test]
+fn an_obbs_axes_are_square() {
+    for turn in 0..1000 {
+        let angle = turn as f32;
+        let thin = 10.0_f32.powf(-0.009 * angle);
+        let rotation = Quat::from_scaled_axis(Vec3::new(0.3, 0.7, -0.2) * angle);
+        let corners = [
+            Vec3::new(-1.0, -thin, 0.3 * thin),
+            Vec3::new(1.0, 0.4 * thin, -thin),
+            Vec3::new(-0.7, thin, 0.0),
+            Vec3::new(0.8, thin, thin),
+        ];
+        let [a, b, c, d] = corners.map(|corner| Obb::around(rotation * corner, 0.0));
+        let axes = Obb::unite([&a, &b, &c, &d]).axes;
+        // Nine products and sums of rounded numbers up to 1: some 4 ε each.
+        let off = axes.transpose() * axes - Mat3::IDENTITY;
+        let largest = off
+            .to_cols_array()
+            .iter()
+            .fold(0.0_f32, |a, b| a.max(b.abs()));
+        assert!(largest <= 8.0 * f32::EPSILON, "{largest} at {thin}: {axes}");
+    }
 }
 
 /// Around a ball the faces of a k-DOP are as many as its planes, each touches the ball, and each corner is beyond it.

@@ -1,0 +1,363 @@
+//! The paper's time execution test: how long the search of its scene takes, 20 times, by every volume and rule.
+//!
+//! One run goes through all ticks of the recorded scene: in each, every node's volume is brought up to date by its
+//! rule, and the tree is searched from the top for the ball.
+
+use bevy_drape::hierarchy::{BoundRule, BoundingVolume, NodeBounds, TopDownQuery, brute_force};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    chart::{Axis, Chart, Kind, Look, Panel, Point, Series},
+    cloths::{CHOICES, Recording, State},
+    experiment::{Experiment, Run, Table},
+    measure::{Spread, seconds},
+    parry::ParryTree,
+};
+
+/// The paper's Table 1 (ms).
+const PUBLISHED: &str = include_str!("../../assets/lab/paper_table1.csv");
+
+/// Of the rows that the paper published.
+const IN_PRINT: &str = "as published";
+
+pub struct Table1;
+
+/// One run of one volume and rule.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    run: u32,
+    volume: String,
+    rule: String,
+    ms: f64,
+    /// Nodes, or particles where there is no tree, that a tick looks at, on average; 0 where that is not known.
+    visited: f64,
+    /// Contacts of all ticks, and those that were not found.
+    contacts: usize,
+    missed: usize,
+}
+
+/// One way to search.
+enum Searcher {
+    Tree(Box<NodeBounds>, (BoundingVolume, BoundRule)),
+    Scan,
+    /// In f64, one by one.
+    Brute,
+    Parry(Box<ParryTree>),
+}
+
+impl Searcher {
+    fn all(recording: &Recording) -> Vec<Self> {
+        let trees = CHOICES.map(|choice| Self::Tree(Box::default(), choice));
+        let first = &recording.states[0].particles;
+        let others = [
+            Self::Scan,
+            Self::Brute,
+            Self::Parry(Box::new(ParryTree::new(first))),
+        ];
+        trees.into_iter().chain(others).collect()
+    }
+
+    fn names(&self) -> [&'static str; 2] {
+        match self {
+            Self::Tree(_, (volume, rule)) => [volume.name(), rule.name()],
+            Self::Scan => ["particles", "scan"],
+            Self::Brute => ["particles", "brute force, f64"],
+            Self::Parry(_) => ["AABBs", "parry3d"],
+        }
+    }
+
+    /// Brings all up to date, searches, and says how many contacts it found.
+    fn search(&mut self, query: &mut TopDownQuery, recording: &Recording, state: &State) -> usize {
+        let State {
+            particles,
+            stretch,
+            ball,
+        } = state;
+        query.clear();
+        match self {
+            Self::Tree(bounds, choice) => {
+                let tree = &recording.tree;
+                bounds
+                    .rebuild(*choice, tree, particles, *stretch)
+                    .expect("there is such a rule");
+                query.search(tree, bounds, particles, ball).len()
+            }
+            Self::Scan => query.scan(particles, ball).len(),
+            Self::Brute => brute_force(particles, ball).len(),
+            Self::Parry(tree) => tree.tick(particles, ball, 0.0),
+        }
+    }
+}
+
+impl Experiment for Table1 {
+    type Row = Row;
+
+    const NAME: &'static str = "table1";
+
+    fn run(run: &mut Run) -> Vec<Row> {
+        let ticks = run.either(192, 768);
+        run.set("scene", format!("16 × 16 particles, ball of radius 1, {ticks} ticks of 1/64 s; a run searches them all"));
+        run.set("published", "the paper's Table 1, on its machine");
+        let recording = Recording::new(ticks);
+        let mut searchers = Searcher::all(&recording);
+        let mut query = TopDownQuery::default();
+        let count = |state: &State| brute_force(&state.particles, &state.ball).len();
+        let contacts = recording.states.iter().map(count).sum();
+        let mut rows = published();
+        run.begin(Self::NAME, 20);
+        for turn in 1..=20 {
+            for searcher in &mut searchers {
+                let (mut found, mut visited) = (0, 0);
+                let time = seconds(|| {
+                    for state in &recording.states {
+                        found += searcher.search(&mut query, &recording, state);
+                        visited += query.nodes_visited().max(query.leaf_tests());
+                    }
+                });
+                let visited = match searcher {
+                    Searcher::Parry(_) => 0.0,
+                    Searcher::Brute => recording.grid.len() as f64,
+                    _ => visited as f64 / recording.states.len() as f64,
+                };
+                let [volume, rule] = searcher.names().map(String::from);
+                rows.push(Row {
+                    run: turn,
+                    volume,
+                    rule,
+                    ms: 1.0e3 * time,
+                    visited,
+                    contacts,
+                    missed: contacts - found,
+                });
+            }
+            run.step();
+        }
+        rows
+    }
+
+    fn check(rows: &[Row]) -> Result<(), String> {
+        for row in rows {
+            if row.missed > 0 && row.rule != BoundRule::Paper.name() {
+                return Err(format!(
+                    "{} by {} missed {} contacts",
+                    row.volume, row.rule, row.missed
+                ));
+            }
+        }
+        match rows.first() {
+            Some(row) if kinds(rows).len() == 15 && rows.len() == 15 * 20 && row.ms > 0.0 => Ok(()),
+            _ => Err("20 runs of 13 searches and the paper's two".into()),
+        }
+    }
+
+    fn findings(rows: &[Row]) -> Vec<String> {
+        let paper = BoundRule::Paper.name();
+        let ms = |volume, rule| spread(rows, volume, rule).median;
+        let seen = |volume, rule| {
+            of(rows, volume, rule)
+                .next()
+                .map_or((0.0, 0, 0), |row| (row.visited, row.missed, row.contacts))
+        };
+        let published = ms("AABBs", IN_PRINT) / ms("spheres", IN_PRINT);
+        let ratio = ms("AABBs", paper) / ms("spheres", paper);
+        let (spheres, missed, contacts) = seen("spheres", paper);
+        let (boxes, ..) = seen("AABBs", paper);
+        vec![
+            format!(
+                "The paper's spheres were {published:.1} × as fast as its AABBs; on one tree, built by its rule, they are {ratio:.2} ×: they visit {spheres:.0} nodes a tick where AABBs visit {boxes:.0}, and miss {:.1} % of the contacts.",
+                100.0 * missed as f64 / contacts.max(1) as f64
+            ),
+            format!(
+                "By the rest shape, which misses nothing, spheres take {:.2} ms and AABBs {:.2}; a scan of all 256 particles takes {:.2}, parry3d {:.1}, brute force in f64 {:.2}.",
+                ms("spheres", BoundRule::RestShape.name()),
+                ms("AABBs", BoundRule::RestShape.name()),
+                ms("particles", "scan"),
+                ms("AABBs", "parry3d"),
+                ms("particles", "brute force, f64"),
+            ),
+        ]
+    }
+
+    fn table(rows: &[Row]) -> Table {
+        let mut table = Table::new([
+            "volume",
+            "rule",
+            "ms, median",
+            "quartiles",
+            "visited a tick",
+            "missed",
+        ]);
+        for [volume, rule] in kinds(rows) {
+            let times = spread(rows, volume, rule);
+            let Some(row) = of(rows, volume, rule).next() else {
+                continue;
+            };
+            table.row([
+                volume.into(),
+                rule.into(),
+                format!("{:.3}", times.median),
+                format!("{:.3} to {:.3}", times.low, times.high),
+                format!("{:.0}", row.visited),
+                row.missed.to_string(),
+            ]);
+        }
+        table
+    }
+
+    fn charts(rows: &[Row]) -> Vec<Chart> {
+        vec![medians(rows), figure_7(rows)]
+    }
+}
+
+/// Every way to search, from the fastest to the slowest.
+fn medians(rows: &[Row]) -> Chart {
+    let mut kinds: Vec<([&str; 2], Spread)> = kinds(rows)
+        .into_iter()
+        .filter(|[_, rule]| *rule != IN_PRINT)
+        .map(|kind| (kind, spread(rows, kind[0], kind[1])))
+        .collect();
+    kinds.sort_by(|a, b| b.1.median.total_cmp(&a.1.median));
+    let names = kinds
+        .iter()
+        .map(|([volume, rule], _)| format!("{volume}, {rule}"));
+    let mut panel = Panel::new(
+        "",
+        Axis::log("ms for all ticks of the scene, log"),
+        Axis::of_names("", names),
+    );
+    let [paper, rest, refit] =
+        [BoundRule::Paper, BoundRule::RestShape, BoundRule::Refit].map(BoundRule::name);
+    let groups: [(&str, usize, &[&str]); 4] = [
+        ("misses contacts", 1, &[paper]),
+        ("misses nothing: rest shape", 0, &[rest]),
+        ("misses nothing: refitted", 2, &[refit]),
+        (
+            "no tree of ours",
+            3,
+            &["scan", "brute force, f64", "parry3d"],
+        ),
+    ];
+    for (name, style, rules) in groups {
+        let points = kinds
+            .iter()
+            .enumerate()
+            .filter(|(_, ([_, rule], _))| rules.contains(rule));
+        let points = points.map(|(at, (_, times))| Point {
+            at: [times.median, at as f64],
+            across: Some([times.low, times.high]),
+            up: None,
+        });
+        panel = panel.with(Series::new(name, Look::Style(style), Kind::Points, points));
+    }
+    let rest = spread(rows, "spheres", BoundRule::RestShape.name()).median;
+    let slowest = kinds.first().map_or(f64::NAN, |(_, times)| times.median);
+    Chart::new(
+        "table1",
+        format!("The rest shape searches the paper's scene {:.0} × as fast as the slowest tree", slowest / rest),
+        "16 × 16 particles, a ball goes through and back; every volume brought up to date in every tick. Median of 20 runs, quartiles.",
+    )
+    .with(panel)
+}
+
+/// The paper's Figure 7, and the same by our measurement.
+fn figure_7(rows: &[Row]) -> Chart {
+    let panel = |title: &str, rule: &str| {
+        let mut panel = Panel::new(
+            title,
+            Axis::linear("run").from_to(0.0, 21.0),
+            Axis::log("ms, log"),
+        );
+        for (style, volume) in ["spheres", "AABBs"].into_iter().enumerate() {
+            let runs = of(rows, volume, rule).map(|row| [f64::from(row.run), row.ms]);
+            panel = panel.with(Series::new(volume, Look::Style(style), Kind::Marked, runs));
+        }
+        panel
+    };
+    let paper = BoundRule::Paper.name();
+    let ratio = |rule| spread(rows, "AABBs", rule).median / spread(rows, "spheres", rule).median;
+    Chart::new(
+        "figure7",
+        format!(
+            "Spheres faster than AABBs: {:.1} × in the paper, {:.2} × on one and the same tree",
+            ratio(IN_PRINT),
+            ratio(paper)
+        ),
+        "Figure 7 of the paper, drawn from its Table 1, and the same test here: both volumes in one tree, by the paper's rule and by the rest shape. The machines differ.",
+    )
+    .columns(3)
+    .with(panel("The paper", IN_PRINT))
+    .with(panel("Here, its rule", paper))
+    .with(panel("Here, rest shape", BoundRule::RestShape.name()))
+}
+
+/// The paper's runs.
+fn published() -> Vec<Row> {
+    let lines = PUBLISHED
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1);
+    lines
+        .flat_map(|line| {
+            let cells: Vec<f64> = line
+                .split(',')
+                .filter_map(|cell| cell.parse().ok())
+                .collect();
+            let row = |volume: &str, ms: f64| Row {
+                run: cells[0] as u32,
+                volume: volume.into(),
+                rule: IN_PRINT.into(),
+                ms,
+                visited: 0.0,
+                contacts: 0,
+                missed: 0,
+            };
+            [row("spheres", cells[1]), row("AABBs", cells[2])]
+        })
+        .collect()
+}
+
+/// Each volume and rule, in the order in which they appear.
+fn kinds(rows: &[Row]) -> Vec<[&str; 2]> {
+    let mut kinds = Vec::new();
+    for row in rows {
+        let kind = [row.volume.as_str(), row.rule.as_str()];
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
+}
+
+fn of<'a>(rows: &'a [Row], volume: &'a str, rule: &'a str) -> impl Iterator<Item = &'a Row> {
+    rows.iter()
+        .filter(move |row| row.volume == volume && row.rule == rule)
+}
+
+fn spread(rows: &[Row], volume: &str, rule: &str) -> Spread {
+    let times: Vec<f64> = of(rows, volume, rule).map(|row| row.ms).collect();
+    Spread::of(&times)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{experiment::quick, view::View};
+
+    #[test]
+    fn table1_is_complete_and_misses_nothing() {
+        let rows = quick::<Table1>(View::Nothing, "run,volume,rule,ms");
+        assert!(
+            rows.iter()
+                .all(|row| row.rule == IN_PRINT || row.contacts > 0)
+        );
+        assert!(
+            (median(
+                &of(&rows, "spheres", IN_PRINT)
+                    .map(|row| row.ms)
+                    .collect::<Vec<_>>()
+            ) - 235.76)
+                .abs()
+                < 5.0
+        );
+    }
+}
