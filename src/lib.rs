@@ -48,14 +48,14 @@ pub mod prelude {
     pub use crate::plugin::RapierClothCollider;
     pub use crate::plugin::{
         ClothAttachments, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-        ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped,
-        DrapePlugins,
+        ClothLimitExceeded, ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted,
+        ClothTouchStopped, DrapePlugins,
     };
     #[cfg(feature = "egui")]
     pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
-    pub use crate::solver::{ClothSettings, Precision};
+    pub use crate::solver::{ClothLimit, ClothSettings, Precision};
 }
 
 /// The README's snippets, compiled with the doc tests.

@@ -13,7 +13,10 @@ use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pin, Pins, Springs},
     contact::{Detection, MovingCollider, NarrowPhase, Terms},
     hierarchy::{NodeBounds, QuadTree, SearchMethod, SearchReason, TopDownQuery},
-    solver::{ClothSettings, Control, PinMotion, Precision, Rest, Solver, Stretch, TickStep},
+    solver::{
+        ClothLimit, ClothSettings, Control, Load, PinMotion, Precision, Rest, Solver, Stretch,
+        TickStep,
+    },
 };
 
 /// What does not change while a cloth moves: its grid, springs and tree. Empty until the first tick.
@@ -40,6 +43,12 @@ impl ClothTopology {
     /// The quad-tree.
     pub fn tree(&self) -> &QuadTree {
         &self.tree
+    }
+
+    /// The stretch compliance of what it was woven from (m/N).
+    pub(super) fn compliance(&self) -> f32 {
+        let woven = self.woven.as_ref();
+        woven.map_or(0.0, |(_, material, _)| material.stretch_compliance)
     }
 
     /// Whether springs and tree are those of `particles`: not before the first tick, nor once a game has
@@ -100,6 +109,8 @@ pub struct ClothStats {
     pub substeps: u32,
     /// Whether the cloth sleeps.
     pub is_asleep: bool,
+    /// The first limit beyond which it is not simulated well, if it is beyond one.
+    pub exceeded: Option<ClothLimit>,
 }
 
 /// Where a cloth may be touched in the tick. Small, so that a thousand cloths which nothing comes near are passed over
@@ -160,6 +171,10 @@ pub(super) struct ClothTick {
     pub first_target: Option<Isometry3d>,
     /// The particles as the tick began, for a tick that is done again.
     pub backup: ClothParticles,
-    /// Whether it was said that the sub-steps don't suffice.
-    pub cap_is_told: bool,
+    /// What the tick that was just done asked of the cloth.
+    pub load: Option<Load>,
+    /// Masses of its lightest and heaviest free particle (kg).
+    pub masses: [f32; 2],
+    /// Which limits it was said to exceed.
+    pub told: [bool; ClothLimit::ALL.len()],
 }

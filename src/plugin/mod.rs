@@ -5,6 +5,7 @@ mod colliders;
 mod components;
 mod contacts;
 mod diagnostics;
+mod envelope;
 mod fault;
 mod frame;
 #[cfg(feature = "gizmos")]
@@ -30,6 +31,7 @@ pub use attach::{ClothAttachments, ClothTeleport};
 pub use components::{ClothSearch, ClothStats, ClothTopology};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use diagnostics::ClothDiagnosticsPlugin;
+pub use envelope::ClothLimitExceeded;
 pub use fault::ClothFault;
 pub use frame::ClothFrame;
 #[cfg(feature = "gizmos")]

@@ -206,6 +206,12 @@ fn show_cloth(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) 
         },
     ));
 
+    if let Some(limit) = stats.exceeded {
+        let color = ui.visuals().warn_fg_color;
+        ui.colored_label(color, format!("beyond what is simulated well: {limit}"))
+            .on_hover_text(limit.remedy());
+    }
+
     ui.label(search_text(stats)).on_hover_text(format!(
         "{} particles tested, {} colliders near, {} of them against triangles, {} searches again within the tick",
         stats.leaf_tests, stats.colliders_near, stats.by_triangles, stats.requeries,

@@ -136,7 +136,9 @@ impl PreparingItem<'_, '_> {
         self.tether(settings.tethers, &material, gravity.length());
         let known = Some((settings, search, narrow_phase, acceleration));
         if self.tick.known != known || !self.tick.pins.is_empty() || !settings.sleeps {
-            self.tick.cap_is_told &= self.tick.known == known;
+            if self.tick.known != known {
+                self.tick.told = Default::default();
+            }
             self.tick.known = known;
             self.tick.rest.disturb();
         } else if !self.tick.rest.is_asleep() {
@@ -216,14 +218,15 @@ impl PreparingItem<'_, '_> {
 
     /// The speed of the fastest particle (m/s), if all are sound.
     fn look_at_particles(&mut self) -> Result<f32, ClothError> {
-        let survey = self.particles.survey();
-        if survey.is_sound {
-            return Ok(survey.largest_speed);
+        let mut survey = self.particles.survey();
+        if !survey.is_sound {
+            self.particles.validate()?;
+            // What was not sound has been mended, but for what it left beside the particles.
+            self.particles.clear_padding();
+            survey = self.particles.survey();
         }
-        self.particles.validate()?;
-        // What was not sound has been mended, but for what it left beside the particles.
-        self.particles.clear_padding();
-        Ok(self.particles.survey().largest_speed)
+        self.tick.masses = survey.masses;
+        Ok(survey.largest_speed)
     }
 
     /// How far a particle may get in the tick by itself (m): by its speed and gravity, by what carries its

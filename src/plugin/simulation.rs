@@ -16,11 +16,12 @@ use bevy::{
 };
 
 use super::{
-    ClothAttachments, ClothContacts, ClothFault, ClothFrame, ClothSearch, ClothStats,
-    ClothTeleport, ClothTopology, ClothTouchStarted, ClothTouchStopped,
+    ClothAttachments, ClothContacts, ClothFault, ClothFrame, ClothLimitExceeded, ClothSearch,
+    ClothStats, ClothTeleport, ClothTopology, ClothTouchStarted, ClothTouchStopped,
     colliders::{ColliderMotion, prepare_colliders},
     components::{ClothTick, Vicinity},
     contacts::{tell_of_removed_cloths, tell_of_touches},
+    envelope::tell_of_limits,
     fault::Part,
     prepare::prepare_cloths,
     search::{query_collisions, rebuild_hierarchies},
@@ -115,6 +116,7 @@ impl Plugin for ClothPlugin {
         app.init_resource::<ClothGravity>()
             .add_message::<ClothTouchStarted>()
             .add_message::<ClothTouchStopped>()
+            .add_message::<ClothLimitExceeded>()
             .add_observer(tell_of_removed_cloths)
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
@@ -139,7 +141,9 @@ impl Plugin for ClothPlugin {
                 rebuild_hierarchies.in_set(ClothSystems::Rebuild),
                 query_collisions.in_set(ClothSystems::Query),
                 integrate.in_set(ClothSystems::Integrate),
-                tell_of_touches.in_set(ClothSystems::WriteBack),
+                (tell_of_touches, tell_of_limits)
+                    .chain()
+                    .in_set(ClothSystems::WriteBack),
             ),
         );
     }

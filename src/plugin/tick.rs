@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{change_detection::DetectChanges, entity::Entity, query::QueryData, system::Query},
-    log::warn,
+    math::Vec3,
     platform::time::Instant,
     tasks::{ComputeTaskPool, available_parallelism},
 };
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     cloth::ClothParticles,
-    solver::{Precision, Stretch, TickStep},
+    solver::{Load, Precision, Stretch, TickStep},
 };
 
 /// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.7 at 256².
@@ -25,7 +25,6 @@ const LEAST_TO_SHARE: usize = 64 * 64 * 20;
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct Integrating {
-    entity: Entity,
     topology: &'static ClothTopology,
     frame: &'static ClothFrame,
     particles: &'static mut ClothParticles,
@@ -117,16 +116,21 @@ impl IntegratingItem<'_, '_> {
             self.particles.copy_from(&self.tick.backup);
             self.tick.detection.restart();
         }
-        let is_capped = self.tick.control.is_capped();
-        if is_capped && !self.tick.cap_is_told {
-            self.tick.cap_is_told = true;
-            warn!(
-                "{} is stretched by {:.1} %, beyond its tolerance: {} sub-steps a tick, the most that its settings allow, do not suffice",
-                self.entity,
-                100.0 * self.tick.stretch.structural,
-                step.substeps,
-            );
-        }
+        let grid = self.topology.grid();
+        let root = self
+            .topology
+            .tree
+            .root_sphere(&self.particles, self.tick.stretch.bound);
+        self.tick.load = Some(Load {
+            stretch: self.tick.stretch.structural,
+            precision,
+            is_capped: self.tick.control.is_capped(),
+            substep: step.seconds / step.substeps as f32,
+            compliance: self.topology.compliance(),
+            masses: self.tick.masses,
+            distance: (Vec3::from(root.center).length() + root.radius())
+                / grid.spacing().max_element(),
+        });
     }
 
     /// One way through the sub-steps.

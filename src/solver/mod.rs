@@ -5,6 +5,7 @@
 //! instead of many sweeps: Macklin et al. 2019). With one sweep a sub-step no multiplier needs storing.
 
 mod bands;
+mod envelope;
 mod kernel;
 mod list;
 #[cfg(feature = "methods")]
@@ -20,6 +21,7 @@ mod tests;
 mod tether;
 mod wave;
 
+pub use envelope::{ClothLimit, Load};
 pub use kernel::Instructions;
 pub use precision::{Control, Precision};
 pub use rest::Rest;

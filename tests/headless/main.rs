@@ -1,6 +1,7 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
 mod attach;
+mod envelope;
 mod faults;
 mod frame;
 mod lifetime;

@@ -48,7 +48,15 @@ pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
     app.add_plugins((MinimalPlugins, TransformPlugin, plugins))
         .init_resource::<Heard<ClothTouchStarted>>()
         .init_resource::<Heard<ClothTouchStopped>>()
-        .add_systems(Last, (hear::<ClothTouchStarted>, hear::<ClothTouchStopped>))
+        .init_resource::<Heard<ClothLimitExceeded>>()
+        .add_systems(
+            Last,
+            (
+                hear::<ClothTouchStarted>,
+                hear::<ClothTouchStopped>,
+                hear::<ClothLimitExceeded>,
+            ),
+        )
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
     app.finish();
     app.cleanup();

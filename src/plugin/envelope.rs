@@ -1,0 +1,60 @@
+//! Tells of cloths that leave the envelope in which they are simulated well.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        message::{Message, MessageWriter},
+        system::Query,
+    },
+    log::warn,
+    reflect::Reflect,
+};
+
+use super::{ClothStats, components::ClothTick};
+use crate::solver::ClothLimit;
+
+/// A cloth has left the envelope in which it is simulated well. It is logged as well, with the remedy: once for each
+/// limit, and again after its settings have changed.
+#[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct ClothLimitExceeded {
+    /// The cloth.
+    pub cloth: Entity,
+    /// Which limit.
+    pub limit: ClothLimit,
+    /// The quantity, and up to where it is good: a stretch, a ratio, or a distance in spacings.
+    pub quantity: f32,
+    /// Up to where it is good.
+    pub good_up_to: f32,
+}
+
+/// Looks at every cloth that moved in the tick.
+pub(super) fn tell_of_limits(
+    mut cloths: Query<(Entity, &mut ClothTick, &mut ClothStats)>,
+    mut exceeded: MessageWriter<ClothLimitExceeded>,
+) {
+    for (cloth, mut tick, mut stats) in &mut cloths {
+        // Kept as it was while it sleeps or stands still.
+        let Some(load) = tick.load.take() else {
+            continue;
+        };
+        stats.exceeded = None;
+        for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
+            let Some([quantity, good_up_to]) = load.beyond(limit) else {
+                continue;
+            };
+            stats.exceeded = stats.exceeded.or(Some(limit));
+            if !std::mem::replace(&mut tick.told[index], true) {
+                exceeded.write(ClothLimitExceeded {
+                    cloth,
+                    limit,
+                    quantity,
+                    good_up_to,
+                });
+                warn!(
+                    "{cloth} has left the envelope in which cloth is simulated well: its {limit} is {quantity:.3}, good up to {good_up_to}; {}",
+                    limit.remedy()
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Beyond the envelope in which cloth is simulated well: told once for each cloth and limit, with the quantity.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::support::*;
+
+/// Ticks a cloth beside a sound one and expects to be told of that limit, once, with a quantity beyond it; and again
+/// after its settings have changed, and of nothing else.
+fn expect_told(mut app: App, cloth: Entity, limit: ClothLimit) {
+    let sound = app.world_mut().spawn(Cloth::default()).id();
+    tick(&mut app, 64);
+    let told = messages::<ClothLimitExceeded>(&mut app);
+    let [told] = told[..] else {
+        panic!("once: {told:?}");
+    };
+    assert_eq!((told.cloth, told.limit), (cloth, limit));
+    assert!(told.quantity > told.good_up_to, "{told:?}");
+    assert_eq!(exceeded(&app, cloth), Some(limit));
+    assert_eq!(exceeded(&app, sound), None);
+    change::<ClothSettings>(&mut app, cloth, |settings| settings.particle_radius *= 2.0);
+    tick(&mut app, 64);
+    let again = messages::<ClothLimitExceeded>(&mut app);
+    assert!(
+        matches!(again[..], [again] if again.limit == limit),
+        "{again:?}"
+    );
+}
+
+fn exceeded(app: &App, cloth: Entity) -> Option<ClothLimit> {
+    let stats = app.world().get::<ClothStats>(cloth).expect("figures");
+    stats.exceeded
+}
+
+/// Hung by one particle without tethers, in two sub-steps: the sweep alone can't hold it.
+#[test]
+fn a_cloth_that_its_sub_steps_do_not_hold() {
+    let mut app = app();
+    let settings = ClothSettings {
+        tethers: false,
+        sleeps: false,
+        ..ClothSettings::substeps(2)
+    };
+    let pins = Pins::new([Pin::Corner(Corner::TopLeft)]);
+    let cloth = (Cloth::new(32, 32, 0.05), pins, settings);
+    let cloth = app.world_mut().spawn(cloth).id();
+    expect_told(app, cloth, ClothLimit::Stretch);
+}
+
+#[test]
+fn a_tolerance_that_the_cap_does_not_hold() {
+    let mut app = app();
+    let settings = ClothSettings {
+        precision: Precision::Tolerance {
+            stretch: 0.001,
+            most_substeps: 30,
+        },
+        sleeps: false,
+        ..default()
+    };
+    let cloth = (Cloth::default(), ClothMaterial::RUBBER, settings);
+    let cloth = app.world_mut().spawn(cloth).id();
+    expect_told(app, cloth, ClothLimit::Tolerance);
+}
+
+#[test]
+fn a_mass_of_a_thousand_others() {
+    let mut app = app();
+    let awake = ClothSettings {
+        sleeps: false,
+        ..ClothSettings::substeps(60)
+    };
+    let cloth = app.world_mut().spawn((Cloth::new(4, 4, 0.1), awake)).id();
+    tick(&mut app, 1);
+    change::<ClothParticles>(&mut app, cloth, |particles| {
+        let light = particles.inverse_mass((2, 1)).expect("it exists");
+        particles
+            .set_inverse_mass((3, 1), light / 1000.0)
+            .expect("it exists");
+    });
+    assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
+    expect_told(app, cloth, ClothLimit::MassRatio);
+}
+
+/// It falls away from its frame, faster and faster.
+#[test]
+fn a_cloth_far_from_its_own_frame() {
+    let mut app = app();
+    let settings = ClothSettings {
+        gravity: Some(Vec3::NEG_Y * 2000.0),
+        sleeps: false,
+        ..default()
+    };
+    let cloth = (Cloth::new(4, 4, 0.01), Pins::none(), settings);
+    let cloth = app.world_mut().spawn(cloth).id();
+    expect_told(app, cloth, ClothLimit::Distance);
+}
+
+/// The materials with all defaults, hung and struck by a ball: nothing to tell.
+#[test]
+fn the_usual_is_within() {
+    for (name, material) in ClothMaterial::PRESETS {
+        let mut app = app_with_moving_balls();
+        let cloth = app
+            .world_mut()
+            .spawn((Cloth::new(24, 24, 0.1), material))
+            .id();
+        let start = Transform::from_xyz(1.2, -1.2, -1.5);
+        app.world_mut()
+            .spawn((ClothCollider::ball(0.5), Moving(1.5), start));
+        tick(&mut app, 192);
+        let told = messages::<ClothLimitExceeded>(&mut app);
+        let stretch = app
+            .world()
+            .get::<ClothStats>(cloth)
+            .map(|stats| stats.stretch);
+        assert_eq!(told, [], "{name}: {stretch:?}");
+    }
+}
