@@ -9,13 +9,23 @@
 //! Each experiment writes `NAME.csv` with the machine and the settings in its header, and its charts as SVG and PNG for
 //! light and dark pages; it prints a table and what it found, and fails where something does not hold that must.
 
+mod calls;
 mod chart;
 mod cloths;
+mod cpu;
+mod drawn;
 mod experiment;
+mod frames;
 mod measure;
 #[path = "../../benches/hierarchy/parry.rs"]
 mod parry;
 mod record;
+#[path = "../ball/scene.rs"]
+mod scene;
+#[path = "../shared"]
+mod shared {
+    pub mod stage;
+}
 mod table1;
 #[path = "../shared/view.rs"]
 mod view;
@@ -34,8 +44,8 @@ use crate::{
 #[command(name = "lab")]
 struct Options {
     /// Which experiment
-    #[arg(value_enum, required_unless_present = "probe")]
-    name: Option<Name>,
+    #[arg(value_enum)]
+    name: Name,
     /// A short run: fewer settings and turns
     #[arg(long)]
     quick: bool,
@@ -45,33 +55,40 @@ struct Options {
     /// Measure nothing: draw the charts from the CSV files that are there
     #[arg(long)]
     redraw: bool,
-    /// Only try whether this view can be had; what the program asks of itself
-    #[arg(long, hide = true)]
-    probe: Option<View>,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Name {
     /// The paper's time execution test
     Table1,
+    /// The paper's frame test
+    Frames,
+    /// The paper's test of OpenGL calls, as it is today
+    Calls,
+    /// The paper's test of CPU utilisation
+    Cpu,
     /// All of them, one after the other
     All,
 }
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 1] = [(Name::Table1, conduct::<table1::Table1>)];
+const EXPERIMENTS: [(Name, Conduct); 4] = [
+    (Name::Table1, conduct::<table1::Table1>),
+    (Name::Frames, conduct::<frames::Frames>),
+    (Name::Calls, conduct::<calls::Calls>),
+    (Name::Cpu, conduct::<cpu::Cpu>),
+];
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    if let Some(view) = options.probe {
-        view.try_out();
+    if View::was_tried_out() {
         return ExitCode::SUCCESS;
     }
-    let view = if !options.redraw && View::Offscreen.can_be_had() {
-        View::Offscreen
-    } else {
+    let options = Options::parse();
+    let view = if options.redraw {
         View::Nothing
+    } else {
+        View::without_window()
     };
     let mut run = Run::new(options.quick, view);
     let output = Output {
@@ -80,7 +97,7 @@ fn main() -> ExitCode {
     };
     let mut outcome = ExitCode::SUCCESS;
     for (name, conduct) in EXPERIMENTS {
-        if options.name == Some(Name::All) || options.name == Some(name) {
+        if options.name == Name::All || options.name == name {
             if let Err(error) = conduct(&mut run, &output) {
                 eprintln!("{error}");
                 outcome = ExitCode::FAILURE;

@@ -21,9 +21,6 @@ pub struct Options {
     /// Headless: print the report as one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Only try whether this view can be had; what the program asks of itself
-    #[arg(long, hide = true)]
-    probe: Option<View>,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -46,6 +43,9 @@ pub struct Example {
 impl Example {
     /// Does as the command line says.
     pub fn run(self) -> ExitCode {
+        if View::was_tried_out() {
+            return ExitCode::SUCCESS;
+        }
         let command = Options::command()
             .name(self.name)
             .about(self.about)
@@ -54,21 +54,12 @@ impl Example {
             Ok(options) => options,
             Err(error) => error.exit(),
         };
-        if let Some(view) = options.probe {
-            view.try_out();
-            return ExitCode::SUCCESS;
-        }
         if !options.headless {
             if View::Window.can_be_had() {
                 return (self.window)();
             }
             eprintln!("No window can be opened here: running headless.");
         }
-        let view = if View::Offscreen.can_be_had() {
-            View::Offscreen
-        } else {
-            View::Nothing
-        };
-        (self.headless)(view, &options)
+        (self.headless)(View::without_window(), &options)
     }
 }

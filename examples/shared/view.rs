@@ -18,7 +18,10 @@ use bevy::{
     winit::WinitPlugin,
 };
 
-#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+/// Says in a child process's environment which view it is to try out.
+const TO_TRY: &str = "BEVY_DRAPE_TRY_VIEW";
+
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum View {
     Window,
     Offscreen,
@@ -70,13 +73,29 @@ impl View {
             })
     }
 
-    /// Builds the plugins: panics, or worse, where a display or an adapter is missing.
-    pub fn try_out(self) {
-        App::new().add_plugins(self.plugins("trying out"));
+    /// The best that can be had without a window.
+    pub fn without_window() -> Self {
+        if Self::Offscreen.can_be_had() {
+            Self::Offscreen
+        } else {
+            Self::Nothing
+        }
     }
 
-    /// Whether [`try_out`](Self::try_out) goes well. Asked of another process, since neither winit nor wgpu
-    /// nor a driver can be trusted to return an error.
+    /// Whether this process was started only to try a view out, which is then done. To be asked before all else.
+    pub fn was_tried_out() -> bool {
+        let view = match env::var(TO_TRY).as_deref() {
+            Ok("window") => Self::Window,
+            Ok("offscreen") => Self::Offscreen,
+            _ => return false,
+        };
+        // Panics, or worse, where a display or an adapter is missing.
+        App::new().add_plugins(view.plugins("trying out"));
+        true
+    }
+
+    /// Whether the plugins can be built. Asked of another process, which [was only started to try](Self::was_tried_out),
+    /// since neither winit nor wgpu nor a driver can be trusted to return an error.
     pub fn can_be_had(self) -> bool {
         if self == Self::Window
             && cfg!(target_os = "linux")
@@ -89,14 +108,30 @@ impl View {
             Self::Offscreen => "offscreen",
             Self::Nothing => return true,
         };
-        let probe = env::current_exe().and_then(|program| {
-            Command::new(program)
-                .args(["--probe", name])
+        let tried = env::current_exe().and_then(|program| {
+            let mut child = Command::new(program);
+            if cfg!(test) {
+                // Of all tests, the one that tries the view out.
+                child.arg("a_view_is_tried_out_where_asked");
+            }
+            child
+                .env(TO_TRY, name)
                 .stdin(Stdio::null())
                 .stdout(Stdio::null())
                 .stderr(Stdio::null())
                 .status()
         });
-        probe.is_ok_and(|status| status.success())
+        tried.is_ok_and(|status| status.success())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::View;
+
+    /// As a program does at its start: tests have none of their own.
+    #[test]
+    fn a_view_is_tried_out_where_asked() {
+        View::was_tried_out();
     }
 }

@@ -1,0 +1,386 @@
+//! The paper's test of CPU utilisation: what part of a core the process takes while the scene goes on at its own pace, with
+//! the hierarchy drawn and not drawn, by every volume.
+
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+use bevy_drape::hierarchy::BoundingVolume;
+use serde::{Deserialize, Serialize};
+use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
+
+use crate::{
+    chart::{Axis, Chart, Kind, Look, Panel, Point, Series},
+    drawn::{Drawn, SMALL, WHOLE},
+    experiment::{Experiment, Run, Table},
+    measure::Spread,
+    view::View,
+};
+
+/// How much more spheres took than AABBs in the paper, about (%).
+const PUBLISHED: f64 = 15.0;
+
+/// Frames a second that are kept where the machine can.
+const PACE: f64 = 60.0;
+
+pub struct Cpu;
+
+/// One turn of one volume.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// How far the scene has come.
+    second: f64,
+    volume: String,
+    /// 100 for one core.
+    cpu_percent: f64,
+    drawn: bool,
+    /// That the turn really had.
+    fps: f64,
+    cpu_ms_per_frame: f64,
+    /// All volumes take their turn in a round.
+    round: u32,
+    threads: usize,
+    /// What drew, if anything did.
+    adapter: Option<String>,
+}
+
+/// What this process has taken of the CPU.
+struct Meter(System);
+
+impl Meter {
+    /// So far (s), as finely as the system counts: hundredths on Linux.
+    fn seconds(&mut self) -> Option<f64> {
+        let id = sysinfo::get_current_pid().ok()?;
+        self.0.refresh_processes_specifics(
+            ProcessesToUpdate::Some(&[id]),
+            false,
+            ProcessRefreshKind::nothing().with_cpu(),
+        );
+        Some(self.0.process(id)?.accumulated_cpu_time() as f64 / 1.0e3)
+    }
+}
+
+impl Experiment for Cpu {
+    type Row = Row;
+
+    const NAME: &'static str = "cpu";
+
+    fn run(run: &mut Run) -> Vec<Row> {
+        let Ok(mut meter) = System::new().map(Meter) else {
+            run.say("  this system does not tell what a process takes of the CPU");
+            return Vec::new();
+        };
+        let mut scene = Drawn::new(run.view, SMALL);
+        let adapter = scene.adapter();
+        match &adapter {
+            Some(adapter) => run.set("adapter", adapter),
+            None => run.say("  no graphics adapter found: measured with nothing drawn"),
+        }
+        let (turn, rounds) = run.either((0.25, 2), (1.0, 12));
+        run.set("turns", format!("{rounds} rounds, in each {turn} s by each volume, at {PACE} frames a second where that can be kept"));
+        run.set(
+            "cpu_percent",
+            "100 is one core; user and system time of the whole process",
+        );
+        run.set(
+            "scene",
+            format!(
+                "the example ball's, in an image of {} × {}: next to nothing is for filling it",
+                SMALL[0], SMALL[1]
+            ),
+        );
+        let mut choices = Vec::new();
+        for (place, (_, volume)) in BoundingVolume::ALL.into_iter().enumerate() {
+            if run.view != View::Nothing {
+                choices.push((volume, true));
+            }
+            // A short run with a renderer: spheres and AABBs alone.
+            if !run.quick || run.view == View::Nothing || place < 2 {
+                choices.push((volume, false));
+            }
+        }
+        let threads = thread::available_parallelism().map_or(1, usize::from);
+        scene.follow_the_clock();
+        let mut rows = Vec::new();
+        run.begin(Self::NAME, rounds as usize);
+        for round in 1..=rounds {
+            for &(volume, drawn) in &choices {
+                scene.show(volume, drawn.then_some(WHOLE));
+                (0..2).for_each(|_| scene.tick());
+                let Some(before) = meter.seconds() else {
+                    return rows;
+                };
+                let start = Instant::now();
+                let frames = at_pace(&mut scene, turn);
+                let wall = start.elapsed().as_secs_f64();
+                let taken = meter.seconds().unwrap_or(before) - before;
+                rows.push(Row {
+                    second: scene.seconds(),
+                    volume: volume.name().into(),
+                    cpu_percent: 100.0 * taken / wall,
+                    drawn,
+                    fps: f64::from(frames) / wall,
+                    cpu_ms_per_frame: 1.0e3 * taken / f64::from(frames),
+                    round,
+                    threads,
+                    adapter: adapter.clone(),
+                });
+            }
+            run.step();
+        }
+        rows
+    }
+
+    fn check(rows: &[Row]) -> Result<(), String> {
+        for row in rows {
+            // Time is counted in hundredths of a second.
+            let most = 100.0 * row.threads as f64 + 20.0;
+            if !(0.0..=most).contains(&row.cpu_percent) || row.fps > 1.2 * PACE {
+                return Err(format!(
+                    "{}: {:.0} % at {:.0} frames a second",
+                    row.volume, row.cpu_percent, row.fps
+                ));
+            }
+        }
+        let volumes = |is_drawn: bool| {
+            let kinds = kinds(rows).into_iter().filter(|kind| kind.1 == is_drawn);
+            kinds.count()
+        };
+        if volumes(true).max(volumes(false)) == BoundingVolume::ALL.len() {
+            Ok(())
+        } else {
+            Err("each of six volumes".into())
+        }
+    }
+
+    fn findings(rows: &[Row]) -> Vec<String> {
+        let mut findings = Vec::new();
+        for is_drawn in [true, false] {
+            let of = |volume| percent(rows, (volume, is_drawn));
+            let more = more_for_spheres(rows, is_drawn);
+            let frames = spread(rows, ("spheres", is_drawn), |row| row.fps).median;
+            if !frames.is_finite() {
+                continue;
+            }
+            let claim = match (is_drawn, more.low > 0.0, more.median > 0.0) {
+                (true, true, _) => {
+                    "Drawn, spheres take more of the CPU than AABBs, as in the paper"
+                }
+                (true, _, true) => {
+                    "Drawn, spheres take more of the CPU than AABBs, but no more than the noise is"
+                }
+                (true, ..) => {
+                    "Drawn, spheres take no more of the CPU than AABBs, other than in the paper"
+                }
+                (false, true, _) => "Not drawn, spheres still take more",
+                (false, ..) => "Not drawn, spheres take no more than the noise is",
+            };
+            findings.push(format!(
+                "{claim}: {:.0} % of a core against {:.0} %, {:+.0} % a frame (quartiles {:+.0} to {:+.0}, round by round){} at {frames:.0} frames a second{}.",
+                of("spheres").median,
+                of("AABBs").median,
+                more.median,
+                more.low,
+                more.high,
+                if is_drawn { "; the paper had about 15 % more," } else { "," },
+                adapter(rows).map_or(String::new(), |adapter| format!(" on {adapter}")),
+            ));
+        }
+        findings
+    }
+
+    fn table(rows: &[Row]) -> Table {
+        let mut table = Table::new([
+            "volume",
+            "drawn",
+            "% of a core, median",
+            "quartiles",
+            "CPU ms a frame",
+            "frames a second",
+        ]);
+        for kind in kinds(rows) {
+            let percent = percent(rows, kind);
+            table.row([
+                kind.0.into(),
+                if kind.1 { "drawn" } else { "not drawn" }.into(),
+                format!("{:.0}", percent.median),
+                format!("{:.0} to {:.0}", percent.low, percent.high),
+                format!(
+                    "{:.2}",
+                    spread(rows, kind, |row| row.cpu_ms_per_frame).median
+                ),
+                format!("{:.0}", spread(rows, kind, |row| row.fps).median),
+            ]);
+        }
+        table
+    }
+
+    fn charts(rows: &[Row]) -> Vec<Chart> {
+        vec![figure_10(rows)]
+    }
+}
+
+/// Draws frames for so long (s), none before its time. Returns how many.
+fn at_pace(scene: &mut Drawn, seconds: f64) -> u32 {
+    let start = Instant::now();
+    let mut frames = 0;
+    while start.elapsed().as_secs_f64() < seconds {
+        scene.tick();
+        frames += 1;
+        let next = f64::from(frames) / PACE;
+        let early = next - start.elapsed().as_secs_f64();
+        if early > 0.0 {
+            thread::sleep(Duration::from_secs_f64(early));
+        }
+    }
+    frames
+}
+
+/// The paper's Figure 10, of which only the difference was published, and the same here.
+fn figure_10(rows: &[Row]) -> Chart {
+    let names = BoundingVolume::ALL.map(|(name, _)| name);
+    let largest = rows
+        .iter()
+        .map(|row| row.cpu_ms_per_frame)
+        .fold(0.0, f64::max);
+    let mut each = Panel::new(
+        "Each volume",
+        Axis::linear("CPU time of a frame (ms)").from_to(0.0, 1.05 * largest),
+        Axis::of_names("", names.iter().rev().copied()),
+    );
+    let looks = [
+        (true, "drawn", Look::Style(0)),
+        (false, "not drawn", Look::Style(1)),
+    ];
+    for (is_drawn, name, look) in looks {
+        let points = names.iter().rev().enumerate();
+        let points = points.map(|(place, &volume)| {
+            let ms = spread(rows, (volume, is_drawn), |row| row.cpu_ms_per_frame);
+            Point {
+                at: [ms.median, place as f64],
+                across: Some([ms.low, ms.high]),
+                up: None,
+            }
+        });
+        let points = points.filter(|point| point.at[0].is_finite());
+        each = each.with(Series::new(name, look, Kind::Points, points));
+    }
+    let drawn = more_for_spheres(rows, true);
+    let has_drawn = drawn.median.is_finite();
+    let mut names = vec!["the paper"];
+    let mut against = Vec::new();
+    for (is_drawn, _, look) in looks {
+        let more = more_for_spheres(rows, is_drawn);
+        if more.median.is_finite() {
+            against.push((names.len() as f64, more, look));
+            names.push(if is_drawn {
+                "here, drawn"
+            } else {
+                "here, not drawn"
+            });
+        }
+    }
+    let mut more = Panel::new(
+        "Spheres against AABBs",
+        Axis::linear("more CPU time (%)"),
+        Axis::of_names("", names),
+    )
+    .with(Series::new(
+        "",
+        Look::Ink,
+        Kind::Line,
+        [[0.0, -0.6], [0.0, 2.6]],
+    ))
+    .with(Series::new(
+        "the paper",
+        Look::Style(3),
+        Kind::Points,
+        [[PUBLISHED, 0.0]],
+    ));
+    for (place, spread, look) in against {
+        let point = Point {
+            at: [spread.median, place],
+            across: Some([spread.low, spread.high]),
+            up: None,
+        };
+        more = more.with(Series::new("", look, Kind::Points, [point]));
+    }
+    let title = if has_drawn {
+        format!(
+            "Drawn spheres take {:+.0} % CPU against AABBs; in the paper about +15 %",
+            drawn.median
+        )
+    } else {
+        "With nothing drawn, spheres and AABBs take the CPU alike".into()
+    };
+    let by = adapter(rows).map_or("nothing drawn".into(), |adapter| {
+        format!("drawn by {adapter}")
+    });
+    Chart::new(
+        "cpu",
+        title,
+        format!("The whole process, its scene at its real pace, {by}, into a small image. Median and quartiles of turns."),
+    )
+    .columns(2)
+    .with(each)
+    .with(more)
+}
+
+fn adapter(rows: &[Row]) -> Option<&str> {
+    rows.first().and_then(|row| row.adapter.as_deref())
+}
+
+/// How much more CPU time a frame takes with spheres than with AABBs (%), round by round.
+fn more_for_spheres(rows: &[Row], is_drawn: bool) -> Spread {
+    let last = rows.iter().map(|row| row.round).max().unwrap_or(0);
+    let of = |volume: &str, round| {
+        let mut turns = rows
+            .iter()
+            .filter(|row| row.volume == volume && row.drawn == is_drawn && row.round == round);
+        turns.next().map(|row| row.cpu_ms_per_frame)
+    };
+    let more = (1..=last).filter_map(|round| {
+        let (spheres, boxes) = of("spheres", round).zip(of("AABBs", round))?;
+        (boxes > 0.0).then(|| 100.0 * (spheres / boxes - 1.0))
+    });
+    Spread::of(&more.collect::<Vec<_>>())
+}
+
+/// Each volume, and whether it is drawn, in the order in which they appear.
+fn kinds(rows: &[Row]) -> Vec<(&str, bool)> {
+    let mut kinds = Vec::new();
+    for row in rows {
+        let kind = (row.volume.as_str(), row.drawn);
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
+}
+
+fn percent(rows: &[Row], kind: (&str, bool)) -> Spread {
+    spread(rows, kind, |row| row.cpu_percent)
+}
+
+fn spread(rows: &[Row], kind: (&str, bool), figure: impl Fn(&Row) -> f64) -> Spread {
+    let turns = rows
+        .iter()
+        .filter(|row| (row.volume.as_str(), row.drawn) == kind);
+    Spread::of(&turns.map(figure).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::quick;
+
+    #[test]
+    fn cpu_is_measured_for_each_volume() {
+        let view = View::without_window();
+        let rows = quick::<Cpu>(view, "second,volume,cpu_percent");
+        let is_drawn = view == View::Offscreen;
+        assert_eq!(rows.iter().any(|row| row.drawn), is_drawn);
+        assert!(rows.iter().all(|row| row.adapter.is_some() == is_drawn));
+    }
+}
