@@ -127,6 +127,7 @@ impl IntegratingItem<'_, '_> {
             is_capped: self.tick.control.is_capped(),
             substep: step.seconds / step.substeps as f32,
             compliance: self.topology.compliance(),
+            is_tethered: !self.tick.solver.tethers().is_empty(),
             masses: self.tick.masses,
             distance: (Vec3::from(root.center).length() + root.radius())
                 / grid.spacing().max_element(),

@@ -14,7 +14,8 @@ pub enum ClothLimit {
     Stretch,
     /// The most sub-steps that the settings allow do not hold the tolerance that they ask for.
     Tolerance,
-    /// The heaviest particle that is free is more than a hundred times as heavy as the lightest.
+    /// The heaviest particle that is free is more than 300 times as heavy as the lightest, or with tethers more than
+    /// 10,000 times.
     MassRatio,
     /// A particle is farther from the origin of its cloth's frame than single precision resolves well: 20,000 spacings.
     Distance,
@@ -22,8 +23,8 @@ pub enum ClothLimit {
 
 /// Largest length / rest length − 1 that sub-steps may leave.
 const MOST_STRETCH: f32 = 0.1;
-/// Of the masses of free particles. Those of a rectangle's corners and middle differ by 4.
-const MOST_MASS_RATIO: f32 = 100.0;
+/// Of the masses of free particles, without tethers and with. Those of a rectangle's corners and middle differ by 4.
+const MOST_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
 /// In spacings: there a float's step is a thousandth of one.
 const MOST_DISTANCE: f32 = 20_000.0;
 
@@ -45,7 +46,9 @@ impl ClothLimit {
             Self::Tolerance => {
                 "allow more sub-steps, or a larger stretch; what the material itself gives no sub-steps take away"
             }
-            Self::MassRatio => "make the heavy particles lighter, pin them, or take more sub-steps",
+            Self::MassRatio => {
+                "make the heavy particles lighter, pin them, or give the cloth tethers (`ClothSettings::tethers`)"
+            }
             Self::Distance => {
                 "move the cloth's `Transform` along with it: particles are simulated in its frame"
             }
@@ -77,6 +80,8 @@ pub struct Load {
     pub substep: f32,
     /// The stretch compliance of the material (m/N).
     pub compliance: f32,
+    /// Whether tethers hold it.
+    pub is_tethered: bool,
     /// Masses of the lightest and of the heaviest particle that is free (kg).
     pub masses: [f32; 2],
     /// Of the particle that is farthest from the frame's origin, in spacings.
@@ -99,7 +104,10 @@ impl Load {
                 Precision::Tolerance { stretch, .. } => [self.stretch, stretch],
                 Precision::Substeps(_) => return None,
             },
-            ClothLimit::MassRatio if lightest > 0.0 => [heaviest / lightest, MOST_MASS_RATIO],
+            ClothLimit::MassRatio if lightest > 0.0 => [
+                heaviest / lightest,
+                MOST_MASS_RATIO[usize::from(self.is_tethered)],
+            ],
             ClothLimit::Distance => [self.distance, MOST_DISTANCE],
             ClothLimit::Stretch | ClothLimit::Tolerance | ClothLimit::MassRatio => return None,
         };
@@ -118,7 +126,8 @@ mod tests {
         is_capped: false,
         substep: 1.0e-3,
         compliance: 1.0e-4,
-        masses: [1.0e-4, 1.0e-4 * MOST_MASS_RATIO],
+        is_tethered: false,
+        masses: [1.0e-4, 1.0e-4 * MOST_MASS_RATIO[0]],
         distance: MOST_DISTANCE,
     };
 
@@ -152,10 +161,20 @@ mod tests {
         assert_eq!(beyond(capped), [ClothLimit::Tolerance]);
         assert_eq!(capped.beyond(ClothLimit::Tolerance), Some([0.11, 0.01]));
         let heavy = Load {
-            masses: [1.0e-4, 1.1e-2],
+            masses: [1.0e-4, 3.1e-2],
             ..WITHIN
         };
         assert_eq!(beyond(heavy), [ClothLimit::MassRatio]);
+        let tethered = Load {
+            is_tethered: true,
+            ..heavy
+        };
+        assert_eq!(beyond(tethered), []);
+        let heavier = Load {
+            masses: [1.0e-4, 1.1],
+            ..tethered
+        };
+        assert_eq!(beyond(heavier), [ClothLimit::MassRatio]);
         let far = Load {
             distance: 2.1e4,
             ..WITHIN

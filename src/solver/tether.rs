@@ -127,6 +127,11 @@ impl Tethers {
         }
     }
 
+    /// Whether nothing is tethered.
+    pub fn is_empty(&self) -> bool {
+        self.layers.is_empty()
+    }
+
     /// Whether the same particles are pinned as when the tethers were made.
     pub(crate) fn are_of(&self, particles: &ClothParticles) -> bool {
         let slots = particles.layout().slots();

@@ -68,6 +68,7 @@ fn a_mass_of_a_thousand_others() {
     let mut app = app();
     let awake = ClothSettings {
         sleeps: false,
+        tethers: false,
         ..ClothSettings::substeps(60)
     };
     let cloth = app.world_mut().spawn((Cloth::new(4, 4, 0.1), awake)).id();

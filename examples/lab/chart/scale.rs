@@ -189,11 +189,11 @@ impl ValueFormatter<f64> for Scale {
     }
 }
 
-/// A number as short as it can be read: 20,000, 0.05, 10⁻⁶.
+/// A number as short as it can be read: 20,000, 0.05, 10⁶, 1e-7.
 pub fn number(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 || (1.0e-3..1.0e5).contains(&size) {
-        let rounded = format!("{value:.6}");
+    if size == 0.0 || (1.0e-5..1.0e5).contains(&size) {
+        let rounded = format!("{value:.7}");
         let text = rounded.trim_end_matches('0').trim_end_matches('.');
         if size < 1.0e4 {
             return text.into();
@@ -201,12 +201,15 @@ pub fn number(value: f64) -> String {
         let split = text.len() - 3;
         return format!("{},{}", &text[..split], &text[split..]);
     }
+    if size < 1.0 {
+        // The font has no raised minus.
+        return format!("{value:.0e}");
+    }
     let power = size.log10().floor();
     let factor = (value / 10f64.powf(power) * 100.0).round() / 100.0;
     let raised: String = format!("{power}")
         .chars()
         .map(|c| match c {
-            '-' => '⁻',
             '1' => '¹',
             '2' => '²',
             '3' => '³',
@@ -226,10 +229,10 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let written = [0.0, 0.05, 5.0, 20_000.0, 100_000.0, 2.0e-6, -1.5].map(number);
+        let written = [0.0, 0.05, 5.0, 20_000.0, 100_000.0, 2.0e-6, -1.5, 1.0e-4].map(number);
         assert_eq!(
             written,
-            ["0", "0.05", "5", "20,000", "10⁵", "2·10⁻⁶", "-1.5"]
+            ["0", "0.05", "5", "20,000", "10⁵", "2e-6", "-1.5", "0.0001"]
         );
     }
 
