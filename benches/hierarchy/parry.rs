@@ -32,6 +32,12 @@ impl ParryTree {
 
     /// Updates all leaves, refits, and counts what a ball meets.
     pub fn tick(&mut self, particles: &ClothParticles, probe: &Probe, shift: f32) -> usize {
+        self.update(particles, shift);
+        self.count(particles, probe)
+    }
+
+    /// Updates all leaves and refits.
+    pub fn update(&mut self, particles: &ClothParticles, shift: f32) {
         // There and back again, so that the particles themselves stay.
         self.is_moved = !self.is_moved;
         let shift = if self.is_moved {
@@ -44,6 +50,10 @@ impl ParryTree {
                 .insert_or_update_partially(around(position + shift, 0.0), index as u32, 0.0);
         }
         self.tree.refit(&mut self.workspace);
+    }
+
+    /// Counts what a ball meets.
+    pub fn count(&self, particles: &ClothParticles, probe: &Probe) -> usize {
         let Core::Point(centre) = probe.core else {
             return 0;
         };

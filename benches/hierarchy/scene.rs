@@ -7,14 +7,16 @@ use bevy_drape::{
     solver::Stretch,
 };
 
-const SPACING: f32 = 0.05;
+/// Distance between particles (m).
+pub const SPACING: f32 = 0.05;
 
 /// Two waves across it, three spacings high.
 pub struct Draped {
     pub tree: QuadTree,
     pub particles: ClothParticles,
     pub springs: Springs,
-    stretch: f32,
+    /// The largest.
+    pub stretch: f32,
     side: u32,
 }
 

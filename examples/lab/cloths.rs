@@ -8,8 +8,11 @@ use bevy_drape::{
     solver::{Solver, Tethers, TickStep},
 };
 
+/// What a tree is searched by.
+pub type Choice = (BoundingVolume, BoundRule);
+
 /// Each volume by each rule.
-pub const CHOICES: [(BoundingVolume, BoundRule); 10] = [
+pub const CHOICES: [Choice; 10] = [
     (BoundingVolume::Sphere, BoundRule::Paper),
     (BoundingVolume::Aabb, BoundRule::Paper),
     (BoundingVolume::Sphere, BoundRule::RestShape),

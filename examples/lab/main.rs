@@ -14,9 +14,11 @@ mod chart;
 mod cloths;
 mod cpu;
 mod drawn;
+mod exactness;
 mod experiment;
 mod frames;
 mod measure;
+mod needs;
 #[path = "../../benches/hierarchy/parry.rs"]
 mod parry;
 mod record;
@@ -26,6 +28,9 @@ mod scene;
 mod shared {
     pub mod stage;
 }
+mod scaling;
+#[path = "../../benches/hierarchy/scene.rs"]
+mod scene;
 mod table1;
 #[path = "../shared/view.rs"]
 mod view;
@@ -67,17 +72,26 @@ enum Name {
     Calls,
     /// The paper's test of CPU utilisation
     Cpu,
+    /// Rebuild, query and whole tick from 64 particles to a million
+    Scaling,
+    /// Contacts missed and imagined, against brute force in f64
+    Exactness,
+    /// What a scene needs, and what it does not
+    Needs,
     /// All of them, one after the other
     All,
 }
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 4] = [
+const EXPERIMENTS: [(Name, Conduct); 7] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
     (Name::Cpu, conduct::<cpu::Cpu>),
+    (Name::Scaling, conduct::<scaling::Scaling>),
+    (Name::Exactness, conduct::<exactness::Exactness>),
+    (Name::Needs, conduct::<needs::Needs>),
 ];
 
 fn main() -> ExitCode {

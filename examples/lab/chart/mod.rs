@@ -6,7 +6,7 @@ mod theme;
 
 use std::{fs, path::Path};
 
-pub use scale::Axis;
+pub use scale::{Axis, number};
 use theme::Theme;
 
 /// A picture of one or several panels under one heading.

@@ -1,7 +1,4 @@
-//! Particles or triangles? `cargo bench --profile dev --bench contact`, as CSV.
-//!
-//! A ball is pressed six spacings deep into the middle of a cell of a cloth that is held by its rim, and held there. How
-//! deep the flat triangles then are inside of the ball, and what a sub-step's response takes, by either narrow phase.
+//! A ball pressed into a cloth that is held by its rim.
 
 use std::time::Instant;
 
@@ -14,41 +11,21 @@ use bevy_drape::{
 };
 
 const SIDE: u32 = 33;
-const SPACING: f32 = 0.05;
+/// Distance between particles (m).
+pub const SPACING: f32 = 0.05;
 const TICKS: u32 = 128;
 
-fn main() {
-    println!(
-        "radius_over_spacing,test,deepest_triangle_percent_of_radius,fallen_through,us_a_substep,candidates"
-    );
-    for ratio in [0.3, 0.5, 0.7, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0] {
-        for narrow_phase in [NarrowPhase::Particles, NarrowPhase::Triangles] {
-            let pressed = press(ratio * SPACING, narrow_phase);
-            println!(
-                "{ratio},{},{:.2},{},{:.2},{}",
-                if narrow_phase == NarrowPhase::Particles {
-                    "particles"
-                } else {
-                    "triangles"
-                },
-                100.0 * pressed.deepest / (ratio * SPACING),
-                pressed.deepest >= ratio * SPACING,
-                1.0e6 * pressed.seconds,
-                pressed.candidates,
-            );
-        }
-    }
-}
-
-struct Pressed {
+pub struct Pressed {
     /// How deep the deepest point of a triangle is inside of the ball (m).
-    deepest: f32,
-    /// Of one sub-step's response (s).
-    seconds: f64,
-    candidates: usize,
+    pub deepest: f32,
+    /// Of each tick's response, all of its sub-steps together (s).
+    pub responses: Vec<f64>,
+    /// Particles or cells that the last tick's response tested.
+    pub candidates: usize,
 }
 
-fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
+/// By a ball of a radius (m), six spacings deep, tested against particles or triangles.
+pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
     let grid = Cloth::new(SIDE, SIDE, SPACING)
         .grid(Vec3::ONE)
         .expect("a sound grid");
@@ -83,7 +60,7 @@ fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
         radius + 0.01
             - (radius + 0.01 + 6.0 * SPACING) * (tick as f32 / (0.75 * TICKS as f32)).min(1.0)
     };
-    let (mut spent, mut substeps, mut candidates) = (0.0, 0, 0);
+    let (mut responses, mut candidates) = (Vec::new(), 0);
     for tick in 0..TICKS {
         let ball = MovingCollider::ball(radius, at(height(tick)), at(height(tick + 1)));
         detection.begin(0.1);
@@ -98,18 +75,19 @@ fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
             damping: material.damping,
             ..Default::default()
         };
+        let mut spent = 0.0;
         solver.advance(&mut particles, step, &[], |particles, substep| {
             let start = Instant::now();
             let moved = detection.respond(particles, &terms, substep, |_| {});
             spent += start.elapsed().as_secs_f64();
-            substeps += 1;
             moved
         });
+        responses.push(spent);
     }
     let centre = at(height(TICKS));
     Pressed {
         deepest: deepest_triangle(&particles, &grid, centre, radius),
-        seconds: spent / f64::from(substeps),
+        responses,
         candidates,
     }
 }

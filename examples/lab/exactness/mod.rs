@@ -1,0 +1,437 @@
+//! Which contacts a search misses and which it imagines, against brute force in f64 on random states.
+//!
+//! Each state is a cloth of 4 to 33 particles a side, bent, folded and drawn out to a given largest stretch, searched for
+//! balls of six radii, each near one of its particles. All volumes and rules search the same states.
+
+mod states;
+
+use bevy_drape::hierarchy::{BoundRule, NodeBounds, TopDownQuery, brute_force};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    chart::{Axis, Chart, Kind, Look, Panel, Series},
+    cloths::CHOICES,
+    experiment::{Experiment, Run, Table},
+    measure::Random,
+};
+use states::State;
+
+/// Radius of the ball over the spacing.
+const RADII: [f32; 6] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
+
+/// Largest stretch of a spring.
+const STRETCHES: [f32; 5] = [0.0, 0.01, 0.1, 0.5, 2.0];
+
+const SCAN: &str = "scan";
+
+pub struct Exactness;
+
+/// What one volume and rule made of all states of a radius and a stretch.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    volume: String,
+    rule: String,
+    radius_over_spacing: f32,
+    stretch: f32,
+    states: u32,
+    /// What brute force finds in all of them.
+    contacts: usize,
+    missed: usize,
+    /// Nodes, or particles of a scan, looked at in a state, on average.
+    visited: f64,
+    /// Found, but not by brute force.
+    false_contacts: usize,
+    /// States in which something touches, and those of them in which something is missed.
+    states_with_contacts: u32,
+    states_with_misses: u32,
+}
+
+impl Row {
+    fn new([volume, rule]: [&str; 2], radius: f32, stretch: f32) -> Self {
+        Self {
+            volume: volume.into(),
+            rule: rule.into(),
+            radius_over_spacing: radius,
+            stretch,
+            states: 0,
+            contacts: 0,
+            missed: 0,
+            visited: 0.0,
+            false_contacts: 0,
+            states_with_contacts: 0,
+            states_with_misses: 0,
+        }
+    }
+
+    /// Takes what a search found, and what there is; both sorted.
+    fn count(&mut self, found: &[u32], truth: &[u32], visited: usize) {
+        let without = |some: &[u32], others: &[u32]| {
+            let is_alone = |particle: &&u32| others.binary_search(particle).is_err();
+            some.iter().filter(is_alone).count()
+        };
+        let missed = without(truth, found);
+        self.states += 1;
+        self.contacts += truth.len();
+        self.missed += missed;
+        self.false_contacts += without(found, truth);
+        self.states_with_contacts += u32::from(!truth.is_empty());
+        self.states_with_misses += u32::from(missed > 0);
+        self.visited += (visited as f64 - self.visited) / f64::from(self.states);
+    }
+
+    fn is_paper(&self) -> bool {
+        self.rule == BoundRule::Paper.name()
+    }
+}
+
+impl Experiment for Exactness {
+    type Row = Row;
+
+    const NAME: &'static str = "exactness";
+
+    fn run(run: &mut Run) -> Vec<Row> {
+        let states = run.either(100, 4000);
+        run.set(
+            "states",
+            format!("{states} cloths for each stretch, each with a ball of every radius"),
+        );
+        run.set(
+            "cloths",
+            "4 to 33 particles a side, bent and folded, then pulled, waved and shaken to the stretch",
+        );
+        run.set("particles", "of a radius of a tenth of the spacing");
+        let mut rows = Vec::new();
+        let mut query = TopDownQuery::default();
+        let mut bounds = CHOICES.map(|_| NodeBounds::default());
+        run.begin(Self::NAME, STRETCHES.len() * states / 20);
+        for (at, stretch) in STRETCHES.into_iter().enumerate() {
+            let mut random = Random(at as u64 + 1);
+            let first = rows.len();
+            for radius in RADII {
+                let trees = CHOICES.map(|(volume, rule)| [volume.name(), rule.name()]);
+                let kinds = trees.into_iter().chain([["particles", SCAN]]);
+                rows.extend(kinds.map(|kind| Row::new(kind, radius, stretch)));
+            }
+            for turn in 0..states {
+                let state = State::new(&mut random, stretch);
+                for (bounds, choice) in bounds.iter_mut().zip(CHOICES) {
+                    bounds
+                        .rebuild(choice, &state.tree, &state.particles, state.stretch)
+                        .expect("there is such a rule");
+                }
+                let of_radii = rows[first..].chunks_mut(CHOICES.len() + 1);
+                for (rows, radius) in of_radii.zip(RADII) {
+                    search(&state, &mut random, radius, &bounds, &mut query, rows);
+                }
+                if turn % 20 == 0 {
+                    run.step();
+                }
+            }
+        }
+        rows
+    }
+
+    fn check(rows: &[Row]) -> Result<(), String> {
+        for row in rows {
+            let name = format!(
+                "{} by {}, ball of {} spacings, stretch {}",
+                row.volume, row.rule, row.radius_over_spacing, row.stretch
+            );
+            if row.missed > 0 && !row.is_paper() {
+                return Err(format!("{name}: {} contacts missed", row.missed));
+            }
+            if row.false_contacts > 0 {
+                return Err(format!("{name}: {} false contacts", row.false_contacts));
+            }
+            if row.contacts == 0 || row.states == 0 {
+                return Err(format!("{name}: nothing touches"));
+            }
+        }
+        let strata = RADII.len() * STRETCHES.len();
+        if rows.len() == strata * (CHOICES.len() + 1) {
+            Ok(())
+        } else {
+            Err("every volume and rule, radius and stretch".into())
+        }
+    }
+
+    fn findings(rows: &[Row]) -> Vec<String> {
+        let exact = || rows.iter().filter(|row| !row.is_paper());
+        let states: u32 = of(rows, "particles", SCAN).map(|row| row.states).sum();
+        let contacts: usize = of(rows, "particles", SCAN).map(|row| row.contacts).sum();
+        let paper = |volume| move |row: &&Row| row.is_paper() && row.volume == volume;
+        let missed = |volume, of: &dyn Fn(&Row) -> bool| {
+            let rows = rows.iter().filter(paper(volume)).filter(|row| of(row));
+            share(rows)
+        };
+        let wrong = |volume| {
+            let [touching, wrong] = rows.iter().filter(paper(volume)).fold([0, 0], |sum, row| {
+                [
+                    sum[0] + row.states_with_contacts,
+                    sum[1] + row.states_with_misses,
+                ]
+            });
+            100.0 * f64::from(wrong) / f64::from(touching)
+        };
+        let least = |radius: f32| move |row: &Row| row.radius_over_spacing == radius;
+        let at = |stretch: f32| move |row: &Row| row.stretch == stretch;
+        let visited = |volume, rule, stretch: f32| {
+            let rows = of(rows, volume, rule).filter(|row| row.stretch == stretch);
+            let all: Vec<f64> = rows.map(|row| row.visited).collect();
+            all.iter().sum::<f64>() / all.len() as f64
+        };
+        vec![
+            format!(
+                "Outside of the rule Paper {} contacts of {contacts} were missed and {} imagined, by 8 volumes and rules and the scan, in {states} random states.",
+                exact().map(|row| row.missed).sum::<usize>(),
+                exact().map(|row| row.false_contacts).sum::<usize>(),
+            ),
+            format!(
+                "The paper's spheres miss {:.1} % of the contacts, in {:.0} % of the states that have any; its AABBs {:.1} %, in {:.0} %. Neither imagines one.",
+                missed("spheres", &|_| true),
+                wrong("spheres"),
+                missed("AABBs", &|_| true),
+                wrong("AABBs"),
+            ),
+            format!(
+                "By stretch, from none over 10 % to 200 %: spheres miss {:.1}, {:.1} and {:.1} %, AABBs {:.1}, {:.1} and {:.1} %. By the ball's radius, 0.25, 1 and 8 spacings: spheres {:.1}, {:.1} and {:.1} %, AABBs {:.1}, {:.1} and {:.1} %.",
+                missed("spheres", &at(0.0)),
+                missed("spheres", &at(0.1)),
+                missed("spheres", &at(2.0)),
+                missed("AABBs", &at(0.0)),
+                missed("AABBs", &at(0.1)),
+                missed("AABBs", &at(2.0)),
+                missed("spheres", &least(0.25)),
+                missed("spheres", &least(1.0)),
+                missed("spheres", &least(8.0)),
+                missed("AABBs", &least(0.25)),
+                missed("AABBs", &least(1.0)),
+                missed("AABBs", &least(8.0)),
+            ),
+            format!(
+                "The rest shape's price: its spheres look at {:.0} nodes a search of unstretched cloth and at {:.0} at a stretch of 200 %, where refitted AABBs look at {:.0} and {:.0}, OBBs at {:.0} and {:.0}, 26-DOPs at {:.0} and {:.0}.",
+                visited("spheres", "rest shape", 0.0),
+                visited("spheres", "rest shape", 2.0),
+                visited("AABBs", "refit", 0.0),
+                visited("AABBs", "refit", 2.0),
+                visited("OBBs", "refit", 0.0),
+                visited("OBBs", "refit", 2.0),
+                visited("26-DOPs", "refit", 0.0),
+                visited("26-DOPs", "refit", 2.0),
+            ),
+        ]
+    }
+
+    fn table(rows: &[Row]) -> Table {
+        let mut table = Table::new([
+            "volume",
+            "rule",
+            "contacts",
+            "missed",
+            "missed %",
+            "false",
+            "visited a state",
+        ]);
+        for [volume, rule] in kinds(rows) {
+            let all: Vec<&Row> = of(rows, volume, rule).collect();
+            let sum = |value: fn(&Row) -> usize| all.iter().map(|row| value(row)).sum::<usize>();
+            let visited = all.iter().map(|row| row.visited).sum::<f64>() / all.len() as f64;
+            table.row([
+                volume.into(),
+                rule.into(),
+                sum(|row| row.contacts).to_string(),
+                sum(|row| row.missed).to_string(),
+                format!("{:.2}", share(all.iter().copied())),
+                sum(|row| row.false_contacts).to_string(),
+                format!("{visited:.0}"),
+            ]);
+        }
+        table
+    }
+
+    fn charts(rows: &[Row]) -> Vec<Chart> {
+        vec![misses(rows), tightness(rows)]
+    }
+}
+
+/// Lets all volumes and rules search a state for one ball.
+fn search(
+    state: &State,
+    random: &mut Random,
+    radius: f32,
+    bounds: &[NodeBounds],
+    query: &mut TopDownQuery,
+    rows: &mut [Row],
+) {
+    let ball = state.ball(random, radius);
+    let truth = brute_force(&state.particles, &ball);
+    let scan = [None];
+    let all = bounds.iter().map(Some).chain(scan);
+    for (bounds, row) in all.zip(rows) {
+        query.clear();
+        match bounds {
+            Some(bounds) => query.search(&state.tree, bounds, &state.particles, &ball),
+            None => query.scan(&state.particles, &ball),
+        };
+        let mut found = query.candidates().to_vec();
+        found.sort_unstable();
+        row.count(
+            &found,
+            &truth,
+            query.nodes_visited().max(query.leaf_tests()),
+        );
+    }
+}
+
+/// How much the paper's rule misses.
+fn misses(rows: &[Row]) -> Chart {
+    let names = STRETCHES.map(|stretch| format!("{:.0} %", 100.0 * stretch));
+    let most = |volume| {
+        of(rows, volume, "paper")
+            .map(|row| share([row].into_iter()))
+            .fold(0.0, f64::max)
+    };
+    let top = most("spheres").max(most("AABBs")).max(1.0);
+    let mut chart = Chart::new(
+        "exactness",
+        format!(
+            "The paper's spheres miss up to {:.0} % of the contacts, its AABBs up to {:.0} %; every other rule misses none",
+            most("spheres"),
+            most("AABBs"),
+        ),
+        format!(
+            "Contacts missed against brute force in f64, by the cloth's largest stretch and the ball's radius in spacings; {} random states a point, cloths of 4 to 33 particles a side, bent and folded.",
+            rows.first().map_or(0, |row| row.states)
+        ),
+    )
+    .columns(2);
+    for volume in ["spheres", "AABBs"] {
+        let mut panel = Panel::new(
+            format!("Rule Paper, {volume}"),
+            Axis::of_names("largest stretch", names.iter().cloned()),
+            Axis::linear("contacts missed (%)").from_to(-0.03 * top, 1.08 * top),
+        );
+        for (style, radius) in RADII.into_iter().enumerate() {
+            let points = STRETCHES.into_iter().enumerate().map(|(at, stretch)| {
+                let rows = of(rows, volume, "paper")
+                    .filter(|row| row.radius_over_spacing == radius && row.stretch == stretch);
+                [at as f64, share(rows)]
+            });
+            panel = panel.with(Series::new(
+                format!("ball of {radius}"),
+                Look::Style(style),
+                Kind::Marked,
+                points,
+            ));
+        }
+        let others = (0..STRETCHES.len()).map(|at| {
+            let stretch = STRETCHES[at];
+            let rows = rows
+                .iter()
+                .filter(|row| !row.is_paper() && row.stretch == stretch);
+            [at as f64, share(rows)]
+        });
+        chart = chart.with(panel.with(Series::new(
+            "rest shape, refit, scan: all volumes",
+            Look::Ink,
+            Kind::Line,
+            others,
+        )));
+    }
+    chart
+}
+
+/// How many nodes each volume looks at: how closely it holds its patch.
+fn tightness(rows: &[Row]) -> Chart {
+    let shown = [
+        ("spheres", "rest shape"),
+        ("AABBs", "rest shape"),
+        ("spheres", "refit"),
+        ("AABBs", "refit"),
+        ("OBBs", "refit"),
+        ("26-DOPs", "refit"),
+    ];
+    let visited = |volume, rule, radius: f32, stretch: f32| {
+        of(rows, volume, rule)
+            .find(|row| row.radius_over_spacing == radius && row.stretch == stretch)
+            .map_or(f64::NAN, |row| row.visited)
+    };
+    let (radius, stretch) = (1.0, 0.01);
+    let radii: Vec<(f64, String)> = RADII.map(|r| (f64::from(r), format!("{r}"))).to_vec();
+    let mut by_radius = Panel::new(
+        format!("Stretched by {:.0} %", 100.0 * stretch),
+        Axis::log("ball's radius in spacings, log").named(radii),
+        Axis::log("nodes visited, log"),
+    );
+    let names = STRETCHES.map(|stretch| format!("{:.0} %", 100.0 * stretch));
+    let mut by_stretch = Panel::new(
+        format!("Ball of {radius} spacing"),
+        Axis::of_names("largest stretch", names),
+        Axis::log("nodes visited, log"),
+    );
+    for (style, (volume, rule)) in shown.into_iter().enumerate() {
+        let name = format!("{volume}, {rule}");
+        let look = Look::Style(style);
+        let points = RADII.map(|r| [f64::from(r), visited(volume, rule, r, stretch)]);
+        by_radius = by_radius.with(Series::new(name.clone(), look, Kind::Marked, points));
+        let points = STRETCHES.into_iter().enumerate();
+        let points = points.map(|(at, s)| [at as f64, visited(volume, rule, radius, s)]);
+        by_stretch = by_stretch.with(Series::new(name, look, Kind::Marked, points));
+    }
+    let rest = |stretch| visited("spheres", "rest shape", radius, stretch);
+    let refit = |stretch| visited("AABBs", "refit", radius, stretch);
+    Chart::new(
+        "exactness_visited",
+        format!(
+            "Exact, but not equally tight: rest-shape spheres look at {:.1} × as many nodes as refitted AABBs, at 200 % stretch {:.1} ×",
+            rest(0.01) / refit(0.01),
+            rest(2.0) / refit(2.0)
+        ),
+        "Nodes looked at in a search, on average over random cloths of 4 to 33 particles a side. None of these misses a contact.",
+    )
+    .columns(2)
+    .with(by_radius)
+    .with(by_stretch)
+}
+
+/// Part of the contacts that is missed (%).
+fn share<'a>(rows: impl Iterator<Item = &'a Row>) -> f64 {
+    let [contacts, missed] = rows.fold([0, 0], |[contacts, missed], row| {
+        [contacts + row.contacts, missed + row.missed]
+    });
+    100.0 * missed as f64 / contacts.max(1) as f64
+}
+
+fn kinds(rows: &[Row]) -> Vec<[&str; 2]> {
+    let mut kinds = Vec::new();
+    for row in rows {
+        let kind = [row.volume.as_str(), row.rule.as_str()];
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
+}
+
+fn of<'a>(rows: &'a [Row], volume: &'a str, rule: &'a str) -> impl Iterator<Item = &'a Row> {
+    rows.iter()
+        .filter(move |row| row.volume == volume && row.rule == rule)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{experiment::quick, view::View};
+
+    #[test]
+    fn exactness_is_exact_but_for_the_papers_rule() {
+        let rows = quick::<Exactness>(
+            View::Nothing,
+            "volume,rule,radius_over_spacing,stretch,states,contacts,missed,visited,false_contacts",
+        );
+        for volume in ["spheres", "AABBs"] {
+            let missed = share(of(&rows, volume, "paper"));
+            assert!(missed > 1.0 && missed < 99.0, "{volume}: {missed} %");
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! What is drawn of it.
+
+use super::{
+    Row, apps, entities, get,
+    precision::{self, SCENE as SWING},
+    search::{self, REFIT, REST_SHAPE, SCAN, SCENES},
+};
+use crate::chart::{Axis, Chart, Kind, Look, Panel, Point, Series};
+
+/// A group of choices a panel.
+pub fn all(rows: &[Row]) -> Chart {
+    let ms = |scene, choice| get(rows, scene, choice).map_or(f64::NAN, |row| row.ms_per_tick);
+    let (awake, asleep) = (ms(apps::ONE, apps::TOUCHING), ms(apps::ONE, apps::ASLEEP));
+    let (entities, columns) = (
+        ms(entities::SCENE, entities::ENTITIES),
+        ms(entities::SCENE, entities::COLUMNS),
+    );
+    Chart::new(
+        "needs",
+        format!(
+            "What a scene does not need it does not pay for: a sleeping cloth takes 1/{:.0} of an awake one, columns 1/{:.0} of entities",
+            awake / asleep,
+            entities / columns
+        ),
+        "Time of a tick and, beside each point, the error that this choice makes. Medians and quartiles, one machine; the axes differ.",
+    )
+    .sized([960, 1060])
+    .columns(2)
+    .with(dots(
+        rows,
+        apps::ONE,
+        "One cloth of 64²: particles left inside of the ball",
+        |error| format!("{error:.0}"),
+    ))
+    .with(dots(
+        rows,
+        apps::HUNDRED,
+        "100 cloths of 16²: particles left inside",
+        |error| format!("{error:.0}"),
+    ))
+    .with(dots(rows, SWING, "A fall, a calm, a gust, 32²: largest stretch", |error| {
+        format!("{:.2} %", 100.0 * error)
+    }))
+    .with(searches(rows))
+    .with(narrow(rows))
+    .with(dots(
+        rows,
+        entities::SCENE,
+        "32²: RMS distance of the two after 1 s",
+        |error| {
+            if error == 0.0 {
+                "–".into()
+            } else {
+                format!("{:.2} mm", 1.0e3 * error)
+            }
+        },
+    ))
+}
+
+fn point(row: &Row, at: usize) -> Point {
+    Point {
+        at: [row.ms_per_tick, at as f64],
+        across: Some([row.ms_low, row.ms_high]),
+        up: None,
+    }
+}
+
+/// From the slowest tick to the fastest with room for what is written to the right.
+fn time_axis<'a>(rows: impl Iterator<Item = &'a Row> + Clone) -> Axis {
+    let low = rows
+        .clone()
+        .map(|row| row.ms_low)
+        .fold(f64::INFINITY, f64::min);
+    let high = rows.map(|row| row.ms_high).fold(0.0, f64::max);
+    let wide = (high / low).max(2.0);
+    Axis::log("ms a tick, log").from_to(low / wide.powf(0.1), high * wide.powf(0.35))
+}
+
+/// All choices of a scene, the first above.
+fn dots(rows: &[Row], scene: &str, title: &str, error: fn(f64) -> String) -> Panel {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.scene == scene).rev().collect();
+    let names = rows.iter().map(|row| row.choice.clone());
+    let mut panel = Panel::new(
+        title,
+        time_axis(rows.iter().copied()),
+        Axis::of_names("", names),
+    );
+    for (at, row) in rows.iter().enumerate() {
+        panel = panel.note([row.ms_high, at as f64], error(row.error));
+    }
+    // Tolerances stand out from fixed numbers; what they are is beside them.
+    let is_held = |row: &Row| {
+        precision::TOLERANCES
+            .iter()
+            .any(|(name, _)| *name == row.choice)
+    };
+    for (held, style) in [(false, 0), (true, 6)] {
+        let points = rows
+            .iter()
+            .enumerate()
+            .filter(|(_, row)| is_held(row) == held);
+        let points = points.map(|(at, row)| point(row, at));
+        panel = panel.with(Series::new("", Look::Style(style), Kind::Points, points));
+    }
+    panel
+}
+
+/// Three searches a scene; what they miss is in the title.
+fn searches(rows: &[Row]) -> Panel {
+    let of = |scene: &str, choice: &str| get(rows, scene, choice);
+    let shown = rows
+        .iter()
+        .filter(|row| SCENES.iter().any(|(name, ..)| *name == row.scene));
+    let missed: f64 = shown.clone().map(|row| row.error).sum();
+    let scenes: Vec<&str> = SCENES.iter().rev().map(|(name, ..)| *name).collect();
+    let mut panel = Panel::new(
+        format!("Search alone: {missed:.0} contacts missed"),
+        time_axis(shown),
+        Axis::of_names("", scenes.iter().copied()),
+    );
+    for (choice, style) in [(SCAN, 1), (REST_SHAPE, 2), (REFIT, 3)] {
+        let points = scenes
+            .iter()
+            .enumerate()
+            .filter_map(|(at, scene)| Some(point(of(scene, choice)?, at)));
+        panel = panel.with(Series::new(
+            choice,
+            Look::Style(style),
+            Kind::Points,
+            points,
+        ));
+    }
+    panel
+}
+
+/// Both narrow phases a ball.
+fn narrow(rows: &[Row]) -> Panel {
+    let scenes: Vec<&str> = search::BALLS.iter().rev().map(|(name, _)| *name).collect();
+    let shown = rows
+        .iter()
+        .filter(|row| scenes.contains(&row.scene.as_str()));
+    let mut panel = Panel::new(
+        "Response to a ball: how deep it shows, in radii",
+        time_axis(shown),
+        Axis::of_names("", scenes.iter().copied()),
+    );
+    for (choice, style) in [(search::PARTICLES, 4), (search::TRIANGLES, 5)] {
+        let found = scenes.iter().enumerate();
+        let found = found.filter_map(|(at, scene)| Some((at, get(rows, scene, choice)?)));
+        for (at, row) in found.clone() {
+            let note = if row.error >= 1.0 {
+                "falls through".into()
+            } else {
+                format!("{:.1} %", 100.0 * row.error)
+            };
+            panel = panel.note([row.ms_high, at as f64], note);
+        }
+        let points = found.map(|(at, row)| point(row, at));
+        let name = format!("tested against {choice}");
+        panel = panel.with(Series::new(name, Look::Style(style), Kind::Points, points));
+    }
+    panel
+}
