@@ -341,7 +341,7 @@ fn spread(rows: &[Row], volume: &str, rule: &str) -> Spread {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::{experiment::quick, measure::median, view::View};
 
     #[test]
     fn table1_is_complete_and_misses_nothing() {

@@ -1,7 +1,7 @@
 //! What is drawn of it.
 
 use super::{
-    Row, apps, entities, get,
+    DEV, Row, apps, entities, get,
     precision::{self, SCENE as SWING},
     search::{self, REFIT, REST_SHAPE, SCAN, SCENES},
 };
@@ -15,14 +15,20 @@ pub fn all(rows: &[Row]) -> Chart {
         ms(entities::SCENE, entities::ENTITIES),
         ms(entities::SCENE, entities::COLUMNS),
     );
+    let build = if rows.iter().any(|row| row.build == DEV) {
+        " A dev build: Bevy's own code, and so entities, would be several times as fast in a release build."
+    } else {
+        ""
+    };
     Chart::new(
         "needs",
         format!(
-            "What a scene does not need it does not pay for: a sleeping cloth takes 1/{:.0} of an awake one, columns 1/{:.0} of entities",
+            "What a scene does not need it does not pay for: a sleeping cloth takes 1/{:.0} of an awake one, 100 cloths of which 1 moves 1/{:.0}, columns 1/{:.0} of entities",
             awake / asleep,
+            ms(apps::HUNDRED, apps::ALL_AWAKE) / ms(apps::HUNDRED, apps::ONE_TOUCHED),
             entities / columns
         ),
-        "Time of a tick and, beside each point, the error that this choice makes. Medians and quartiles, one machine; the axes differ.",
+        format!("Time of a tick and, beside each point, the error that this choice makes. Medians and quartiles; the axes differ.{build}"),
     )
     .sized([960, 1060])
     .columns(2)
@@ -140,7 +146,7 @@ fn narrow(rows: &[Row]) -> Panel {
         .iter()
         .filter(|row| scenes.contains(&row.scene.as_str()));
     let mut panel = Panel::new(
-        "Response to a ball: how deep it shows, in radii",
+        "Response to a ball: depth, % of its radius",
         time_axis(shown),
         Axis::of_names("", scenes.iter().copied()),
     );

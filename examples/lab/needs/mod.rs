@@ -172,7 +172,7 @@ impl Experiment for Needs {
                 held("tolerance 2 %", "20 sub-steps"),
             ),
             format!(
-                "{} {}",
+                "For the finest, {}. {}",
                 held("tolerance 1 %", "40 sub-steps"),
                 precision_verdict(rows)
             ),
