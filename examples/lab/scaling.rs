@@ -545,7 +545,8 @@ fn exponent_from(points: impl Iterator<Item = [f64; 2]>) -> f64 {
     let points: Vec<[f64; 2]> = points
         .filter(|[particles, _]| *particles >= least)
         .collect();
-    exponent(&points)
+    // Rounded as it is said: no minus before nothing.
+    (100.0 * exponent(&points)).round() / 100.0 + 0.0
 }
 
 fn sides(rows: &[Row]) -> Vec<u32> {
