@@ -4,23 +4,20 @@
 //! force and parry's tree take their turns, and in each turn the solver does a tick: 20 sub-steps with the response to
 //! the ball. A search's whole tick is that and its own rebuild and query.
 
-use bevy::math::{Vec3, bounding::BoundingSphere};
-use bevy_drape::{
-    cloth::{Cloth, ClothGrid, ClothMaterial},
-    contact::{Detection, MovingCollider, NarrowPhase, Terms},
-    hierarchy::{BoundRule, Core, NodeBounds, Probe, TopDownQuery, brute_force},
-    solver::{Solver, TickStep},
-};
+mod charts;
+mod searchers;
+
+use bevy_drape::hierarchy::{BoundRule, TopDownQuery, brute_force};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    chart::{Axis, Chart, Kind, Look, Panel, Point, Series, number},
-    cloths::{CHOICES, Choice},
+    chart::{Chart, number},
+    cloths::CHOICES,
     experiment::{Experiment, Run, Table},
-    measure::{Spread, exponent, seconds, seconds_each},
-    parry::ParryTree,
-    scene::{Draped, SPACING},
+    measure::{Spread, exponent, seconds_each},
+    scene::Draped,
 };
+use searchers::{BRUTE, PARRY, SCAN, Searcher, Ticking};
 
 /// Exponents are of cloths from this side on: smaller ones are all waves, and fit into a cache.
 const FITTED_FROM: u32 = 32;
@@ -61,124 +58,6 @@ impl Row {
 
     fn search_us(&self) -> f64 {
         self.rebuild_us + self.query_us
-    }
-}
-
-enum Searcher {
-    Tree(Box<NodeBounds>, Choice),
-    Scan,
-    /// In f64, one by one.
-    Brute,
-    Parry(Box<ParryTree>),
-}
-
-impl Searcher {
-    fn all(draped: &Draped) -> Vec<Self> {
-        let trees = CHOICES.map(|choice| Self::Tree(Box::default(), choice));
-        let others = [
-            Self::Scan,
-            Self::Brute,
-            Self::Parry(Box::new(ParryTree::new(&draped.particles))),
-        ];
-        trees.into_iter().chain(others).collect()
-    }
-
-    fn names(&self) -> [&'static str; 2] {
-        match self {
-            Self::Tree(_, (volume, rule)) => [volume.name(), rule.name()],
-            Self::Scan => ["particles", SCAN],
-            Self::Brute => ["particles", BRUTE],
-            Self::Parry(_) => ["AABBs", PARRY],
-        }
-    }
-
-    fn rebuild(&mut self, draped: &Draped) {
-        match self {
-            Self::Tree(bounds, choice) => draped.rebuild(bounds, *choice),
-            Self::Parry(tree) => tree.update(&draped.particles, 0.0),
-            Self::Scan | Self::Brute => {}
-        }
-    }
-
-    /// Says how many contacts it found.
-    fn search(&self, query: &mut TopDownQuery, draped: &Draped, ball: &Probe) -> usize {
-        query.clear();
-        match self {
-            Self::Tree(bounds, _) => query
-                .search(&draped.tree, bounds, &draped.particles, ball)
-                .len(),
-            Self::Scan => query.scan(&draped.particles, ball).len(),
-            Self::Brute => brute_force(&draped.particles, ball).len(),
-            Self::Parry(tree) => tree.count(&draped.particles, ball),
-        }
-    }
-
-    fn has_rebuild(&self) -> bool {
-        !matches!(self, Self::Scan | Self::Brute)
-    }
-}
-
-const SCAN: &str = "scan";
-const BRUTE: &str = "brute force, f64";
-const PARRY: &str = "parry3d";
-
-/// A tick of a solver on one thread, with the response to the ball.
-struct Ticking {
-    solver: Solver,
-    grid: ClothGrid,
-    detection: Detection,
-    query: TopDownQuery,
-}
-
-impl Ticking {
-    fn new(draped: &Draped, side: u32) -> Self {
-        Self {
-            solver: Solver::new(&draped.springs, &draped.particles),
-            grid: Cloth::new(side, side, SPACING)
-                .grid(Vec3::ONE)
-                .expect("a sound grid"),
-            detection: Detection::default(),
-            query: TopDownQuery::default(),
-        }
-    }
-
-    /// What the solver takes (s): the search for candidates is not in it.
-    fn seconds(&mut self, draped: &Draped, ball: &Probe) -> f64 {
-        let mut particles = draped.particles.clone();
-        let Core::Point(centre) = ball.core else {
-            return f64::NAN;
-        };
-        let collider = MovingCollider::ball(ball.radius, centre, centre);
-        let terms = Terms {
-            particle_radius: ball.particle_radius,
-            friction: ClothMaterial::COTTON.friction,
-            narrow_phase: NarrowPhase::Particles,
-            ..Default::default()
-        };
-        // A ball around all of the cloth, and more than a particle moves in the tick.
-        let cloth = BoundingSphere::new(Vec3::ZERO, 200.0);
-        self.detection.begin(4.0 * SPACING);
-        let (probe, against) = self
-            .detection
-            .probe(&collider, &terms, &self.grid, SPACING, &cloth);
-        self.query.clear();
-        self.query.scan(&particles, &probe);
-        let found = self.query.candidates();
-        self.detection
-            .add(0, &collider, against, found, &particles, &self.grid);
-        let step = TickStep {
-            acceleration: Vec3::NEG_Y * 9.81,
-            damping: ClothMaterial::COTTON.damping,
-            ..Default::default()
-        };
-        let Self {
-            solver, detection, ..
-        } = self;
-        seconds(|| {
-            solver.advance(&mut particles, step, &[], |particles, substep| {
-                detection.respond(particles, &terms, substep, |_| {})
-            });
-        })
     }
 }
 
@@ -380,7 +259,7 @@ impl Experiment for Scaling {
     }
 
     fn charts(rows: &[Row]) -> Vec<Chart> {
-        vec![growth(rows), parts(rows)]
+        vec![charts::growth(rows), charts::parts(rows)]
     }
 }
 
@@ -413,121 +292,6 @@ type Names = [&'static str; 2];
 const REST: Names = ["spheres", "rest shape"];
 const REFIT_SPHERES: Names = ["spheres", "refit"];
 const REFIT: Names = ["AABBs", "refit"];
-
-/// What is drawn: the others lie between these.
-const SHOWN: [(Names, usize); 6] = [
-    (REST, 0),
-    (["particles", SCAN], 1),
-    (REFIT, 2),
-    (["26-DOPs", "refit"], 3),
-    (["OBBs", "refit"], 4),
-    (["AABBs", PARRY], 5),
-];
-
-fn growth(rows: &[Row]) -> Chart {
-    let called = |kind: Names| {
-        let grows = fitted(rows, kind, Row::search_us);
-        let name = match kind {
-            ["particles", rule] => rule.into(),
-            [_, PARRY] => PARRY.into(),
-            [volume, rule] => format!("{volume}, {rule}"),
-        };
-        format!("{name}: n^{grows:.2}")
-    };
-    let mut search = Panel::new(
-        "Rebuild and query",
-        particles_axis(rows),
-        Axis::log("µs a tick, log"),
-    );
-    let mut part = Panel::new(
-        "Their part of the whole tick",
-        particles_axis(rows),
-        Axis::log("% of the tick, log"),
-    );
-    for (kind, style) in SHOWN {
-        let at = |row: &Row, median: f64| [f64::from(row.particles), median];
-        let points = of(rows, kind).map(|row| Point {
-            at: at(row, row.search_us()),
-            across: None,
-            up: Some([
-                row.rebuild_low + row.query_low,
-                row.rebuild_high + row.query_high,
-            ]),
-        });
-        let look = Look::Style(style);
-        search = search.with(Series::new(called(kind), look, Kind::Marked, points));
-        let parts = of(rows, kind).map(|row| at(row, 100.0 * row.search_us() / row.tick_us));
-        part = part.with(Series::new(called(kind), look, Kind::Marked, parts));
-    }
-    let solver =
-        || of(rows, REST).map(|row| [f64::from(row.particles), row.tick_us - row.search_us()]);
-    let name = format!("20 sub-steps: n^{:.2}", exponent_from(solver()));
-    search = search.with(Series::new(name, Look::Ink, Kind::Line, solver()));
-    let sides = sides(rows);
-    let [smallest, largest] = [sides.first(), sides.last()].map(|side| *side.unwrap_or(&0));
-    let us = |kind| at(rows, kind, largest).map_or(f64::NAN, Row::search_us);
-    let all = || of(rows, REST).map(Row::search_us);
-    Chart::new(
-        "scaling",
-        format!(
-            "From {smallest}² to {largest}² the rest shape takes {:.1} to {:.1} µs; at {largest}² a scan takes {} × as long, parry3d {} ×",
-            all().fold(f64::INFINITY, f64::min),
-            all().fold(0.0, f64::max),
-            times(us(["particles", SCAN]) / us(REST)),
-            times(us(["AABBs", PARRY]) / us(REST))
-        ),
-        format!("A draped cloth and one ball of 4 spacings, one thread; medians, quartiles. In the legend, how the time grows with n particles, from {FITTED_FROM}² on."),
-    )
-    .sized([960, 600])
-    .columns(2)
-    .with(search)
-    .with(part)
-}
-
-/// Rebuild, query and nodes apart.
-fn parts(rows: &[Row]) -> Chart {
-    let panel = |title: &str, label: &str, value: fn(&Row) -> f64| {
-        let mut panel = Panel::new(title, particles_axis(rows), Axis::log(label));
-        for (kind, style) in SHOWN {
-            let [volume, rule] = kind;
-            let points = of(rows, kind).map(|row| [f64::from(row.particles), value(row)]);
-            panel = panel.with(Series::new(
-                format!("{volume}, {rule}"),
-                Look::Style(style),
-                Kind::Marked,
-                points,
-            ));
-        }
-        panel
-    };
-    let largest = sides(rows).last().copied().unwrap_or(0);
-    let visited = |kind| at(rows, kind, largest).map_or(0, |row| row.visited);
-    Chart::new(
-        "scaling_parts",
-        format!(
-            "A refit pays for tight volumes: {} nodes visited in place of {}, and all of them brought up to date",
-            visited(REFIT),
-            visited(REST)
-        ),
-        "The same scene: what it takes to bring the volumes up to date, what one query takes, and how many nodes (or particles) it looks at. A scan has nothing to rebuild; what parry3d looks at is not known.",
-    )
-    .sized([960, 480])
-    .columns(3)
-    .with(panel("Rebuild", "µs, log", |row| row.rebuild_us))
-    .with(panel("One query", "µs, log", |row| row.query_us))
-    .with(panel("Nodes visited", "nodes, log", |row| {
-        row.visited as f64
-    }))
-}
-
-/// Every second size is named.
-fn particles_axis(rows: &[Row]) -> Axis {
-    let names = sides(rows)
-        .into_iter()
-        .step_by(2)
-        .map(|side| (f64::from(side * side), format!("{side}²")));
-    Axis::log("particles, log").named(names)
-}
 
 /// Exponent of the particles in a figure, from [`FITTED_FROM`] on.
 fn fitted(rows: &[Row], kind: Names, value: impl Fn(&Row) -> f64) -> f64 {

@@ -1,0 +1,135 @@
+//! What is timed: searches, and a tick of the solver.
+
+use bevy::math::{Vec3, bounding::BoundingSphere};
+use bevy_drape::{
+    cloth::{Cloth, ClothGrid, ClothMaterial},
+    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    hierarchy::{Core, NodeBounds, Probe, TopDownQuery, brute_force},
+    solver::{Solver, TickStep},
+};
+
+use crate::{
+    cloths::{CHOICES, Choice},
+    measure::seconds,
+    parry::ParryTree,
+    scene::{Draped, SPACING},
+};
+
+/// One way to search.
+pub enum Searcher {
+    Tree(Box<NodeBounds>, Choice),
+    Scan,
+    /// In f64, one by one.
+    Brute,
+    Parry(Box<ParryTree>),
+}
+
+impl Searcher {
+    pub fn all(draped: &Draped) -> Vec<Self> {
+        let trees = CHOICES.map(|choice| Self::Tree(Box::default(), choice));
+        let others = [
+            Self::Scan,
+            Self::Brute,
+            Self::Parry(Box::new(ParryTree::new(&draped.particles))),
+        ];
+        trees.into_iter().chain(others).collect()
+    }
+
+    pub fn names(&self) -> [&'static str; 2] {
+        match self {
+            Self::Tree(_, (volume, rule)) => [volume.name(), rule.name()],
+            Self::Scan => ["particles", SCAN],
+            Self::Brute => ["particles", BRUTE],
+            Self::Parry(_) => ["AABBs", PARRY],
+        }
+    }
+
+    pub fn rebuild(&mut self, draped: &Draped) {
+        match self {
+            Self::Tree(bounds, choice) => draped.rebuild(bounds, *choice),
+            Self::Parry(tree) => tree.update(&draped.particles, 0.0),
+            Self::Scan | Self::Brute => {}
+        }
+    }
+
+    /// Says how many contacts it found.
+    pub fn search(&self, query: &mut TopDownQuery, draped: &Draped, ball: &Probe) -> usize {
+        query.clear();
+        match self {
+            Self::Tree(bounds, _) => query
+                .search(&draped.tree, bounds, &draped.particles, ball)
+                .len(),
+            Self::Scan => query.scan(&draped.particles, ball).len(),
+            Self::Brute => brute_force(&draped.particles, ball).len(),
+            Self::Parry(tree) => tree.count(&draped.particles, ball),
+        }
+    }
+
+    pub fn has_rebuild(&self) -> bool {
+        !matches!(self, Self::Scan | Self::Brute)
+    }
+}
+
+pub const SCAN: &str = "scan";
+pub const BRUTE: &str = "brute force, f64";
+pub const PARRY: &str = "parry3d";
+
+/// A tick of a solver on one thread, with the response to the ball.
+pub struct Ticking {
+    solver: Solver,
+    grid: ClothGrid,
+    detection: Detection,
+    query: TopDownQuery,
+}
+
+impl Ticking {
+    pub fn new(draped: &Draped, side: u32) -> Self {
+        Self {
+            solver: Solver::new(&draped.springs, &draped.particles),
+            grid: Cloth::new(side, side, SPACING)
+                .grid(Vec3::ONE)
+                .expect("a sound grid"),
+            detection: Detection::default(),
+            query: TopDownQuery::default(),
+        }
+    }
+
+    /// What the solver takes (s): the search for candidates is not in it.
+    pub fn seconds(&mut self, draped: &Draped, ball: &Probe) -> f64 {
+        let mut particles = draped.particles.clone();
+        let Core::Point(centre) = ball.core else {
+            return f64::NAN;
+        };
+        let collider = MovingCollider::ball(ball.radius, centre, centre);
+        let terms = Terms {
+            particle_radius: ball.particle_radius,
+            friction: ClothMaterial::COTTON.friction,
+            narrow_phase: NarrowPhase::Particles,
+            ..Default::default()
+        };
+        // A ball around all of the cloth, and more than a particle moves in the tick.
+        let cloth = BoundingSphere::new(Vec3::ZERO, 200.0);
+        self.detection.begin(4.0 * SPACING);
+        let (probe, against) = self
+            .detection
+            .probe(&collider, &terms, &self.grid, SPACING, &cloth);
+        self.query.clear();
+        self.query.scan(&particles, &probe);
+        let found = self.query.candidates();
+        self.detection
+            .add(0, &collider, against, found, &particles, &self.grid);
+        let step = TickStep {
+            acceleration: Vec3::NEG_Y * 9.81,
+            damping: ClothMaterial::COTTON.damping,
+            ..Default::default()
+        };
+        let Self {
+            solver, detection, ..
+        } = self;
+        seconds(|| {
+            solver.advance(&mut particles, step, &[], |particles, substep| {
+                detection.respond(particles, &terms, substep, |_| {})
+            });
+        })
+    }
+}
