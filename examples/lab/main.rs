@@ -13,6 +13,8 @@ mod calls;
 mod chart;
 mod cloths;
 mod cpu;
+#[path = "../../benches/hierarchy/scene.rs"]
+mod draped;
 mod drawn;
 mod exactness;
 mod experiment;
@@ -29,8 +31,6 @@ mod shared {
     pub mod stage;
 }
 mod scaling;
-#[path = "../../benches/hierarchy/scene.rs"]
-mod scene;
 mod table1;
 #[path = "../shared/view.rs"]
 mod view;

@@ -9,7 +9,7 @@ use super::{
     DEPTH, MISSED, Row,
     press::{SPACING, press},
 };
-use crate::{cloths::Choice, experiment::Run, measure::seconds_each, scene::Draped};
+use crate::{cloths::Choice, draped::Draped, experiment::Run, measure::seconds_each};
 
 pub const SCAN: &str = "scan";
 pub const REST_SHAPE: &str = "spheres, rest shape";

@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize};
 use crate::{
     chart::{Chart, number},
     cloths::CHOICES,
+    draped::Draped,
     experiment::{Experiment, Run, Table},
     measure::{Spread, exponent, seconds_each},
-    scene::Draped,
 };
 use searchers::{BRUTE, PARRY, SCAN, Searcher, Ticking};
 

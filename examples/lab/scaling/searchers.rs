@@ -10,9 +10,9 @@ use bevy_drape::{
 
 use crate::{
     cloths::{CHOICES, Choice},
+    draped::{Draped, SPACING},
     measure::seconds,
     parry::ParryTree,
-    scene::{Draped, SPACING},
 };
 
 /// One way to search.
