@@ -21,6 +21,7 @@ mod experiment;
 mod frames;
 mod measure;
 mod needs;
+mod pareto;
 #[path = "../../benches/hierarchy/parry.rs"]
 mod parry;
 mod record;
@@ -78,13 +79,15 @@ enum Name {
     Exactness,
     /// What a scene needs, and what it does not
     Needs,
+    /// Speed against accuracy
+    Pareto,
     /// All of them, one after the other
     All,
 }
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 7] = [
+const EXPERIMENTS: [(Name, Conduct); 9] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -92,6 +95,9 @@ const EXPERIMENTS: [(Name, Conduct); 7] = [
     (Name::Scaling, conduct::<scaling::Scaling>),
     (Name::Exactness, conduct::<exactness::Exactness>),
     (Name::Needs, conduct::<needs::Needs>),
+const EXPERIMENTS: [(Name, Conduct); 9] = [
+    (Name::Table1, conduct::<table1::Table1>),
+    (Name::Pareto, conduct::<pareto::Pareto>),
 ];
 
 fn main() -> ExitCode {

@@ -306,7 +306,7 @@ impl<B: DrawingBackend> Canvas<'_, B> {
     ) -> Result<(), String> {
         // Grey is for markers: too pale to be read.
         let color = match look {
-            Look::Grey => self.theme.pale,
+            Look::Grey | Look::Faded(_) => self.theme.pale,
             _ => self.theme.color(look),
         };
         let style = TextStyle::from((FONT, size * self.zoom).into_font())
@@ -345,7 +345,7 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         let points: Vec<(i32, i32)> = points.iter().map(|&[x, y]| (x, y)).collect();
         let dash = match (look, kind) {
             (Look::Ink, Kind::Line) => Some((9, 5)),
-            (Look::Style(style), _) => {
+            (Look::Style(style) | Look::Faded(style), _) => {
                 [None, Some((10, 4)), Some((3, 4)), Some((16, 5))][style % 4]
             }
             _ => None,
@@ -400,7 +400,7 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         match look {
             Look::Grey => self.put(&Circle::new((x, y), 3 * z, fill)),
             Look::Ink => path(&[(-5, 0), (5, 0)]),
-            Look::Style(style) => match style % 8 {
+            Look::Style(style) | Look::Faded(style) => match style % 8 {
                 0 => self.put(&Circle::new((x, y), 5 * z, fill)),
                 1 => polygon(&[(0, -6), (6, 5), (-6, 5)]),
                 2 => polygon(&[(-5, -5), (5, -5), (5, 5), (-5, 5)]),

@@ -117,6 +117,8 @@ pub struct Note {
 pub enum Look {
     /// One of eight.
     Style(usize),
+    /// The marker and dash of that one in grey: what stands back, and yet is told apart.
+    Faded(usize),
     /// For what stands back.
     Grey,
     /// For limits and truths.

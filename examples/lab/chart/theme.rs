@@ -62,7 +62,7 @@ impl Theme {
     pub fn color(&self, look: Look) -> RGBColor {
         match look {
             Look::Style(style) => self.styles[style % self.styles.len()],
-            Look::Grey => self.grey,
+            Look::Grey | Look::Faded(_) => self.grey,
             Look::Ink => self.ink,
         }
     }

@@ -1,0 +1,171 @@
+//! Time against error, and against the largest stretch.
+
+use super::{
+    Row,
+    frontier::{Group, is_ours, mm},
+    methods::METHODS,
+    scenes::STIFF_SWINGING,
+};
+use crate::chart::{Axis, Chart, Kind, Look, Panel, Point, Series, number};
+
+pub fn all(rows: &[Row]) -> Vec<Chart> {
+    vec![errors(rows), stretches(rows)]
+}
+
+/// The panels: one a scene, with the largest cloths.
+fn shown(rows: &[Row]) -> Vec<Group<'_>> {
+    let mut groups = Group::largest(rows);
+    groups.retain(|group| group.first().scene != STIFF_SWINGING);
+    groups
+}
+
+fn conditions(groups: &[Group]) -> String {
+    let side = groups
+        .first()
+        .map_or(0.0, |group| (group.first().particles as f64).sqrt());
+    format!(
+        "Cloths of {side}² particles, hung by their top row for a second. Peers are plain scalar code, ours is the plugin's solver, all on one thread."
+    )
+}
+
+fn heading(group: &Group) -> String {
+    // In millimetres, without the noise of single precision.
+    let compliance = (1.0e6 * f64::from(group.first().compliance)).round() / 1.0e3;
+    format!(
+        "{}, compliance {} mm/N",
+        group.first().scene,
+        number(compliance)
+    )
+}
+
+fn point(row: &Row, value: f64) -> Point {
+    Point {
+        at: [row.ms_per_second, value],
+        across: Some([row.ms_low, row.ms_high]),
+        up: None,
+    }
+}
+
+/// From the left to the right end of what is drawn.
+fn level(group: &Group, value: f64) -> [[f64; 2]; 2] {
+    let times = || group.rows().iter().map(|row| row.ms_per_second);
+    let ends = [
+        times().fold(f64::INFINITY, f64::min),
+        times().fold(0.0, f64::max),
+    ];
+    ends.map(|time| [time, value])
+}
+
+fn errors(rows: &[Row]) -> Chart {
+    let groups = shown(rows);
+    let ratios: Vec<f64> = groups
+        .iter()
+        .filter_map(Group::default_against_peers)
+        .map(|(ours, peer)| peer.ms_per_second / ours.ms_per_second)
+        .collect();
+    let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = ratios.iter().copied().fold(0.0, f64::max);
+    let mut winners: Vec<&str> = groups
+        .iter()
+        .filter_map(|group| group.frontier().last().map(|row| row.method.as_str()))
+        .map(|method| if is_ours(method) { "ours" } else { method })
+        .collect();
+    winners.sort_unstable();
+    winners.dedup();
+    let winners = winners.join(" and ");
+    let title = format!(
+        "As exact as our 20 sub-steps, the fastest peer takes {least:.1} to {most:.1} × as long; most exact of all: {winners}"
+    );
+    let conditions = conditions(&groups);
+    let mut chart = Chart::new(
+        "pareto",
+        title,
+        format!("{conditions} Grey: another setting is both faster and more exact."),
+    )
+    .sized([960, 900])
+    .columns(2);
+    for group in &groups {
+        let frontier = group.frontier();
+        let mut panel = Panel::new(
+            heading(group),
+            Axis::log("ms a simulated second, log"),
+            Axis::log("RMS position error (mm), log"),
+        );
+        let line = frontier
+            .iter()
+            .map(|row| [row.ms_per_second, 1.0e3 * row.rms_error_m]);
+        panel = panel.with(Series::new(
+            "what nothing beats",
+            Look::Grey,
+            Kind::Line,
+            line,
+        ));
+        for best in [false, true] {
+            for (style, method) in METHODS.into_iter().enumerate() {
+                let look = if best {
+                    Look::Style(style)
+                } else {
+                    Look::Faded(style)
+                };
+                let is_best = |row: &&Row| frontier.iter().any(|other| std::ptr::eq(*other, *row));
+                let points = group.of(method).filter(|row| is_best(row) == best);
+                let points = points.map(|row| point(row, 1.0e3 * row.rms_error_m));
+                let name = if best { method } else { "" };
+                panel = panel.with(Series::new(name, look, Kind::Points, points));
+            }
+        }
+        let floor = level(group, 1.0e3 * group.first().reference_error_m);
+        panel = panel.with(Series::new(
+            "reference's own error",
+            Look::Ink,
+            Kind::Line,
+            floor,
+        ));
+        chart = chart.with(panel);
+    }
+    chart
+}
+
+fn stretches(rows: &[Row]) -> Chart {
+    let groups = shown(rows);
+    // As good as true, and yet off.
+    let deceiving = groups
+        .iter()
+        .flat_map(Group::rows)
+        .filter(|row| (row.max_stretch - row.reference_stretch).abs() < 1.0e-3)
+        .max_by(|a, b| a.error().total_cmp(&b.error()));
+    let title = deceiving.map_or("Largest stretch against time".into(), |row| {
+        format!(
+            "True stretch is not true motion: {}, {}, has the true stretch of the {} cloth to 0.1 % of its length and is {} off",
+            row.method,
+            row.setting,
+            row.scene,
+            mm(row.error())
+        )
+    });
+    let mut chart = Chart::new("pareto-stretch", title, conditions(&groups))
+        .sized([960, 900])
+        .columns(2);
+    for group in &groups {
+        let mut panel = Panel::new(
+            heading(group),
+            Axis::log("ms a simulated second, log"),
+            Axis::log("largest stretch (%), log"),
+        );
+        for (style, method) in METHODS.into_iter().enumerate() {
+            let points = group
+                .of(method)
+                .map(|row| point(row, 100.0 * row.max_stretch));
+            panel = panel.with(Series::new(
+                method,
+                Look::Style(style),
+                Kind::Marked,
+                points,
+            ));
+        }
+        let truth = level(group, 100.0 * group.first().reference_stretch);
+        panel = panel.with(Series::new("the reference's", Look::Ink, Kind::Line, truth));
+        chart = chart.with(panel);
+    }
+    chart
+}

@@ -1,0 +1,341 @@
+//! What moves the cloths: the library's solver and its peers, each with its settings.
+
+use std::time::{Duration, Instant};
+
+use bevy::math::{DVec3, bounding::BoundingSphere};
+use bevy_drape::{
+    cloth::ClothParticles,
+    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    hierarchy::TopDownQuery,
+    solver::{
+        Control, Precision, Solver,
+        methods::{MassSpring, Method, Real, Stepper},
+    },
+};
+
+use super::scenes::{Ball, Case};
+
+/// How far the library expects particles to move in a tick (m): it searches for contacts again where they do.
+const MARGIN: f32 = 0.05;
+
+/// A method with its settings.
+#[derive(Debug, Clone, Copy)]
+pub enum Way {
+    /// So many steps a tick.
+    Peer(Method, u32),
+    Ours(Precision, Tethers),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tethers {
+    On,
+    Off,
+}
+
+pub const EXPLICIT: &str = "explicit forces";
+pub const POSITION_BASED: &str = "position-based";
+pub const SMALL_STEPS: &str = "small steps, plain";
+pub const PROJECTIVE: &str = "projective dynamics";
+pub const OURS: &str = "ours";
+pub const UNTETHERED: &str = "ours, no tethers";
+pub const TOLERANCE: &str = "ours, by tolerance";
+
+/// In the order in which they are shown.
+pub const METHODS: [&str; 7] = [
+    OURS,
+    TOLERANCE,
+    UNTETHERED,
+    SMALL_STEPS,
+    POSITION_BASED,
+    PROJECTIVE,
+    EXPLICIT,
+];
+
+impl Way {
+    /// All that a scene is simulated by. Explicit forces need at least `limit` steps a tick.
+    pub fn all(limit: f64, is_quick: bool) -> Vec<Self> {
+        let substeps: &[u32] = if is_quick {
+            &[5, 20, 80]
+        } else {
+            &[5, 7, 10, 14, 20, 28, 40, 57, 80, 113, 160]
+        };
+        let fixed = |tethers| {
+            substeps
+                .iter()
+                .map(move |&count| Self::Ours(Precision::Substeps(count), tethers))
+        };
+        let tolerances: &[f32] = if is_quick {
+            &[0.02, 0.005]
+        } else {
+            &[0.05, 0.02, 0.01, 0.005, 0.002]
+        };
+        let tolerance = |&stretch: &f32| {
+            let most_substeps = 100;
+            let precision = Precision::Tolerance {
+                stretch,
+                most_substeps,
+            };
+            Self::Ours(precision, Tethers::On)
+        };
+        let small = |&substeps: &u32| Self::Peer(Method::SmallSteps { substeps }, 1);
+        let position_based =
+            |(iterations, steps)| Self::Peer(Method::PositionBased { iterations }, steps);
+        let swept: &[(u32, u32)] = if is_quick {
+            &[(10, 1), (40, 1)]
+        } else {
+            &[
+                (5, 1),
+                (10, 1),
+                (20, 1),
+                (40, 1),
+                (80, 1),
+                (5, 2),
+                (10, 2),
+                (20, 2),
+                (40, 2),
+            ]
+        };
+        let projective =
+            |(iterations, steps)| Self::Peer(Method::ProjectiveDynamics { iterations }, steps);
+        let solved: &[(u32, u32)] = if is_quick {
+            &[(1, 1), (10, 1)]
+        } else {
+            &[
+                (1, 1),
+                (2, 1),
+                (5, 1),
+                (10, 1),
+                (20, 1),
+                (40, 1),
+                (1, 4),
+                (2, 4),
+                (5, 4),
+                (10, 4),
+            ]
+        };
+        // Steps that a game could pay for; of stiff cloth, only the first.
+        let factors: &[f64] = match (is_quick, limit > 200.0) {
+            (true, true) => &[1.1],
+            (true, false) => &[1.1, 4.0],
+            (false, true) => &[1.1],
+            (false, false) => &[1.1, 2.0, 4.0, 8.0],
+        };
+        let explicit = |factor: &f64| Self::Peer(Method::Hooke, (factor * limit).ceil() as u32);
+        let mut all: Vec<Self> = fixed(Tethers::On).collect();
+        all.extend(tolerances.iter().map(tolerance));
+        all.extend(fixed(Tethers::Off));
+        all.extend(substeps.iter().map(small));
+        all.extend(swept.iter().copied().map(position_based));
+        all.extend(solved.iter().copied().map(projective));
+        all.extend(factors.iter().map(explicit));
+        all
+    }
+
+    pub fn method(&self) -> &'static str {
+        match self {
+            Self::Peer(Method::Hooke, _) => EXPLICIT,
+            Self::Peer(Method::PositionBased { .. }, _) => POSITION_BASED,
+            Self::Peer(Method::SmallSteps { .. }, _) => SMALL_STEPS,
+            Self::Peer(Method::ProjectiveDynamics { .. }, _) => PROJECTIVE,
+            Self::Ours(Precision::Tolerance { .. }, _) => TOLERANCE,
+            Self::Ours(_, Tethers::On) => OURS,
+            Self::Ours(_, Tethers::Off) => UNTETHERED,
+        }
+    }
+
+    pub fn setting(&self) -> String {
+        let iterations = |iterations: u32, steps: u32| match steps {
+            1 => format!("{iterations} iterations"),
+            _ => format!("{steps} × {iterations} iterations"),
+        };
+        match *self {
+            Self::Peer(Method::Hooke, steps) => format!("{steps} steps"),
+            Self::Peer(Method::PositionBased { iterations: count }, steps)
+            | Self::Peer(Method::ProjectiveDynamics { iterations: count }, steps) => {
+                iterations(count, steps)
+            }
+            Self::Peer(Method::SmallSteps { substeps }, _)
+            | Self::Ours(Precision::Substeps(substeps), _) => format!("{substeps} sub-steps"),
+            Self::Ours(Precision::Tolerance { stretch, .. }, _) => {
+                format!("{} % of stretch", (1.0e5 * stretch).round() / 1.0e3)
+            }
+        }
+    }
+}
+
+/// A case on its way.
+pub enum Player<'a, R: Real> {
+    Peer(Peer<'a, R>),
+    Ours(Box<Ours<'a>>),
+}
+
+impl<'a, R: Real> Player<'a, R> {
+    /// At the beginning; what is made once is made here.
+    pub fn new(case: &'a Case, way: Way) -> Self {
+        match way {
+            Way::Peer(method, steps) => Self::Peer(Peer::new(case, method, steps)),
+            Way::Ours(precision, tethers) => {
+                Self::Ours(Box::new(Ours::new(case, precision, tethers)))
+            }
+        }
+    }
+
+    /// One tick. Returns the time that it took.
+    pub fn tick(&mut self, tick: u32) -> Duration {
+        let start = Instant::now();
+        match self {
+            Self::Peer(peer) => peer.tick(tick),
+            Self::Ours(ours) => ours.tick(tick),
+        }
+        start.elapsed()
+    }
+
+    /// Where all particles are.
+    pub fn positions(&self, to: &mut Vec<DVec3>) {
+        to.clear();
+        match self {
+            Self::Peer(peer) => {
+                let positions = peer.network.positions.iter();
+                to.extend(positions.map(|at| DVec3::from(at.map(Into::into))));
+            }
+            Self::Ours(ours) => to.extend(ours.particles.positions().map(|at| at.as_dvec3())),
+        }
+    }
+
+    /// Sub-steps or steps that it has taken in all, those in vain included.
+    pub fn substeps(&self) -> u32 {
+        match self {
+            Self::Peer(peer) => peer.taken,
+            Self::Ours(ours) => ours.taken,
+        }
+    }
+}
+
+/// A plain method.
+pub struct Peer<'a, R: Real> {
+    case: &'a Case,
+    network: MassSpring<R>,
+    stepper: Stepper<R>,
+    /// Of the stepper a tick, and how many of the method's one of these is.
+    steps: u32,
+    substeps: u32,
+    taken: u32,
+}
+
+impl<'a, R: Real> Peer<'a, R> {
+    fn new(case: &'a Case, method: Method, steps: u32) -> Self {
+        let network: MassSpring<R> = case.scene.network().expect("a sound network");
+        // A ball is answered after each step: of small ones, after each of these.
+        let (method, steps, substeps) = match method {
+            Method::SmallSteps { substeps } if case.ball.is_some() => {
+                (Method::SmallSteps { substeps: 1 }, steps * substeps, 1)
+            }
+            Method::SmallSteps { substeps } => (method, steps, substeps),
+            _ => (method, steps, 1),
+        };
+        let seconds = f64::from(case.scene.seconds) / f64::from(steps);
+        let stepper = Stepper::new(method, &network, seconds).expect("a sound method");
+        Self {
+            case,
+            network,
+            stepper,
+            steps,
+            substeps,
+            taken: 0,
+        }
+    }
+
+    fn tick(&mut self, tick: u32) {
+        let scene = &self.case.scene;
+        let acceleration = scene.acceleration.to_array().map(R::from);
+        let seconds = R::from_f64(f64::from(scene.seconds) / f64::from(self.steps));
+        for step in 1..=self.steps {
+            self.stepper.step(
+                &mut self.network,
+                acceleration,
+                R::from(scene.material.damping),
+            );
+            if self.case.ball.is_some() {
+                let part = f64::from(step) / f64::from(self.steps);
+                Ball::push(&mut self.network, tick, part, seconds);
+            }
+        }
+        self.taken += self.steps * self.substeps;
+    }
+}
+
+/// The library's solver, on one thread, as the plugin drives it.
+pub struct Ours<'a> {
+    case: &'a Case,
+    particles: ClothParticles,
+    backup: ClothParticles,
+    solver: Solver,
+    precision: Precision,
+    control: Control,
+    detection: Detection,
+    query: TopDownQuery,
+    taken: u32,
+}
+
+impl<'a> Ours<'a> {
+    fn new(case: &'a Case, precision: Precision, tethers: Tethers) -> Self {
+        Self {
+            case,
+            particles: case.scene.particles.clone(),
+            backup: case.scene.particles.clone(),
+            solver: case.scene.solver(tethers == Tethers::On),
+            precision,
+            control: Control::default(),
+            detection: Detection::default(),
+            query: TopDownQuery::default(),
+            taken: 0,
+        }
+    }
+
+    /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
+    fn tick(&mut self, tick: u32) {
+        let scene = &self.case.scene;
+        let terms = Terms {
+            particle_radius: 0.0,
+            friction: 0.0,
+            narrow_phase: NarrowPhase::Particles,
+            ..Default::default()
+        };
+        if self.case.ball.is_some() {
+            let ball = MovingCollider::ball(Ball::RADIUS, Ball::at(tick), Ball::at(tick + 1));
+            // A ball around all that the cloth ever does.
+            let cloth = BoundingSphere::new(Ball::at(0), 4.0);
+            let spacing = scene.grid.spacing().max_element();
+            self.detection.begin(MARGIN);
+            let (probe, against) =
+                self.detection
+                    .probe(&ball, &terms, &scene.grid, 4.0 * spacing, &cloth);
+            self.query.clear();
+            self.query.scan(&self.particles, &probe);
+            let found = self.query.candidates();
+            self.detection
+                .add(0, &ball, against, found, &self.particles, &scene.grid);
+        }
+        if matches!(self.precision, Precision::Tolerance { .. }) {
+            self.backup.clone_from(&self.particles);
+        }
+        let mut substeps = self.control.substeps(self.precision);
+        loop {
+            let step = scene.step(substeps);
+            let detection = &mut self.detection;
+            let has_ball = self.case.ball.is_some();
+            let stretch =
+                self.solver
+                    .advance(&mut self.particles, step, &[], |particles, substep| {
+                        has_ball && detection.respond(particles, &terms, substep, |_| {})
+                    });
+            self.taken += substeps;
+            let Some(more) = self.control.observe(self.precision, stretch) else {
+                return;
+            };
+            self.particles.clone_from(&self.backup);
+            self.detection.restart();
+            substeps = more;
+        }
+    }
+}
