@@ -110,15 +110,14 @@ impl Way {
                 (1, 4),
                 (2, 4),
                 (5, 4),
-                (10, 4),
             ]
         };
-        // Steps that a game could pay for; of stiff cloth, only the first.
+        // Of stiff cloth, only as few as will do: that takes long enough.
         let factors: &[f64] = match (is_quick, limit > 200.0) {
             (true, true) => &[1.1],
             (true, false) => &[1.1, 4.0],
             (false, true) => &[1.1],
-            (false, false) => &[1.1, 2.0, 4.0, 8.0],
+            (false, false) => &[1.1, 2.0, 4.0],
         };
         let explicit = |factor: &f64| Self::Peer(Method::Hooke, (factor * limit).ceil() as u32);
         let mut all: Vec<Self> = fixed(Tethers::On).collect();
