@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use bevy::math::{DVec3, bounding::BoundingSphere};
+use bevy::math::{DVec3, Vec3, bounding::BoundingSphere};
 use bevy_drape::{
     cloth::ClothParticles,
     contact::{Detection, MovingCollider, NarrowPhase, Terms},
@@ -113,10 +113,9 @@ impl Way {
             ]
         };
         // Of stiff cloth, only as few as will do: that takes long enough.
-        let factors: &[f64] = match (is_quick, limit > 200.0) {
-            (true, true) => &[1.1],
-            (true, false) => &[1.1, 4.0],
-            (false, true) => &[1.1],
+        let factors: &[f64] = match (limit > 200.0, is_quick) {
+            (true, _) => &[1.1],
+            (false, true) => &[1.1, 4.0],
             (false, false) => &[1.1, 2.0, 4.0],
         };
         let explicit = |factor: &f64| Self::Peer(Method::Hooke, (factor * limit).ceil() as u32);
@@ -143,9 +142,12 @@ impl Way {
     }
 
     pub fn setting(&self) -> String {
-        let iterations = |iterations: u32, steps: u32| match steps {
-            1 => format!("{iterations} iterations"),
-            _ => format!("{steps} × {iterations} iterations"),
+        let iterations = |count: u32, steps: u32| {
+            let plural = if count == 1 { "" } else { "s" };
+            match steps {
+                1 => format!("{count} iteration{plural}"),
+                _ => format!("{steps} × {count} iteration{plural}"),
+            }
         };
         match *self {
             Self::Peer(Method::Hooke, steps) => format!("{steps} steps"),
@@ -197,7 +199,7 @@ impl<'a, R: Real> Player<'a, R> {
                 let positions = peer.network.positions.iter();
                 to.extend(positions.map(|at| DVec3::from(at.map(Into::into))));
             }
-            Self::Ours(ours) => to.extend(ours.particles.positions().map(|at| at.as_dvec3())),
+            Self::Ours(ours) => to.extend(ours.particles.positions().map(Vec3::as_dvec3)),
         }
     }
 
