@@ -87,7 +87,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 9] = [
+const EXPERIMENTS: [(Name, Conduct); 8] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -95,8 +95,6 @@ const EXPERIMENTS: [(Name, Conduct); 9] = [
     (Name::Scaling, conduct::<scaling::Scaling>),
     (Name::Exactness, conduct::<exactness::Exactness>),
     (Name::Needs, conduct::<needs::Needs>),
-const EXPERIMENTS: [(Name, Conduct); 9] = [
-    (Name::Table1, conduct::<table1::Table1>),
     (Name::Pareto, conduct::<pareto::Pareto>),
 ];
 
