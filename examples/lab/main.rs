@@ -32,6 +32,7 @@ mod shared {
     pub mod stage;
 }
 mod scaling;
+mod stability;
 mod table1;
 #[path = "../shared/view.rs"]
 mod view;
@@ -81,13 +82,15 @@ enum Name {
     Needs,
     /// Speed against accuracy
     Pareto,
+    /// Maps of where methods fail
+    Stability,
     /// All of them, one after the other
     All,
 }
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 8] = [
+const EXPERIMENTS: [(Name, Conduct); 9] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -96,6 +99,7 @@ const EXPERIMENTS: [(Name, Conduct); 8] = [
     (Name::Exactness, conduct::<exactness::Exactness>),
     (Name::Needs, conduct::<needs::Needs>),
     (Name::Pareto, conduct::<pareto::Pareto>),
+    (Name::Stability, conduct::<stability::Stability>),
 ];
 
 fn main() -> ExitCode {

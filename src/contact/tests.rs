@@ -6,6 +6,7 @@ mod moving;
 mod particle;
 mod random;
 mod shapes;
+mod shots;
 mod sweep;
 mod time;
 mod triangle;
@@ -15,6 +16,8 @@ mod volume;
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{Detection, MovingCollider, Terms};
+/// What `shots` calls the crate, which the lab reads, too.
+use crate as library;
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles},
     solver::SubStep,
