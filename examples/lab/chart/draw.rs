@@ -138,13 +138,13 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         Ok(())
     }
 
-    /// Each name once, with its marker, line by line. Returns where it ends.
+    /// Each name of what is drawn once, with its marker, line by line. Returns where it ends.
     fn legend(&self, chart: &Chart, top: i32) -> Result<i32, String> {
         let z = self.zoom;
         let mut known: Vec<&Series> = Vec::new();
         for series in chart.panels.iter().flat_map(|panel| &panel.series) {
             let is_new = known.iter().all(|other| other.name != series.name);
-            if !series.name.is_empty() && is_new {
+            if !series.name.is_empty() && !series.points.is_empty() && is_new {
                 known.push(series);
             }
         }

@@ -120,9 +120,12 @@ fn findings(rows: &[Row]) -> Vec<String> {
     [(32.0, "the lower edge"), (1.0, "one particle")]
         .map(|(heavy, what)| {
             let each = methods(rows).into_iter().map(|name| {
+                let to = match good_to(rows, name, heavy) {
+                    0.0 => "never".into(),
+                    ratio => format!("up to {}", number(ratio)),
+                };
                 format!(
-                    "{name} up to {} ({} at {})",
-                    number(good_to(rows, name, heavy)),
+                    "{name} {to} ({} at {})",
                     percent(at(rows, name, [heaviest, heavy])),
                     number(heaviest)
                 )

@@ -164,7 +164,7 @@ fn findings(rows: &[Row]) -> Vec<String> {
 pub fn chart(rows: &[Row]) -> Chart {
     let sides = values(rows, |row| row.y);
     let title = format!(
-        "With one sweep a sub-step the order decides: {} row by row, {} colour by colour",
+        "With one sweep a sub-step the order decides: at 32² {} row by row, {} colour by colour",
         percent(with_one(rows, ROWS, 32.0)),
         percent(with_one(rows, COLOURS, 32.0))
     );

@@ -28,7 +28,7 @@ const DOUBLE: &str = "f64";
 const DISPLACEMENTS: &str = "f32, position and displacement";
 const POSITIONS: &str = "f32, two positions";
 const OWN_FRAME: &str = "in its own frame";
-const WORLD: &str = "in the world's";
+const WORLD: &str = "in world coordinates";
 
 /// What an error against the same sub-steps without rounding is called.
 fn outcome(error: f64, without: f64) -> &'static str {
@@ -206,7 +206,7 @@ fn origin_jobs(quick: bool) -> Vec<Job> {
 
 fn origin_check(rows: &[Row]) -> Result<(), String> {
     for row in by(rows, OWN_FRAME) {
-        ensure(row.measure < 0.01, || {
+        ensure(row.measure < 0.02, || {
             format!("{} m in its own frame", row.measure)
         })?;
     }
@@ -236,7 +236,7 @@ fn origin_findings(rows: &[Row]) -> Vec<String> {
         cell.map_or(f64::NAN, |row| 1.0e3 * row.measure)
     };
     vec![format!(
-        "In its own frame a cloth is {:.1} mm off wherever it is; with the world's coordinates as particles it keeps within twice of that up to {} m at 5 sub-steps, {} m at 20, {} m at 80, and at 20 is {:.1} mm off at 100 m, {:.0} mm at 10,000.",
+        "In its own frame a cloth is {:.1} mm off wherever it is; in world coordinates it keeps within twice of that up to {} m at 5 sub-steps, {} m at 20, {} m at 80, and at 20 is {:.1} mm off at 100 m, {:.0} mm at 10,000.",
         off(OWN_FRAME, 100.0),
         far(rows, 5.0),
         far(rows, 20.0),
@@ -272,7 +272,7 @@ pub fn chart(forms: &[Row], origins: &[Row]) -> Chart {
     let mut origin = Panel::new(
         "By the distance from the origin",
         Axis::log("distance, m"),
-        Axis::log("RMS error after 0.5 s, mm").from_to(0.1, 1.0e5),
+        Axis::log("RMS error after 0.5 s, mm").from_to(0.1, 1.0e3),
     );
     for (style, (method, substeps)) in [
         (OWN_FRAME, 20.0),
@@ -287,7 +287,7 @@ pub fn chart(forms: &[Row], origins: &[Row]) -> Chart {
             .into_iter()
             .filter(|row| row.y == substeps);
         // Lost without bound is drawn on the edge.
-        let points = cells.map(|row| [row.x, (1.0e3 * row.measure).min(1.0e5)]);
+        let points = cells.map(|row| [row.x, (1.0e3 * row.measure).min(1.0e3)]);
         let name = format!("{method}, {substeps} sub-steps");
         origin = origin.with(Series::new(
             name,

@@ -355,7 +355,9 @@ pub fn chart(rows: &[Row]) -> Chart {
             panel = panel.with(Series::new(outcome, look, Kind::Cells, cells));
         }
         if let Some([exponent, factor]) = law(&steps(method)) {
-            let line = [ys[0], ys[ys.len() - 1]].map(|side| [factor * side.powf(exponent), side]);
+            // No farther than where something was crossed.
+            let line = steps(method).into_iter();
+            let line = line.map(|[side, _]| [factor * side.powf(exponent), side]);
             panel = panel.with(Series::new("power law", Look::Ink, Kind::Line, line));
         }
         chart = chart.with(panel);

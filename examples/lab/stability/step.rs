@@ -212,20 +212,26 @@ pub fn chart(rows: &[Row]) -> Chart {
     .sized([960, 780])
     .columns(3);
     for (name, _) in WAYS {
-        let mut panel = Panel::new(name, Axis::log("time step, s"), Axis::log("stiffness, N/m"));
+        let mut panel = Panel::new(
+            name,
+            Axis::log("time step, ms"),
+            Axis::log("stiffness, N/m"),
+        );
         for (outcome, look) in looks {
             let cells = by(rows, name)
                 .into_iter()
                 .filter(|row| row.outcome == outcome);
-            let cells = cells.map(|row| [row.x, row.y]);
+            let cells = cells.map(|row| [1.0e3 * row.x, row.y]);
             panel = panel.with(Series::new(outcome, look, Kind::Cells, cells));
         }
         let [low, high] = range(by(rows, name).iter().map(|row| row.x));
-        panel.x = panel.x.from_to(low, high);
+        panel.x = panel.x.from_to(1.0e3 * low, 1.0e3 * high);
         let [low, high] = range(by(rows, name).iter().map(|row| row.y));
         panel.y = panel.y.from_to(low, high);
         if name == EXPLICIT {
-            let limit = by(rows, LIMIT).into_iter().map(|row| [row.x, row.y]);
+            let limit = by(rows, LIMIT)
+                .into_iter()
+                .map(|row| [1.0e3 * row.x, row.y]);
             panel = panel.with(Series::new(
                 "theoretical limit 2/ω",
                 Look::Ink,
@@ -238,13 +244,13 @@ pub fn chart(rows: &[Row]) -> Chart {
     let stiffest = largest(rows.iter().map(|row| row.y));
     let mut panel = Panel::new(
         format!("stretch at {} N/m", number(stiffest)),
-        Axis::log("time step, s"),
+        Axis::log("time step, ms"),
         Axis::log("largest stretch, %").from_to(1.0e-3, 1.0e3),
     );
-    for (style, (name, _)) in WAYS.into_iter().enumerate() {
+    for (style, (name, _)) in WAYS.into_iter().enumerate().skip(1) {
         let cells = by(rows, name).into_iter();
         let cells = cells.filter(|row| row.y == stiffest && row.outcome != BLOWN_UP);
-        let points = cells.map(|row| [row.x, 100.0 * row.also]);
+        let points = cells.map(|row| [1.0e3 * row.x, 100.0 * row.also]);
         panel = panel.with(Series::new(
             name,
             Look::Style([7, 0, 3, 5, 6][style]),
