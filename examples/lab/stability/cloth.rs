@@ -1,6 +1,6 @@
 //! A scene's cloth in motion by any of the methods.
 
-use bevy::math::DVec3;
+use bevy::math::{DVec3, Vec3};
 use bevy_drape::{
     cloth::{ClothParticles, Spring, SpringKind},
     solver::{
@@ -144,7 +144,7 @@ impl Moving {
     pub fn positions(&self) -> Vec<DVec3> {
         match &self.kernel {
             Kernel::Peer { network, .. } => network.positions.iter().map(|p| (*p).into()).collect(),
-            Kernel::Ours { particles, .. } => particles.positions().map(|p| p.as_dvec3()).collect(),
+            Kernel::Ours { particles, .. } => particles.positions().map(Vec3::as_dvec3).collect(),
         }
     }
 
@@ -156,7 +156,7 @@ impl Moving {
                 moves.map(|(now, before)| now - *before).collect()
             }
             Kernel::Ours { particles, .. } => {
-                particles.displacements().map(|d| d.as_dvec3()).collect()
+                particles.displacements().map(Vec3::as_dvec3).collect()
             }
         }
     }

@@ -3,7 +3,7 @@
 use bevy_drape::solver::methods::Scene;
 
 use super::{
-    Job, Map, Row, by,
+    Job, Map, Row, between, by,
     cloth::{Moving, Way},
     ensure, largest, methods, outcome_of, percent, values,
 };
@@ -168,7 +168,7 @@ pub fn chart(rows: &[Row]) -> Chart {
         );
         for (style, name) in methods(rows).into_iter().enumerate() {
             let cells = by(rows, name).into_iter().filter(|row| row.y == heavy);
-            let points = cells.map(|row| [row.x, (100.0 * row.measure).min(ENDS[1]).max(ENDS[0])]);
+            let points = cells.map(|row| [row.x, between(100.0 * row.measure, ENDS)]);
             panel = panel.with(Series::new(name, Look::Style(style), Kind::Marked, points));
         }
         chart = chart.with(panel);

@@ -231,6 +231,15 @@ fn values(rows: &[Row], column: impl Fn(&Row) -> f64) -> Vec<f64> {
     values
 }
 
+/// A value between the edges of a chart; what is beyond lies on them, and what is not a number on the far one.
+fn between(value: f64, [low, high]: [f64; 2]) -> f64 {
+    if value.is_nan() {
+        high
+    } else {
+        value.clamp(low, high)
+    }
+}
+
 fn ensure(holds: bool, error: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(error()) }
 }

@@ -3,7 +3,7 @@
 use bevy_drape::solver::methods::{GRAVITY, MassSpring, Method, Scene, Stepper};
 
 use super::{
-    Job, Map, Row, by,
+    Job, Map, Row, between, by,
     cloth::{Moving, Way},
     ensure, largest, outcome_of, percent, values,
 };
@@ -172,8 +172,8 @@ pub fn chart(rows: &[Row]) -> Chart {
     let mut chart = Chart::new("stability-order", title, subtitle)
         .sized([960, 500])
         .columns(sides.len());
-    /// The edge of the chart (%).
-    const MOST: f64 = 1.0e4;
+    /// The edges of the chart (%).
+    const ENDS: [f64; 2] = [1.0, 1.0e4];
     for side in sides {
         let names = [1.0, 2.0, 4.0, 10.0, 20.0]
             .map(|sweeps: f64| (sweeps, format!("{sweeps} × {}", 20.0 / sweeps)));
@@ -182,12 +182,11 @@ pub fn chart(rows: &[Row]) -> Chart {
             Axis::log("sweeps × sub-steps in a tick")
                 .from_to(0.85, 24.0)
                 .named(names),
-            Axis::log("largest stretch, %").from_to(1.0, MOST),
+            Axis::log("largest stretch, %").from_to(ENDS[0], ENDS[1]),
         );
         for (style, method) in ORDERS.into_iter().chain([TETHERED]).enumerate() {
             let cells = by(rows, method).into_iter().filter(|row| row.y == side);
-            // `min` would take the bound for what is not a number, too, and shall.
-            let points = cells.map(|row| [row.x, (100.0 * row.measure).min(MOST)]);
+            let points = cells.map(|row| [row.x, between(100.0 * row.measure, ENDS)]);
             panel = panel.with(Series::new(
                 method,
                 Look::Style(style),

@@ -3,7 +3,7 @@
 use bevy::math::{DVec3, Vec3};
 use bevy_drape::solver::methods::{GRAVITY, MassSpring, Method, Scene, Stepper};
 
-use super::{Job, Map, Row, by, ensure, largest};
+use super::{Job, Map, Row, between, by, ensure, largest};
 use crate::chart::{Axis, Chart, Kind, Look, Panel, Series, number};
 
 pub const VERLET_FORM: Map = Map {
@@ -247,6 +247,8 @@ fn origin_findings(rows: &[Row]) -> Vec<String> {
 }
 
 pub fn chart(forms: &[Row], origins: &[Row]) -> Chart {
+    /// The edges of the chart by distance (mm).
+    const ENDS: [f64; 2] = [0.1, 1.0e3];
     let last = |method| {
         errors(forms, method)
             .last()
@@ -272,7 +274,7 @@ pub fn chart(forms: &[Row], origins: &[Row]) -> Chart {
     let mut origin = Panel::new(
         "By the distance from the origin",
         Axis::log("distance, m"),
-        Axis::log("RMS error after 0.5 s, mm").from_to(0.1, 1.0e3),
+        Axis::log("RMS error after 0.5 s, mm").from_to(ENDS[0], ENDS[1]),
     );
     for (style, (method, substeps)) in [
         (OWN_FRAME, 20.0),
@@ -286,8 +288,7 @@ pub fn chart(forms: &[Row], origins: &[Row]) -> Chart {
         let cells = by(origins, method)
             .into_iter()
             .filter(|row| row.y == substeps);
-        // Lost without bound is drawn on the edge.
-        let points = cells.map(|row| [row.x, (1.0e3 * row.measure).min(1.0e3)]);
+        let points = cells.map(|row| [row.x, between(1.0e3 * row.measure, ENDS)]);
         let name = format!("{method}, {substeps} sub-steps");
         origin = origin.with(Series::new(
             name,

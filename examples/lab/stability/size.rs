@@ -7,7 +7,7 @@ use bevy_drape::{
 };
 
 use super::{
-    BY_STRETCH, HOLDS, Job, Map, Row, by,
+    BY_STRETCH, HOLDS, Job, Map, Row, between, by,
     cloth::{Moving, Way},
     ensure, largest, methods, outcome_of, percent, values,
 };
@@ -368,7 +368,7 @@ pub fn chart(rows: &[Row]) -> Chart {
 pub fn chart_of_steps(falls: &[Row], pulls: &[Row]) -> Chart {
     /// The edges of the charts (%).
     const ENDS: [f64; 2] = [0.1, 1.0e4];
-    let shown = |stretch: f64| (100.0 * stretch).min(ENDS[1]).max(ENDS[0]);
+    let shown = |stretch: f64| between(100.0 * stretch, ENDS);
     let allowed = |ends: [f64; 2]| {
         let line = ends.map(|end| [end, 100.0 * ALLOWED]);
         Series::new("5 %", Look::Ink, Kind::Line, line)
