@@ -18,8 +18,8 @@ use crate::{
     view::View,
 };
 
-/// How much more spheres took than AABBs in the paper, about (%).
-const PUBLISHED: f64 = 15.0;
+/// How many times as much spheres took as AABBs in the paper: "about 15 %" more.
+const PUBLISHED: f64 = 1.15;
 
 /// Frames a second that are kept where the machine can.
 const PACE: f64 = 60.0;
@@ -157,34 +157,48 @@ impl Experiment for Cpu {
     fn findings(rows: &[Row]) -> Vec<String> {
         let mut findings = Vec::new();
         for is_drawn in [true, false] {
-            let of = |volume| percent(rows, (volume, is_drawn));
-            let more = more_for_spheres(rows, is_drawn);
-            let frames = spread(rows, ("spheres", is_drawn), |row| row.fps).median;
-            if !frames.is_finite() {
+            let percent = |volume| percent(rows, (volume, is_drawn));
+            let ratio = spheres_to_boxes(rows, is_drawn);
+            if !ratio.median.is_finite() {
                 continue;
             }
-            let claim = match (is_drawn, more.low > 0.0, more.median > 0.0) {
+            let claim = match (is_drawn, ratio.low > 1.0, ratio.median > 1.0) {
                 (true, true, _) => {
-                    "Drawn, spheres take more of the CPU than AABBs, as in the paper"
+                    "A frame of drawn spheres takes more CPU time than one of AABBs, as the paper's utilisation has it"
                 }
                 (true, _, true) => {
-                    "Drawn, spheres take more of the CPU than AABBs, but no more than the noise is"
+                    "A frame of drawn spheres takes more CPU time than one of AABBs, but no more than the noise is"
                 }
                 (true, ..) => {
-                    "Drawn, spheres take no more of the CPU than AABBs, other than in the paper"
+                    "A frame of drawn spheres takes no more CPU time than one of AABBs, other than in the paper"
                 }
                 (false, true, _) => "Not drawn, spheres still take more",
                 (false, ..) => "Not drawn, spheres take no more than the noise is",
             };
+            let ms = |volume| spread(rows, (volume, is_drawn), |row| row.cpu_ms_per_frame).median;
+            let fps = |volume| spread(rows, (volume, is_drawn), |row| row.fps).median;
             findings.push(format!(
-                "{claim}: {:.0} % of a core against {:.0} %, {:+.0} % a frame (quartiles {:+.0} to {:+.0}, round by round){} at {frames:.0} frames a second{}.",
-                of("spheres").median,
-                of("AABBs").median,
-                more.median,
-                more.low,
-                more.high,
-                if is_drawn { "; the paper had about 15 % more," } else { "," },
-                adapter(rows).map_or(String::new(), |adapter| format!(" on {adapter}")),
+                "{claim}: {:.1} ms against {:.1}, in the median round {:.2} × (quartiles {:.2} to {:.2}){}. That is {:.0} % of a core at {:.0} frames a second against {:.0} % at {:.0}.",
+                ms("spheres"),
+                ms("AABBs"),
+                ratio.median,
+                ratio.low,
+                ratio.high,
+                if is_drawn { ", in the paper about 1.15 ×" } else { "" },
+                percent("spheres").median,
+                fps("spheres"),
+                percent("AABBs").median,
+                fps("AABBs"),
+            ));
+        }
+        if let Some(adapter) = adapter(rows) {
+            findings.push(format!(
+                "What drew was {adapter}{}.",
+                if adapter.contains("software") {
+                    ": the lines are drawn by the CPU itself, which a graphics card would spare it"
+                } else {
+                    ""
+                }
             ));
         }
         findings
@@ -266,12 +280,12 @@ fn figure_10(rows: &[Row]) -> Chart {
         let points = points.filter(|point| point.at[0].is_finite());
         each = each.with(Series::new(name, look, Kind::Points, points));
     }
-    let drawn = more_for_spheres(rows, true);
+    let drawn = spheres_to_boxes(rows, true);
     let has_drawn = drawn.median.is_finite();
     let mut names = vec!["the paper"];
     let mut against = Vec::new();
     for (is_drawn, _, look) in looks {
-        let more = more_for_spheres(rows, is_drawn);
+        let more = spheres_to_boxes(rows, is_drawn);
         if more.median.is_finite() {
             against.push((names.len() as f64, more, look));
             names.push(if is_drawn {
@@ -283,14 +297,14 @@ fn figure_10(rows: &[Row]) -> Chart {
     }
     let mut more = Panel::new(
         "Spheres against AABBs",
-        Axis::linear("more CPU time (%)"),
+        Axis::linear("CPU time of spheres over that of AABBs"),
         Axis::of_names("", names),
     )
     .with(Series::new(
         "",
         Look::Ink,
         Kind::Line,
-        [[0.0, -0.6], [0.0, 2.6]],
+        [[1.0, -0.6], [1.0, 2.6]],
     ))
     .with(Series::new(
         "the paper",
@@ -308,7 +322,7 @@ fn figure_10(rows: &[Row]) -> Chart {
     }
     let title = if has_drawn {
         format!(
-            "Drawn spheres take {:+.0} % CPU against AABBs; in the paper about +15 %",
+            "Drawn spheres take {:.2} × the CPU time of AABBs; the paper's utilisation is about {PUBLISHED} ×",
             drawn.median
         )
     } else {
@@ -331,8 +345,8 @@ fn adapter(rows: &[Row]) -> Option<&str> {
     rows.first().and_then(|row| row.adapter.as_deref())
 }
 
-/// How much more CPU time a frame takes with spheres than with AABBs (%), round by round.
-fn more_for_spheres(rows: &[Row], is_drawn: bool) -> Spread {
+/// How many times the CPU time of AABBs a frame takes with spheres, round by round.
+fn spheres_to_boxes(rows: &[Row], is_drawn: bool) -> Spread {
     let last = rows.iter().map(|row| row.round).max().unwrap_or(0);
     let of = |volume: &str, round| {
         let mut turns = rows
@@ -340,11 +354,11 @@ fn more_for_spheres(rows: &[Row], is_drawn: bool) -> Spread {
             .filter(|row| row.volume == volume && row.drawn == is_drawn && row.round == round);
         turns.next().map(|row| row.cpu_ms_per_frame)
     };
-    let more = (1..=last).filter_map(|round| {
+    let ratios = (1..=last).filter_map(|round| {
         let (spheres, boxes) = of("spheres", round).zip(of("AABBs", round))?;
-        (boxes > 0.0).then(|| 100.0 * (spheres / boxes - 1.0))
+        (boxes > 0.0).then(|| spheres / boxes)
     });
-    Spread::of(&more.collect::<Vec<_>>())
+    Spread::of(&ratios.collect::<Vec<_>>())
 }
 
 /// Each volume, and whether it is drawn, in the order in which they appear.

@@ -91,13 +91,13 @@ impl Drawn {
     /// What draws, if anything does.
     pub fn adapter(&self) -> Option<String> {
         let info = self.app.world().get_resource::<RenderAdapterInfo>()?;
-        let kind = format!("{:?}", info.device_type);
-        let kind = if kind == "Cpu" {
-            "software".into()
+        let is_software = format!("{:?}", info.device_type) == "Cpu";
+        let how = if is_software {
+            "in software"
         } else {
-            kind
+            "in hardware"
         };
-        Some(format!("{} ({kind}, {})", info.name, info.backend))
+        Some(format!("{}, {how}, by {}", info.name, info.backend))
     }
 
     /// From the next tick on, the cloth is searched by this volume, refitted, and these levels of it are drawn.

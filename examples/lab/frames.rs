@@ -125,7 +125,7 @@ impl Experiment for Frames {
         };
         vec![
             format!(
-                "{claim}: on {}, {:.1} frames a second with spheres and {:.1} with AABBs, {:.2} × as many (quartiles {:.2} to {:.2}, round by round); the paper had {paper_spheres} and {paper_boxes}, {:.2} ×.",
+                "{claim}: on {}, {:.1} frames a second with spheres and {:.1} with AABBs, in the median round {:.2} × as many (quartiles {:.2} to {:.2}); the paper had {paper_spheres} and {paper_boxes}, {:.2} ×.",
                 adapter(rows),
                 fps("spheres"),
                 fps("AABBs"),
@@ -179,8 +179,14 @@ fn figure_8(rows: &[Row]) -> Chart {
         Some(style) if kind.1 => Look::Style(style),
         _ => Look::Grey,
     };
-    let fps = Axis::linear("frames a second").from_to(0.0, 1.1 * largest(rows));
-    let mut over = Panel::new("Over the scene", Axis::linear("time (s)"), fps.clone());
+    let fps = || Axis::linear("frames a second");
+    let highs = kinds(rows).into_iter().map(|kind| spread(rows, kind).high);
+    let most = 1.3 * highs.fold(0.0, f64::max);
+    let mut over = Panel::new(
+        "Over the scene",
+        Axis::linear("time (s)"),
+        fps().from_to(0.0, most),
+    );
     for kind in shown {
         let name = name(kind.0, kind.1);
         let points = rounds(rows).map(|round| {
@@ -194,7 +200,11 @@ fn figure_8(rows: &[Row]) -> Chart {
     let mut kinds = kinds(rows);
     kinds.sort_by(|a, b| spread(rows, *b).median.total_cmp(&spread(rows, *a).median));
     let names = kinds.iter().map(|kind| name(kind.0, kind.1));
-    let mut dots = Panel::new("Each volume", fps, Axis::of_names("", names));
+    let mut dots = Panel::new(
+        "Each volume",
+        fps().from_to(0.0, most.max(1.1 * PUBLISHED[1].1)),
+        Axis::of_names("", names),
+    );
     for (place, &kind) in kinds.iter().enumerate() {
         let fps = spread(rows, kind);
         let point = Point {
@@ -206,7 +216,7 @@ fn figure_8(rows: &[Row]) -> Chart {
         let published = PUBLISHED.iter().find(|(volume, _)| (*volume, true) == kind);
         let published = published.map(|(_, fps)| [*fps, place as f64]);
         let name = "the paper's average";
-        dots = dots.with(Series::new(name, Look::Ink, Kind::Points, published));
+        dots = dots.with(Series::new(name, Look::Style(3), Kind::Points, published));
     }
     let size = rows.first().map_or([0; 2], |row| [row.width, row.height]);
     Chart::new(
@@ -234,14 +244,6 @@ fn adapter(rows: &[Row]) -> &str {
 
 fn rounds(rows: &[Row]) -> impl Iterator<Item = u32> {
     1..=rows.iter().map(|row| row.round).max().unwrap_or(0)
-}
-
-/// The end of an axis: no single frame is to make it.
-fn largest(rows: &[Row]) -> f64 {
-    let highs = kinds(rows).into_iter().map(|kind| spread(rows, kind).high);
-    highs
-        .chain(PUBLISHED.map(|(_, fps)| fps))
-        .fold(0.0, f64::max)
 }
 
 /// How many times as many frames a second AABBs have as spheres, round by round: what else the machine does comes and goes.
