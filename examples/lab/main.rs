@@ -119,11 +119,11 @@ fn main() -> ExitCode {
     };
     let mut outcome = ExitCode::SUCCESS;
     for (name, conduct) in EXPERIMENTS {
-        if options.name == Name::All || options.name == name {
-            if let Err(error) = conduct(&mut run, &output) {
-                eprintln!("{error}");
-                outcome = ExitCode::FAILURE;
-            }
+        if (options.name == Name::All || options.name == name)
+            && let Err(error) = conduct(&mut run, &output)
+        {
+            eprintln!("{error}");
+            outcome = ExitCode::FAILURE;
         }
     }
     outcome
