@@ -157,38 +157,43 @@ impl Experiment for Cpu {
     fn findings(rows: &[Row]) -> Vec<String> {
         let mut findings = Vec::new();
         for is_drawn in [true, false] {
-            let percent = |volume| percent(rows, (volume, is_drawn));
-            let ratio = spheres_to_boxes(rows, is_drawn);
-            if !ratio.median.is_finite() {
+            let of = |volume, figure: Figure| spread(rows, (volume, is_drawn), figure).median;
+            let [used, time] =
+                [utilisation, frame_time].map(|figure| spheres_to_boxes(rows, is_drawn, figure));
+            if !time.median.is_finite() {
                 continue;
             }
-            let claim = match (is_drawn, ratio.low > 1.0, ratio.median > 1.0) {
+            // The paper's is about drawing.
+            let claim = match (is_drawn, used.low > 1.0, time.low > 1.0) {
                 (true, true, _) => {
-                    "A frame of drawn spheres takes more CPU time than one of AABBs, as the paper's utilisation has it"
+                    "The CPU is utilised more with spheres drawn than with AABBs, as in the paper"
                 }
-                (true, _, true) => {
-                    "A frame of drawn spheres takes more CPU time than one of AABBs, but no more than the noise is"
+                (true, false, true) => {
+                    "Utilisation does not tell drawn spheres from AABBs, other than in the paper, but a frame of spheres takes more CPU time"
                 }
-                (true, ..) => {
-                    "A frame of drawn spheres takes no more CPU time than one of AABBs, other than in the paper"
+                (true, false, false) => {
+                    "Drawn spheres do not take more of the CPU than AABBs, other than in the paper"
                 }
-                (false, true, _) => "Not drawn, spheres still take more",
-                (false, ..) => "Not drawn, spheres take no more than the noise is",
+                (false, _, true) => {
+                    "With nothing drawn, a frame takes a little more CPU time with spheres"
+                }
+                (false, _, false) => {
+                    "With nothing drawn, spheres take no more of the CPU than AABBs"
+                }
             };
-            let ms = |volume| spread(rows, (volume, is_drawn), |row| row.cpu_ms_per_frame).median;
-            let fps = |volume| spread(rows, (volume, is_drawn), |row| row.fps).median;
             findings.push(format!(
-                "{claim}: {:.1} ms against {:.1}, in the median round {:.2} × (quartiles {:.2} to {:.2}){}. That is {:.0} % of a core at {:.0} frames a second against {:.0} % at {:.0}.",
-                ms("spheres"),
-                ms("AABBs"),
-                ratio.median,
-                ratio.low,
-                ratio.high,
-                if is_drawn { ", in the paper about 1.15 ×" } else { "" },
-                percent("spheres").median,
-                fps("spheres"),
-                percent("AABBs").median,
-                fps("AABBs"),
+                "{claim}: {:.0} % of a core at {:.0} frames a second against {:.0} % at {:.0}, in the median round {:.2} ×{}; {:.1} ms a frame against {:.1}, {:.2} × (quartiles {:.2} to {:.2}).",
+                of("spheres", utilisation),
+                of("spheres", |row| row.fps),
+                of("AABBs", utilisation),
+                of("AABBs", |row| row.fps),
+                used.median,
+                if is_drawn { ", where the paper has about 1.15" } else { "" },
+                of("spheres", frame_time),
+                of("AABBs", frame_time),
+                time.median,
+                time.low,
+                time.high,
             ));
         }
         if let Some(adapter) = adapter(rows) {
@@ -214,16 +219,13 @@ impl Experiment for Cpu {
             "frames a second",
         ]);
         for kind in kinds(rows) {
-            let percent = percent(rows, kind);
+            let percent = spread(rows, kind, utilisation);
             table.row([
                 kind.0.into(),
                 if kind.1 { "drawn" } else { "not drawn" }.into(),
                 format!("{:.0}", percent.median),
                 format!("{:.0} to {:.0}", percent.low, percent.high),
-                format!(
-                    "{:.2}",
-                    spread(rows, kind, |row| row.cpu_ms_per_frame).median
-                ),
+                format!("{:.2}", spread(rows, kind, frame_time).median),
                 format!("{:.0}", spread(rows, kind, |row| row.fps).median),
             ]);
         }
@@ -270,7 +272,7 @@ fn figure_10(rows: &[Row]) -> Chart {
     for (is_drawn, name, look) in looks {
         let points = names.iter().rev().enumerate();
         let points = points.map(|(place, &volume)| {
-            let ms = spread(rows, (volume, is_drawn), |row| row.cpu_ms_per_frame);
+            let ms = spread(rows, (volume, is_drawn), frame_time);
             Point {
                 at: [ms.median, place as f64],
                 across: Some([ms.low, ms.high]),
@@ -280,53 +282,56 @@ fn figure_10(rows: &[Row]) -> Chart {
         let points = points.filter(|point| point.at[0].is_finite());
         each = each.with(Series::new(name, look, Kind::Points, points));
     }
-    let drawn = spheres_to_boxes(rows, true);
-    let has_drawn = drawn.median.is_finite();
-    let mut names = vec!["the paper"];
+    let figures: [(&str, Figure); 2] = [
+        ("CPU time a frame", frame_time),
+        ("utilisation", utilisation),
+    ];
+    let mut names = Vec::new();
     let mut against = Vec::new();
-    for (is_drawn, _, look) in looks {
-        let more = spheres_to_boxes(rows, is_drawn);
-        if more.median.is_finite() {
-            against.push((names.len() as f64, more, look));
-            names.push(if is_drawn {
-                "here, drawn"
-            } else {
-                "here, not drawn"
-            });
+    for (is_drawn, drawn, look) in looks.into_iter().rev() {
+        for (figure, of) in figures {
+            let ratio = spheres_to_boxes(rows, is_drawn, of);
+            if ratio.median.is_finite() {
+                against.push((names.len() as f64, ratio, look));
+                names.push(format!("{figure}, {drawn}"));
+            }
         }
     }
+    let top = names.len() as f64;
+    names.push("utilisation".into());
     let mut more = Panel::new(
         "Spheres against AABBs",
-        Axis::linear("CPU time of spheres over that of AABBs"),
+        Axis::linear("times as much"),
         Axis::of_names("", names),
     )
     .with(Series::new(
         "",
         Look::Ink,
         Kind::Line,
-        [[1.0, -0.6], [1.0, 2.6]],
+        [[1.0, -0.6], [1.0, top + 0.6]],
     ))
     .with(Series::new(
-        "the paper",
+        "the paper, about",
         Look::Style(3),
         Kind::Points,
-        [[PUBLISHED, 0.0]],
+        [[PUBLISHED, top]],
     ));
-    for (place, spread, look) in against {
+    for (place, ratio, look) in against {
         let point = Point {
-            at: [spread.median, place],
-            across: Some([spread.low, spread.high]),
+            at: [ratio.median, place],
+            across: Some([ratio.low, ratio.high]),
             up: None,
         };
         more = more.with(Series::new("", look, Kind::Points, [point]));
     }
-    let title = if has_drawn {
+    let [used, time] = [utilisation, frame_time].map(|of| spheres_to_boxes(rows, true, of).median);
+    let title = if time.is_finite() {
         format!(
-            "Drawn spheres take {:.2} × the CPU time of AABBs; the paper's utilisation is about {PUBLISHED} ×",
-            drawn.median
+            "Spheres drawn: {time:.2} × the CPU time of AABBs a frame, {used:.2} × the utilisation; paper {PUBLISHED} ×"
         )
     } else {
-        "With nothing drawn, spheres and AABBs take the CPU alike".into()
+        let time = spheres_to_boxes(rows, false, frame_time).median;
+        format!("With nothing drawn, spheres take {time:.2} × the CPU time of AABBs")
     };
     let by = adapter(rows).map_or("nothing drawn".into(), |adapter| {
         format!("drawn by {adapter}")
@@ -345,14 +350,25 @@ fn adapter(rows: &[Row]) -> Option<&str> {
     rows.first().and_then(|row| row.adapter.as_deref())
 }
 
-/// How many times the CPU time of AABBs a frame takes with spheres, round by round.
-fn spheres_to_boxes(rows: &[Row], is_drawn: bool) -> Spread {
+/// A figure of a turn.
+type Figure = fn(&Row) -> f64;
+
+fn utilisation(row: &Row) -> f64 {
+    row.cpu_percent
+}
+
+fn frame_time(row: &Row) -> f64 {
+    row.cpu_ms_per_frame
+}
+
+/// How many times as much as with AABBs it is with spheres, round by round.
+fn spheres_to_boxes(rows: &[Row], is_drawn: bool, figure: Figure) -> Spread {
     let last = rows.iter().map(|row| row.round).max().unwrap_or(0);
     let of = |volume: &str, round| {
         let mut turns = rows
             .iter()
             .filter(|row| row.volume == volume && row.drawn == is_drawn && row.round == round);
-        turns.next().map(|row| row.cpu_ms_per_frame)
+        turns.next().map(figure)
     };
     let ratios = (1..=last).filter_map(|round| {
         let (spheres, boxes) = of("spheres", round).zip(of("AABBs", round))?;
@@ -373,11 +389,7 @@ fn kinds(rows: &[Row]) -> Vec<(&str, bool)> {
     kinds
 }
 
-fn percent(rows: &[Row], kind: (&str, bool)) -> Spread {
-    spread(rows, kind, |row| row.cpu_percent)
-}
-
-fn spread(rows: &[Row], kind: (&str, bool), figure: impl Fn(&Row) -> f64) -> Spread {
+fn spread(rows: &[Row], kind: (&str, bool), figure: Figure) -> Spread {
     let turns = rows
         .iter()
         .filter(|row| (row.volume.as_str(), row.drawn) == kind);
