@@ -182,9 +182,9 @@ fn figure_9(rows: &[Row]) -> Chart {
     let mut panel = Panel::new(
         "",
         Axis::linear("level of the tree that is drawn")
-            .from_to(-0.3, 6.3)
+            .between(-0.3, 6.3)
             .named(levels),
-        Axis::log("calls a frame, log").from_to(0.7, 1.5e5),
+        Axis::log("calls a frame, log").between(0.7, 1.5e5),
     );
     // Boxes are boxes, however they lie.
     let shown = [

@@ -262,7 +262,7 @@ fn figure_10(rows: &[Row]) -> Chart {
         .fold(0.0, f64::max);
     let mut each = Panel::new(
         "Each volume",
-        Axis::linear("CPU time of a frame (ms)").from_to(0.0, 1.05 * largest),
+        Axis::linear("CPU time of a frame (ms)").between(0.0, 1.05 * largest),
         Axis::of_names("", names.iter().rev().copied()),
     );
     let looks = [

@@ -185,7 +185,7 @@ fn figure_8(rows: &[Row]) -> Chart {
     let mut over = Panel::new(
         "Over the scene",
         Axis::linear("time (s)"),
-        fps().from_to(0.0, most),
+        fps().between(0.0, most),
     );
     for kind in shown {
         let name = name(kind.0, kind.1);
@@ -202,7 +202,7 @@ fn figure_8(rows: &[Row]) -> Chart {
     let names = kinds.iter().map(|kind| name(kind.0, kind.1));
     let mut dots = Panel::new(
         "Each volume",
-        fps().from_to(0.0, most.max(1.1 * PUBLISHED[1].1)),
+        fps().between(0.0, most.max(1.1 * PUBLISHED[1].1)),
         Axis::of_names("", names),
     );
     for (place, &kind) in kinds.iter().enumerate() {

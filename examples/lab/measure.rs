@@ -80,7 +80,7 @@ pub fn exponent(points: &[[f64; 2]]) -> f64 {
     line_through(&logs)[0]
 }
 
-/// Numbers that look random and are the same in every run (SplitMix64).
+/// Numbers that look random and are the same in every run (`SplitMix64`).
 #[derive(Debug, Clone)]
 pub struct Random(pub u64);
 

@@ -264,7 +264,7 @@ fn figure_7(rows: &[Row]) -> Chart {
     let panel = |title: &str, rule: &str| {
         let mut panel = Panel::new(
             title,
-            Axis::linear("run").from_to(0.0, 21.0),
+            Axis::linear("run").between(0.0, 21.0),
             Axis::log("ms, log"),
         );
         for (style, volume) in ["spheres", "AABBs"].into_iter().enumerate() {

@@ -365,7 +365,7 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         };
         match dash {
             Some((long, gap)) if points.len() > 1 => {
-                let dashed = DashedPathElement::new(points.into_iter(), long * z, gap * z, stroke);
+                let dashed = DashedPathElement::new(points, long * z, gap * z, stroke);
                 self.put(&dashed)
             }
             _ => self.put(&PathElement::new(points, stroke)),

@@ -52,7 +52,7 @@ impl Axis {
     }
 
     /// With these ends; the first may be the larger one.
-    pub fn from_to(mut self, from: f64, to: f64) -> Self {
+    pub fn between(mut self, from: f64, to: f64) -> Self {
         self.range = Some([from, to]);
         self
     }
@@ -241,7 +241,7 @@ mod tests {
         let scale = Axis::log("").scale([3.0, 4.0e3].into_iter());
         assert_eq!(scale.ticks(4), [10.0, 100.0, 1000.0]);
         assert_eq!(scale.ticks(12).first(), Some(&5.0));
-        let scale = Axis::linear("").from_to(10.0, 0.0).scale([].into_iter());
+        let scale = Axis::linear("").between(10.0, 0.0).scale([].into_iter());
         assert_eq!(scale.ticks(5), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
         assert_eq!(scale.map(&10.0, (0, 100)), 0);
         let scale = Axis::linear("").scale([0.0, 0.0].into_iter());

@@ -309,7 +309,7 @@ fn misses(rows: &[Row]) -> Chart {
         let mut panel = Panel::new(
             format!("Rule Paper, {volume}"),
             Axis::of_names("largest stretch", names.iter().cloned()),
-            Axis::linear("contacts missed (%)").from_to(-0.03 * top, 1.08 * top),
+            Axis::linear("contacts missed (%)").between(-0.03 * top, 1.08 * top),
         );
         for (style, radius) in RADII.into_iter().enumerate() {
             let points = STRETCHES.into_iter().enumerate().map(|(at, stretch)| {

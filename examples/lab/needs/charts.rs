@@ -79,7 +79,7 @@ fn time_axis<'a>(rows: impl Iterator<Item = &'a Row> + Clone) -> Axis {
         .fold(f64::INFINITY, f64::min);
     let high = rows.map(|row| row.ms_high).fold(0.0, f64::max);
     let wide = (high / low).max(2.0);
-    Axis::log("ms a tick, log").from_to(low / wide.powf(0.1), high * wide.powf(0.35))
+    Axis::log("ms a tick, log").between(low / wide.powf(0.1), high * wide.powf(0.35))
 }
 
 /// All choices of a scene, the first above.

@@ -224,8 +224,8 @@ fn fall_findings(rows: &[Row]) -> Vec<String> {
 pub fn chart(kept: &[Row], falls: &[Row]) -> Chart {
     let mut speeds = Panel::new(
         "Speed that is left after 1 s",
-        Axis::linear("damping D").from_to(-0.005, 0.19),
-        Axis::log("speed left, %").from_to(1.0e-3, 200.0),
+        Axis::linear("damping D").between(-0.005, 0.19),
+        Axis::log("speed left, %").between(1.0e-3, 200.0),
     );
     let exact = (0..=200).map(|index| f64::from(index) / 1000.0);
     let exact = exact.map(|damping| [damping, 100.0 * (1.0 - damping).powi(60)]);
@@ -238,7 +238,7 @@ pub fn chart(kept: &[Row], falls: &[Row]) -> Chart {
     let mut fall = Panel::new(
         "Fall, against its closed form",
         Axis::linear("damping D"),
-        Axis::log("faster by, %").from_to(0.01, 100.0),
+        Axis::log("faster by, %").between(0.01, 100.0),
     );
     for (style, substeps) in values(falls, |row| row.y).into_iter().enumerate() {
         let points = falls.iter().filter(|row| row.y == substeps && row.x > 0.0);

@@ -164,7 +164,7 @@ pub fn chart(rows: &[Row]) -> Chart {
         let mut panel = Panel::new(
             title,
             Axis::log("times as heavy"),
-            Axis::log("largest stretch, %").from_to(ENDS[0], ENDS[1]),
+            Axis::log("largest stretch, %").between(ENDS[0], ENDS[1]),
         );
         for (style, name) in methods(rows).into_iter().enumerate() {
             let cells = by(rows, name).into_iter().filter(|row| row.y == heavy);

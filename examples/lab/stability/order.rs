@@ -180,9 +180,9 @@ pub fn chart(rows: &[Row]) -> Chart {
         let mut panel = Panel::new(
             format!("{side} × {side} particles"),
             Axis::log("sweeps × sub-steps in a tick")
-                .from_to(0.85, 24.0)
+                .between(0.85, 24.0)
                 .named(names),
-            Axis::log("largest stretch, %").from_to(ENDS[0], ENDS[1]),
+            Axis::log("largest stretch, %").between(ENDS[0], ENDS[1]),
         );
         for (style, method) in ORDERS.into_iter().chain([TETHERED]).enumerate() {
             let cells = by(rows, method).into_iter().filter(|row| row.y == side);

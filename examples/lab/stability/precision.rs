@@ -274,7 +274,7 @@ pub fn chart(forms: &[Row], origins: &[Row]) -> Chart {
     let mut origin = Panel::new(
         "By the distance from the origin",
         Axis::log("distance, m"),
-        Axis::log("RMS error after 0.5 s, mm").from_to(ENDS[0], ENDS[1]),
+        Axis::log("RMS error after 0.5 s, mm").between(ENDS[0], ENDS[1]),
     );
     for (style, (method, substeps)) in [
         (OWN_FRAME, 20.0),

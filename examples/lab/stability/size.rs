@@ -342,10 +342,10 @@ pub fn chart(rows: &[Row]) -> Chart {
             method,
             Axis::log("sub-steps in 1/64 s")
                 .named(named)
-                .from_to(xs[xs.len() - 1] * 1.2, xs[0] / 1.2),
+                .between(xs[xs.len() - 1] * 1.2, xs[0] / 1.2),
             Axis::log("particles a side")
                 .named(ys.iter().map(|&side| (side, format!("{side}²"))))
-                .from_to(ys[0] / 1.45, ys[ys.len() - 1] * 1.45),
+                .between(ys[0] / 1.45, ys[ys.len() - 1] * 1.45),
         );
         for (outcome, look) in BY_STRETCH {
             let cells = by(rows, method)
@@ -376,7 +376,7 @@ pub fn chart_of_steps(falls: &[Row], pulls: &[Row]) -> Chart {
     let mut fall = Panel::new(
         "By the length of a tick",
         Axis::log("tick, s"),
-        Axis::log("largest stretch, %").from_to(ENDS[0], ENDS[1]),
+        Axis::log("largest stretch, %").between(ENDS[0], ENDS[1]),
     );
     for (style, method) in methods(falls).into_iter().enumerate() {
         let points = by(falls, method).into_iter();
@@ -391,7 +391,7 @@ pub fn chart_of_steps(falls: &[Row], pulls: &[Row]) -> Chart {
     let mut pull = Panel::new(
         "By the speed of its pins",
         Axis::log("way of the pins in a sub-step, spacings"),
-        Axis::log("largest stretch, %").from_to(ENDS[0], ENDS[1]),
+        Axis::log("largest stretch, %").between(ENDS[0], ENDS[1]),
     );
     for (style, method) in methods(pulls).into_iter().enumerate() {
         let points = by(pulls, method).into_iter();

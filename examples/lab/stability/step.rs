@@ -225,9 +225,9 @@ pub fn chart(rows: &[Row]) -> Chart {
             panel = panel.with(Series::new(outcome, look, Kind::Cells, cells));
         }
         let [low, high] = range(by(rows, name).iter().map(|row| row.x));
-        panel.x = panel.x.from_to(1.0e3 * low, 1.0e3 * high);
+        panel.x = panel.x.between(1.0e3 * low, 1.0e3 * high);
         let [low, high] = range(by(rows, name).iter().map(|row| row.y));
-        panel.y = panel.y.from_to(low, high);
+        panel.y = panel.y.between(low, high);
         if name == EXPLICIT {
             let limit = by(rows, LIMIT)
                 .into_iter()
@@ -245,7 +245,7 @@ pub fn chart(rows: &[Row]) -> Chart {
     let mut panel = Panel::new(
         format!("stretch at {} N/m", number(stiffest)),
         Axis::log("time step, ms"),
-        Axis::log("largest stretch, %").from_to(1.0e-3, 1.0e3),
+        Axis::log("largest stretch, %").between(1.0e-3, 1.0e3),
     );
     for (style, (name, _)) in WAYS.into_iter().enumerate().skip(1) {
         let cells = by(rows, name).into_iter();

@@ -155,7 +155,7 @@ pub fn chart(rows: &[Row]) -> Chart {
         let mut panel = Panel::new(
             title,
             Axis::log("speed of the ball, m/s"),
-            Axis::linear("got through, %").from_to(-5.0, 105.0),
+            Axis::linear("got through, %").between(-5.0, 105.0),
         );
         for (style, &ratio) in ratios.iter().enumerate() {
             let cells = by(rows, method).into_iter().filter(|row| row.y == ratio);
