@@ -175,6 +175,6 @@ pub(super) struct ClothTick {
     pub load: Option<Load>,
     /// Masses of its lightest and heaviest free particle (kg).
     pub masses: [f32; 2],
-    /// Which limits it was said to exceed.
-    pub told: [bool; ClothLimit::ALL.len()],
+    /// For how many ticks it has been beyond each limit, and whether that was told.
+    pub beyond: [(u32, bool); ClothLimit::ALL.len()],
 }

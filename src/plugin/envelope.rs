@@ -13,8 +13,11 @@ use bevy::{
 use super::{ClothStats, components::ClothTick};
 use crate::solver::ClothLimit;
 
-/// A cloth has left the envelope in which it is simulated well. It is logged as well, with the remedy: once for each
-/// limit, and again after its settings have changed.
+/// So many ticks in a row make a warning: a blow may stretch a cloth for an instant, which does no harm.
+const TICKS: u32 = 8;
+
+/// A cloth has left the envelope in which it is simulated well, for more than an instant. It is logged as well, with the
+/// remedy: once for each limit, and again after its settings have changed.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
 pub struct ClothLimitExceeded {
     /// The cloth.
@@ -39,11 +42,15 @@ pub(super) fn tell_of_limits(
         };
         stats.exceeded = None;
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
+            let (ticks, is_told) = &mut tick.beyond[index];
             let Some([quantity, good_up_to]) = load.beyond(limit) else {
+                *ticks = 0;
                 continue;
             };
             stats.exceeded = stats.exceeded.or(Some(limit));
-            if !std::mem::replace(&mut tick.told[index], true) {
+            *ticks += 1;
+            // What passes through does so at once.
+            if (*ticks >= TICKS || limit == ClothLimit::Dart) && !std::mem::replace(is_told, true) {
                 exceeded.write(ClothLimitExceeded {
                     cloth,
                     limit,

@@ -137,7 +137,7 @@ impl PreparingItem<'_, '_> {
         let known = Some((settings, search, narrow_phase, acceleration));
         if self.tick.known != known || !self.tick.pins.is_empty() || !settings.sleeps {
             if self.tick.known != known {
-                self.tick.told = Default::default();
+                self.tick.beyond = Default::default();
             }
             self.tick.known = known;
             self.tick.rest.disturb();

@@ -121,16 +121,23 @@ impl IntegratingItem<'_, '_> {
             .topology
             .tree
             .root_sphere(&self.particles, self.tick.stretch.bound);
+        let spacing = grid.spacing().max_element();
+        let count = step.substeps as f32;
+        let ways = self.tick.near.iter().filter_map(|(_, collider)| {
+            let way = collider.travel() / count;
+            Load::way_of(collider.shape.radius()?, way, spacing)
+        });
         self.tick.load = Some(Load {
+            way: ways.fold(0.0, f32::max),
             stretch: self.tick.stretch.structural,
             precision,
             is_capped: self.tick.control.is_capped(),
-            substep: step.seconds / step.substeps as f32,
+            substep: step.seconds / count,
+            damping: step.damping,
             compliance: self.topology.compliance(),
             is_tethered: !self.tick.solver.tethers().is_empty(),
             masses: self.tick.masses,
-            distance: (Vec3::from(root.center).length() + root.radius())
-                / grid.spacing().max_element(),
+            distance: (Vec3::from(root.center).length() + root.radius()) / spacing,
         });
     }
 

@@ -4,44 +4,58 @@ use std::fmt;
 
 use bevy::reflect::Reflect;
 
-use super::Precision;
+use super::{Precision, substep::DAMPING_REFERENCE};
 
 /// A limit of the envelope in which a cloth is simulated well. Beyond one it stays finite and goes on, but it no longer
-/// moves as its material says. Each limit was measured: the README's table says where.
+/// moves as its material says. Each was measured by the lab's experiment `stability`.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ClothLimit {
-    /// The sub-steps, and not the material, let a spring stretch by more than a tenth.
+    /// The sub-steps, and not the material, let a spring stretch by more than 15 %.
     Stretch,
     /// The most sub-steps that the settings allow do not hold the tolerance that they ask for.
     Tolerance,
     /// The heaviest particle that is free is more than 300 times as heavy as the lightest, or with tethers more than
     /// 10,000 times.
     MassRatio,
-    /// A particle is farther from the origin of its cloth's frame than single precision resolves well: 20,000 spacings.
+    /// A particle is farther from the origin of its cloth's frame than single precision resolves well: 10,000 spacings
+    /// with 20 sub-steps in 1/60 s, a quarter of it with twice as many.
     Distance,
+    /// The cloth is damped so much that how fast it falls depends on the sub-steps, by more than a tenth: above 0.98
+    /// with 20 sub-steps in 1/60 s.
+    Damping,
+    /// A ball or capsule thinner than half a spacing goes farther than 6 of its radii in a sub-step: it may get through.
+    Dart,
 }
 
-/// Largest length / rest length − 1 that sub-steps may leave.
-const MOST_STRETCH: f32 = 0.1;
+/// Largest length / rest length − 1 that sub-steps may leave: cotton of 128² gives up to 14 % by itself.
+const MOST_STRETCH: f32 = 0.15;
 /// Of the masses of free particles, without tethers and with. Those of a rectangle's corners and middle differ by 4.
 const MOST_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
-/// In spacings: there a float's step is a thousandth of one.
-const MOST_DISTANCE: f32 = 20_000.0;
+/// In spacings, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one.
+const MOST_DISTANCE: f32 = 10_000.0;
+const USUAL_SUBSTEP: f32 = 1.0 / 1200.0;
+/// Of −ln(1 − D) in a sub-step: a damped fall is too fast by half of it.
+const MOST_DAMPING: f32 = 0.194;
+/// Of a ball, in radii in a sub-step, and which ones are meant, in spacings.
+const MOST_WAY: f32 = 6.0;
+const SMALL: f32 = 0.5;
 
 impl ClothLimit {
     /// All of them.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 6] = [
         Self::Stretch,
         Self::Tolerance,
         Self::MassRatio,
         Self::Distance,
+        Self::Damping,
+        Self::Dart,
     ];
 
     /// What brings the cloth back.
     pub fn remedy(self) -> &'static str {
         match self {
             Self::Stretch => {
-                "take more sub-steps, a tolerance instead (`ClothSettings::tolerance`), tethers or fewer particles; pins farther apart than the cloth is long hold nothing"
+                "take more sub-steps, a tolerance instead (`ClothSettings::tolerance`), tethers or fewer particles; start and stop pins gently, and no farther apart than the cloth is long"
             }
             Self::Tolerance => {
                 "allow more sub-steps, or a larger stretch; what the material itself gives no sub-steps take away"
@@ -52,6 +66,8 @@ impl ClothLimit {
             Self::Distance => {
                 "move the cloth's `Transform` along with it: particles are simulated in its frame"
             }
+            Self::Damping => "lower the damping of its material, or take more sub-steps",
+            Self::Dart => "make the collider thicker or slower, or the cloth finer",
         }
     }
 }
@@ -60,9 +76,11 @@ impl fmt::Display for ClothLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Stretch => "largest stretch",
-            Self::Tolerance => "largest stretch, for which it has a tolerance",
+            Self::Tolerance => "largest stretch, for which it has a tolerance,",
             Self::MassRatio => "ratio of the masses of its particles",
-            Self::Distance => "distance from the origin of its frame, in spacings",
+            Self::Distance => "distance from the origin of its frame, in spacings,",
+            Self::Damping => "damping",
+            Self::Dart => "small collider's way in a sub-step, in radii,",
         })
     }
 }
@@ -80,16 +98,25 @@ pub struct Load {
     pub substep: f32,
     /// The stretch compliance of the material (m/N).
     pub compliance: f32,
+    /// The paper's D.
+    pub damping: f32,
     /// Whether tethers hold it.
     pub is_tethered: bool,
     /// Masses of the lightest and of the heaviest particle that is free (kg).
     pub masses: [f32; 2],
     /// Of the particle that is farthest from the frame's origin, in spacings.
     pub distance: f32,
+    /// The longest way of a small collider in a sub-step, in its radii.
+    pub way: f32,
 }
 
 impl Load {
-    /// A limit's quantity and how far it is good, if it is exceeded.
+    /// The way of a ball or capsule in a sub-step, in its radii, if it is so small that it counts as one.
+    pub fn way_of(radius: f32, way: f32, spacing: f32) -> Option<f32> {
+        (radius < SMALL * spacing && radius > 0.0).then(|| way / radius)
+    }
+
+    /// A limit's quantity and up to where it is good, if it is exceeded.
     pub fn beyond(&self, limit: ClothLimit) -> Option<[f32; 2]> {
         let [lightest, heaviest] = self.masses;
         let quantity = match limit {
@@ -108,7 +135,15 @@ impl Load {
                 heaviest / lightest,
                 MOST_MASS_RATIO[usize::from(self.is_tethered)],
             ],
-            ClothLimit::Distance => [self.distance, MOST_DISTANCE],
+            ClothLimit::Distance => {
+                let share = self.substep / USUAL_SUBSTEP;
+                [self.distance, MOST_DISTANCE * share * share]
+            }
+            ClothLimit::Damping => {
+                let most = 1.0 - (-MOST_DAMPING * DAMPING_REFERENCE / self.substep).exp();
+                [self.damping, most]
+            }
+            ClothLimit::Dart => [self.way, MOST_WAY],
             ClothLimit::Stretch | ClothLimit::Tolerance | ClothLimit::MassRatio => return None,
         };
         (quantity[0] > quantity[1]).then_some(quantity)
@@ -119,16 +154,18 @@ impl Load {
 mod tests {
     use super::*;
 
-    /// Inside of all limits, at each of them.
+    /// Inside of all limits, at most of them.
     const WITHIN: Load = Load {
         stretch: MOST_STRETCH,
         precision: Precision::Substeps(20),
         is_capped: false,
-        substep: 1.0e-3,
+        substep: USUAL_SUBSTEP,
         compliance: 1.0e-4,
+        damping: 0.97,
         is_tethered: false,
         masses: [1.0e-4, 1.0e-4 * MOST_MASS_RATIO[0]],
         distance: MOST_DISTANCE,
+        way: MOST_WAY,
     };
 
     fn beyond(load: Load) -> Vec<ClothLimit> {
@@ -139,62 +176,103 @@ mod tests {
     #[test]
     fn each_limit_is_exceeded_alone() {
         assert_eq!(beyond(WITHIN), []);
-        assert_eq!(beyond(Load::default()), []);
-        let stretched = Load {
-            stretch: 0.11,
+        let exceeded = [
+            (
+                Load {
+                    stretch: 0.16,
+                    ..WITHIN
+                },
+                ClothLimit::Stretch,
+            ),
+            (
+                Load {
+                    masses: [1.0e-4, 3.1e-2],
+                    ..WITHIN
+                },
+                ClothLimit::MassRatio,
+            ),
+            (
+                Load {
+                    distance: 1.1e4,
+                    ..WITHIN
+                },
+                ClothLimit::Distance,
+            ),
+            (
+                Load {
+                    damping: 0.99,
+                    ..WITHIN
+                },
+                ClothLimit::Damping,
+            ),
+            (
+                Load {
+                    damping: 1.0,
+                    ..WITHIN
+                },
+                ClothLimit::Damping,
+            ),
+            (Load { way: 7.0, ..WITHIN }, ClothLimit::Dart),
+        ];
+        for (load, limit) in exceeded {
+            assert_eq!(beyond(load), [limit]);
+        }
+        // Halved sub-steps reach a quarter as far, and hold more damping.
+        let halved = Load {
+            substep: USUAL_SUBSTEP / 2.0,
+            distance: 0.26 * MOST_DISTANCE,
+            damping: 0.99,
             ..WITHIN
         };
-        assert_eq!(beyond(stretched), [ClothLimit::Stretch]);
+        assert_eq!(beyond(halved), [ClothLimit::Distance]);
+    }
+
+    #[test]
+    fn a_tolerance_is_beyond_where_the_cap_stops_it() {
         let precision = Precision::Tolerance {
             stretch: 0.01,
             most_substeps: 20,
         };
         let tolerant = Load {
             precision,
-            ..stretched
+            ..WITHIN
         };
-        assert_eq!(beyond(tolerant), [], "its tick is not over");
+        assert_eq!(beyond(tolerant), [], "it takes more sub-steps");
         let capped = Load {
             is_capped: true,
             ..tolerant
         };
         assert_eq!(beyond(capped), [ClothLimit::Tolerance]);
-        assert_eq!(capped.beyond(ClothLimit::Tolerance), Some([0.11, 0.01]));
-        let heavy = Load {
-            masses: [1.0e-4, 3.1e-2],
-            ..WITHIN
-        };
-        assert_eq!(beyond(heavy), [ClothLimit::MassRatio]);
-        let tethered = Load {
+        assert_eq!(capped.beyond(ClothLimit::Tolerance), Some([0.15, 0.01]));
+    }
+
+    #[test]
+    fn tethers_hold_heavier_particles() {
+        let ratio = |ratio: f32| Load {
             is_tethered: true,
-            ..heavy
-        };
-        assert_eq!(beyond(tethered), []);
-        let heavier = Load {
-            masses: [1.0e-4, 1.1],
-            ..tethered
-        };
-        assert_eq!(beyond(heavier), [ClothLimit::MassRatio]);
-        let far = Load {
-            distance: 2.1e4,
+            masses: [1.0e-4, 1.0e-4 * ratio],
             ..WITHIN
         };
-        assert_eq!(beyond(far), [ClothLimit::Distance]);
+        assert_eq!(beyond(ratio(9.9e3)), []);
+        assert_eq!(beyond(ratio(1.1e4)), [ClothLimit::MassRatio]);
     }
 
     /// With α of the material above 2 Δt²/m the springs are softer than the sweep: their stretch is the material's.
     #[test]
     fn what_the_material_gives_is_no_fault() {
-        let rubber = Load {
+        let rubber = |part: f32| Load {
             stretch: 0.5,
-            compliance: 2.1e-2,
+            compliance: part * 2.0 * USUAL_SUBSTEP * USUAL_SUBSTEP / WITHIN.masses[0],
             ..WITHIN
         };
-        assert_eq!(beyond(rubber), []);
-        let stiffer = Load {
-            compliance: 1.9e-2,
-            ..rubber
-        };
-        assert_eq!(beyond(stiffer), [ClothLimit::Stretch]);
+        assert_eq!(beyond(rubber(1.1)), []);
+        assert_eq!(beyond(rubber(0.9)), [ClothLimit::Stretch]);
+    }
+
+    #[test]
+    fn a_dart_is_thinner_than_half_a_spacing() {
+        assert_eq!(Load::way_of(0.04, 0.4, 0.1), Some(10.0));
+        assert_eq!(Load::way_of(0.06, 0.4, 0.1), None);
+        assert_eq!(Load::way_of(0.0, 0.4, 0.1), None);
     }
 }

@@ -12,7 +12,7 @@ use super::{
 use crate::cloth::{ClothParticles, Layout, Springs, Weave};
 
 /// The time step for which the paper's damping D is given (s).
-const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
+pub(super) const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
 
 /// What moves a cloth in a tick, besides its springs.
 #[derive(Debug, Clone, Copy, PartialEq)]

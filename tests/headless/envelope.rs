@@ -97,6 +97,62 @@ fn a_cloth_far_from_its_own_frame() {
     expect_told(app, cloth, ClothLimit::Distance);
 }
 
+#[test]
+fn damping_that_the_sub_steps_decide() {
+    let mut app = app();
+    let settings = ClothSettings {
+        sleeps: false,
+        ..ClothSettings::substeps(4)
+    };
+    let material = ClothMaterial {
+        damping: 0.9,
+        ..default()
+    };
+    let cloth = (Cloth::new(8, 8, 0.1), material, settings);
+    let cloth = app.world_mut().spawn(cloth).id();
+    expect_told(app, cloth, ClothLimit::Damping);
+}
+
+/// A pellet of a quarter of a spacing at 1,000 m/s is told of in the tick in which it comes.
+#[test]
+fn a_dart() {
+    let mut app = app_with_moving_balls();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    tick(&mut app, 2);
+    let start = Transform::from_xyz(0.73, -0.76, -20.0);
+    app.world_mut()
+        .spawn((ClothCollider::ball(0.025), Moving(1000.0), start));
+    tick(&mut app, 4);
+    let told = messages::<ClothLimitExceeded>(&mut app);
+    assert!(
+        matches!(told[..], [told] if told.limit == ClothLimit::Dart && told.cloth == cloth),
+        "{told:?}"
+    );
+}
+
+/// A blow that stretches a cloth for an instant is no reason to tell anybody anything.
+#[test]
+fn an_instant_is_not_told_of() {
+    let mut app = app();
+    let settings = ClothSettings {
+        tethers: false,
+        ..ClothSettings::substeps(3)
+    };
+    let cloth = app.world_mut().spawn((Cloth::default(), settings)).id();
+    tick(&mut app, 8);
+    change::<ClothParticles>(&mut app, cloth, |particles| {
+        let pulled = particles.position((8, 8)).expect("it exists") + Vec3::Z * 2.0;
+        particles.set_position((8, 8), pulled).expect("it exists");
+    });
+    let mut beyond = 0;
+    for _ in 0..64 {
+        tick(&mut app, 1);
+        beyond += usize::from(exceeded(&app, cloth).is_some());
+    }
+    assert!((1..8).contains(&beyond), "{beyond} ticks");
+    assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
+}
+
 /// The materials with all defaults, hung and struck by a ball: nothing to tell.
 #[test]
 fn the_usual_is_within() {
