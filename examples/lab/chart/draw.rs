@@ -1,28 +1,24 @@
 //! Draws a chart by plotters.
 
-use std::{path::Path, sync::Once};
+use std::path::Path;
 
 use bevy::{
     asset::RenderAssetUsages,
     image::Image,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
-use bevy_egui::egui::FontDefinitions;
 use plotters::{
-    coord::{Shift, ranged1d::ValueFormatter},
-    element::{DashedPathElement, Drawable, PointCollection},
+    coord::ranged1d::ValueFormatter,
     prelude::*,
-    style::{
-        FontStyle, register_font,
-        text_anchor::{HPos, Pos, VPos},
-    },
+    style::text_anchor::{HPos, Pos, VPos},
 };
 
-use super::{Chart, Kind, Look, Panel, Point, Series, theme::Theme};
-
-const FONT: &str = "sans-serif";
-
-type Area<B> = DrawingArea<B, Shift>;
+use super::{
+    Chart, Kind, Look, Panel, Point, Series,
+    geometry::{cells_along, clipped, ends_of_cell},
+    marks::{Area, Canvas, FONT, use_font},
+    theme::Theme,
+};
 
 /// As an SVG file.
 pub fn svg(chart: &Chart, theme: &Theme, path: &Path) -> Result<(), String> {
@@ -68,26 +64,6 @@ pub fn png(chart: &Chart, theme: &Theme, path: &Path) -> Result<(), String> {
     let fail = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let image = image.try_into_dynamic().map_err(|error| fail(&error))?;
     image.to_rgb8().save(path).map_err(|error| fail(&error))
-}
-
-/// Text is measured by this font; who looks at an SVG sees it in their own.
-fn use_font() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let fonts = FontDefinitions::default();
-        if let Some(data) = fonts.font_data.get("Ubuntu-Light")
-            && let std::borrow::Cow::Borrowed(bytes) = data.font
-        {
-            // Refused, text would be missing, which is seen at once.
-            let _ = register_font(FONT, FontStyle::Normal, bytes);
-        }
-    });
-}
-
-struct Canvas<'a, B: DrawingBackend> {
-    area: &'a Area<B>,
-    theme: &'a Theme,
-    zoom: i32,
 }
 
 impl<B: DrawingBackend> Canvas<'_, B> {
@@ -299,221 +275,5 @@ impl<B: DrawingBackend> Canvas<'_, B> {
             )?;
         }
         Ok(())
-    }
-
-    fn put<E>(&self, element: &E) -> Result<(), String>
-    where
-        for<'e> &'e E: PointCollection<'e, (i32, i32)>,
-        E: Drawable<B>,
-    {
-        self.area.draw(element).map_err(|error| error.to_string())
-    }
-
-    fn text(
-        &self,
-        text: &str,
-        at: [i32; 2],
-        size: i32,
-        look: Look,
-        pos: Pos,
-    ) -> Result<(), String> {
-        // Grey is for markers: too pale to be read.
-        let color = match look {
-            Look::Grey | Look::Faded(_) => self.theme.pale,
-            _ => self.theme.color(look),
-        };
-        let style = TextStyle::from((FONT, size * self.zoom).into_font())
-            .color(&color)
-            .pos(pos);
-        self.area
-            .draw_text(text, &style, (at[0], at[1]))
-            .map_err(|error| error.to_string())
-    }
-
-    /// In pixels.
-    fn width(&self, text: &str, size: i32) -> i32 {
-        let font = (FONT, size * self.zoom).into_font();
-        let measured = font.box_size(text).map_or(0, |(width, _)| width);
-        // Other fonts are wider.
-        (f64::from(measured) * 1.12) as i32
-    }
-
-    fn wrapped(&self, text: &str, size: i32, width: i32) -> Vec<String> {
-        let mut lines: Vec<String> = Vec::new();
-        for word in text.split_whitespace() {
-            match lines.last_mut() {
-                Some(line) if self.width(&format!("{line} {word}"), size) <= width => {
-                    line.push(' ');
-                    line.push_str(word);
-                }
-                _ => lines.push(word.into()),
-            }
-        }
-        lines
-    }
-
-    fn line(&self, points: &[[i32; 2]], look: Look, kind: Kind) -> Result<(), String> {
-        let z = self.zoom as u32;
-        let stroke = self.theme.color(look).stroke_width(2 * z);
-        let points: Vec<(i32, i32)> = points.iter().map(|&[x, y]| (x, y)).collect();
-        let dash = match (look, kind) {
-            (Look::Ink, Kind::Line) => Some((9, 5)),
-            (Look::Style(style) | Look::Faded(style), _) => {
-                [None, Some((10, 4)), Some((3, 4)), Some((16, 5))][style % 4]
-            }
-            _ => None,
-        };
-        match dash {
-            Some((long, gap)) if points.len() > 1 => {
-                let dashed = DashedPathElement::new(points, long * z, gap * z, stroke);
-                self.put(&dashed)
-            }
-            _ => self.put(&PathElement::new(points, stroke)),
-        }
-    }
-
-    fn bar(&self, [from, to]: [[i32; 2]; 2], axis: usize, look: Look) -> Result<(), String> {
-        let stroke = self.theme.color(look).stroke_width(self.zoom as u32);
-        let cap = 3 * self.zoom;
-        let (wide, high) = if axis == 0 { (0, cap) } else { (cap, 0) };
-        self.put(&PathElement::new(
-            vec![(from[0], from[1]), (to[0], to[1])],
-            stroke,
-        ))?;
-        for [x, y] in [from, to] {
-            let ends = vec![(x - wide, y - high), (x + wide, y + high)];
-            self.put(&PathElement::new(ends, stroke))?;
-        }
-        Ok(())
-    }
-
-    fn cell(&self, corners: [[i32; 2]; 2], middle: [i32; 2], look: Look) -> Result<(), String> {
-        let fill = self.theme.color(look).mix(0.45).filled();
-        let corners = corners.map(|[x, y]| (x, y));
-        self.put(&Rectangle::new(corners, fill))?;
-        self.marker(middle, look)
-    }
-
-    fn marker(&self, [x, y]: [i32; 2], look: Look) -> Result<(), String> {
-        let z = self.zoom;
-        let color = self.theme.color(look);
-        let (fill, stroke) = (color.filled(), color.stroke_width(2 * z as u32));
-        let shape = |corners: &[(i32, i32)]| -> Vec<(i32, i32)> {
-            corners
-                .iter()
-                .map(|&(across, down)| (x + across * z, y + down * z))
-                .collect()
-        };
-        let path = |corners: &[(i32, i32)]| self.put(&PathElement::new(shape(corners), stroke));
-        let polygon = |corners: &[(i32, i32)]| self.put(&Polygon::new(shape(corners), fill));
-        match look {
-            Look::Grey => self.put(&Circle::new((x, y), 3 * z, fill)),
-            Look::Ink => path(&[(-5, 0), (5, 0)]),
-            Look::Style(style) | Look::Faded(style) => match style % 8 {
-                0 => self.put(&Circle::new((x, y), 5 * z, fill)),
-                1 => polygon(&[(0, -6), (6, 5), (-6, 5)]),
-                2 => polygon(&[(-5, -5), (5, -5), (5, 5), (-5, 5)]),
-                3 => polygon(&[(0, -7), (6, 0), (0, 7), (-6, 0)]),
-                4 => {
-                    path(&[(-5, -5), (5, 5)])?;
-                    path(&[(-5, 5), (5, -5)])
-                }
-                5 => {
-                    path(&[(-6, 0), (6, 0)])?;
-                    path(&[(0, -6), (0, 6)])
-                }
-                6 => self.put(&Circle::new((x, y), 5 * z, stroke)),
-                _ => path(&[(-5, -5), (5, -5), (5, 5), (-5, 5), (-5, -5)]),
-            },
-        }
-    }
-}
-
-/// Where the middles of cells are across and down (pixels).
-fn cells_along(series: &[Series], pixel: &impl Fn([f64; 2]) -> [i32; 2]) -> [Vec<i32>; 2] {
-    let cells = series.iter().filter(|series| series.kind == Kind::Cells);
-    let places: Vec<[i32; 2]> = cells
-        .flat_map(|series| &series.points)
-        .map(|point| pixel(point.at))
-        .collect();
-    [0, 1].map(|axis| {
-        let mut along: Vec<i32> = places.iter().map(|place| place[axis]).collect();
-        along.sort_unstable();
-        along.dedup_by(|a, b| *a - *b <= 2);
-        along
-    })
-}
-
-/// From where to where a cell goes: half-way to its neighbours.
-fn ends_of_cell(along: &[i32], at: i32) -> [i32; 2] {
-    let index = along.partition_point(|&place| place < at - 2);
-    let half = |a: Option<&i32>, b: Option<&i32>| a.zip(b).map(|(a, b)| (b - a) as f32 / 2.0);
-    let before = half(index.checked_sub(1).map(|i| &along[i]), along.get(index));
-    let after = half(along.get(index), along.get(index + 1));
-    // At a border it is as far as to the other side.
-    let low = before.or(after).unwrap_or(20.0);
-    let high = after.or(before).unwrap_or(20.0);
-    [at as f32 - low, at as f32 + high].map(|end| end.round() as i32)
-}
-
-/// What of a line is between two corners, in parts.
-fn clipped(points: &[[i32; 2]], [low, high]: [[i32; 2]; 2]) -> Vec<Vec<[i32; 2]>> {
-    let mut parts: Vec<Vec<[i32; 2]>> = Vec::new();
-    for pair in points.windows(2) {
-        let from = pair[0].map(f64::from);
-        let way = [0, 1].map(|axis| f64::from(pair[1][axis]) - from[axis]);
-        // From which part of it to which it is inside (Liang and Barsky 1984).
-        let (mut begin, mut end) = (0.0_f64, 1.0_f64);
-        for axis in 0..2 {
-            let (near, far) = (
-                f64::from(low[axis]) - from[axis],
-                f64::from(high[axis]) - from[axis],
-            );
-            if way[axis] == 0.0 {
-                if near > 0.0 || far < 0.0 {
-                    end = -1.0;
-                }
-                continue;
-            }
-            let (a, b) = (near / way[axis], far / way[axis]);
-            (begin, end) = (begin.max(a.min(b)), end.min(a.max(b)));
-        }
-        if begin > end {
-            continue;
-        }
-        let at = |part: f64| [0, 1].map(|axis| (from[axis] + part * way[axis]).round() as i32);
-        match parts.last_mut() {
-            Some(last) if last.last() == Some(&at(begin)) => last.push(at(end)),
-            _ => parts.push(vec![at(begin), at(end)]),
-        }
-    }
-    parts
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_meet_half_way() {
-        let along = [10, 20, 40];
-        assert_eq!(ends_of_cell(&along, 10), [5, 15]);
-        assert_eq!(ends_of_cell(&along, 20), [15, 30]);
-        assert_eq!(ends_of_cell(&along, 40), [30, 50]);
-        assert_eq!(ends_of_cell(&[7], 7), [-13, 27]);
-    }
-
-    #[test]
-    fn lines_end_at_the_edge() {
-        let corners = [[0, 0], [10, 10]];
-        assert_eq!(
-            clipped(&[[-5, 5], [5, 5], [5, 25]], corners),
-            [vec![[0, 5], [5, 5], [5, 10]]]
-        );
-        assert_eq!(
-            clipped(&[[2, 2], [2, 30], [4, 30], [4, 4]], corners),
-            [vec![[2, 2], [2, 10]], vec![[4, 10], [4, 4]]]
-        );
-        assert!(clipped(&[[-5, 0], [-5, 9]], corners).is_empty());
     }
 }

@@ -1,6 +1,8 @@
 //! Charts as data: what is shown, and not how.
 
 mod draw;
+mod geometry;
+mod marks;
 mod scale;
 mod theme;
 

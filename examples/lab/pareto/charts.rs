@@ -86,6 +86,11 @@ fn errors(rows: &[Row]) -> Chart {
     )
     .sized([960, 900])
     .columns(2);
+    let is_shown_best = |method: &str| {
+        groups
+            .iter()
+            .any(|group| group.frontier().iter().any(|row| row.method == method))
+    };
     for group in &groups {
         let frontier = group.frontier();
         let mut panel = Panel::new(
@@ -112,7 +117,12 @@ fn errors(rows: &[Row]) -> Chart {
                 let is_best = |row: &&Row| frontier.iter().any(|other| std::ptr::eq(*other, *row));
                 let points = group.of(method).filter(|row| is_best(row) == best);
                 let points = points.map(|row| point(row, 1.0e3 * row.rms_error_m));
-                let name = if best { method } else { "" };
+                // A method that is nowhere among the best is named by its grey marker.
+                let name = if best || !is_shown_best(method) {
+                    method
+                } else {
+                    ""
+                };
                 panel = panel.with(Series::new(name, look, Kind::Points, points));
             }
         }

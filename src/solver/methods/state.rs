@@ -192,6 +192,7 @@ impl<R: Real> MassSpring<R> {
 }
 
 /// The ends of a spring as indices.
+#[inline]
 pub(super) fn ends(spring: &Spring) -> [usize; 2] {
     spring.ends.map(|end| end as usize)
 }
