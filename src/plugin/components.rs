@@ -45,12 +45,6 @@ impl ClothTopology {
         &self.tree
     }
 
-    /// The stretch compliance of what it was woven from (m/N).
-    pub(super) fn compliance(&self) -> f32 {
-        let woven = self.woven.as_ref();
-        woven.map_or(0.0, |(_, material, _)| material.stretch_compliance)
-    }
-
     /// Whether springs and tree are those of `particles`: not before the first tick, nor once a game has
     /// emptied the particles, until the next.
     pub(super) fn fits(&self, particles: &ClothParticles) -> bool {
@@ -109,7 +103,7 @@ pub struct ClothStats {
     pub substeps: u32,
     /// Whether the cloth sleeps.
     pub is_asleep: bool,
-    /// The first limit beyond which it is not simulated well, if it is beyond one.
+    /// The first limit beyond which it is not simulated well, if it was beyond one as its last tick ended.
     pub exceeded: Option<ClothLimit>,
 }
 
@@ -173,6 +167,8 @@ pub(super) struct ClothTick {
     pub backup: ClothParticles,
     /// What the tick that was just done asked of the cloth.
     pub load: Option<Load>,
+    /// The stretch that its material gives by itself.
+    pub given_stretch: f32,
     /// Masses of its lightest and heaviest free particle (kg).
     pub masses: [f32; 2],
     /// For how many ticks it has been beyond each limit, and whether that was told.

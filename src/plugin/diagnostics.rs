@@ -10,7 +10,7 @@ use bevy::{
     },
 };
 
-use super::{ClothStats, ClothSystems, components::ClothTick};
+use super::{ClothStats, ClothSystems, components::ClothTick, envelope::tell_of_limits};
 use crate::hierarchy::{BoundRule, SearchMethod};
 
 /// Measures every tick into Bevy's `DiagnosticsStore`: times and counts added up over all cloths, and the
@@ -87,7 +87,12 @@ impl Plugin for ClothDiagnosticsPlugin {
             app.register_diagnostic(Diagnostic::new(path));
         }
         app.register_diagnostic(Diagnostic::new(Self::STRETCH).with_suffix(" %"));
-        app.add_systems(self.schedule, measure.in_set(ClothSystems::WriteBack));
+        app.add_systems(
+            self.schedule,
+            measure
+                .after(tell_of_limits)
+                .in_set(ClothSystems::WriteBack),
+        );
     }
 }
 

@@ -4,6 +4,7 @@ use bevy::{
     ecs::{
         entity::Entity,
         message::{Message, MessageWriter},
+        name::NameOrEntity,
         system::Query,
     },
     log::warn,
@@ -17,14 +18,14 @@ use crate::solver::ClothLimit;
 const TICKS: u32 = 8;
 
 /// A cloth has left the envelope in which it is simulated well, for more than an instant. It is logged as well, with the
-/// remedy: once for each limit, and again after its settings have changed.
+/// remedy: once for each limit, and again after its [`ClothSettings`](crate::solver::ClothSettings) have changed.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
 pub struct ClothLimitExceeded {
     /// The cloth.
     pub cloth: Entity,
     /// Which limit.
     pub limit: ClothLimit,
-    /// The quantity, and up to where it is good: a stretch, a ratio, or a distance in spacings.
+    /// The quantity: a stretch, a ratio of masses, a distance in spacings, a damping, or a way in radii.
     pub quantity: f32,
     /// Up to where it is good.
     pub good_up_to: f32,
@@ -32,14 +33,15 @@ pub struct ClothLimitExceeded {
 
 /// Looks at every cloth that moved in the tick.
 pub(super) fn tell_of_limits(
-    mut cloths: Query<(Entity, &mut ClothTick, &mut ClothStats)>,
+    mut cloths: Query<(NameOrEntity, &mut ClothTick, &mut ClothStats)>,
     mut exceeded: MessageWriter<ClothLimitExceeded>,
 ) {
     for (cloth, mut tick, mut stats) in &mut cloths {
-        // Kept as it was while it sleeps or stands still.
-        let Some(load) = tick.load.take() else {
+        // Kept as it was while it sleeps or stands still; not touched, so that nothing seems to change.
+        let Some(load) = tick.load else {
             continue;
         };
+        tick.load = None;
         stats.exceeded = None;
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
             let (ticks, is_told) = &mut tick.beyond[index];
@@ -52,7 +54,7 @@ pub(super) fn tell_of_limits(
             // What passes through does so at once.
             if (*ticks >= TICKS || limit == ClothLimit::Dart) && !std::mem::replace(is_told, true) {
                 exceeded.write(ClothLimitExceeded {
-                    cloth,
+                    cloth: cloth.entity,
                     limit,
                     quantity,
                     good_up_to,

@@ -136,7 +136,8 @@ impl PreparingItem<'_, '_> {
         self.tether(settings.tethers, &material, gravity.length());
         let known = Some((settings, search, narrow_phase, acceleration));
         if self.tick.known != known || !self.tick.pins.is_empty() || !settings.sleeps {
-            if self.tick.known != known {
+            // Gravity is seen from the cloth's frame: it changes in every tick of one that turns.
+            if self.tick.known.map(|(settings, ..)| settings) != Some(settings) {
                 self.tick.beyond = Default::default();
             }
             self.tick.known = known;

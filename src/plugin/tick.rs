@@ -13,6 +13,8 @@ use super::{
 };
 use crate::{
     cloth::ClothParticles,
+    contact::ColliderShape,
+    hierarchy::Core,
     solver::{Load, Precision, Stretch, TickStep},
 };
 
@@ -123,9 +125,18 @@ impl IntegratingItem<'_, '_> {
             .root_sphere(&self.particles, self.tick.stretch.bound);
         let spacing = grid.spacing().max_element();
         let count = step.substeps as f32;
+        // Of those that come to the ball around the cloth, a capsule's turn counted.
+        let around = root.radius() + self.tick.reach;
         let ways = self.tick.near.iter().filter_map(|(_, collider)| {
-            let way = collider.travel() / count;
-            Load::way_of(collider.shape.radius()?, way, spacing)
+            let core = Core::Segment([collider.from.translation.into(), collider.to]);
+            if !core.may_reach(root.center.into(), around + collider.shape.extent()) {
+                return None;
+            }
+            let way = match collider.shape {
+                ColliderShape::Ball { .. } => collider.travel(),
+                _ => collider.drag(f32::INFINITY),
+            };
+            Load::way_of(collider.shape.radius()?, way / count, spacing)
         });
         self.tick.load = Some(Load {
             way: ways.fold(0.0, f32::max),
@@ -134,10 +145,10 @@ impl IntegratingItem<'_, '_> {
             is_capped: self.tick.control.is_capped(),
             substep: step.seconds / count,
             damping: step.damping,
-            compliance: self.topology.compliance(),
+            given: self.tick.given_stretch,
             is_tethered: !self.tick.solver.tethers().is_empty(),
             masses: self.tick.masses,
-            distance: (Vec3::from(root.center).length() + root.radius()) / spacing,
+            distance: (Vec3::from(root.center).length() - root.radius()).max(0.0) / spacing,
         });
     }
 

@@ -5,7 +5,7 @@ use crate::{
     cloth::{ClothError, ClothGrid, ClothMaterial, ClothParticles, Pins, SpringKind, Springs},
     hierarchy::QuadTree,
     plugin::ClothTopology,
-    solver::{Solver, Tethers},
+    solver::{Solver, Tethers, given_stretch},
 };
 
 use bevy::math::Vec3;
@@ -103,6 +103,7 @@ impl PreparingItem<'_, '_> {
         }
         (*was, *were_pinned) = (*material, pins.clone());
         self.tick.tethered = None;
+        self.tick.beyond = Default::default();
         self.tick.rest.disturb();
         Ok(())
     }
@@ -114,6 +115,9 @@ impl PreparingItem<'_, '_> {
             return;
         }
         self.tick.tethered = made_for;
+        let pinned = self.particles.inverse_masses().filter(|w| *w == 0.0);
+        let grid = &self.topology.grid;
+        self.tick.given_stretch = given_stretch(grid, material, pinned.count(), acceleration);
         let tethers = if wanted {
             Tethers::new(&self.topology.grid, material, &self.particles, acceleration)
         } else {

@@ -9,32 +9,35 @@ use super::{Precision, substep::DAMPING_REFERENCE};
 /// A limit of the envelope in which a cloth is simulated well. Beyond one it stays finite and goes on, but it no longer
 /// moves as its material says. Each was measured by the lab's experiment `stability`.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ClothLimit {
-    /// The sub-steps, and not the material, let a spring stretch by more than 15 %.
+    /// A spring is stretched by 15 % more than its material gives under four times the weight of the cloth: the sub-steps
+    /// do not hold it.
     Stretch,
     /// The most sub-steps that the settings allow do not hold the tolerance that they ask for.
     Tolerance,
     /// The heaviest particle that is free is more than 300 times as heavy as the lightest, or with tethers more than
     /// 10,000 times.
     MassRatio,
-    /// A particle is farther from the origin of its cloth's frame than single precision resolves well: 10,000 spacings
-    /// with 20 sub-steps in 1/60 s, a quarter of it with twice as many.
+    /// The cloth is farther from its frame's origin, its own size not counted, than single precision resolves well: 10,000
+    /// spacings with 20 sub-steps in 1/60 s, a quarter of it with twice as many.
     Distance,
     /// The cloth is damped so much that how fast it falls depends on the sub-steps, by more than a tenth: above 0.98
     /// with 20 sub-steps in 1/60 s.
     Damping,
-    /// A ball or capsule thinner than half a spacing goes farther than 6 of its radii in a sub-step: it may get through.
+    /// A ball or capsule thinner than half a spacing comes to the cloth by more than 6 of its radii in a sub-step: it may
+    /// get through.
     Dart,
 }
 
-/// Largest length / rest length − 1 that sub-steps may leave: cotton of 128² gives up to 14 % by itself.
+/// Largest length / rest length − 1 beyond what the material gives.
 const MOST_STRETCH: f32 = 0.15;
 /// Of the masses of free particles, without tethers and with. Those of a rectangle's corners and middle differ by 4.
 const MOST_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
 /// In spacings, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one.
 const MOST_DISTANCE: f32 = 10_000.0;
 const USUAL_SUBSTEP: f32 = 1.0 / 1200.0;
-/// Of −ln(1 − D) in a sub-step: a damped fall is too fast by half of it.
+/// Of −ln(1 − D) in a sub-step: a damped fall is too fast by half of it, so by a tenth here.
 const MOST_DAMPING: f32 = 0.194;
 /// Of a ball, in radii in a sub-step, and which ones are meant, in spacings.
 const MOST_WAY: f32 = 6.0;
@@ -87,7 +90,7 @@ impl fmt::Display for ClothLimit {
 
 /// What is asked of a cloth at the end of a tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub struct Load {
+pub(crate) struct Load {
     /// The largest stretch of a structural spring.
     pub stretch: f32,
     /// By what it is held.
@@ -96,15 +99,15 @@ pub struct Load {
     pub is_capped: bool,
     /// Length of a sub-step (s).
     pub substep: f32,
-    /// The stretch compliance of the material (m/N).
-    pub compliance: f32,
+    /// The stretch that the material itself may give.
+    pub given: f32,
     /// The paper's D.
     pub damping: f32,
     /// Whether tethers hold it.
     pub is_tethered: bool,
     /// Masses of the lightest and of the heaviest particle that is free (kg).
     pub masses: [f32; 2],
-    /// Of the particle that is farthest from the frame's origin, in spacings.
+    /// From the frame's origin to the cloth, in spacings, its own size not counted.
     pub distance: f32,
     /// The longest way of a small collider in a sub-step, in its radii.
     pub way: f32,
@@ -120,12 +123,8 @@ impl Load {
     pub fn beyond(&self, limit: ClothLimit) -> Option<[f32; 2]> {
         let [lightest, heaviest] = self.masses;
         let quantity = match limit {
-            // A sweep is as stiff as mass/Δt²: what is softer stretches as it should.
-            ClothLimit::Stretch
-                if matches!(self.precision, Precision::Substeps(_))
-                    && self.compliance * lightest < 2.0 * self.substep * self.substep =>
-            {
-                [self.stretch, MOST_STRETCH]
+            ClothLimit::Stretch if matches!(self.precision, Precision::Substeps(_)) => {
+                [self.stretch, MOST_STRETCH + self.given]
             }
             ClothLimit::Tolerance if self.is_capped => match self.precision {
                 Precision::Tolerance { stretch, .. } => [self.stretch, stretch],
@@ -160,7 +159,7 @@ mod tests {
         precision: Precision::Substeps(20),
         is_capped: false,
         substep: USUAL_SUBSTEP,
-        compliance: 1.0e-4,
+        given: 0.0,
         damping: 0.97,
         is_tethered: false,
         masses: [1.0e-4, 1.0e-4 * MOST_MASS_RATIO[0]],
@@ -257,16 +256,15 @@ mod tests {
         assert_eq!(beyond(ratio(1.1e4)), [ClothLimit::MassRatio]);
     }
 
-    /// With α of the material above 2 Δt²/m the springs are softer than the sweep: their stretch is the material's.
     #[test]
     fn what_the_material_gives_is_no_fault() {
-        let rubber = |part: f32| Load {
-            stretch: 0.5,
-            compliance: part * 2.0 * USUAL_SUBSTEP * USUAL_SUBSTEP / WITHIN.masses[0],
+        let rubber = |stretch: f32| Load {
+            stretch,
+            given: 0.3,
             ..WITHIN
         };
-        assert_eq!(beyond(rubber(1.1)), []);
-        assert_eq!(beyond(rubber(0.9)), [ClothLimit::Stretch]);
+        assert_eq!(beyond(rubber(0.44)), []);
+        assert_eq!(beyond(rubber(0.46)), [ClothLimit::Stretch]);
     }
 
     #[test]

@@ -21,7 +21,8 @@ mod tests;
 mod tether;
 mod wave;
 
-pub use envelope::{ClothLimit, Load};
+pub use envelope::ClothLimit;
+pub(crate) use envelope::Load;
 pub use kernel::Instructions;
 pub use precision::{Control, Precision};
 pub use rest::Rest;
@@ -29,3 +30,4 @@ pub use settings::ClothSettings;
 pub use stretch::Stretch;
 pub use substep::{PinMotion, Solver, SubStep, TickStep};
 pub use tether::Tethers;
+pub(crate) use tether::given_stretch;

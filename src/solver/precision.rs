@@ -31,7 +31,8 @@ pub enum Precision {
     Tolerance {
         /// Largest length over rest length, − 1, that is allowed: 0.01 is one per cent. Positive.
         stretch: f32,
-        /// No tick has more than so many, from 1 to 10,000; where they don't suffice, that is logged once.
+        /// No tick has more than so many, from 1 to 10,000; where they don't suffice, that is logged:
+        /// [`ClothLimit::Tolerance`](super::ClothLimit::Tolerance).
         most_substeps: u32,
     },
 }

@@ -47,6 +47,32 @@ pub(super) struct Anchors {
     patterns: Vec<[Lanes; 3]>,
 }
 
+/// The pull that threads are given room for (N/m): four times the weight of a cloth, over so many pins side by side.
+fn tension(grid: &ClothGrid, material: &ClothMaterial, pins: usize, acceleration: f32) -> f32 {
+    let area = grid
+        .cells()
+        .map(|(r, c)| grid.tributary_area(r, c))
+        .sum::<f32>();
+    let width = pins as f32 * grid.spacing().min_element();
+    MARGIN * material.areal_density * area * acceleration.max(LEAST_ACCELERATION) / width
+}
+
+/// The stretch that the material itself gives under four times the weight of the cloth, hung by so many pins; without
+/// any, by as many as it is wide.
+pub(crate) fn given_stretch(
+    grid: &ClothGrid,
+    material: &ClothMaterial,
+    pins: usize,
+    acceleration: f32,
+) -> f32 {
+    let pins = if pins == 0 {
+        grid.columns().min(grid.rows()) as usize
+    } else {
+        pins
+    };
+    material.stretch_compliance * tension(grid, material, pins, acceleration)
+}
+
 impl Tethers {
     /// Tethers from the particles of `grid` to those of them that are pinned. Each is as long as the straight line
     /// between them at rest, times what the material gives under four times the weight of the whole cloth hung
@@ -66,14 +92,7 @@ impl Tethers {
             .map(|((row, column), slot)| (row, column, slot))
             .collect();
         let spacing = grid.spacing();
-        let area = grid
-            .cells()
-            .map(|(r, c)| grid.tributary_area(r, c))
-            .sum::<f32>();
-        // N/m along what the pins hold.
-        let width = pinned.len() as f32 * spacing.min_element();
-        let acceleration = acceleration.max(LEAST_ACCELERATION);
-        let tension = MARGIN * material.areal_density * area * acceleration / width;
+        let tension = tension(grid, material, pinned.len(), acceleration);
         let length = |(row, column): (u32, u32), pin: &(u32, u32, Slot)| {
             // Nothing moves a pin, however far it is from others.
             let slot = layout.slot(row, column);

@@ -153,6 +153,80 @@ fn an_instant_is_not_told_of() {
     assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
 }
 
+/// Once, although gravity comes from another side in every tick, seen from the cloth.
+#[test]
+fn a_cloth_that_turns_is_told_of_once() {
+    let mut app = app();
+    app.add_systems(
+        FixedFirst,
+        |mut cloths: Query<&mut Transform, With<Cloth>>| {
+            cloths.iter_mut().for_each(|mut place| place.rotate_y(0.01));
+        },
+    );
+    let heavy = ClothMaterial {
+        damping: 0.99,
+        ..default()
+    };
+    let settings = ClothSettings {
+        sleeps: false,
+        ..ClothSettings::substeps(4)
+    };
+    let tilted = Transform::from_rotation(Quat::from_rotation_x(0.5));
+    app.world_mut()
+        .spawn((Cloth::new(8, 8, 0.1), heavy, settings, tilted));
+    tick(&mut app, 64);
+    assert_eq!(messages::<ClothLimitExceeded>(&mut app).len(), 1);
+}
+
+/// A bullet that passes beside a cloth is none of its business.
+#[test]
+fn a_dart_beside_is_not_told_of() {
+    let mut app = app_with_moving_balls();
+    app.world_mut().spawn(Cloth::default());
+    tick(&mut app, 2);
+    let start = Transform::from_xyz(4.0, -0.76, -20.0);
+    app.world_mut()
+        .spawn((ClothCollider::ball(0.025), Moving(1000.0), start));
+    tick(&mut app, 4);
+    assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
+}
+
+/// What is fine, large, soft or finely stepped, but sound.
+#[test]
+fn a_fine_rubber_and_a_large_cotton_are_within() {
+    let corners = || Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]);
+    for cloth in [
+        (
+            Cloth::new(40, 40, 0.03),
+            ClothMaterial::RUBBER,
+            ClothSettings::default(),
+        ),
+        (
+            Cloth::new(64, 64, 0.125),
+            ClothMaterial::COTTON,
+            ClothSettings::substeps(60),
+        ),
+        (
+            Cloth::new(33, 33, 0.03),
+            ClothMaterial::COTTON,
+            ClothSettings::substeps(640),
+        ),
+    ] {
+        let mut app = app();
+        let spawned = app.world_mut().spawn((cloth, corners())).id();
+        tick(&mut app, 128);
+        let stretch = app
+            .world()
+            .get::<ClothStats>(spawned)
+            .map(|stats| stats.stretch);
+        assert_eq!(
+            messages::<ClothLimitExceeded>(&mut app),
+            [],
+            "{cloth:?}: {stretch:?}"
+        );
+    }
+}
+
 /// The materials with all defaults, hung and struck by a ball: nothing to tell.
 #[test]
 fn the_usual_is_within() {
