@@ -164,6 +164,8 @@ pub fn conduct<E: Experiment>(run: &mut Run, output: &Output) -> Result<(), Stri
         return Ok(());
     }
     println!("{}", E::table(&rows));
+    // Findings and titles rest on what is checked.
+    E::check(&rows).map_err(|error| format!("{}: {error}", E::NAME))?;
     for finding in E::findings(&rows) {
         println!("  {finding}");
     }
@@ -171,7 +173,7 @@ pub fn conduct<E: Experiment>(run: &mut Run, output: &Output) -> Result<(), Stri
         chart.save(&output.folder)?;
     }
     println!("  {}\n", path.display());
-    E::check(&rows).map_err(|error| format!("{}: {error}", E::NAME))
+    Ok(())
 }
 
 /// A short run of an experiment, whose rows are checked, written with these first columns, read again and drawn.

@@ -15,9 +15,12 @@ impl Spread {
     pub fn of(values: &[f64]) -> Self {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
+        // Between two values, in proportion.
         let at = |part: f64| {
-            let index = (part * sorted.len().saturating_sub(1) as f64).round() as usize;
-            sorted.get(index).copied().unwrap_or(f64::NAN)
+            let place = part * sorted.len().saturating_sub(1) as f64;
+            let value = |index: f64| sorted.get(index as usize).copied().unwrap_or(f64::NAN);
+            let (below, above) = (value(place.floor()), value(place.ceil()));
+            below + (above - below) * place.fract()
         };
         Self {
             low: at(0.25),
@@ -112,6 +115,9 @@ mod tests {
     fn spreads_and_slopes_are_known() {
         let spread = Spread::of(&[5.0, 1.0, 2.0, 4.0, 3.0]);
         assert_eq!((spread.low, spread.median, spread.high), (2.0, 3.0, 4.0));
+        let spread = Spread::of(&[1.0, 2.0]);
+        assert_eq!((spread.low, spread.median, spread.high), (1.25, 1.5, 1.75));
+        assert_eq!(Spread::of(&[4.0, 2.0, 3.0]).low, 2.5);
         assert!(median(&[]).is_nan());
         let points: Vec<[f64; 2]> = (1..9)
             .map(f64::from)

@@ -4,6 +4,7 @@ use std::{
     fs::{self, File},
     io::Write,
     path::Path,
+    process::Command,
 };
 
 use serde::{Serialize, de::DeserializeOwned};
@@ -75,16 +76,34 @@ fn machine() -> Vec<(String, String)> {
     [
         ("machine", hardware),
         ("system", os),
-        (
-            "versions",
-            format!(
-                "bevy_drape {}, Bevy 0.19, parry3d 0.30, Rust {} or later",
-                env!("CARGO_PKG_VERSION"),
-                env!("CARGO_PKG_RUST_VERSION")
-            ),
-        ),
+        ("versions", versions()),
         ("profile", profile.into()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .to_vec()
+}
+
+/// Of what takes part, as it was locked; of the compiler and the commit, where these can be asked.
+fn versions() -> String {
+    let lock = include_str!("../../Cargo.lock");
+    let mut versions: Vec<String> = ["bevy_drape", "bevy", "faer", "parry3d"]
+        .into_iter()
+        .filter_map(|name| {
+            let (_, after) = lock.split_once(&format!("name = \"{name}\"\nversion = \""))?;
+            Some(format!("{name} {}", after.split_once('"')?.0))
+        })
+        .collect();
+    let asked = [
+        ("rustc", &["--version"][..]),
+        ("git", &["rev-parse", "--short", "HEAD"]),
+    ];
+    for (program, arguments) in asked {
+        let output = Command::new(program).args(arguments).output();
+        if let Some(output) = output.ok().filter(|output| output.status.success()) {
+            let said = String::from_utf8_lossy(&output.stdout);
+            let commit = if program == "git" { "commit " } else { "" };
+            versions.push(format!("{commit}{}", said.trim()));
+        }
+    }
+    versions.join(", ")
 }
