@@ -77,7 +77,9 @@ impl Experiment for Calls {
                 rows.push(Row {
                     volume: name.into(),
                     level,
-                    draw_calls: with.zip(without).map(|(with, without)| with - without),
+                    draw_calls: with
+                        .zip(without)
+                        .and_then(|(with, without)| with.checked_sub(without)),
                     vertices: lines.vertices,
                     bytes: lines.bytes,
                     nodes,

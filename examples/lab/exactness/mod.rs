@@ -64,17 +64,13 @@ impl Row {
         }
     }
 
-    /// Takes what a search found, and what there is; both sorted.
+    /// Takes what a search found, and what there is.
     fn count(&mut self, found: &[u32], truth: &[u32], visited: usize) {
-        let without = |some: &[u32], others: &[u32]| {
-            let is_alone = |particle: &&u32| others.binary_search(particle).is_err();
-            some.iter().filter(is_alone).count()
-        };
-        let missed = without(truth, found);
+        let [missed, false_contacts] = missed_and_false(found, truth);
         self.states += 1;
         self.contacts += truth.len();
         self.missed += missed;
-        self.false_contacts += without(found, truth);
+        self.false_contacts += false_contacts;
         self.states_with_contacts += u32::from(!truth.is_empty());
         self.states_with_misses += u32::from(missed > 0);
         self.visited += (visited as f64 - self.visited) / f64::from(self.states);
@@ -274,14 +270,21 @@ fn search(
             Some(bounds) => query.search(&state.tree, bounds, &state.particles, &ball),
             None => query.scan(&state.particles, &ball),
         };
-        let mut found = query.candidates().to_vec();
-        found.sort_unstable();
         row.count(
-            &found,
+            query.candidates(),
             &truth,
             query.nodes_visited().max(query.leaf_tests()),
         );
     }
+}
+
+/// How many contacts of the truth a search has not found, and how many it found that are not of it, or twice; in any order.
+pub fn missed_and_false(found: &[u32], truth: &[u32]) -> [usize; 2] {
+    let mut sorted = found.to_vec();
+    sorted.sort_unstable();
+    let is_missed = |particle: &&u32| sorted.binary_search(particle).is_err();
+    let missed = truth.iter().filter(is_missed).count();
+    [missed, found.len() - (truth.len() - missed)]
 }
 
 /// Part of the contacts that is missed (%).
@@ -312,6 +315,14 @@ fn of<'a>(rows: &'a [Row], volume: &'a str, rule: &'a str) -> impl Iterator<Item
 mod tests {
     use super::*;
     use crate::{experiment::quick, view::View};
+
+    #[test]
+    fn missed_and_false_are_counted_apart() {
+        assert_eq!(missed_and_false(&[7, 1, 4], &[1, 4, 7]), [0, 0]);
+        assert_eq!(missed_and_false(&[7, 2], &[1, 4, 7]), [2, 1]);
+        assert_eq!(missed_and_false(&[5, 5], &[5]), [0, 1]);
+        assert_eq!(missed_and_false(&[], &[]), [0, 0]);
+    }
 
     #[test]
     fn exactness_is_exact_but_for_the_papers_rule() {
