@@ -1,7 +1,7 @@
 //! What is drawn of it.
 
 use super::{
-    DEV, Row, apps, entities, get,
+    DEV, Row, apps, depth, entities, get,
     precision::{self, SCENE as SWING},
     search::{self, REFIT, REST_SHAPE, SCAN, SCENES},
 };
@@ -10,10 +10,10 @@ use crate::chart::{Axis, Chart, Kind, Look, Panel, Point, Series};
 /// A group of choices a panel.
 pub fn all(rows: &[Row]) -> Chart {
     let ms = |scene, choice| get(rows, scene, choice).map_or(f64::NAN, |row| row.ms_per_tick);
-    let (awake, asleep) = (ms(apps::ONE, apps::TOUCHING), ms(apps::ONE, apps::ASLEEP));
+    let (dragged, asleep) = (ms(apps::ONE, apps::TOUCHING), ms(apps::ONE, apps::ASLEEP));
     let (entities, columns) = (
         ms(entities::SCENE, entities::ENTITIES),
-        ms(entities::SCENE, entities::COLUMNS),
+        ms(entities::SCENE, entities::SCALAR),
     );
     let build = if rows.iter().any(|row| row.build == DEV) {
         " A dev build: Bevy's own code, and so entities, would be several times as fast in a release build."
@@ -23,8 +23,8 @@ pub fn all(rows: &[Row]) -> Chart {
     Chart::new(
         "needs",
         format!(
-            "What a scene does not need it does not pay for: a sleeping cloth takes 1/{:.0} of an awake one, 100 cloths of which 1 moves 1/{:.0}, columns 1/{:.0} of entities",
-            awake / asleep,
+            "What a scene does not need it does not pay for: a sleeping cloth takes 1/{:.0} of a dragged one, 100 cloths of which 1 moves 1/{:.0} of all awake, the same loop over columns 1/{:.0} of entities",
+            dragged / asleep,
             ms(apps::HUNDRED, apps::ALL_AWAKE) / ms(apps::HUNDRED, apps::ONE_TOUCHED),
             entities / columns
         ),
@@ -52,7 +52,7 @@ pub fn all(rows: &[Row]) -> Chart {
     .with(dots(
         rows,
         entities::SCENE,
-        "32²: RMS distance of the two after 1 s",
+        "32²: RMS distance to the first after 1 s",
         |error| {
             if error == 0.0 {
                 "–".into()
@@ -117,10 +117,10 @@ fn searches(rows: &[Row]) -> Panel {
     let shown = rows
         .iter()
         .filter(|row| SCENES.iter().any(|(name, ..)| *name == row.scene));
-    let missed: f64 = shown.clone().map(|row| row.error).sum();
+    let wrong: f64 = shown.clone().map(|row| row.error).sum();
     let scenes: Vec<&str> = SCENES.iter().rev().map(|(name, ..)| *name).collect();
     let mut panel = Panel::new(
-        format!("Search alone: {missed:.0} contacts missed"),
+        format!("Search alone: {wrong:.0} contacts missed or imagined"),
         time_axis(shown),
         Axis::of_names("", scenes.iter().copied()),
     );
@@ -154,12 +154,7 @@ fn narrow(rows: &[Row]) -> Panel {
         let found = scenes.iter().enumerate();
         let found = found.filter_map(|(at, scene)| Some((at, get(rows, scene, choice)?)));
         for (at, row) in found.clone() {
-            let note = if row.error >= 1.0 {
-                "falls through".into()
-            } else {
-                format!("{:.1} %", 100.0 * row.error)
-            };
-            panel = panel.note([row.ms_high, at as f64], note);
+            panel = panel.note([row.ms_high, at as f64], depth(row.error));
         }
         let points = found.map(|(at, row)| point(row, at));
         let name = format!("tested against {choice}");

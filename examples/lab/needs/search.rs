@@ -6,10 +6,13 @@ use bevy_drape::{
 };
 
 use super::{
-    DEPTH, MISSED, Row,
+    DEPTH, Row, WRONG,
     press::{SPACING, press},
 };
-use crate::{cloths::Choice, draped::Draped, experiment::Run, measure::seconds_each};
+use crate::{
+    cloths::Choice, draped::Draped, exactness::missed_and_false, experiment::Run,
+    measure::seconds_each,
+};
 
 pub const SCAN: &str = "scan";
 pub const REST_SHAPE: &str = "spheres, rest shape";
@@ -53,7 +56,7 @@ pub fn trees(run: &mut Run) -> Vec<Row> {
             .collect();
         let mut bounds = NodeBounds::default();
         let mut ms = [const { Vec::new() }; SEARCHES.len()];
-        let mut missed = [0; SEARCHES.len()];
+        let mut wrong = [0; SEARCHES.len()];
         for _ in 0..turns {
             for (at, (_, choice)) in SEARCHES.into_iter().enumerate() {
                 let mut ends = Vec::new();
@@ -76,21 +79,15 @@ pub fn trees(run: &mut Run) -> Vec<Row> {
                         }),
                 );
                 let all = truth.iter().zip(&ends);
-                let lost = all.map(|(truth, found)| {
+                let wrongs = all.map(|(truth, found)| {
                     let found = &query.candidates()[found.clone()];
-                    let is_lost = |particle: &&u32| !found.contains(particle);
-                    truth.iter().filter(is_lost).count()
+                    missed_and_false(found, truth).iter().sum::<usize>()
                 });
-                missed[at] = lost.sum();
+                wrong[at] = wrongs.sum::<usize>().max(wrong[at]);
             }
         }
-        for ((choice, _), (ms, missed)) in SEARCHES.into_iter().zip(ms.iter().zip(missed)) {
-            rows.push(Row::new(
-                scene,
-                choice,
-                ms,
-                (f64::from(missed as u32), MISSED),
-            ));
+        for ((choice, _), (ms, wrong)) in SEARCHES.into_iter().zip(ms.iter().zip(wrong)) {
+            rows.push(Row::new(scene, choice, ms, (wrong as f64, WRONG)));
         }
     }
     rows
