@@ -11,7 +11,8 @@ use bevy_drape::{
 use crate::{
     cloths::{CHOICES, Choice},
     draped::{Draped, SPACING},
-    measure::seconds,
+    exactness::missed_and_false,
+    measure::{seconds, seconds_each},
     parry::ParryTree,
 };
 
@@ -65,6 +66,26 @@ impl Searcher {
         }
     }
 
+    /// How many contacts it does not find, and how many it finds that are none.
+    pub fn missed_and_false(
+        &self,
+        query: &mut TopDownQuery,
+        draped: &Draped,
+        ball: &Probe,
+        truth: &[u32],
+    ) -> [usize; 2] {
+        let count = self.search(query, draped, ball);
+        match self {
+            Self::Tree(..) | Self::Scan => missed_and_false(query.candidates(), truth),
+            Self::Brute => missed_and_false(&brute_force(&draped.particles, ball), truth),
+            // It only counts, and each particle for itself.
+            Self::Parry(_) => [
+                truth.len().saturating_sub(count),
+                count.saturating_sub(truth.len()),
+            ],
+        }
+    }
+
     pub fn has_rebuild(&self) -> bool {
         !matches!(self, Self::Scan | Self::Brute)
     }
@@ -92,6 +113,11 @@ impl Ticking {
             detection: Detection::default(),
             query: TopDownQuery::default(),
         }
+    }
+
+    /// What it takes to measure the largest stretch (s), which a tick does in its last sub-step.
+    pub fn stretch_seconds(&self, least: f64, draped: &Draped) -> f64 {
+        seconds_each(least, || self.solver.measure(&draped.particles))
     }
 
     /// What the solver takes (s): the search for candidates is not in it.
