@@ -23,12 +23,12 @@ pub fn all(rows: &[Row]) -> Chart {
     Chart::new(
         "needs",
         format!(
-            "What a scene does not need it does not pay for: a sleeping cloth takes 1/{:.0} of a dragged one, 100 cloths of which 1 moves 1/{:.0} of all awake, the same loop over columns 1/{:.0} of entities",
+            "Not needed, not paid for: a sleeping cloth takes 1/{:.0} of a dragged one, 100 cloths of which 1 moves 1/{:.0} of all awake, a scalar loop over columns 1/{:.0} of entities",
             dragged / asleep,
             ms(apps::HUNDRED, apps::ALL_AWAKE) / ms(apps::HUNDRED, apps::ONE_TOUCHED),
             entities / columns
         ),
-        format!("Time of a tick and, beside each point, the error that this choice makes. Medians and quartiles; the axes differ.{build}"),
+        format!("Time of a tick and, beside each point, the error that this choice makes. Medians and quartiles; the axes differ. What columns gain over entities is storage in the scalar loop, vectorising beyond that.{build}"),
     )
     .sized([960, 1060])
     .columns(2)
@@ -52,7 +52,7 @@ pub fn all(rows: &[Row]) -> Chart {
     .with(dots(
         rows,
         entities::SCENE,
-        "32²: RMS distance to the first after 1 s",
+        "32²: RMS distance to the solver after 1 s",
         |error| {
             if error == 0.0 {
                 "–".into()

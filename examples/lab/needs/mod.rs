@@ -211,7 +211,7 @@ impl Experiment for Needs {
                     .join("; "),
             ),
             format!(
-                "A cloth of 32² with an entity for each particle takes {:.2} ms a tick, {} × as long as the same loop over columns, one spring after the other ({:.3} ms): that is what storage does. Vectorising, which columns allow, is the rest: the solver's {:.3} ms, {} × as fast as that loop. After a second the loops are {:.3} and {:.3} mm RMS from the solver.{}",
+                "A cloth of 32² with an entity for each particle takes {:.2} ms a tick, {} × as long as the same method over columns, in the same order, one spring after the other ({:.3} ms): that is what storage does. Vectorising, which columns allow, is the rest: the solver's {:.3} ms, {} × as fast as that loop. After a second the loops are {:.3} and {:.3} mm RMS from the solver.{}",
                 ms(HUNG, ENTITIES),
                 times(HUNG, ENTITIES, SCALAR),
                 ms(HUNG, SCALAR),
