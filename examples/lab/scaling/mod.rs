@@ -259,7 +259,7 @@ impl Experiment for Scaling {
             "The paper's spheres are not drawn; at these sizes they lose no contacts.".into()
         } else {
             format!(
-                "The paper's spheres are not drawn, since they prune what the ball touches: contacts are lost at {1} of {2} sizes: {0}.",
+                "The paper's spheres are not drawn, since they prune what the ball touches; they lose contacts at {1} of {2} sizes: {0}.",
                 lost.join(", "),
                 lost.len(),
                 sides.len()
