@@ -81,13 +81,23 @@ fn one_block_at_a_time() {
     std::hint::black_box(());
 }
 
+/// A displacement in a sub-step that is none (m): what is far from all that moves moves by as little as that.
+///
+/// Its square, and what is left of it some springs farther, would be subnormal numbers, each of which costs as much as
+/// a hundred others. A flat cloth of 64² particles that a ball pushes took 3.5 times as long by them.
+pub(super) const LEAST_MOVE: f32 = 1.0e-15;
+
 /// Ends a sub-step: displacements become positions. Raises `farthest` to the largest squared displacements (m²).
 #[inline(always)]
 fn commit(row: &mut [Block], farthest: &mut Lanes) {
     for block in row {
         let view = block.view_mut();
         for at in X..W {
-            view[at] += view[DX + at];
+            let moved = view[DX + at];
+            // What is not a number stays to be seen.
+            let moved = if moved.abs() < LEAST_MOVE { 0.0 } else { moved };
+            view[DX + at] = moved;
+            view[at] += moved;
         }
         for l in 0..LANES {
             let (x, y, z) = (view[DX + l], view[DY + l], view[DZ + l]);

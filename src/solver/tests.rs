@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::{Instructions, PinMotion, Solver, Stretch, Tethers, TickStep};
+use super::{Instructions, PinMotion, Solver, Stretch, Tethers, TickStep, kernel::LEAST_MOVE};
 use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs};
 
 const STEP: TickStep = TickStep {
@@ -333,5 +333,38 @@ fn what_cannot_be_satisfied_stays_finite() {
             solver.advance(&mut particles, STEP, &[], |_, _| false);
             assert_eq!(particles.validate(), Ok(()), "{place}");
         }
+    }
+}
+
+/// A flat cloth hangs by its top row and is poked in its middle: what its corners make of that is no motion, and no
+/// subnormal number either.
+#[test]
+fn what_hardly_moves_does_not_move() {
+    let material = ClothMaterial::COTTON;
+    let grid = Cloth::new(64, 64, 0.03)
+        .grid(Vec3::ONE)
+        .expect("a sound grid");
+    let springs = Springs::of_grid(&grid, &material);
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+    for column in 0..64 {
+        particles
+            .set_inverse_mass((0, column), 0.0)
+            .expect("it exists");
+    }
+    particles
+        .set_velocity((32, 32), Vec3::Z)
+        .expect("it exists");
+    let step = TickStep {
+        acceleration: 9.81 * Vec3::NEG_Y,
+        ..STEP
+    };
+    let mut solver = Solver::new(&springs, &particles);
+    for _ in 0..8 {
+        solver.advance(&mut particles, step, &[], |_, _| false);
+        let moves = || particles.displacements().map(|moved| moved.z.abs());
+        assert!(moves().filter(|moved| *moved > 0.0).count() > 1);
+        assert!(moves().all(|moved| moved == 0.0 || moved >= LEAST_MOVE));
+        let mut places = particles.positions().map(|at| at.z);
+        assert!(places.all(|z| z == 0.0 || z.is_normal()));
     }
 }
