@@ -2,14 +2,16 @@
 
 use super::{
     Row,
-    frontier::{Group, is_ours, mm},
+    frontier::{Depths, Group, mm},
     methods::METHODS,
     scenes::STIFF_SWINGING,
 };
 use crate::chart::{Axis, Chart, Kind, Look, Panel, Point, Series, number};
 
 pub fn all(rows: &[Row]) -> Vec<Chart> {
-    vec![errors(rows), stretches(rows)]
+    let mut charts = vec![errors(rows), stretches(rows)];
+    charts.extend(depths(rows));
+    charts
 }
 
 /// The panels: one a scene, with the largest cloths.
@@ -67,12 +69,7 @@ fn errors(rows: &[Row]) -> Chart {
     let most = ratios.iter().copied().fold(0.0, f64::max);
     let exact = groups
         .iter()
-        .filter(|group| {
-            group
-                .frontier()
-                .last()
-                .is_some_and(|row| !is_ours(&row.method))
-        })
+        .filter(|group| group.peer_is_most_exact())
         .count();
     let title = format!(
         "As exact as our 20 sub-steps, the fastest peer takes {least:.1} to {most:.1} × as long; in {exact} of {} scenes a peer is the most exact of all",
@@ -82,7 +79,7 @@ fn errors(rows: &[Row]) -> Chart {
     let mut chart = Chart::new(
         "pareto",
         title,
-        format!("{conditions} Grey: another setting is both faster and more exact."),
+        format!("{conditions} Grey: another setting is faster and at least as exact. No error is drawn below the reference's own."),
     )
     .sized([960, 900])
     .columns(2);
@@ -100,7 +97,7 @@ fn errors(rows: &[Row]) -> Chart {
         );
         let line = frontier
             .iter()
-            .map(|row| [row.ms_per_second, 1.0e3 * row.rms_error_m]);
+            .map(|row| [row.ms_per_second, 1.0e3 * row.error()]);
         panel = panel.with(Series::new(
             "what nothing beats",
             Look::Grey,
@@ -116,7 +113,7 @@ fn errors(rows: &[Row]) -> Chart {
                 };
                 let is_best = |row: &&Row| frontier.iter().any(|other| std::ptr::eq(*other, *row));
                 let points = group.of(method).filter(|row| is_best(row) == best);
-                let points = points.map(|row| point(row, 1.0e3 * row.rms_error_m));
+                let points = points.map(|row| point(row, 1.0e3 * row.error()));
                 // A method that is nowhere among the best is named by its grey marker.
                 let name = if best || !is_shown_best(method) {
                     method
@@ -164,20 +161,50 @@ fn stretches(rows: &[Row]) -> Chart {
             Axis::log("ms a simulated second, log"),
             Axis::log("largest stretch (%), log"),
         );
-        for (style, method) in METHODS.into_iter().enumerate() {
-            // One step a tick, and several: each a line.
-            for is_split in [false, true] {
-                let points = group
-                    .of(method)
-                    .filter(|row| row.setting.contains('×') == is_split)
-                    .map(|row| point(row, 100.0 * row.max_stretch));
-                let look = Look::Style(style);
-                panel = panel.with(Series::new(method, look, Kind::Marked, points));
-            }
-        }
+        panel = methods(panel, group, |row| 100.0 * row.max_stretch);
         let truth = level(group, 100.0 * group.first().reference_stretch);
         panel = panel.with(Series::new("the reference's", Look::Ink, Kind::Line, truth));
         chart = chart.with(panel);
     }
     chart
+}
+
+/// All methods over time, by what is asked for.
+fn methods(mut panel: Panel, group: &Group, value: impl Fn(&Row) -> f64) -> Panel {
+    for (style, method) in METHODS.into_iter().enumerate() {
+        // One step a tick, and several: each a line.
+        for is_split in [false, true] {
+            let points = group
+                .of(method)
+                .filter(|row| row.setting.contains('×') == is_split)
+                .map(|row| point(row, value(row)));
+            let look = Look::Style(style);
+            panel = panel.with(Series::new(method, look, Kind::Marked, points));
+        }
+    }
+    panel
+}
+
+fn depths(rows: &[Row]) -> Option<Chart> {
+    let Depths {
+        group,
+        ours,
+        deepest,
+        ..
+    } = Depths::of(rows)?;
+    let title = format!(
+        "With 20 sub-steps particles are found at most {} deep in the ball; with {}, {}, {}",
+        mm(ours.max_penetration_m),
+        deepest.method,
+        deepest.setting,
+        mm(deepest.max_penetration_m)
+    );
+    let panel = Panel::new(
+        heading(&group),
+        Axis::log("ms a simulated second, log"),
+        Axis::log("deepest before it is pushed out (mm), log"),
+    );
+    let panel = methods(panel, &group, |row| 1.0e3 * row.max_penetration_m);
+    let groups = [group];
+    Some(Chart::new("pareto-penetration", title, conditions(&groups)).with(panel))
 }

@@ -8,15 +8,12 @@ use bevy_drape::{
     contact::{Detection, MovingCollider, NarrowPhase, Terms},
     hierarchy::TopDownQuery,
     solver::{
-        Control, Precision, Solver,
+        Control, Precision, Solver, Stretch,
         methods::{MassSpring, Method, Real, Stepper},
     },
 };
 
 use super::scenes::{Ball, Case};
-
-/// How far the library expects particles to move in a tick (m): it searches for contacts again where they do.
-const MARGIN: f32 = 0.05;
 
 /// A method with its settings.
 #[derive(Debug, Clone, Copy)]
@@ -203,6 +200,14 @@ impl<'a, R: Real> Player<'a, R> {
         }
     }
 
+    /// The deepest that any particle was found inside of the ball (m), before it was pushed out.
+    pub fn deepest(&self) -> f64 {
+        match self {
+            Self::Peer(peer) => peer.deepest,
+            Self::Ours(ours) => ours.deepest,
+        }
+    }
+
     /// Sub-steps or steps that it has taken in all, those in vain included.
     pub fn substeps(&self) -> u32 {
         match self {
@@ -221,6 +226,7 @@ pub struct Peer<'a, R: Real> {
     steps: u32,
     substeps: u32,
     taken: u32,
+    deepest: f64,
 }
 
 impl<'a, R: Real> Peer<'a, R> {
@@ -243,6 +249,7 @@ impl<'a, R: Real> Peer<'a, R> {
             steps,
             substeps,
             taken: 0,
+            deepest: 0.0,
         }
     }
 
@@ -258,7 +265,8 @@ impl<'a, R: Real> Peer<'a, R> {
             );
             if self.case.ball.is_some() {
                 let part = f64::from(step) / f64::from(self.steps);
-                Ball::push(&mut self.network, tick, part, seconds);
+                let depth = Ball::push(&mut self.network, tick, part, seconds);
+                self.deepest = self.deepest.max(depth);
             }
         }
         self.taken += self.steps * self.substeps;
@@ -271,26 +279,43 @@ pub struct Ours<'a> {
     particles: ClothParticles,
     backup: ClothParticles,
     solver: Solver,
+    /// At the end of the last tick.
+    stretch: Stretch,
     precision: Precision,
     control: Control,
     detection: Detection,
     query: TopDownQuery,
     taken: u32,
+    deepest: f64,
 }
 
 impl<'a> Ours<'a> {
     fn new(case: &'a Case, precision: Precision, tethers: Tethers) -> Self {
+        let solver = case.scene.solver(tethers == Tethers::On);
         Self {
             case,
             particles: case.scene.particles.clone(),
             backup: case.scene.particles.clone(),
-            solver: case.scene.solver(tethers == Tethers::On),
+            stretch: solver.measure(&case.scene.particles),
+            solver,
             precision,
             control: Control::default(),
             detection: Detection::default(),
             query: TopDownQuery::default(),
             taken: 0,
+            deepest: 0.0,
         }
+    }
+
+    /// How far a particle may get in a tick by itself (m), by the plugin's rule: contacts are searched for again where
+    /// one gets farther.
+    fn reach(&self) -> f32 {
+        let scene = &self.case.scene;
+        let all = 0..self.particles.len();
+        let speeds = all.filter_map(|index| self.particles.velocity(index));
+        let fastest = speeds.map(Vec3::length_squared).fold(0.0, f32::max).sqrt();
+        (fastest + scene.acceleration.length() * scene.seconds) * scene.seconds
+            + self.stretch.bound * scene.grid.spacing().length()
     }
 
     /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
@@ -306,11 +331,11 @@ impl<'a> Ours<'a> {
             let ball = MovingCollider::ball(Ball::RADIUS, Ball::at(tick), Ball::at(tick + 1));
             // A ball around all that the cloth ever does.
             let cloth = BoundingSphere::new(Ball::at(0), 4.0);
-            let spacing = scene.grid.spacing().max_element();
-            self.detection.begin(MARGIN);
+            self.detection.begin(self.reach());
             let (probe, against) =
+                // Particles, not triangles, are tested.
                 self.detection
-                    .probe(&ball, &terms, &scene.grid, 4.0 * spacing, &cloth);
+                    .probe(&ball, &terms, &scene.grid, 0.0, &cloth);
             self.query.clear();
             self.query.scan(&self.particles, &probe);
             let found = self.query.candidates();
@@ -331,7 +356,11 @@ impl<'a> Ours<'a> {
                         has_ball && detection.respond(particles, &terms, substep, |_| {})
                     });
             self.taken += substeps;
+            self.stretch = stretch;
             let Some(more) = self.control.observe(self.precision, stretch) else {
+                // Of the way through the tick that counts: beginning anew forgets the others'.
+                let depths = self.detection.touches().iter().map(|touch| touch.deepest);
+                self.deepest = self.deepest.max(f64::from(depths.fold(0.0, f32::max)));
                 return;
             };
             self.particles.clone_from(&self.backup);

@@ -25,12 +25,16 @@ use crate::{
 use frontier::Group;
 use methods::{METHODS, OURS, Player, SMALL_STEPS, UNTETHERED, Way};
 use reference::Reference;
-use scenes::{Ball, Case, STIFF_SWINGING, TICKS};
+use scenes::{BALL, Ball, Case, STIFF_SWINGING, TICKS};
 
 /// What takes longer in its first turn (s) is timed in that alone.
 const LONG: f64 = 0.5;
 
-const TURNS: usize = 3;
+/// Smaller errors (m) may be the rounding of single precision, which more sub-steps do not make less.
+const LEAST_KNOWN: f64 = 1.0e-4;
+
+/// In short runs and in whole ones.
+const TURNS: [usize; 2] = [3, 5];
 
 pub struct Pareto;
 
@@ -45,7 +49,8 @@ pub struct Row {
     rms_error_m: f64,
     /// The largest of a structural spring at the end of any tick.
     max_stretch: f64,
-    /// The deepest particle inside of the ball at the end of any tick; 0 without a ball.
+    /// The deepest that any particle was found inside of the ball at the end of any step or sub-step, before it was
+    /// pushed out; 0 without a ball.
     max_penetration_m: f64,
     ms_low: f64,
     ms_high: f64,
@@ -64,6 +69,16 @@ impl Row {
     fn error(&self) -> f64 {
         self.rms_error_m.max(self.reference_error_m)
     }
+
+    /// Whether it takes no longer than another and is no farther off.
+    fn is_as_good_as(&self, other: &Self) -> bool {
+        self.ms_per_second <= other.ms_per_second && self.error() <= other.error()
+    }
+
+    /// The same, and is better in one.
+    fn beats(&self, other: &Self) -> bool {
+        self.is_as_good_as(other) && !other.is_as_good_as(self)
+    }
 }
 
 impl Experiment for Pareto {
@@ -76,8 +91,9 @@ impl Experiment for Pareto {
             (&[16][..], [160, 320], 1.0e-4),
             (&[64, 32][..], [640, 1280], 1.0e-5),
         );
+        let turns = run.either(TURNS[0], TURNS[1]);
         run.set("scenes", format!("cloths 2 m wide, 0.15 kg/m², hung by the top row, 60 ticks a second, 1 s; the ball of radius {} m moves {} m into the cloth, without friction", Ball::RADIUS, Ball::WAY));
-        run.set("time", format!("the solver's alone, with its contacts, on one thread, made ready before; median of {TURNS} turns, in which all take part, or the one turn of what takes more than {LONG} s"));
+        run.set("time", format!("the solver's alone, with its contacts, on one thread, made ready before; median of {turns} turns, in which all take part, or the one turn of what takes more than {LONG} s"));
         run.set("reference", format!("small steps in f64, sub-steps a tick doubled from {} until that moves particles by {enough} m or there are {}", doubled[0], doubled[1]));
         run.set("peers", "plain scalar code of the same crate, f32; they push particles out of the ball at the end of each step or sub-step, by the same law as the plugin");
         let cases: Vec<Case> = sides
@@ -86,7 +102,7 @@ impl Experiment for Pareto {
             // So much is seen in the smaller ones.
             .filter(|case| case.name != STIFF_SWINGING || case.particles() < 64 * 64)
             .collect();
-        run.begin(Self::NAME, 4 * cases.len());
+        run.begin(Self::NAME, (1 + turns) * cases.len());
         let references = Reference::all(&cases, doubled, enough, || run.step());
         let mut frequencies: HashMap<usize, f64> = HashMap::new();
         let mut rows = Vec::new();
@@ -100,7 +116,7 @@ impl Experiment for Pareto {
                 case.explicit_limit(*frequency * case.stiffness()),
                 run.quick,
             );
-            rows.extend(measure(run, case, reference, &ways));
+            rows.extend(measure(run, case, reference, &ways, turns));
         }
         rows
     }
@@ -127,11 +143,30 @@ impl Experiment for Pareto {
                 return Err(format!("{name}: {missing} is missing"));
             }
             let frontier = group.frontier();
-            let falls = |pair: &[&Row]| {
-                pair[0].ms_per_second <= pair[1].ms_per_second && pair[0].error() > pair[1].error()
-            };
-            if frontier.is_empty() || !frontier.windows(2).all(falls) {
-                return Err(format!("{name}: the frontier is not monotone"));
+            for row in group.rows() {
+                let is_best = frontier.iter().any(|best| std::ptr::eq(*best, *row));
+                let better = group.rows().iter().find(|other| other.beats(row));
+                if let (true, Some(other)) = (is_best, better) {
+                    return Err(format!(
+                        "{name}: {} by {} beats {} by {}, which the frontier has",
+                        other.method, other.setting, row.method, row.setting
+                    ));
+                }
+                if !is_best && !frontier.iter().any(|best| best.is_as_good_as(row)) {
+                    return Err(format!(
+                        "{name}: nothing on the frontier is as good as {} by {}",
+                        row.method, row.setting
+                    ));
+                }
+            }
+            let own: Vec<f64> = group.of(OURS).map(Row::error).collect();
+            if let [first, .., last] = own[..]
+                && first > (4.0 * group.first().reference_error_m).max(LEAST_KNOWN)
+                && last > first / 2.0
+            {
+                return Err(format!(
+                    "{name}: ours is off by {first} m with the fewest sub-steps and by {last} m with the most"
+                ));
             }
             for method in [OURS, UNTETHERED, SMALL_STEPS] {
                 let known: Vec<&Row> = group.of(method).collect();
@@ -164,7 +199,7 @@ impl Experiment for Pareto {
             "quartiles",
             "error, mm",
             "stretch, %",
-            "inside, mm",
+            "deepest, mm",
         ]);
         for group in Group::all(rows) {
             for row in group.frontier() {
@@ -199,21 +234,13 @@ struct Outcome {
 
 impl Outcome {
     /// Takes a tick's end into account.
-    fn see(&mut self, case: &Case, threads: &[([usize; 2], f64)], tick: u32, positions: &[DVec3]) {
+    fn see(&mut self, threads: &[([usize; 2], f64)], positions: &[DVec3]) {
         for &([a, b], rest_length) in threads {
             let stretch = positions[a].distance(positions[b]) / rest_length - 1.0;
             // What is no number has to be seen.
             if stretch > self.stretch || stretch.is_nan() {
                 self.stretch = stretch;
             }
-        }
-        if case.ball.is_some() {
-            let centre = Ball::at(tick + 1).as_dvec3();
-            let nearest = positions
-                .iter()
-                .map(|at| at.distance(centre))
-                .fold(f64::INFINITY, f64::min);
-            self.penetration = self.penetration.max(f64::from(Ball::RADIUS) - nearest);
         }
     }
 }
@@ -231,15 +258,15 @@ fn threads(case: &Case) -> Vec<([usize; 2], f64)> {
 }
 
 /// All ways through a case, turn by turn.
-fn measure(run: &Run, case: &Case, reference: &Reference, ways: &[Way]) -> Vec<Row> {
+fn measure(run: &Run, case: &Case, reference: &Reference, ways: &[Way], turns: usize) -> Vec<Row> {
     let threads = threads(case);
     let mut truth = Outcome::default();
-    for (tick, positions) in reference.film.iter().enumerate() {
-        truth.see(case, &threads, tick as u32, positions);
+    for positions in &reference.film {
+        truth.see(&threads, positions);
     }
     let mut trials: Vec<(Vec<f64>, Outcome, u32)> = vec![Default::default(); ways.len()];
     let mut positions = Vec::new();
-    for _ in 0..TURNS {
+    for _ in 0..turns {
         for (way, (times, outcome, substeps)) in ways.iter().zip(&mut trials) {
             if times.first().is_some_and(|&first| first > LONG) {
                 continue;
@@ -250,11 +277,12 @@ fn measure(run: &Run, case: &Case, reference: &Reference, ways: &[Way]) -> Vec<R
             for (tick, truth) in reference.film.iter().enumerate() {
                 seconds += player.tick(tick as u32).as_secs_f64();
                 player.positions(&mut positions);
-                outcome.see(case, &threads, tick as u32, &positions);
+                outcome.see(&threads, &positions);
                 let pairs = positions.iter().zip(truth);
                 outcome.squares += pairs.map(|(a, b)| a.distance_squared(*b)).sum::<f64>();
             }
             times.push(seconds);
+            outcome.penetration = player.deepest();
             *substeps = player.substeps();
         }
         run.step();
@@ -291,14 +319,25 @@ mod tests {
     use crate::{experiment::quick, view::View};
 
     #[test]
-    fn pareto_is_complete_and_its_frontier_is_monotone() {
+    fn pareto_is_complete_and_its_frontier_is_one() {
         let rows = quick::<Pareto>(
             View::Nothing,
             "scene,method,setting,particles,ms_per_second,rms_error_m,max_stretch,max_penetration_m",
         );
         assert_eq!(Group::all(&rows).len(), 5);
-        // All answer the ball at the end of each step: what is left is rounding.
-        assert!(rows.iter().all(|row| row.max_penetration_m < 1.0e-6));
+        // All are found inside of the ball where there is one, by no more than a few of its ways in a step.
+        for row in &rows {
+            let is_within = if row.scene == BALL {
+                row.max_penetration_m > 1.0e-6 && row.max_penetration_m < 0.2 * f64::from(Ball::WAY)
+            } else {
+                row.max_penetration_m == 0.0
+            };
+            assert!(
+                is_within,
+                "{}, {}: {}",
+                row.method, row.setting, row.max_penetration_m
+            );
+        }
         // The plain small steps are the same method as ours.
         for group in Group::all(&rows) {
             for (ours, plain) in group.of(UNTETHERED).zip(group.of(SMALL_STEPS)) {
