@@ -279,8 +279,9 @@ pub struct Ours<'a> {
     particles: ClothParticles,
     backup: ClothParticles,
     solver: Solver,
-    /// At the end of the last tick.
+    /// At the end of the last tick, as is the speed of the fastest particle (m/s).
     stretch: Stretch,
+    fastest: f32,
     precision: Precision,
     control: Control,
     detection: Detection,
@@ -298,6 +299,7 @@ impl<'a> Ours<'a> {
             backup: case.scene.particles.clone(),
             stretch: solver.measure(&case.scene.particles),
             solver,
+            fastest: 0.0,
             precision,
             control: Control::default(),
             detection: Detection::default(),
@@ -311,10 +313,7 @@ impl<'a> Ours<'a> {
     /// one gets farther.
     fn reach(&self) -> f32 {
         let scene = &self.case.scene;
-        let all = 0..self.particles.len();
-        let speeds = all.filter_map(|index| self.particles.velocity(index));
-        let fastest = speeds.map(Vec3::length_squared).fold(0.0, f32::max).sqrt();
-        (fastest + scene.acceleration.length() * scene.seconds) * scene.seconds
+        (self.fastest + scene.acceleration.length() * scene.seconds) * scene.seconds
             + self.stretch.bound * scene.grid.spacing().length()
     }
 
@@ -349,14 +348,17 @@ impl<'a> Ours<'a> {
         loop {
             let step = scene.step(substeps);
             let detection = &mut self.detection;
+            let mut farthest = 0.0;
             let has_ball = self.case.ball.is_some();
             let stretch =
                 self.solver
                     .advance(&mut self.particles, step, &[], |particles, substep| {
+                        farthest = substep.farthest_move;
                         has_ball && detection.respond(particles, &terms, substep, |_| {})
                     });
             self.taken += substeps;
             self.stretch = stretch;
+            self.fastest = farthest * substeps as f32 / scene.seconds;
             let Some(more) = self.control.observe(self.precision, stretch) else {
                 // Of the way through the tick that counts: beginning anew forgets the others'.
                 let depths = self.detection.touches().iter().map(|touch| touch.deepest);
