@@ -193,7 +193,7 @@ fn depths(rows: &[Row]) -> Option<Chart> {
         ..
     } = Depths::of(rows)?;
     let title = format!(
-        "With 20 sub-steps particles are found at most {} deep in the ball; with {}, {}, {}",
+        "By 20 sub-steps of ours particles are found at most {} deep in the ball; by {} with {}, {}",
         mm(ours.max_penetration_m),
         deepest.method,
         deepest.setting,

@@ -163,7 +163,7 @@ impl Way {
 
 /// A case on its way.
 pub enum Player<'a, R: Real> {
-    Peer(Peer<'a, R>),
+    Peer(Box<Peer<'a, R>>),
     Ours(Box<Ours<'a>>),
 }
 
@@ -171,7 +171,7 @@ impl<'a, R: Real> Player<'a, R> {
     /// At the beginning; what is made once is made here.
     pub fn new(case: &'a Case, way: Way) -> Self {
         match way {
-            Way::Peer(method, steps) => Self::Peer(Peer::new(case, method, steps)),
+            Way::Peer(method, steps) => Self::Peer(Box::new(Peer::new(case, method, steps))),
             Way::Ours(precision, tethers) => {
                 Self::Ours(Box::new(Ours::new(case, precision, tethers)))
             }

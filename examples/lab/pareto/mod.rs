@@ -25,7 +25,7 @@ use crate::{
 use frontier::Group;
 use methods::{METHODS, OURS, Player, SMALL_STEPS, UNTETHERED, Way};
 use reference::Reference;
-use scenes::{BALL, Ball, Case, STIFF_SWINGING, TICKS};
+use scenes::{Ball, Case, STIFF_SWINGING, TICKS};
 
 /// What takes longer in its first turn (s) is timed in that alone.
 const LONG: f64 = 0.5;
@@ -327,7 +327,7 @@ mod tests {
         assert_eq!(Group::all(&rows).len(), 5);
         // All are found inside of the ball where there is one, by no more than a few of its ways in a step.
         for row in &rows {
-            let is_within = if row.scene == BALL {
+            let is_within = if row.scene == scenes::BALL {
                 row.max_penetration_m > 1.0e-6 && row.max_penetration_m < 0.2 * f64::from(Ball::WAY)
             } else {
                 row.max_penetration_m == 0.0
