@@ -83,8 +83,9 @@ fn one_block_at_a_time() {
 
 /// A displacement in a sub-step that is none (m): what is far from all that moves moves by as little as that.
 ///
-/// Its square, and what is left of it some springs farther, would be subnormal numbers, each of which costs as much as
-/// a hundred others. A flat cloth of 64² particles that a ball pushes took 3.5 times as long by them.
+/// Its square, and what is left of it some springs farther, would be subnormal numbers, which machines are slow with:
+/// a second of a flat cloth of 64² particles that a ball pushes took 90 ms with them, and takes 39 ms without, in 20
+/// sub-steps a tick.
 pub(super) const LEAST_MOVE: f32 = 1.0e-15;
 
 /// Ends a sub-step: displacements become positions. Raises `farthest` to the largest squared displacements (m²).
