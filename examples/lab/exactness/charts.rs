@@ -101,7 +101,7 @@ pub fn tightness(rows: &[Row]) -> Chart {
     let rest = |stretch| visited("spheres", "rest shape", radius, stretch);
     let refit = |stretch| visited("AABBs", "refit", radius, stretch);
     Chart::new(
-        "exactness_visited",
+        "exactness-visited",
         format!(
             "Exact, but not equally tight: rest-shape spheres look at {:.1} × as many nodes as refitted AABBs, at 200 % stretch {:.1} ×",
             rest(0.01) / refit(0.01),

@@ -97,7 +97,7 @@ pub fn parts(rows: &[Row]) -> Chart {
     let largest = sides(rows).last().copied().unwrap_or(0);
     let visited = |kind| at(rows, kind, largest).map_or(0, |row| row.visited);
     Chart::new(
-        "scaling_parts",
+        "scaling-parts",
         format!(
             "A refit pays for tight volumes: {} nodes visited in place of {}, and all of them brought up to date",
             visited(REFIT),
