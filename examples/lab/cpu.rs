@@ -15,7 +15,7 @@ use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Point, Series},
     drawn::{Drawn, SMALL, WHOLE},
     experiment::{Experiment, Run, Table},
-    measure::{Spread, median},
+    measure::{Spread, distinct, median},
     view::View,
 };
 
@@ -444,14 +444,7 @@ fn against_one(ratio: Spread, doubt: f64) -> Ordering {
 
 /// Each volume, and whether it is drawn, in the order in which they appear.
 fn kinds(rows: &[Row]) -> Vec<(&str, bool)> {
-    let mut kinds = Vec::new();
-    for row in rows {
-        let kind = (row.volume.as_str(), row.drawn);
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    kinds
+    distinct(rows.iter().map(|row| (row.volume.as_str(), row.drawn)))
 }
 
 fn spread(rows: &[Row], kind: (&str, bool), figure: Figure) -> Spread {

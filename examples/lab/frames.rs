@@ -7,7 +7,7 @@ use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Point, Series},
     drawn::{Drawn, WHOLE},
     experiment::{Experiment, Run, Table},
-    measure::{Spread, median, seconds},
+    measure::{Spread, distinct, median, seconds},
     view::View,
 };
 
@@ -258,14 +258,7 @@ fn boxes_to_spheres(rows: &[Row]) -> Spread {
 
 /// Each volume, and whether it is drawn, in the order in which they appear.
 fn kinds(rows: &[Row]) -> Vec<(&str, bool)> {
-    let mut kinds = Vec::new();
-    for row in rows {
-        let kind = (row.volume.as_str(), row.drawn);
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    kinds
+    distinct(rows.iter().map(|row| (row.volume.as_str(), row.drawn)))
 }
 
 fn name(volume: &str, is_drawn: bool) -> &str {

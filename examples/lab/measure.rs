@@ -35,6 +35,17 @@ pub fn median(values: &[f64]) -> f64 {
     Spread::of(values).median
 }
 
+/// Each once, in the order in which they appear.
+pub fn distinct<K: PartialEq>(all: impl IntoIterator<Item = K>) -> Vec<K> {
+    let mut distinct = Vec::new();
+    for one in all {
+        if !distinct.contains(&one) {
+            distinct.push(one);
+        }
+    }
+    distinct
+}
+
 /// Time of one call (s).
 pub fn seconds(work: impl FnOnce()) -> f64 {
     let start = Instant::now();
@@ -113,6 +124,7 @@ mod tests {
 
     #[test]
     fn spreads_and_slopes_are_known() {
+        assert_eq!(distinct([2, 1, 2, 3, 1]), [2, 1, 3]);
         let spread = Spread::of(&[5.0, 1.0, 2.0, 4.0, 3.0]);
         assert_eq!((spread.low, spread.median, spread.high), (2.0, 3.0, 4.0));
         let spread = Spread::of(&[1.0, 2.0]);

@@ -13,7 +13,7 @@ use crate::{
     cloths::{CHOICES, Recording, State},
     exactness::missed_and_false,
     experiment::{Experiment, Run, Table},
-    measure::{Spread, median, seconds},
+    measure::{Spread, distinct, median, seconds},
     parry::ParryTree,
 };
 
@@ -432,14 +432,10 @@ fn published() -> Vec<Row> {
 
 /// Each volume and rule, in the order in which they appear.
 fn kinds(rows: &[Row]) -> Vec<[&str; 2]> {
-    let mut kinds = Vec::new();
-    for row in rows {
-        let kind = [row.volume.as_str(), row.rule.as_str()];
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    kinds
+    distinct(
+        rows.iter()
+            .map(|row| [row.volume.as_str(), row.rule.as_str()]),
+    )
 }
 
 fn of<'a>(rows: &'a [Row], volume: &'a str, rule: &'a str) -> impl Iterator<Item = &'a Row> {

@@ -22,7 +22,7 @@ pub enum ClothLimit {
     /// The cloth is farther from its frame's origin, its own size not counted, than single precision resolves well: 10,000
     /// spacings with 20 sub-steps in 1/60 s, a quarter of it with twice as many.
     Distance,
-    /// The cloth is damped so much that how fast it falls depends on the sub-steps, by more than a tenth: above 0.98
+    /// The cloth is damped so much that how fast it falls depends on the sub-steps, by more than a tenth: above 0.979
     /// with 20 sub-steps in 1/60 s.
     Damping,
     /// A ball or capsule thinner than half a spacing comes to the cloth by more than 6 of its radii in a sub-step: it may
@@ -37,7 +37,7 @@ const MOST_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
 /// In spacings, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one.
 const MOST_DISTANCE: f32 = 10_000.0;
 const USUAL_SUBSTEP: f32 = 1.0 / 1200.0;
-/// Of −ln(1 − D) in a sub-step: a damped fall is too fast by half of it, so by a tenth here.
+/// Of u = −ln(1 − D) in a sub-step: a damped fall is too fast by u ⁄ (1 − e^−u), a tenth here.
 const MOST_DAMPING: f32 = 0.194;
 /// Of a ball, in radii in a sub-step, and which ones are meant, in spacings.
 const MOST_WAY: f32 = 6.0;

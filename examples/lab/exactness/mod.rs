@@ -13,7 +13,7 @@ use crate::{
     chart::Chart,
     cloths::CHOICES,
     experiment::{Experiment, Run, Table},
-    measure::Random,
+    measure::{Random, distinct},
 };
 use states::State;
 
@@ -296,14 +296,10 @@ fn share<'a>(rows: impl Iterator<Item = &'a Row>) -> f64 {
 }
 
 fn kinds(rows: &[Row]) -> Vec<[&str; 2]> {
-    let mut kinds = Vec::new();
-    for row in rows {
-        let kind = [row.volume.as_str(), row.rule.as_str()];
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    kinds
+    distinct(
+        rows.iter()
+            .map(|row| [row.volume.as_str(), row.rule.as_str()]),
+    )
 }
 
 fn of<'a>(rows: &'a [Row], volume: &'a str, rule: &'a str) -> impl Iterator<Item = &'a Row> {

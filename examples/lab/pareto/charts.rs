@@ -79,7 +79,7 @@ fn errors(rows: &[Row]) -> Chart {
     let mut chart = Chart::new(
         "pareto",
         title,
-        format!("{conditions} Grey: another setting is faster and at least as exact. No error is drawn below the reference's own."),
+        format!("{conditions} The same marker in grey: another setting is faster and at least as exact. No error is drawn below the reference's own."),
     )
     .sized([960, 900])
     .columns(2);

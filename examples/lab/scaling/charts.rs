@@ -114,10 +114,11 @@ pub fn parts(rows: &[Row]) -> Chart {
     }))
 }
 
-/// Every second size is named.
+/// Every second size is named, the largest among them.
 fn particles_axis(rows: &[Row]) -> Axis {
     let names = sides(rows)
         .into_iter()
+        .rev()
         .step_by(2)
         .map(|side| (f64::from(side * side), format!("{side}²")));
     Axis::log("particles, log").named(names)

@@ -205,7 +205,7 @@ fn fall_check(rows: &[Row]) -> Result<(), String> {
 }
 
 fn fall_findings(rows: &[Row]) -> Vec<String> {
-    // u = 0.2 is 10 % off.
+    // A fall is too fast by u ⁄ (1 − e^−u), which is 1.1 at u = 0.194.
     let to = |substeps: u32| 1.0 - (-0.194 * f64::from(substeps)).exp();
     let worst = largest(
         rows.iter()

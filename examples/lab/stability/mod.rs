@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     chart::{Chart, Look, number},
     experiment::{Experiment, Run, Table},
+    measure::distinct,
 };
 
 pub struct Stability;
@@ -192,16 +193,16 @@ fn on_two_threads(jobs: &[Job], done: impl Fn() + Sync) -> Vec<Row> {
 const HOLDS: &str = "holds";
 const OVERSTRETCHED: &str = "overstretched";
 const TORN: &str = "torn";
-const BLOWN_UP: &str = "blown up";
+const SHREDDED: &str = "shredded";
 
 /// What a cloth is called whose largest stretch is this: five per cent is what an eye notices, a thread of twice its
-/// length would have torn, and one of eleven times is what only errors that feed themselves come to.
+/// length would have torn, and one of eleven times, or one whose length is no number, is what no cloth is any more.
 fn outcome_of(stretch: f64) -> &'static str {
     match stretch {
         ..=0.05 => HOLDS,
         ..=1.0 => OVERSTRETCHED,
         ..=10.0 => TORN,
-        _ => BLOWN_UP,
+        _ => SHREDDED,
     }
 }
 
@@ -210,7 +211,7 @@ const BY_STRETCH: [(&str, Look); 4] = [
     (HOLDS, Look::Style(2)),
     (OVERSTRETCHED, Look::Style(4)),
     (TORN, Look::Style(3)),
-    (BLOWN_UP, Look::Style(1)),
+    (SHREDDED, Look::Style(1)),
 ];
 
 /// A stretch as it is said.
@@ -257,13 +258,7 @@ fn by<'a>(rows: &'a [Row], method: &str) -> Vec<&'a Row> {
 
 /// The methods, in the order in which they appear.
 fn methods(rows: &[Row]) -> Vec<&str> {
-    let mut methods = Vec::new();
-    for row in rows {
-        if !methods.contains(&row.method.as_str()) {
-            methods.push(row.method.as_str());
-        }
-    }
-    methods
+    distinct(rows.iter().map(|row| row.method.as_str()))
 }
 
 /// The largest of some values; not a number if one of them is not, 0 of none.

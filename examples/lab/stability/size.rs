@@ -334,7 +334,7 @@ pub fn chart(rows: &[Row]) -> Chart {
     let mut chart = Chart::new(
         "stability-size",
         format!("Finer cloth needs more sub-steps: {needs}"),
-        "Largest stretch in the third second of a cotton cloth hung by two corners, with tethers, beyond what it gives in very short sub-steps: holds up to 5 %, torn beyond 100 %. The line is the power law nearest to where 5 % are crossed.",
+        "Largest stretch in the third second of a cotton cloth hung by two corners, with tethers, beyond what it gives in very short sub-steps: holds up to 5 %. The line is the power law nearest to where 5 % are crossed.",
     )
     .sized([960, 520])
     .columns(methods.len());

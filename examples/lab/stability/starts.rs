@@ -7,7 +7,7 @@ use bevy_drape::{
 };
 
 use super::{
-    BLOWN_UP, Job, Map, Row, by,
+    Job, Map, Row, SHREDDED, by,
     cloth::{Moving, Way},
     ensure, methods, percent,
 };
@@ -67,7 +67,7 @@ fn outcome(stretch: f64, mean_length: f64) -> &'static str {
         ..=0.05 if mean_length > 0.9 => RECOVERS,
         ..=0.05 => SHORT,
         ..=10.0 => TANGLED,
-        _ => BLOWN_UP,
+        _ => SHREDDED,
     }
 }
 
@@ -149,7 +149,7 @@ fn check(rows: &[Row]) -> Result<(), String> {
         .iter()
         .filter(|row| [TETHERED, WITHOUT].contains(&row.method.as_str()))
     {
-        ensure(row.outcome != BLOWN_UP, || {
+        ensure(row.outcome != SHREDDED, || {
             format!(
                 "{} from {}: {}",
                 row.method, KINDS[row.x as usize], row.measure
@@ -210,7 +210,7 @@ pub fn chart(rows: &[Row]) -> Chart {
         (RECOVERS, Look::Style(2)),
         (SHORT, Look::Style(5)),
         (TANGLED, Look::Style(4)),
-        (BLOWN_UP, Look::Style(1)),
+        (SHREDDED, Look::Style(1)),
     ];
     for (outcome, look) in looks {
         let cells = rows.iter().filter(|row| row.outcome == outcome);

@@ -245,7 +245,7 @@ pub fn chart(rows: &[Row]) -> Chart {
     let mut panel = Panel::new(
         format!("stretch at {} N/m", number(stiffest)),
         Axis::log("time step, ms"),
-        Axis::log("largest stretch, %").between(1.0e-3, 1.0e3),
+        Axis::log("largest stretch, %").between(1.0e-4, 1.0e3),
     );
     for (style, (name, _)) in WAYS.into_iter().enumerate().skip(1) {
         let cells = by(rows, name).into_iter();
