@@ -1,29 +1,28 @@
 //! The cloths that experiments share.
 
+use std::sync::LazyLock;
+
 use bevy::math::{Vec3, bounding::BoundingSphere};
 use bevy_drape::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
     contact::{Detection, MovingCollider, NarrowPhase, Terms},
-    hierarchy::{BoundRule, BoundingVolume, Probe, QuadTree, TopDownQuery},
+    hierarchy::{BoundRule, BoundingVolume, Probe, QuadTree, SearchMethod, TopDownQuery},
     solver::{Solver, Tethers, TickStep},
 };
 
 /// What a tree is searched by.
 pub type Choice = (BoundingVolume, BoundRule);
 
-/// Each volume by each rule.
-pub const CHOICES: [Choice; 10] = [
-    (BoundingVolume::Sphere, BoundRule::Paper),
-    (BoundingVolume::Aabb, BoundRule::Paper),
-    (BoundingVolume::Sphere, BoundRule::RestShape),
-    (BoundingVolume::Aabb, BoundRule::RestShape),
-    (BoundingVolume::Sphere, BoundRule::Refit),
-    (BoundingVolume::Aabb, BoundRule::Refit),
-    (BoundingVolume::Obb, BoundRule::Refit),
-    (BoundingVolume::KDop14, BoundRule::Refit),
-    (BoundingVolume::KDop18, BoundRule::Refit),
-    (BoundingVolume::KDop26, BoundRule::Refit),
-];
+/// Each volume by each rule that there is for it: the library's menu, so that nothing new is left out.
+pub static CHOICES: LazyLock<Vec<Choice>> = LazyLock::new(|| {
+    let trees = SearchMethod::ALL
+        .into_iter()
+        .filter_map(|method| match method {
+            SearchMethod::Tree(volume, rule) => Some((volume, rule)),
+            _ => None,
+        });
+    trees.collect()
+});
 
 /// The paper's scene, tick by tick: a cloth of 16 × 16 particles hangs by its top row, and a ball of radius 1 goes
 /// through it and back.

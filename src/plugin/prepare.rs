@@ -126,6 +126,7 @@ impl PreparingItem<'_, '_> {
         }
         if was_written || teleports {
             self.tick.stretch = self.tick.solver.measure(&self.particles);
+            self.tick.masses = self.particles.free_masses();
             self.stats.stretch = self.tick.stretch;
             if !self.tick.solver.tethers().are_of(&self.particles) {
                 self.tick.tethered = None;
@@ -219,15 +220,14 @@ impl PreparingItem<'_, '_> {
 
     /// The speed of the fastest particle (m/s), if all are sound.
     fn look_at_particles(&mut self) -> Result<f32, ClothError> {
-        let mut survey = self.particles.survey();
-        if !survey.is_sound {
-            self.particles.validate()?;
-            // What was not sound has been mended, but for what it left beside the particles.
-            self.particles.clear_padding();
-            survey = self.particles.survey();
+        let survey = self.particles.survey();
+        if survey.is_sound {
+            return Ok(survey.largest_speed);
         }
-        self.tick.masses = survey.masses;
-        Ok(survey.largest_speed)
+        self.particles.validate()?;
+        // What was not sound has been mended, but for what it left beside the particles.
+        self.particles.clear_padding();
+        Ok(self.particles.survey().largest_speed)
     }
 
     /// How far a particle may get in the tick by itself (m): by its speed and gravity, by what carries its

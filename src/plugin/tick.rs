@@ -118,6 +118,11 @@ impl IntegratingItem<'_, '_> {
             self.particles.copy_from(&self.tick.backup);
             self.tick.detection.restart();
         }
+        self.tick.load = Some(self.load(step));
+    }
+
+    /// What the tick's last run of sub-steps asked of the cloth.
+    fn load(&self, step: TickStep) -> Load {
         let grid = self.topology.grid();
         let root = self
             .topology
@@ -138,10 +143,10 @@ impl IntegratingItem<'_, '_> {
             };
             Load::way_of(collider.shape.radius()?, way / count, spacing)
         });
-        self.tick.load = Some(Load {
+        Load {
             way: ways.fold(0.0, f32::max),
             stretch: self.tick.stretch.structural,
-            precision,
+            precision: self.tick.precision,
             is_capped: self.tick.control.is_capped(),
             substep: step.seconds / count,
             damping: step.damping,
@@ -149,7 +154,7 @@ impl IntegratingItem<'_, '_> {
             is_tethered: !self.tick.solver.tethers().is_empty(),
             masses: self.tick.masses,
             distance: (Vec3::from(root.center).length() - root.radius()).max(0.0) / spacing,
-        });
+        }
     }
 
     /// One way through the sub-steps.

@@ -108,7 +108,8 @@ impl PreparingItem<'_, '_> {
         Ok(())
     }
 
-    /// Makes tethers anew if what they were made for has changed: the pins, the material, or what pulls at them.
+    /// Makes tethers anew if what they were made for has changed: the pins, the material, or what pulls at them; and
+    /// what follows from the same.
     pub(super) fn tether(&mut self, wanted: bool, material: &ClothMaterial, acceleration: f32) {
         let made_for = Some((wanted, acceleration));
         if self.tick.tethered == made_for {
@@ -118,6 +119,7 @@ impl PreparingItem<'_, '_> {
         let pinned = self.particles.inverse_masses().filter(|w| *w == 0.0);
         let grid = &self.topology.grid;
         self.tick.given_stretch = given_stretch(grid, material, pinned.count(), acceleration);
+        self.tick.masses = self.particles.free_masses();
         let tethers = if wanted {
             Tethers::new(&self.topology.grid, material, &self.particles, acceleration)
         } else {

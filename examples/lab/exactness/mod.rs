@@ -99,19 +99,20 @@ impl Experiment for Exactness {
         run.set("particles", "of a radius of a tenth of the spacing");
         let mut rows = Vec::new();
         let mut query = TopDownQuery::default();
-        let mut bounds = CHOICES.map(|_| NodeBounds::default());
+        let mut bounds = vec![NodeBounds::default(); CHOICES.len()];
         run.begin(Self::NAME, STRETCHES.len() * states / 20);
         for (at, stretch) in STRETCHES.into_iter().enumerate() {
             let mut random = Random(at as u64 + 1);
             let first = rows.len();
             for radius in RADII {
-                let trees = CHOICES.map(|(volume, rule)| [volume.name(), rule.name()]);
-                let kinds = trees.into_iter().chain([["particles", SCAN]]);
+                let trees = CHOICES.iter();
+                let trees = trees.map(|(volume, rule)| [volume.name(), rule.name()]);
+                let kinds = trees.chain([["particles", SCAN]]);
                 rows.extend(kinds.map(|kind| Row::new(kind, radius, stretch)));
             }
             for turn in 0..states {
                 let state = State::new(&mut random, stretch);
-                for (bounds, choice) in bounds.iter_mut().zip(CHOICES) {
+                for (bounds, &choice) in bounds.iter_mut().zip(CHOICES.iter()) {
                     bounds
                         .rebuild(choice, &state.tree, &state.particles, state.stretch)
                         .expect("there is such a rule");

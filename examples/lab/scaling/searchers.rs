@@ -27,13 +27,15 @@ pub enum Searcher {
 
 impl Searcher {
     pub fn all(draped: &Draped) -> Vec<Self> {
-        let trees = CHOICES.map(|choice| Self::Tree(Box::default(), choice));
+        let trees = CHOICES
+            .iter()
+            .map(|&choice| Self::Tree(Box::default(), choice));
         let others = [
             Self::Scan,
             Self::Brute,
             Self::Parry(Box::new(ParryTree::new(&draped.particles))),
         ];
-        trees.into_iter().chain(others).collect()
+        trees.chain(others).collect()
     }
 
     pub fn names(&self) -> [&'static str; 2] {

@@ -14,8 +14,6 @@ pub(crate) struct Survey {
     pub is_sound: bool,
     /// Speed of the fastest particle (m/s).
     pub largest_speed: f32,
-    /// Masses of the lightest and of the heaviest particle that is free (kg); 0 where all are pinned.
-    pub masses: [f32; 2],
 }
 
 impl ClothParticles {
@@ -59,8 +57,6 @@ impl ClothParticles {
     pub(crate) fn survey(&self) -> Survey {
         let mut sound = [true; LANES];
         let mut largest = [0.0_f32; LANES];
-        // Of inverse masses.
-        let (mut lightest, mut heaviest) = ([0.0_f32; LANES], [f32::INFINITY; LANES]);
         for block in &self.blocks {
             let view = block.view();
             let square = |from: usize, lane: usize| {
@@ -75,29 +71,24 @@ impl ClothParticles {
                 } else {
                     largest[lane]
                 };
-                let w = view[W + lane];
-                lightest[lane] = if w > lightest[lane] {
-                    w
-                } else {
-                    lightest[lane]
-                };
-                // What is pinned has no weight, and what holds no particle.
-                let is_less = (w > 0.0) & (w < heaviest[lane]);
-                heaviest[lane] = if is_less { w } else { heaviest[lane] };
             }
         }
-        let [lightest, heaviest] = [
-            lightest.into_iter().fold(0.0, f32::max),
-            heaviest.into_iter().fold(f32::INFINITY, f32::min),
-        ];
         Survey {
             is_sound: sound == [true; LANES],
             largest_speed: largest.into_iter().fold(0.0, f32::max).sqrt() / self.substep,
-            masses: if lightest > 0.0 {
-                [1.0 / lightest, 1.0 / heaviest]
-            } else {
-                [0.0; 2]
-            },
+        }
+    }
+
+    /// Masses of the lightest and of the heaviest particle that is free (kg); 0 where all are pinned.
+    pub(crate) fn free_masses(&self) -> [f32; 2] {
+        let free = self.inverse_masses().filter(|w| *w > 0.0);
+        let ends = free.fold([0.0, f32::INFINITY], |[light, heavy]: [f32; 2], w| {
+            [light.max(w), heavy.min(w)]
+        });
+        if ends[0] > 0.0 {
+            ends.map(f32::recip)
+        } else {
+            [0.0; 2]
         }
     }
 
