@@ -41,11 +41,15 @@ pub mod solver;
 
 /// What most games need, to be imported with `use bevy_drape::prelude::*`.
 pub mod prelude {
-    pub use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Corner, Pin, Pins};
+    pub use crate::cloth::{
+        Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, Corner, Pin, Pins,
+    };
     pub use crate::contact::{ClothCollider, ContactPoint, NarrowPhase};
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
     #[cfg(feature = "rapier")]
     pub use crate::plugin::RapierClothCollider;
+    #[cfg(feature = "pbr")]
+    pub use crate::plugin::fabric;
     pub use crate::plugin::{
         ClothAttachments, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity,
         ClothLimitExceeded, ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted,

@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{Vec2, Vec3},
+    math::{Vec2, Vec3, Vec3Swizzles},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::components::Transform,
 };
@@ -15,12 +15,20 @@ pub const MAX_PARTICLES: usize = 1 << 24;
 /// A cloth: a grid of `columns` × `rows` particles, `spacing` metres apart.
 ///
 /// Spawning this is enough. It hangs by its top row from the entity's [`Transform`], laid out from (0, 0, 0)
-/// to (width, −height, 0) in the entity's frame; particle (row, column) has the index
+/// to (width, −height, 0) in the entity's frame; [`lying`](Self::lying) lays it out in the horizontal plane and
+/// [`centred`](Self::centred) around its transform. Particle (row, column) has the index
 /// `row × columns + column` (paper, equation 1). Position, rotation and scale are respected at spawn; moved
-/// later, the transform carries the pinned particles along and the others follow by their springs; move it in
-/// the cloth's schedule, so that the picture of a moving cloth does not run ahead of its motion.
+/// later, the transform carries the pinned particles along and the others follow by their springs.
 ///
-/// Changing this component weaves a new cloth at rest.
+/// Changing this component builds a new cloth at rest.
+///
+/// ```
+/// use bevy_drape::prelude::*;
+///
+/// let curtain = Cloth::new(32, 32, 0.05);
+/// let tablecloth = Cloth::new(64, 64, 0.025).lying().centred();
+/// # let _ = (curtain, tablecloth);
+/// ```
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(ClothParticles, ClothMaterial, Pins, Transform)]
@@ -31,6 +39,40 @@ pub struct Cloth {
     pub rows: u32,
     /// Distance between neighbours in a row or column (m), before the transform's scale.
     pub spacing: f32,
+    /// The plane that it is laid out in.
+    pub plane: ClothPlane,
+    /// Whether its middle is at the entity's origin; otherwise particle (0, 0) is.
+    pub centred: bool,
+    /// How far particles that are not pinned begin beside the plane, at most, in spacings: as real cloth, which is
+    /// never flat. Without it nothing moves a flat cloth out of a vertical plane, and a flag stays a board. The same
+    /// for the same cloth, and no part of its rest lengths. From 0 to 0.1.
+    pub unevenness: f32,
+}
+
+/// The plane that a [`Cloth`] is laid out in, in its entity's frame.
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub enum ClothPlane {
+    /// Columns along +x, rows along −y; it faces +z: a curtain, a flag.
+    #[default]
+    Hanging,
+    /// Columns along +x, rows along +z; it faces +y: a tablecloth, a trampoline.
+    Lying,
+}
+
+impl ClothPlane {
+    /// A point of the plane, `along` a row and `down` a column (m), and `above` it.
+    fn point(self, along: f32, down: f32, above: f32) -> Vec3 {
+        match self {
+            Self::Hanging => Vec3::new(along, -down, above),
+            Self::Lying => Vec3::new(along, above, down),
+        }
+    }
+
+    /// The side that cloth at rest faces.
+    pub fn normal(self) -> Vec3 {
+        self.point(0.0, 0.0, 1.0)
+    }
 }
 
 impl Default for Cloth {
@@ -41,13 +83,38 @@ impl Default for Cloth {
 }
 
 impl Cloth {
-    /// A cloth of `columns` × `rows` particles, `spacing` metres apart.
+    /// What [`unevenness`](Self::unevenness) is by default: a hundredth of a millimetre in a cloth with 0.1 m between
+    /// its particles.
+    pub const DEFAULT_UNEVENNESS: f32 = 1.0e-4;
+
+    /// A cloth of `columns` × `rows` particles, `spacing` metres apart, hanging from its transform.
     pub const fn new(columns: u32, rows: u32, spacing: f32) -> Self {
         Self {
             columns,
             rows,
             spacing,
+            plane: ClothPlane::Hanging,
+            centred: false,
+            unevenness: Self::DEFAULT_UNEVENNESS,
         }
+    }
+
+    /// Laid out in the horizontal plane, facing up.
+    pub const fn lying(mut self) -> Self {
+        self.plane = ClothPlane::Lying;
+        self
+    }
+
+    /// With its middle at the entity's origin.
+    pub const fn centred(mut self) -> Self {
+        self.centred = true;
+        self
+    }
+
+    /// Exactly flat: for tests and comparisons that need its symmetry.
+    pub const fn flat(mut self) -> Self {
+        self.unevenness = 0.0;
+        self
     }
 
     /// (columns − 1) × spacing (m).
@@ -64,12 +131,15 @@ impl Cloth {
     ///
     /// # Errors
     /// Too few or too many particles; a spacing that is zero, negative, not finite, below 10⁻⁹ m, or of a cloth
-    /// larger than 10¹² m.
+    /// larger than 10¹² m; an unevenness out of range.
     pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
         let Self {
             columns,
             rows,
             spacing,
+            plane,
+            centred,
+            unevenness,
         } = *self;
         if columns < 2 || rows < 2 {
             return Err(ClothError::GridTooSmall { columns, rows });
@@ -82,7 +152,17 @@ impl Cloth {
         }
         let name = "spacing (m)";
         ClothError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
-        let scaled = spacing * scale.truncate();
+        ClothError::check(
+            unevenness,
+            |u| (0.0..=0.1).contains(&u),
+            "unevenness (spacings)",
+            "from 0 to 0.1",
+        )?;
+        let scaled = spacing
+            * match plane {
+                ClothPlane::Hanging => scale.truncate(),
+                ClothPlane::Lying => scale.xz(),
+            };
         let extent = scaled * Vec2::new(columns as f32, rows as f32);
         // So that squares of lengths, and their products with masses, stay well inside of `f32`.
         let measurable = |length: f32| (1.0e-9..1.0e12).contains(&length.abs());
@@ -93,10 +173,13 @@ impl Cloth {
                 value: scaled.abs().min_element(),
             });
         }
+        let middle = Vec2::new(columns as f32 - 1.0, rows as f32 - 1.0) * scaled / 2.0;
         Ok(ClothGrid {
             columns,
             rows,
             spacing: scaled,
+            plane,
+            origin: if centred { middle } else { Vec2::ZERO },
         })
     }
 }
@@ -108,6 +191,9 @@ pub struct ClothGrid {
     rows: u32,
     /// Distance along the width and the height (m), scaled; negative under a mirroring scale.
     spacing: Vec2,
+    plane: ClothPlane,
+    /// How far from particle (0, 0) the frame's origin is, along the width and the height (m).
+    origin: Vec2,
 }
 
 impl ClothGrid {
@@ -143,11 +229,13 @@ impl ClothGrid {
 
     /// Where a particle is at rest, in the cloth's frame (m).
     pub fn rest_position(&self, row: u32, column: u32) -> Vec3 {
-        Vec3::new(
-            column as f32 * self.spacing.x,
-            -(row as f32) * self.spacing.y,
-            0.0,
-        )
+        let place = Vec2::new(column as f32, row as f32) * self.spacing - self.origin;
+        self.plane.point(place.x, place.y, 0.0)
+    }
+
+    /// The side that the cloth at rest faces, of length 1.
+    pub fn normal(&self) -> Vec3 {
+        self.plane.normal()
     }
 
     /// All particles as (row, column), in the order of their indices.
@@ -170,7 +258,7 @@ impl ClothGrid {
         spacing.x * share(column, self.columns) * spacing.y * share(row, self.rows)
     }
 
-    /// Two triangles a cell, as particle indices, counter-clockwise seen from +z (paper, Figure 1).
+    /// Two triangles a cell, as particle indices, counter-clockwise seen from where the cloth faces (paper, Figure 1).
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + use<> {
         let grid = *self;
         (0..grid.rows.saturating_sub(1)).flat_map(move |row| {
@@ -200,9 +288,31 @@ mod tests {
         assert_eq!(indices, (0..15).collect::<Vec<_>>());
     }
 
+    /// Lying, it goes along +x and +z; centred, its middle is the origin; scaled, along its own axes.
+    #[test]
+    fn lies_and_is_centred_as_asked() {
+        let scale = Vec3::new(2.0, 3.0, 5.0);
+        let rest = |cloth: Cloth, row, column| {
+            let grid = cloth.grid(scale).expect("a sound grid");
+            grid.rest_position(row, column)
+        };
+        let cloth = Cloth::new(5, 3, 0.5);
+        assert_eq!(rest(cloth.lying(), 2, 4), Vec3::new(4.0, 0.0, 5.0));
+        assert_eq!(rest(cloth.centred(), 0, 0), Vec3::new(-2.0, 1.5, 0.0));
+        assert_eq!(rest(cloth.centred(), 1, 2), Vec3::ZERO);
+        let tablecloth = cloth.lying().centred();
+        assert_eq!(rest(tablecloth, 0, 0), Vec3::new(-2.0, 0.0, -2.5));
+        assert_eq!(rest(tablecloth, 2, 4), Vec3::new(2.0, 0.0, 2.5));
+    }
+
     #[test]
     fn areas_add_up_and_triangles_face_forward() {
-        let grid = Cloth::new(5, 4, 0.5).grid(Vec3::ONE).expect("a sound grid");
+        for cloth in [Cloth::new(5, 4, 0.5), Cloth::new(5, 4, 0.5).lying()] {
+            check_areas_and_triangles(&cloth.grid(Vec3::ONE).expect("a sound grid"));
+        }
+    }
+
+    fn check_areas_and_triangles(grid: &ClothGrid) {
         let area: f32 = grid.cells().map(|(r, c)| grid.tributary_area(r, c)).sum();
         assert_eq!(area, 2.0 * 1.5);
         let positions: Vec<Vec3> = grid
@@ -212,15 +322,25 @@ mod tests {
         let mut triangle_area = 0.0;
         for [a, b, c] in grid.triangles() {
             let [a, b, c] = [a, b, c].map(|index| positions[index as usize]);
-            let normal = (b - a).cross(c - a);
-            assert!(normal.z > 0.0);
-            triangle_area += normal.z / 2.0;
+            let facing = (b - a).cross(c - a).dot(grid.normal());
+            assert!(facing > 0.0);
+            triangle_area += facing / 2.0;
         }
         assert_eq!(triangle_area, area);
     }
 
     #[test]
-    fn refuses_what_cannot_be_woven() {
+    fn refuses_what_cannot_be_built() {
+        for unevenness in [-0.1, 0.2, f32::NAN] {
+            let cloth = Cloth {
+                unevenness,
+                ..Cloth::default()
+            };
+            assert!(matches!(
+                cloth.grid(Vec3::ONE),
+                Err(ClothError::Quantity { .. })
+            ));
+        }
         assert!(matches!(
             Cloth::new(1, 8, 0.1).grid(Vec3::ONE),
             Err(ClothError::GridTooSmall {

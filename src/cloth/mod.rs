@@ -9,7 +9,7 @@ mod pins;
 mod springs;
 
 pub use error::ClothError;
-pub use grid::{Cloth, ClothGrid, MAX_PARTICLES};
+pub use grid::{Cloth, ClothGrid, ClothPlane, MAX_PARTICLES};
 pub use material::ClothMaterial;
 pub use particles::{ClothParticles, ParticleId};
 pub use pins::{Corner, Pin, Pins};

@@ -6,6 +6,8 @@ mod components;
 mod contacts;
 mod diagnostics;
 mod envelope;
+#[cfg(feature = "pbr")]
+mod fabric;
 mod fault;
 mod frame;
 #[cfg(feature = "gizmos")]
@@ -32,6 +34,8 @@ pub use components::{ClothSearch, ClothStats, ClothTopology};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use envelope::ClothLimitExceeded;
+#[cfg(feature = "pbr")]
+pub use fabric::fabric;
 pub use fault::ClothFault;
 pub use frame::ClothFrame;
 #[cfg(feature = "gizmos")]
