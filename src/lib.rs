@@ -51,9 +51,9 @@ pub mod prelude {
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
-        ClothAttachments, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-        ClothLimitExceeded, ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted,
-        ClothTouchStopped, DrapePlugins,
+        ClothAttachment, ClothAttachments, ClothContact, ClothContacts, ClothFault, ClothFrame,
+        ClothGravity, ClothLimitExceeded, ClothStats, ClothSystems, ClothTeleport,
+        ClothTouchStarted, ClothTouchStopped, DrapePlugins,
     };
     #[cfg(feature = "egui")]
     pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};

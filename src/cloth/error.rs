@@ -2,7 +2,11 @@
 
 use std::mem::discriminant;
 
-use bevy::{ecs::entity::Entity, math::Vec3};
+use bevy::{
+    ecs::entity::{Entity, EntityMapper, MapEntities},
+    math::Vec3,
+    reflect::Reflect,
+};
 use thiserror::Error;
 
 use super::{Spring, grid::MAX_PARTICLES, particles::ParticleId, pins::Pin};
@@ -12,7 +16,8 @@ use super::{Spring, grid::MAX_PARTICLES, particles::ParticleId, pins::Pin};
 /// The plugin logs each once with its entity, marks the entity with a
 /// [`ClothFault`](crate::plugin::ClothFault), and goes on with the others. Mending the value is enough to
 /// bring the entity back.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[reflect(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothError {
     /// Fewer than two columns or rows.
@@ -35,8 +40,10 @@ pub enum ClothError {
     #[error("{quantity} must be {expected}, not {value}")]
     Quantity {
         /// What the number is, with its unit.
+        #[reflect(ignore)]
         quantity: &'static str,
         /// What it must be.
+        #[reflect(ignore)]
         expected: &'static str,
         /// What it is.
         value: f32,
@@ -103,8 +110,10 @@ pub enum ClothError {
     #[error("there is no bound rule `{rule}` for {volume}: refit them, or take spheres or AABBs")]
     NoSuchBounds {
         /// The volumes.
+        #[reflect(ignore)]
         volume: &'static str,
         /// The rule.
+        #[reflect(ignore)]
         rule: &'static str,
     },
     /// What a pin is attached to does not exist or has no transform.
@@ -125,6 +134,14 @@ pub enum ClothError {
         /// Particles along the height.
         rows: u32,
     },
+}
+
+impl MapEntities for ClothError {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        if let Self::NoTarget { target, .. } = self {
+            *target = mapper.get_mapped(*target);
+        }
+    }
 }
 
 impl ClothError {

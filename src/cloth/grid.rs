@@ -7,7 +7,7 @@ use bevy::{
     transform::components::Transform,
 };
 
-use super::{ClothError, ClothMaterial, ClothParticles, Pins};
+use super::{ClothError, ClothMaterial, ClothParticles, Pins, presence::log_unsimulated};
 
 /// The most particles that one cloth may have: 4096 × 4096.
 pub const MAX_PARTICLES: usize = 1 << 24;
@@ -31,6 +31,7 @@ pub const MAX_PARTICLES: usize = 1 << 24;
 /// ```
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[component(on_add = log_unsimulated)]
 #[require(ClothParticles, ClothMaterial, Pins, Transform)]
 pub struct Cloth {
     /// Particles along the width, at least 2.
@@ -210,6 +211,12 @@ impl ClothGrid {
     /// Distance between neighbours along the width and the height (m), positive.
     pub fn spacing(&self) -> Vec2 {
         self.spacing.abs()
+    }
+
+    /// From corner to corner at rest (m).
+    pub fn diagonal(&self) -> f32 {
+        let sides = Vec2::new(self.columns as f32 - 1.0, self.rows as f32 - 1.0);
+        (sides * self.spacing()).length()
     }
 
     /// Number of particles.

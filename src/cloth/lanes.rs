@@ -11,7 +11,7 @@
 //! The last block of a row has its right neighbours in the first one, a lane further on: a view of that block
 //! which begins one number later. What its last lane then sees is masked by an infinite compliance.
 
-use bevy::math::Vec3;
+use bevy::{math::Vec3, reflect::Reflect};
 
 /// Particles in a block.
 pub(crate) const LANES: usize = 8;
@@ -34,7 +34,7 @@ const END: usize = 7 * LANES;
 pub(crate) type View = [f32; END];
 
 /// Eight particles: 256 bytes, four cache lines. The last eight numbers are room for a view to be shifted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Block([f32; 8 * LANES]);
 
@@ -89,7 +89,7 @@ impl Block {
 }
 
 /// Which block and lane each particle of a grid is in.
-#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Layout {
     pub columns: u32,
     pub rows: u32,

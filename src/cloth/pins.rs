@@ -3,7 +3,7 @@
 use std::{fmt, sync::Arc};
 
 use bevy::{
-    ecs::component::Component,
+    ecs::{component::Component, reflect::ReflectComponent},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
@@ -23,7 +23,8 @@ pub enum Corner {
 }
 
 /// Particles to pin.
-#[derive(Clone)]
+#[derive(Reflect, Debug, Clone, PartialEq)]
+#[reflect(Debug, Clone, PartialEq)]
 pub enum Pin {
     /// The particle with this index.
     Index(usize),
@@ -35,32 +36,85 @@ pub enum Pin {
     Column(u32),
     /// One corner.
     Corner(Corner),
-    /// Every particle whose (row, column) it holds for.
-    Where(Arc<dyn Fn(u32, u32) -> bool + Send + Sync>),
+    /// Every particle whose (row, column) it holds for. Code can't be saved: in a scene file it pins nothing.
+    Where(#[reflect(ignore)] PinPredicate),
 }
 
-impl fmt::Debug for Pin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Index(index) => write!(f, "Index({index})"),
-            Self::Cell(row, column) => write!(f, "Cell({row}, {column})"),
-            Self::Row(row) => write!(f, "Row({row})"),
-            Self::Column(column) => write!(f, "Column({column})"),
-            Self::Corner(corner) => write!(f, "Corner({corner:?})"),
-            Self::Where(_) => write!(f, "Where(..)"),
-        }
+/// Whether the particle at (row, column) is pinned. By default none is.
+#[derive(Clone)]
+pub struct PinPredicate(Arc<dyn Fn(u32, u32) -> bool + Send + Sync>);
+
+impl PinPredicate {
+    /// Every particle whose (row, column) `holds`.
+    pub fn new(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
+        Self(Arc::new(holds))
     }
 }
 
-impl PartialEq for Pin {
+impl Default for PinPredicate {
+    fn default() -> Self {
+        Self::new(|_, _| false)
+    }
+}
+
+impl fmt::Debug for PinPredicate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("..")
+    }
+}
+
+impl PartialEq for PinPredicate {
     fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Index(a), Self::Index(b)) => a == b,
-            (Self::Cell(a, b), Self::Cell(c, d)) => (a, b) == (c, d),
-            (Self::Row(a), Self::Row(b)) | (Self::Column(a), Self::Column(b)) => a == b,
-            (Self::Corner(a), Self::Corner(b)) => a == b,
-            (Self::Where(a), Self::Where(b)) => Arc::ptr_eq(a, b),
-            _ => false,
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Pin {
+    /// Every particle whose (row, column) `holds`.
+    pub fn filter(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
+        Self::Where(PinPredicate::new(holds))
+    }
+
+    /// Whether it names particles of `grid`.
+    ///
+    /// # Errors
+    /// [`ClothError::PinOutOfRange`] if it does not.
+    pub fn validate(&self, grid: &ClothGrid) -> Result<(), ClothError> {
+        let is_inside = match *self {
+            Self::Index(index) => index < grid.len(),
+            Self::Cell(row, column) => row < grid.rows() && column < grid.columns(),
+            Self::Row(row) => row < grid.rows(),
+            Self::Column(column) => column < grid.columns(),
+            Self::Corner(_) | Self::Where(_) => true,
+        };
+        if is_inside {
+            return Ok(());
+        }
+        Err(ClothError::PinOutOfRange {
+            pin: self.clone(),
+            columns: grid.columns(),
+            rows: grid.rows(),
+        })
+    }
+
+    /// Calls `pinned` with the index of each particle of `grid` that it names. It must be valid for it.
+    pub(crate) fn for_each(&self, grid: &ClothGrid, mut pinned: impl FnMut(usize)) {
+        let (rows, columns) = (grid.rows(), grid.columns());
+        let (last_row, last_column) = (rows - 1, columns - 1);
+        let mut cell = |row, column| pinned(grid.index(row, column) as usize);
+        match self {
+            Self::Index(index) => cell(*index as u32 / columns, *index as u32 % columns),
+            Self::Cell(row, column) => cell(*row, *column),
+            Self::Row(row) => (0..columns).for_each(|column| cell(*row, column)),
+            Self::Column(column) => (0..rows).for_each(|row| cell(row, *column)),
+            Self::Corner(Corner::TopLeft) => cell(0, 0),
+            Self::Corner(Corner::TopRight) => cell(0, last_column),
+            Self::Corner(Corner::BottomLeft) => cell(last_row, 0),
+            Self::Corner(Corner::BottomRight) => cell(last_row, last_column),
+            Self::Where(PinPredicate(holds)) => grid
+                .cells()
+                .filter(|&(row, column)| holds(row, column))
+                .for_each(|(row, column)| cell(row, column)),
         }
     }
 }
@@ -78,8 +132,7 @@ impl PartialEq for Pin {
 /// # let _ = (flag, sheet, curtain, scarf);
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
-#[reflect(opaque)]
-#[reflect(Default, Debug, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct Pins(Vec<Pin>);
 
 impl Default for Pins {
@@ -106,7 +159,7 @@ impl Pins {
 
     /// Every particle whose (row, column) `holds`.
     pub fn filter(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
-        Self::new([Pin::Where(Arc::new(holds))])
+        Self::new([Pin::filter(holds)])
     }
 
     /// Whether each pin names particles of `grid`.
@@ -114,45 +167,15 @@ impl Pins {
     /// # Errors
     /// [`ClothError::PinOutOfRange`] for the first that does not.
     pub fn validate(&self, grid: &ClothGrid) -> Result<(), ClothError> {
-        let inside = |pin: &Pin| match *pin {
-            Pin::Index(index) => index < grid.len(),
-            Pin::Cell(row, column) => row < grid.rows() && column < grid.columns(),
-            Pin::Row(row) => row < grid.rows(),
-            Pin::Column(column) => column < grid.columns(),
-            Pin::Corner(_) | Pin::Where(_) => true,
-        };
-        match self.0.iter().find(|pin| !inside(pin)) {
-            None => Ok(()),
-            Some(pin) => Err(ClothError::PinOutOfRange {
-                pin: pin.clone(),
-                columns: grid.columns(),
-                rows: grid.rows(),
-            }),
-        }
+        self.0.iter().try_for_each(|pin| pin.validate(grid))
     }
 
     /// Calls `pinned` with the index of each pinned particle of `grid`, some perhaps twice. The pins must be
     /// valid for it.
     pub(crate) fn for_each(&self, grid: &ClothGrid, mut pinned: impl FnMut(usize)) {
-        let (rows, columns) = (grid.rows(), grid.columns());
-        let (last_row, last_column) = (rows - 1, columns - 1);
-        let mut cell = |row, column| pinned(grid.index(row, column) as usize);
-        for pin in &self.0 {
-            match pin {
-                Pin::Index(index) => cell(*index as u32 / columns, *index as u32 % columns),
-                Pin::Cell(row, column) => cell(*row, *column),
-                Pin::Row(row) => (0..columns).for_each(|column| cell(*row, column)),
-                Pin::Column(column) => (0..rows).for_each(|row| cell(row, *column)),
-                Pin::Corner(Corner::TopLeft) => cell(0, 0),
-                Pin::Corner(Corner::TopRight) => cell(0, last_column),
-                Pin::Corner(Corner::BottomLeft) => cell(last_row, 0),
-                Pin::Corner(Corner::BottomRight) => cell(last_row, last_column),
-                Pin::Where(holds) => grid
-                    .cells()
-                    .filter(|&(row, column)| holds(row, column))
-                    .for_each(|(row, column)| cell(row, column)),
-            }
-        }
+        self.0
+            .iter()
+            .for_each(|pin| pin.for_each(grid, &mut pinned));
     }
 }
 

@@ -242,10 +242,11 @@ impl Detection {
                 found.scan(particles, &probe);
             }
             // What was looked at stays, so that nothing that touched is forgotten.
-            let known = self
-                .known
+            // In the order of the touches' numbers.
+            let first = self.known.partition_point(|(known, _)| known < id);
+            let known = self.known[first..]
                 .iter()
-                .filter(|(known, _)| known == id)
+                .take_while(|(known, _)| known == id)
                 .map(|(_, point)| point.particle);
             let mut all: Vec<u32> = known.chain(found.candidates().iter().copied()).collect();
             all.sort_unstable();

@@ -1,7 +1,11 @@
 //! Pins that follow other entities, and teleports.
 
 use bevy::{
-    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
+    ecs::{
+        component::Component,
+        entity::{Entity, MapEntities},
+        reflect::{ReflectComponent, ReflectMapEntities},
+    },
     math::{Affine3A, Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::helper::TransformHelper,
@@ -9,7 +13,7 @@ use bevy::{
 
 use super::{ClothFrame, frame::global_transform, prepare::PreparingItem};
 use crate::{
-    cloth::{ClothError, Pin, Pins},
+    cloth::{ClothError, Pin},
     solver::PinMotion,
 };
 
@@ -29,19 +33,30 @@ use crate::{
 ///     commands.spawn((Cloth::default(), Pins::none(), ClothAttachments::new([(Pin::Column(0), pole)])));
 /// }
 /// ```
-#[derive(Component, Reflect, Debug, Default, Clone, PartialEq)]
-#[reflect(opaque)]
-#[reflect(Default, Debug, Clone, PartialEq)]
-pub struct ClothAttachments(Vec<(Pin, Entity)>);
+#[derive(Component, Reflect, MapEntities, Debug, Default, Clone, PartialEq)]
+#[reflect(Component, MapEntities, Default, Debug, Clone, PartialEq)]
+pub struct ClothAttachments(#[entities] Vec<ClothAttachment>);
+
+/// A pin and the entity that it follows.
+#[derive(Reflect, MapEntities, Debug, Clone, PartialEq)]
+#[reflect(Debug, Clone, PartialEq)]
+pub struct ClothAttachment {
+    /// The particles.
+    pub pin: Pin,
+    /// What they follow.
+    #[entities]
+    pub target: Entity,
+}
 
 impl ClothAttachments {
     /// Each pin's particles follow its entity.
     pub fn new(attachments: impl IntoIterator<Item = (Pin, Entity)>) -> Self {
-        Self(attachments.into_iter().collect())
+        let attach = |(pin, target)| ClothAttachment { pin, target };
+        Self(attachments.into_iter().map(attach).collect())
     }
 
     /// What is attached to what.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &(Pin, Entity)> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &ClothAttachment> {
         self.0.iter()
     }
 }
@@ -58,62 +73,59 @@ pub struct ClothTeleport;
 pub(super) struct Attached {
     pub particle: u32,
     /// Which attachment it belongs to.
-    attachment: usize,
+    pub attachment: usize,
     /// Where it is in the target's own frame.
-    offset: Vec3,
+    pub offset: Vec3,
 }
 
 /// Where an attachment's target is.
 ///
 /// # Errors
 /// [`ClothError::NoTarget`] for one that does not exist, has no transform, or is scaled to nothing.
-fn target(
-    (pin, target): &(Pin, Entity),
+fn find_target(
+    attachment: &ClothAttachment,
     transforms: &TransformHelper,
 ) -> Result<Affine3A, ClothError> {
-    let transform = global_transform(transforms, *target).ok();
+    let transform = global_transform(transforms, attachment.target).ok();
     let affine = transform.map(|transform| transform.affine());
     affine
         .filter(|affine| affine.inverse().is_finite())
         .ok_or_else(|| ClothError::NoTarget {
-            pin: pin.clone(),
-            target: *target,
+            pin: attachment.pin.clone(),
+            target: attachment.target,
         })
 }
 
 impl PreparingItem<'_, '_> {
-    /// Whether the attachments can be followed: asked before anything is moved.
-    pub(super) fn check_targets(&self, transforms: &TransformHelper) -> Result<(), ClothError> {
+    /// Finds where the attachments' targets are, before anything is moved.
+    pub(super) fn find_targets(&mut self, transforms: &TransformHelper) -> Result<(), ClothError> {
         let wanted = self
             .attachments
             .map_or(&[][..], |attachments| &attachments.0);
+        self.tick.targets.clear();
         for attachment in wanted {
-            target(attachment, transforms)?;
+            attachment.pin.validate(&self.topology.grid)?;
+            let target = find_target(attachment, transforms)?;
+            self.tick.targets.push(target);
         }
-        Pins::new(wanted.iter().map(|(pin, _)| pin.clone())).validate(&self.topology.grid)
+        Ok(())
     }
 
     /// Has attached particles move to where their targets take them in this tick. A teleport, from the frame that the
     /// cloth had before, takes them there at once, and the others along.
-    pub(super) fn follow_targets(
-        &mut self,
-        transforms: &TransformHelper,
-        teleport_from: Option<ClothFrame>,
-    ) -> Result<(), ClothError> {
+    pub(super) fn follow_targets(&mut self, teleport_from: Option<ClothFrame>) {
         let wanted = self
             .attachments
             .map_or(&[][..], |attachments| &attachments.0);
         if wanted.is_empty() && self.tick.attachments.is_empty() {
-            return Ok(());
+            return;
         }
         if self.tick.attachments != wanted {
-            self.attach(wanted, transforms)?;
+            self.attach(wanted);
         }
         let frame = *self.frame;
-        if let Some(first) = wanted.first() {
-            let (_, rotation, translation) =
-                target(first, transforms)?.to_scale_rotation_translation();
-            let pose = Isometry3d::new(translation, rotation.normalize());
+        if let Some(first) = self.tick.targets.first() {
+            let pose = rigid(first);
             let was = self.tick.first_target.replace(pose);
             if let (Some(was), Some(before)) = (was, teleport_from) {
                 let jump = pose * was.inverse();
@@ -122,34 +134,27 @@ impl PreparingItem<'_, '_> {
             }
         }
         let is_carried = !self.tick.pins.is_empty();
-        for (index, attachment) in wanted.iter().enumerate() {
-            let affine = target(attachment, transforms)?;
-            let tick = &mut *self.tick;
-            for attached in tick.attached.iter().filter(|each| each.attachment == index) {
-                let particle = attached.particle as usize;
-                let to = frame.from_world(affine.transform_point3(attached.offset));
-                let from = self.particles.position_at(particle);
-                if teleport_from.is_some() {
-                    self.particles.put(particle, to);
-                } else if is_carried || from != to {
-                    // A later motion of the same particle is the one that counts.
-                    tick.pins.push(PinMotion {
-                        particle: attached.particle,
-                        from,
-                        to,
-                    });
-                }
+        let tick = &mut *self.tick;
+        for attached in &tick.attached {
+            let target = tick.targets[attached.attachment];
+            let particle = attached.particle as usize;
+            let to = frame.from_world(target.transform_point3(attached.offset));
+            let from = self.particles.position_at(particle);
+            if teleport_from.is_some() {
+                self.particles.put(particle, to);
+            } else if is_carried || from != to {
+                // A later motion of the same particle is the one that counts.
+                tick.pins.push(PinMotion {
+                    particle: attached.particle,
+                    from,
+                    to,
+                });
             }
         }
-        Ok(())
     }
 
     /// Takes over other attachments. Those that stay keep their offsets; what is let go gets its mass back.
-    fn attach(
-        &mut self,
-        wanted: &[(Pin, Entity)],
-        transforms: &TransformHelper,
-    ) -> Result<(), ClothError> {
+    fn attach(&mut self, wanted: &[ClothAttachment]) {
         let grid = self.topology.grid;
         let before = std::mem::take(&mut self.tick.attached);
         let known = std::mem::take(&mut self.tick.attachments);
@@ -163,8 +168,8 @@ impl PreparingItem<'_, '_> {
                 self.tick.attached.extend(kept);
                 continue;
             }
-            let from_world = target(each, transforms)?.inverse();
-            Pins::new([each.0.clone()]).for_each(&grid, |index| {
+            let from_world = self.tick.targets[attachment].inverse();
+            each.pin.for_each(&grid, |index| {
                 let position = self.frame.to_world(self.particles.position_at(index));
                 self.tick.attached.push(Attached {
                     particle: index as u32,
@@ -188,6 +193,11 @@ impl PreparingItem<'_, '_> {
         self.tick.attachments = wanted.to_vec();
         self.tick.tethered = None;
         self.tick.rest.disturb();
-        Ok(())
     }
+}
+
+/// Where something is and how it is turned, its scale left out.
+pub(super) fn rigid(affine: &Affine3A) -> Isometry3d {
+    let (_, rotation, translation) = affine.to_scale_rotation_translation();
+    Isometry3d::new(translation, rotation.normalize())
 }

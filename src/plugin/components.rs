@@ -2,15 +2,21 @@
 
 use bevy::{
     ecs::{
-        change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent,
+        change_detection::Tick,
+        component::Component,
+        entity::{Entity, EntityHashSet},
+        reflect::ReflectComponent,
     },
-    math::{Isometry3d, Vec3},
+    math::{Affine3A, Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::attach::Attached;
+use super::{
+    attach::{Attached, ClothAttachment},
+    envelope::Excess,
+};
 use crate::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pin, Pins, Springs},
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Pins, Springs},
     contact::{Detection, MovingCollider, NarrowPhase, Terms},
     hierarchy::{NodeBounds, QuadTree, SearchMethod, SearchReason, TopDownQuery},
     solver::{
@@ -19,13 +25,19 @@ use crate::{
     },
 };
 
-/// What does not change while a cloth moves: its grid, springs and tree. Empty until the first tick.
-#[derive(Component, Debug, Default)]
+/// What does not change while a cloth moves: its grid, springs and tree. Empty until the first tick. Reflected as
+/// nothing: it is made from the other components.
+#[derive(Component, Reflect, Debug, Default)]
+#[reflect(Component, Default, Debug)]
 pub struct ClothTopology {
+    #[reflect(ignore)]
     pub(super) grid: ClothGrid,
+    #[reflect(ignore)]
     pub(super) springs: Springs,
+    #[reflect(ignore)]
     pub(super) tree: QuadTree,
     /// What all this was made from.
+    #[reflect(ignore)]
     pub(super) woven: Option<(Cloth, ClothMaterial, Pins)>,
 }
 
@@ -52,10 +64,14 @@ impl ClothTopology {
     }
 }
 
-/// The bounding volumes of the last tick in which something was near, and what the search through them found.
-#[derive(Component, Debug, Default)]
+/// The bounding volumes of the last tick in which something was near, and what the search through them found. Reflected
+/// as nothing, as it is of one tick.
+#[derive(Component, Reflect, Debug, Default)]
+#[reflect(Component, Default, Debug)]
 pub struct ClothSearch {
+    #[reflect(ignore)]
     pub(super) bounds: NodeBounds,
+    #[reflect(ignore)]
     pub(super) query: TopDownQuery,
 }
 
@@ -143,6 +159,8 @@ pub(super) struct ClothTick {
     pub reach: f32,
     /// Colliders near the cloth, in its frame. What `detection` calls them by is their place here.
     pub near: Vec<(Entity, MovingCollider)>,
+    /// Their entities, while others are looked for.
+    pub near_set: EntityHashSet,
     pub detection: Detection,
     /// What the cloth, asleep, listens with.
     pub scout: (NodeBounds, TopDownQuery),
@@ -158,9 +176,15 @@ pub(super) struct ClothTick {
     pub known: Option<(ClothSettings, SearchMethod, NarrowPhase, Vec3)>,
     /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
     pub tethered: Option<(bool, f32)>,
+    /// How many particles are pinned.
+    pub pinned: usize,
     /// What `attached` was made from.
-    pub attachments: Vec<(Pin, Entity)>,
+    pub attachments: Vec<ClothAttachment>,
     pub attached: Vec<Attached>,
+    /// Where the attachments' targets are in this tick, in their order.
+    pub targets: Vec<Affine3A>,
+    /// Whether the cloth jumps in this tick.
+    pub teleports: bool,
     /// Where the first attachment's target was.
     pub first_target: Option<Isometry3d>,
     /// The particles as the tick began, for a tick that is done again.
@@ -171,6 +195,6 @@ pub(super) struct ClothTick {
     pub given_stretch: f32,
     /// Masses of its lightest and heaviest free particle (kg).
     pub masses: [f32; 2],
-    /// For how many ticks it has been beyond each limit, and whether that was told.
-    pub beyond: [(u32, bool); ClothLimit::ALL.len()],
+    /// How far it is beyond each limit.
+    pub excess: [Excess; ClothLimit::ALL.len()],
 }

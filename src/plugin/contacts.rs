@@ -3,10 +3,11 @@
 use bevy::{
     ecs::{
         component::Component,
-        entity::Entity,
+        entity::{Entity, MapEntities},
         lifecycle::Remove,
         message::{Message, MessageWriter},
         observer::On,
+        reflect::{ReflectComponent, ReflectMapEntities},
         system::Query,
     },
     reflect::{Reflect, std_traits::ReflectDefault},
@@ -16,9 +17,10 @@ use super::components::ClothTick;
 use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};
 
 /// A collider that a cloth touches.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[derive(Reflect, MapEntities, Debug, Clone, Copy, PartialEq)]
 pub struct ClothContact {
     /// The collider's entity.
+    #[entities]
     pub collider: Entity,
     /// Particles that it pushed in the last tick.
     pub particles: usize,
@@ -36,13 +38,15 @@ pub struct ClothContact {
 }
 
 /// The colliders that a cloth touched in the last tick.
-#[derive(Component, Reflect, Debug, Default, Clone)]
-#[reflect(Default, Debug, Clone)]
+#[derive(Component, Reflect, MapEntities, Debug, Default, Clone)]
+#[reflect(Component, MapEntities, Default, Debug, Clone)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothContacts {
+    #[entities]
     now: Vec<ClothContact>,
     points: Vec<ContactPoint>,
     /// Those told of, each with the most particles and the deepest penetration since the touch began.
+    #[entities]
     told: Vec<ClothContact>,
 }
 

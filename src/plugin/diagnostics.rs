@@ -10,7 +10,7 @@ use bevy::{
     },
 };
 
-use super::{ClothStats, ClothSystems, components::ClothTick, envelope::tell_of_limits};
+use super::{ClothStats, ClothSystems, components::ClothTick, envelope::report_limits};
 use crate::hierarchy::{BoundRule, SearchMethod};
 
 /// Measures every tick into Bevy's `DiagnosticsStore`: times and counts added up over all cloths, and the
@@ -89,9 +89,7 @@ impl Plugin for ClothDiagnosticsPlugin {
         app.register_diagnostic(Diagnostic::new(Self::STRETCH).with_suffix(" %"));
         app.add_systems(
             self.schedule,
-            measure
-                .after(tell_of_limits)
-                .in_set(ClothSystems::WriteBack),
+            measure.after(report_limits).in_set(ClothSystems::WriteBack),
         );
     }
 }

@@ -1,42 +1,110 @@
-//! Tells of cloths that leave the envelope in which they are simulated well.
+//! Reports cloths that leave the envelope in which they are simulated well.
 
 use bevy::{
     ecs::{
         entity::Entity,
         message::{Message, MessageWriter},
-        name::NameOrEntity,
-        system::Query,
+        system::{Local, Query},
     },
     log::warn,
     reflect::Reflect,
 };
 
-use super::{ClothStats, components::ClothTick};
+use super::{ClothStats, components::ClothTick, fault::Part, naming::Named};
 use crate::solver::ClothLimit;
 
-/// So many ticks in a row make a warning: a blow may stretch a cloth for an instant, which does no harm.
+/// As many ticks in a row make a report: a blow may stretch a cloth for an instant, which does no harm.
 const TICKS: u32 = 8;
 
+/// What is so many times as large as when it was reported is reported again.
+const WORSE: f32 = 10.0;
+
+/// Reports are gathered for as many ticks, so that many cloths are one line of the log.
+const GATHERED: u32 = 32;
+
 /// A cloth has left the envelope in which it is simulated well, for more than an instant. It is logged as well, with the
-/// remedy: once for each limit, and again after its [`ClothSettings`](crate::solver::ClothSettings) have changed.
+/// remedy: once for each limit, and again when it is ten times worse.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
 pub struct ClothLimitExceeded {
     /// The cloth.
     pub cloth: Entity,
     /// Which limit.
     pub limit: ClothLimit,
-    /// The quantity: a stretch, a ratio of masses, a distance in spacings, a damping, or a way in radii.
+    /// The quantity: a stretch, a ratio of masses, a distance (m), a damping, or a way in radii.
     pub quantity: f32,
     /// Up to where it is good.
     pub good_up_to: f32,
 }
 
+/// How far a cloth is beyond a limit.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Excess {
+    /// For how many ticks in a row.
+    ticks: u32,
+    /// The quantity that was reported, 0 before that.
+    reported: f32,
+}
+
+impl Excess {
+    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether it is to be reported.
+    fn observe(&mut self, limit: ClothLimit, quantity: Option<f32>) -> bool {
+        let Some(quantity) = quantity else {
+            self.ticks = 0;
+            return false;
+        };
+        self.ticks = self.ticks.saturating_add(1);
+        // What passes through does so at once.
+        let lasts = self.ticks >= TICKS || limit == ClothLimit::Dart;
+        let is_news = self.reported == 0.0 || quantity >= WORSE * self.reported;
+        if lasts && is_news {
+            self.reported = quantity;
+        }
+        lasts && is_news
+    }
+}
+
+/// Cloths beyond one limit that the log does not know of yet.
+#[derive(Debug, Default)]
+pub(super) struct Gathered {
+    cloths: usize,
+    ticks: u32,
+    /// The one that is farthest beyond, with its quantity and up to where that is good.
+    worst: Option<(String, [f32; 2])>,
+}
+
+impl Gathered {
+    fn add(&mut self, name: impl FnOnce() -> String, quantity: [f32; 2]) {
+        self.cloths += 1;
+        let known = self.worst.as_ref().map(|(_, [worst, good])| worst / good);
+        if known.is_none_or(|worst| quantity[0] / quantity[1] > worst) {
+            self.worst = Some((name(), quantity));
+        }
+    }
+
+    /// A tick has passed. Returns what is to be logged, if anything is.
+    fn line(&mut self, limit: ClothLimit) -> Option<String> {
+        self.ticks += u32::from(self.cloths > 0);
+        if self.ticks < GATHERED {
+            return None;
+        }
+        let Self { cloths, worst, .. } = std::mem::take(self);
+        let (name, quantity) = worst?;
+        let (figures, remedy) = (limit.figures(quantity), limit.remedy());
+        Some(if cloths == 1 {
+            format!("{name} is {limit}: {figures}: {remedy}")
+        } else {
+            format!("{cloths} cloths are {limit}, {name} most: {figures}: {remedy}")
+        })
+    }
+}
+
 /// Looks at every cloth that moved in the tick.
-pub(super) fn tell_of_limits(
-    mut cloths: Query<(NameOrEntity, &mut ClothTick, &mut ClothStats)>,
+pub(super) fn report_limits(
+    mut cloths: Query<(Named, &mut ClothTick, &mut ClothStats)>,
     mut exceeded: MessageWriter<ClothLimitExceeded>,
+    mut gathered: Local<[Gathered; ClothLimit::ALL.len()]>,
 ) {
-    for (cloth, mut tick, mut stats) in &mut cloths {
+    for (name, mut tick, mut stats) in &mut cloths {
         // Kept as it was while it sleeps or stands still; not touched, so that nothing seems to change.
         let Some(load) = tick.load else {
             continue;
@@ -44,26 +112,76 @@ pub(super) fn tell_of_limits(
         tick.load = None;
         stats.exceeded = None;
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
-            let (ticks, is_told) = &mut tick.beyond[index];
-            let Some([quantity, good_up_to]) = load.beyond(limit) else {
-                *ticks = 0;
-                continue;
-            };
-            stats.exceeded = stats.exceeded.or(Some(limit));
-            *ticks += 1;
-            // What passes through does so at once.
-            if (*ticks >= TICKS || limit == ClothLimit::Dart) && !std::mem::replace(is_told, true) {
+            let beyond = load.beyond(limit);
+            stats.exceeded = stats.exceeded.or(beyond.map(|_| limit));
+            let is_news = tick.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
+            if let Some([quantity, good_up_to]) = beyond
+                && is_news
+            {
                 exceeded.write(ClothLimitExceeded {
-                    cloth: cloth.entity,
+                    cloth: name.entity,
                     limit,
                     quantity,
                     good_up_to,
                 });
-                warn!(
-                    "{cloth} has left the envelope in which cloth is simulated well: its {limit} is {quantity:.3}, good up to {good_up_to}; {}",
-                    limit.remedy()
-                );
+                gathered[index].add(|| name.describe(Part::Cloth), [quantity, good_up_to]);
             }
         }
+    }
+    for (limit, gathered) in ClothLimit::ALL.into_iter().zip(&mut *gathered) {
+        if let Some(line) = gathered.line(limit) {
+            warn!("{line}");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMIT: ClothLimit = ClothLimit::Stretch;
+
+    #[test]
+    fn is_reported_after_eight_ticks_and_again_when_ten_times_worse() {
+        let mut excess = Excess::default();
+        let mut observe = |quantity| excess.observe(LIMIT, quantity);
+        assert!((1..TICKS).all(|_| !observe(Some(0.2))));
+        assert!(observe(Some(0.2)));
+        assert!(!observe(Some(1.9)));
+        assert!(!observe(None));
+        assert!((1..TICKS).all(|_| !observe(Some(2.1))), "an instant again");
+        assert!(observe(Some(2.1)));
+        assert!(!observe(Some(2.2)));
+    }
+
+    /// Sixty cloths within half a second are one line with the worst of them.
+    #[test]
+    fn many_are_one_line() {
+        let mut gathered = Gathered::default();
+        let mut lines = Vec::new();
+        for tick in 0..200 {
+            if tick < 30 {
+                for cloth in [2 * tick, 2 * tick + 1] {
+                    let stretch = if cloth == 17 { 0.31 } else { 0.2 };
+                    gathered.add(|| format!("cloth \"flag {cloth}\""), [stretch, 0.15]);
+                }
+            }
+            lines.extend(gathered.line(LIMIT));
+        }
+        let expected = "60 cloths are overstretched, cloth \"flag 17\" most: 31 % (limit 15 %): ";
+        assert!(
+            matches!(&lines[..], [line] if line.starts_with(expected)),
+            "{lines:?}"
+        );
+    }
+
+    #[test]
+    fn one_is_named_with_its_figures() {
+        let mut gathered = Gathered::default();
+        gathered.add(|| "cloth \"flag\"".into(), [0.31, 0.15]);
+        let line = (0..GATHERED).find_map(|_| gathered.line(LIMIT));
+        let line = line.expect("a line");
+        let expected = "cloth \"flag\" is overstretched: 31 % (limit 15 %): ";
+        assert!(line.starts_with(expected), "{line}");
     }
 }

@@ -1,31 +1,40 @@
 //! What happens to bad input.
 
 use bevy::{
-    ecs::{component::Component, entity::Entity, system::Commands},
+    ecs::{
+        component::Component,
+        entity::{Entity, MapEntities},
+        query::Changed,
+        reflect::{ReflectComponent, ReflectMapEntities},
+        system::{Commands, Query},
+    },
     log::error,
+    reflect::Reflect,
 };
 
+use super::naming::{Named, NamedItem};
 use crate::cloth::ClothError;
 
 /// On a cloth or collider that is left out of the simulation: why. Taken away as soon as the fault is mended.
-#[derive(Component, Debug, Clone, PartialEq)]
+#[derive(Component, Reflect, MapEntities, Debug, Clone, PartialEq)]
+#[reflect(Component, MapEntities, Debug, Clone, PartialEq)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothFault {
     /// What is wrong.
+    #[entities]
     pub error: ClothError,
     part: Part,
 }
 
 /// What of an entity is at fault: it may be a cloth and a collider at once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     Cloth,
     Collider,
 }
 
 impl ClothFault {
-    /// Marks or clears `entity` by the outcome of the check of one part of it. A fault is logged when it comes,
-    /// not again while it lasts.
+    /// Marks or clears `entity` by the outcome of the check of one part of it.
     pub(super) fn report(
         commands: &mut Commands,
         entity: Entity,
@@ -40,10 +49,34 @@ impl ClothFault {
             (Err(error), known)
                 if known.is_none_or(|k| k.part == part && !k.error.is_same_fault(&error)) =>
             {
-                error!("{entity} is left out of the cloth simulation: {error}");
                 commands.entity(entity).try_insert(Self { error, part });
             }
             _ => {}
+        }
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        self.part == other.part && self.error.is_same_fault(&other.error)
+    }
+}
+
+/// Logs each fault when it comes, not again while it lasts; those of a tick that are alike in one line.
+pub(super) fn log_faults(faults: Query<(Named, &ClothFault), Changed<ClothFault>>) {
+    for (index, (name, fault)) in faults.iter().enumerate() {
+        let is_like = |(_, other): &(NamedItem, &ClothFault)| fault.is_like(other);
+        if faults.iter().take(index).any(|other| is_like(&other)) {
+            continue;
+        }
+        let (error, others) = (&fault.error, faults.iter().skip(index + 1));
+        match others.filter(is_like).count() {
+            0 => error!(
+                "{} is left out of the cloth simulation: {error}",
+                name.describe(fault.part)
+            ),
+            others => error!(
+                "{} and {others} more are left out of the cloth simulation: {error}",
+                name.describe(fault.part)
+            ),
         }
     }
 }

@@ -63,6 +63,12 @@ impl ClothFrame {
         self.isometry
     }
 
+    /// The entity's whole global transform, its scale included.
+    #[cfg(feature = "mesh")]
+    pub(super) fn affine(&self) -> Affine3A {
+        self.affine
+    }
+
     /// A particle's position in the world (m).
     pub fn to_world(&self, position: Vec3) -> Vec3 {
         self.isometry * position

@@ -14,6 +14,7 @@ mod frame;
 mod gizmos;
 #[cfg(feature = "mesh")]
 mod mesh;
+mod naming;
 #[cfg(feature = "egui")]
 mod panel;
 mod prepare;
@@ -29,7 +30,7 @@ use bevy::{
     ecs::{intern::Interned, schedule::ScheduleLabel},
 };
 
-pub use attach::{ClothAttachments, ClothTeleport};
+pub use attach::{ClothAttachment, ClothAttachments, ClothTeleport};
 pub use components::{ClothSearch, ClothStats, ClothTopology};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use diagnostics::ClothDiagnosticsPlugin;

@@ -91,6 +91,9 @@ impl PreparingItem<'_, '_> {
         gravity: Vec3,
         seconds: f32,
     ) -> Result<(), ClothError> {
+        // Whatever is wrong, nothing of an earlier tick is done again.
+        self.tick.step = None;
+        self.tick.pins.clear();
         let (frame, scale) = ClothFrame::of(transform)?;
         let settings = self.settings.copied().unwrap_or_default();
         let material = self.material.copied().unwrap_or_default();
@@ -107,14 +110,16 @@ impl PreparingItem<'_, '_> {
         if !was_woven {
             *self.frame = frame;
         }
-        let was_written = self.tick.written != Some(self.particles.last_changed());
+        // Who saves or restores particles may mark them as changed without a change.
+        let was_written = self.tick.written != Some(self.particles.last_changed())
+            && !self.tick.rest.sleeps_as(&self.particles);
         // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
         if was_written || !self.tick.rest.is_asleep() {
             self.tick.largest_speed = self.look_at_particles()?;
         }
-        self.check_targets(transforms)?;
+        self.find_targets(transforms)?;
         let teleports = self.teleport.is_some();
-        self.tick.pins.clear();
+        self.tick.teleports = teleports;
         if teleports {
             *self.frame = frame;
         } else if seconds > 0.0 && *self.frame != frame {
@@ -122,7 +127,7 @@ impl PreparingItem<'_, '_> {
             *self.frame = frame;
         }
         if seconds > 0.0 || !was_woven || teleports {
-            self.follow_targets(transforms, teleports.then_some(before))?;
+            self.follow_targets(teleports.then_some(before));
         }
         if was_written || teleports {
             self.tick.stretch = self.tick.solver.measure(&self.particles);
@@ -131,21 +136,20 @@ impl PreparingItem<'_, '_> {
             if !self.tick.solver.tethers().are_of(&self.particles) {
                 self.tick.tethered = None;
             }
-            self.tick.rest.disturb();
+            // One that is awake is watched all the same.
+            if self.tick.rest.is_asleep() {
+                self.tick.rest.disturb();
+            }
         }
         let acceleration = self.frame.isometry().rotation.inverse() * gravity;
         self.tether(settings.tethers, &material, gravity.length());
         let known = Some((settings, search, narrow_phase, acceleration));
         if self.tick.known != known || !self.tick.pins.is_empty() || !settings.sleeps {
-            // Gravity is seen from the cloth's frame: it changes in every tick of one that turns.
-            if self.tick.known.map(|(settings, ..)| settings) != Some(settings) {
-                self.tick.beyond = Default::default();
-            }
             self.tick.known = known;
             self.tick.rest.disturb();
         } else if !self.tick.rest.is_asleep() {
-            let (speed, stretch) = (self.tick.largest_speed, self.tick.stretch);
-            self.tick.rest.observe(seconds, speed, stretch);
+            let diagonal = self.topology.grid.diagonal();
+            self.tick.rest.observe(seconds, &self.particles, diagonal);
         }
         // The plugin's own writing, up to here.
         self.tick.written = Some(self.particles.last_changed());

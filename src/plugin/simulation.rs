@@ -3,16 +3,25 @@
 use bevy::{
     app::{App, FixedUpdate, Plugin},
     ecs::{
+        bundle::Bundle,
+        component::Component,
+        entity::Entity,
         intern::Interned,
-        lifecycle::{Insert, Remove},
+        lifecycle::{Add, Insert, Remove},
         observer::On,
+        query::With,
         reflect::ReflectResource,
         resource::Resource,
-        schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet},
+        schedule::{
+            IntoScheduleConfigs, ScheduleLabel, SystemSet, common_conditions::resource_exists,
+        },
         system::{Commands, Query},
+        world::World,
     },
+    log::error,
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
+    time::Time,
 };
 
 use super::{
@@ -21,14 +30,14 @@ use super::{
     colliders::{ColliderMotion, prepare_colliders},
     components::{ClothTick, Vicinity},
     contacts::{tell_of_removed_cloths, tell_of_touches},
-    envelope::tell_of_limits,
-    fault::Part,
+    envelope::report_limits,
+    fault::{Part, log_faults},
     prepare::prepare_cloths,
     search::{query_collisions, rebuild_hierarchies},
     tick::integrate,
 };
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Pins},
+    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, Pins},
     contact::{ClothCollider, NarrowPhase},
     hierarchy::SearchMethod,
     solver::ClothSettings,
@@ -65,7 +74,7 @@ impl Default for ClothGravity {
     }
 }
 
-/// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws. Add it before the first cloth is spawned.
+/// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothPlugin {
     schedule: Interned<dyn ScheduleLabel>,
@@ -101,22 +110,19 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothStats>()
             .register_type::<ClothAttachments>()
             .register_type::<ClothTeleport>()
+            .register_type::<ClothTopology>()
+            .register_type::<ClothSearch>()
+            .register_type::<ClothFault>()
             .register_type::<ClothGravity>();
-        app.register_required_components::<Cloth, ClothSettings>()
-            .register_required_components::<Cloth, SearchMethod>()
-            .register_required_components::<Cloth, NarrowPhase>()
-            .register_required_components::<Cloth, ClothTopology>()
-            .register_required_components::<Cloth, ClothFrame>()
-            .register_required_components::<Cloth, ClothSearch>()
-            .register_required_components::<Cloth, ClothContacts>()
-            .register_required_components::<Cloth, ClothStats>()
-            .register_required_components::<Cloth, ClothTick>()
-            .register_required_components::<Cloth, Vicinity>()
-            .register_required_components::<ClothCollider, ColliderMotion>();
+        add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
+        add_parts_to_earlier::<ClothCollider, ColliderMotion>(app.world_mut());
         app.init_resource::<ClothGravity>()
             .add_message::<ClothTouchStarted>()
             .add_message::<ClothTouchStopped>()
             .add_message::<ClothLimitExceeded>()
+            .insert_resource(ClothPresence::Simulated)
+            .add_observer(add_parts::<Cloth, ClothParts>)
+            .add_observer(add_parts::<ClothCollider, ColliderMotion>)
             .add_observer(tell_of_removed_cloths)
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
@@ -137,15 +143,54 @@ impl Plugin for ClothPlugin {
             (
                 (prepare_colliders, prepare_cloths)
                     .chain()
+                    .run_if(resource_exists::<Time>)
                     .in_set(ClothSystems::Prepare),
                 rebuild_hierarchies.in_set(ClothSystems::Rebuild),
                 query_collisions.in_set(ClothSystems::Query),
                 integrate.in_set(ClothSystems::Integrate),
-                (tell_of_touches, tell_of_limits)
+                (tell_of_touches, report_limits, log_faults)
                     .chain()
                     .in_set(ClothSystems::WriteBack),
             ),
         );
+    }
+
+    fn finish(&self, app: &mut App) {
+        if !app.world().contains_resource::<Time>() {
+            error!(
+                "no cloth moves: there is no clock. Add Bevy's `TimePlugin`, which is among `MinimalPlugins` and `DefaultPlugins`"
+            );
+        }
+    }
+}
+
+/// What a cloth has besides what it is spawned with. Not required components: those can't be declared any more where a
+/// cloth was spawned before the plugin was added.
+type ClothParts = (
+    ClothSettings,
+    SearchMethod,
+    NarrowPhase,
+    ClothTopology,
+    ClothFrame,
+    ClothSearch,
+    ClothContacts,
+    ClothStats,
+    ClothTick,
+    Vicinity,
+);
+
+/// Gives a new cloth or collider the parts that it was not spawned with.
+fn add_parts<C: Component, Parts: Bundle + Default>(added: On<Add, C>, mut commands: Commands) {
+    commands
+        .entity(added.entity)
+        .try_insert_if_new(Parts::default());
+}
+
+/// The same for those that were there before the plugin.
+fn add_parts_to_earlier<C: Component, Parts: Bundle + Default>(world: &mut World) {
+    let mut earlier = world.query_filtered::<Entity, With<C>>();
+    for entity in earlier.iter(world).collect::<Vec<_>>() {
+        world.entity_mut(entity).insert_if_new(Parts::default());
     }
 }
 

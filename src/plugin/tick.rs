@@ -163,6 +163,7 @@ impl IntegratingItem<'_, '_> {
             solver,
             pins,
             near,
+            near_set,
             detection,
             terms,
             ..
@@ -171,9 +172,12 @@ impl IntegratingItem<'_, '_> {
         solver.advance(&mut self.particles, step, pins, |particles, substep| {
             detection.respond(particles, terms, substep, |numbered| {
                 // Those that were far away may be near now; who is known keeps its number.
+                near_set.clear();
+                near_set.extend(near.iter().map(|(known, _)| *known));
                 for (entity, motion) in colliders {
-                    let is_known = near.iter().any(|(known, _)| *known == entity);
-                    if !is_known && let Some(collider) = motion.seen_from(frame) {
+                    if !near_set.contains(&entity)
+                        && let Some(collider) = motion.seen_from(frame)
+                    {
                         numbered.push((near.len(), collider));
                         near.push((entity, collider));
                     }

@@ -38,14 +38,18 @@ impl PreparingItem<'_, '_> {
         let grid = self.cloth.grid(scale)?;
         material.validate()?;
         pins.validate(&grid)?;
-        // Particles that came with a newly spawned cloth are kept; those of another grid are not.
+        // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another
+        // grid are not.
         let mut particles = if self.topology.woven.is_some() || self.particles.is_empty() {
-            ClothParticles::at_rest(&grid, material)?
+            let mut particles = ClothParticles::at_rest(&grid, material)?;
+            particles.weigh(&grid, material, pins)?;
+            particles.make_uneven(&grid, self.cloth.unevenness);
+            particles
         } else {
             check_count(&self.particles, &grid)?;
             self.particles.clone()
         };
-        particles.weigh(&grid, material, pins)?;
+        pins.for_each(&grid, |index| particles.pin(index));
         let springs = Springs::of_grid(&grid, material);
         let tree = QuadTree::of_grid(&grid, springs.has(SpringKind::Shear));
         self.tick.solver = Solver::new(&springs, &particles);
@@ -90,6 +94,11 @@ impl PreparingItem<'_, '_> {
                 of.bend_compliance,
             ]
         };
+        let tethered_by =
+            |of: &ClothMaterial| [of.areal_density, of.stretch_compliance, of.shear_compliance];
+        if were_pinned != pins || tethered_by(was) != tethered_by(material) {
+            self.tick.tethered = None;
+        }
         if compliances(was) != compliances(material) {
             let had_diagonals = topology.springs.has(SpringKind::Shear);
             topology.springs = Springs::of_grid(&topology.grid, material);
@@ -102,8 +111,6 @@ impl PreparingItem<'_, '_> {
             self.tick.written = None;
         }
         (*was, *were_pinned) = (*material, pins.clone());
-        self.tick.tethered = None;
-        self.tick.beyond = Default::default();
         self.tick.rest.disturb();
         Ok(())
     }
@@ -111,15 +118,22 @@ impl PreparingItem<'_, '_> {
     /// Makes tethers anew if what they were made for has changed: the pins, the material, or what pulls at them; and
     /// what follows from the same.
     pub(super) fn tether(&mut self, wanted: bool, material: &ClothMaterial, acceleration: f32) {
+        let grid = &self.topology.grid;
+        if self.tick.tethered.is_none() {
+            self.tick.pinned = self
+                .particles
+                .inverse_masses()
+                .filter(|w| *w == 0.0)
+                .count();
+            self.tick.masses = self.particles.free_masses();
+        }
+        self.tick.given_stretch = given_stretch(grid, material, self.tick.pinned, acceleration);
+        let acceleration = Tethers::made_for(acceleration);
         let made_for = Some((wanted, acceleration));
         if self.tick.tethered == made_for {
             return;
         }
         self.tick.tethered = made_for;
-        let pinned = self.particles.inverse_masses().filter(|w| *w == 0.0);
-        let grid = &self.topology.grid;
-        self.tick.given_stretch = given_stretch(grid, material, pinned.count(), acceleration);
-        self.tick.masses = self.particles.free_masses();
         let tethers = if wanted {
             Tethers::new(&self.topology.grid, material, &self.particles, acceleration)
         } else {

@@ -58,32 +58,62 @@ impl ClothLimit {
     pub fn remedy(self) -> &'static str {
         match self {
             Self::Stretch => {
-                "take more sub-steps, a tolerance instead (`ClothSettings::tolerance`), tethers or fewer particles; start and stop pins gently, and no farther apart than the cloth is long"
+                "more sub-steps or a tolerance (`ClothSettings`), tethers or fewer particles; pins that start and stop gently, no farther apart than the cloth is long"
             }
             Self::Tolerance => {
-                "allow more sub-steps, or a larger stretch; what the material itself gives no sub-steps take away"
+                "more sub-steps or a larger tolerance; what the material itself gives no sub-steps take away"
             }
             Self::MassRatio => {
-                "make the heavy particles lighter, pin them, or give the cloth tethers (`ClothSettings::tethers`)"
+                "lighter particles, pins in their place, or tethers (`ClothSettings::tethers`)"
             }
             Self::Distance => {
-                "move the cloth's `Transform` along with it: particles are simulated in its frame"
+                "a `Transform` that moves along with it: particles are simulated in its frame"
             }
-            Self::Damping => "lower the damping of its material, or take more sub-steps",
-            Self::Dart => "make the collider thicker or slower, or the cloth finer",
+            Self::Damping => "less damping (`ClothMaterial::damping`) or more sub-steps",
+            Self::Dart => "a thicker or slower collider, or a finer cloth",
         }
     }
 }
 
+impl ClothLimit {
+    /// A quantity beyond it and up to where that is good, in words.
+    pub(crate) fn figures(self, [quantity, good_up_to]: [f32; 2]) -> String {
+        // Three digits tell enough.
+        let digits = |value: f32| match value {
+            100.0.. => format!("{value:.0}"),
+            10.0.. => format!("{value:.1}"),
+            _ => format!("{value:.3}"),
+        };
+        let percent = |value: f32| {
+            let percent = 100.0 * value;
+            let decimals = if percent < 10.0 { 1 } else { 0 };
+            format!("{percent:.decimals$} %")
+        };
+        let [found, good] = match self {
+            Self::Stretch | Self::Tolerance => [quantity, good_up_to].map(percent),
+            _ => [quantity, good_up_to].map(digits),
+        };
+        let what = match self {
+            Self::Stretch | Self::Tolerance => "",
+            Self::MassRatio => "heaviest to lightest ",
+            Self::Distance => "metres ",
+            Self::Damping => "D ",
+            Self::Dart => "radii a sub-step ",
+        };
+        format!("{what}{found} (limit {good})")
+    }
+}
+
+/// What a cloth beyond it is.
 impl fmt::Display for ClothLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Stretch => "largest stretch",
-            Self::Tolerance => "largest stretch, for which it has a tolerance,",
-            Self::MassRatio => "ratio of the masses of its particles",
-            Self::Distance => "distance from the origin of its frame, in spacings,",
-            Self::Damping => "damping",
-            Self::Dart => "small collider's way in a sub-step, in radii,",
+            Self::Stretch => "overstretched",
+            Self::Tolerance => "stretched beyond tolerance",
+            Self::MassRatio => "made of too different masses",
+            Self::Distance => "too far from its frame's origin",
+            Self::Damping => "damped too much",
+            Self::Dart => "met by too small and fast a collider",
         })
     }
 }

@@ -14,6 +14,7 @@ mod precision;
 mod rest;
 mod run;
 mod settings;
+mod spin;
 mod stretch;
 mod substep;
 #[cfg(test)]

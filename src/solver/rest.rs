@@ -1,78 +1,63 @@
 //! When a cloth has come to rest.
 
-use super::Stretch;
+use crate::cloth::ClothParticles;
 
-/// The speed that no particle of a cloth at rest has (m/s): a kinetic energy of 5·10⁻⁵ J/kg.
-const SPEED: f32 = 0.01;
+/// How far a particle of a cloth at rest is from where it was at most, in diagonals of the cloth: a pixel, where the
+/// cloth fills the screen.
+const REACH: f32 = 1.0e-3;
 
-/// What the largest stretch of a cloth at rest changes by at most, a second.
-const STRETCH_CHANGE: f32 = 0.01;
+/// And in metres: a person stands nearer to a large cloth than its size.
+const LARGEST_REACH: f32 = 5.0e-3;
 
-/// How long a cloth has to be calm before it sleeps (s).
-const PATIENCE: f32 = 0.5;
+/// How long it has to stay so near (s): half a swing, √(g/L) × 2.405/2 being the angular frequency of a sheet of length
+/// L that hangs by its upper edge. What swings farther leaves its place in that time, also from a turning point.
+const HALF_SWING: f32 = 2.61;
+const GRAVITY: f32 = 9.81;
+const PATIENCE: [f32; 2] = [0.5, 2.5];
 
-/// How long a cloth has been at rest.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
+/// Whether a cloth is at rest, told by what an eye sees: no particle has moved by more than a thousandth of the cloth's
+/// diagonal, at most 5 mm, for as long as half a swing of a sheet as long as that takes (1.3 s for 2.3 m), from 0.5 to
+/// 2.5 s. Speeds do not count: what trembles in its place is at rest.
+#[derive(Debug, Default, Clone, PartialEq)]
 pub struct Rest {
+    /// Where the particles were when they were last seen to move; as they sleep, if they do.
+    origin: ClothParticles,
+    /// For how long they have been near it (s).
     calm: f32,
-    /// The largest and the smallest stretch in that time.
-    stretch: Option<(f32, f32)>,
+    is_asleep: bool,
 }
 
 impl Rest {
-    /// Takes what the tick ended with: its length (s), the speed of the fastest particle (m/s), the stretch.
-    pub fn observe(&mut self, seconds: f32, largest_speed: f32, stretch: Stretch) {
-        let stretch = stretch.structural;
-        let (low, high) = self.stretch.unwrap_or((stretch, stretch));
-        let (low, high) = (low.min(stretch), high.max(stretch));
-        if largest_speed < SPEED && high - low < STRETCH_CHANGE * PATIENCE {
-            self.calm += seconds;
-            self.stretch = Some((low, high));
-        } else {
-            *self = Self::default();
+    /// Takes what a tick of so many seconds ended with, of a cloth that measures `diagonal` (m) at rest.
+    pub fn observe(&mut self, seconds: f32, particles: &ClothParticles, diagonal: f32) {
+        let reach = (REACH * diagonal).min(LARGEST_REACH);
+        let patience = HALF_SWING * (diagonal / GRAVITY).sqrt();
+        let is_near = particles.stays_within(reach, &self.origin);
+        if !is_near {
+            self.origin.copy_from(particles);
+            self.calm = 0.0;
+            return;
+        }
+        self.calm += seconds;
+        if self.calm >= patience.clamp(PATIENCE[0], PATIENCE[1]) {
+            self.is_asleep = true;
+            self.origin.copy_from(particles);
         }
     }
 
     /// Whether it has been long enough.
     pub fn is_asleep(&self) -> bool {
-        self.calm >= PATIENCE
+        self.is_asleep
+    }
+
+    /// Whether it sleeps, with its particles as they are here to the last bit.
+    pub fn sleeps_as(&self, particles: &ClothParticles) -> bool {
+        self.is_asleep && self.origin == *particles
     }
 
     /// Wakes the cloth.
     pub fn disturb(&mut self) {
-        *self = Self::default();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn after(ticks: u32, speed: f32, stretch: impl Fn(u32) -> f32) -> Rest {
-        let mut rest = Rest::default();
-        for tick in 0..ticks {
-            let structural = stretch(tick);
-            let stretch = Stretch {
-                structural,
-                bound: structural,
-            };
-            rest.observe(1.0 / 64.0, speed, stretch);
-        }
-        rest
-    }
-
-    #[test]
-    fn sleeps_when_it_has_been_calm_long_enough() {
-        assert!(!after(31, 0.009, |_| 0.1).is_asleep());
-        assert!(after(32, 0.009, |_| 0.1).is_asleep());
-        assert!(!after(640, 0.011, |_| 0.1).is_asleep(), "too fast");
-        let creeping = |tick: u32| tick as f32 / 64.0 * 0.011;
-        assert!(!after(640, 0.0, creeping).is_asleep(), "still stretching");
-        let creeping = |tick: u32| tick as f32 / 64.0 * 0.009;
-        assert!(after(32, 0.0, creeping).is_asleep());
-        assert!(!after(64, f32::NAN, |_| 0.1).is_asleep());
-        let mut rest = after(64, 0.0, |_| 0.1);
-        rest.disturb();
-        assert!(!rest.is_asleep());
+        self.calm = 0.0;
+        self.is_asleep = false;
     }
 }

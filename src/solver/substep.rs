@@ -6,6 +6,7 @@ use super::{
     Instructions, Stretch, Tethers,
     bands::with_threads_awake,
     list::ListSweep,
+    spin::Spin,
     tether::Anchors,
     wave::{GridSweep, Motion},
 };
@@ -57,7 +58,8 @@ impl SubStep {
     }
 }
 
-/// A pinned particle that its cloth's frame, or whatever it is pinned to, carries along in a tick.
+/// A pinned particle that its cloth's frame, or whatever it is pinned to, carries along in a tick. One of a particle that
+/// does not exist moves nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PinMotion {
     /// Index of the particle.
@@ -104,8 +106,15 @@ impl Solver {
     /// If the springs are those of another grid, or between more particles than there are.
     pub fn new(springs: &Springs, particles: &ClothParticles) -> Self {
         let layout = particles.layout();
-        if let Weave::Grid(grid, _) = springs.weave() {
-            assert!(particles.fit(grid), "springs and particles of one grid");
+        match springs.weave() {
+            Weave::Grid(grid, _) => {
+                assert!(particles.fit(grid), "springs and particles of one grid");
+            }
+            Weave::List(list, _) => {
+                let mut ends = list.iter().flat_map(|spring| spring.ends);
+                let exists = |end: u32| (end as usize) < particles.len();
+                assert!(ends.all(exists), "springs between particles that exist");
+            }
         }
         let sweep = match springs.weave() {
             Weave::Grid(grid, compliances) => {
@@ -180,9 +189,26 @@ impl Solver {
             Sweep::Grid(sweep) => sweep.bands(self.bands),
             Sweep::List(..) => 1,
         };
+        // What else turns the cloth is not known here.
+        let spin = match pins.is_empty() {
+            true => Spin::of(particles, step.acceleration),
+            false => None,
+        };
+        let mut is_pushed = false;
+        let mut respond = |particles: &mut ClothParticles, substep| {
+            let pushes = respond(particles, substep);
+            is_pushed |= pushes;
+            pushes
+        };
         let measured =
             with_threads_awake(bands, || self.substeps(particles, step, pins, &mut respond));
-        for pin in pins {
+        if let Some(spin) = spin
+            && !is_pushed
+        {
+            let kept = (1.0 - step.damping).powf(step.seconds / DAMPING_REFERENCE);
+            spin.restore(particles, kept, step.substeps.max(1));
+        }
+        for pin in existing(pins, particles.len()) {
             // Not a rounding beside it.
             particles.put(pin.particle as usize, pin.to);
         }
@@ -208,7 +234,7 @@ impl Solver {
                 count,
                 farthest_move: 0.0,
             };
-            for pin in pins {
+            for pin in existing(pins, particles.len()) {
                 particles.lead_pin(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
             }
             self.tethers.locate(particles.blocks(), &mut self.anchors);
@@ -254,10 +280,45 @@ impl Solver {
     }
 }
 
+/// Those of particles that exist.
+fn existing(pins: &[PinMotion], particles: usize) -> impl Iterator<Item = &PinMotion> {
+    pins.iter()
+        .filter(move |pin| (pin.particle as usize) < particles)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloth::{Cloth, ClothMaterial, Pins};
+    use crate::cloth::{Cloth, ClothMaterial, Pins, Spring, SpringKind};
+
+    /// Beyond the end there is nothing to move, in the last block's unused lanes neither.
+    #[test]
+    fn a_pin_beyond_the_particles_moves_nothing() {
+        let (mut particles, springs) = cloth(&ClothMaterial::COTTON, &Pins::top_row());
+        let mut expected = particles.clone();
+        let beyond = [30, 31, 1000, u32::MAX].map(|particle| PinMotion {
+            particle,
+            from: Vec3::ZERO,
+            to: Vec3::splat(5.0),
+        });
+        advance(&mut particles, &springs, TickStep::default(), &beyond);
+        advance(&mut expected, &springs, TickStep::default(), &[]);
+        assert_eq!(particles, expected);
+    }
+
+    #[test]
+    #[should_panic(expected = "springs between particles that exist")]
+    fn springs_beyond_the_particles_are_refused_at_once() {
+        let spring = Spring {
+            kind: SpringKind::Structural,
+            ends: [3, 9],
+            rest_length: 1.0,
+            compliance: 0.0,
+        };
+        let springs = Springs::of_list(&[spring], 10).expect("ten particles");
+        let particles = ClothParticles::new(&[Vec3::ZERO; 5], &[1.0; 5]).expect("five particles");
+        let _ = Solver::new(&springs, &particles);
+    }
 
     /// Without responses.
     fn advance(

@@ -5,7 +5,7 @@
 //! (long range attachments, Kim, Chentanez and Müller 2012). It takes away energy or none: it acts only against
 //! what is beyond its length, and a pin does not move.
 
-use bevy::math::Vec2;
+use bevy::math::{UVec2, Vec2};
 
 use super::kernel::Kernels;
 use crate::cloth::{Block, ClothGrid, ClothMaterial, ClothParticles, LANES, Lanes, Layout, Slot};
@@ -49,10 +49,8 @@ pub(super) struct Anchors {
 
 /// The pull that threads are given room for (N/m): four times the weight of a cloth, over so many pins side by side.
 fn tension(grid: &ClothGrid, material: &ClothMaterial, pins: usize, acceleration: f32) -> f32 {
-    let area = grid
-        .cells()
-        .map(|(r, c)| grid.tributary_area(r, c))
-        .sum::<f32>();
+    let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
+    let area = (sides.as_vec2() * grid.spacing()).element_product();
     let width = pins as f32 * grid.spacing().min_element();
     MARGIN * material.areal_density * area * acceleration.max(LEAST_ACCELERATION) / width
 }
@@ -144,6 +142,16 @@ impl Tethers {
             pins: pinned.iter().map(|&(.., slot)| slot).collect(),
             layers,
         }
+    }
+
+    /// The acceleration (m/s²) to make tethers for where `acceleration` acts: at least 9.81, and doubled until it is
+    /// as large, so that tethers outlast an acceleration that changes from tick to tick.
+    pub fn made_for(acceleration: f32) -> f32 {
+        let mut rounded = LEAST_ACCELERATION;
+        while rounded < acceleration {
+            rounded *= 2.0;
+        }
+        rounded
     }
 
     /// Whether nothing is tethered.

@@ -1,7 +1,7 @@
 //! The particles of a cloth, in columns.
 
 use bevy::{
-    ecs::component::Component,
+    ecs::{component::Component, reflect::ReflectComponent},
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
@@ -54,8 +54,7 @@ impl From<(u32, u32)> for ParticleId {
 /// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write between
 /// ticks; emptying it (`*particles = default()`) weaves the cloth anew at rest.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
-#[reflect(opaque)]
-#[reflect(Default, Debug, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {
     layout: Layout,
     blocks: Vec<Block>,

@@ -37,6 +37,19 @@ impl ClothParticles {
         Ok(())
     }
 
+    /// Moves each particle that is not pinned off the plane of a `grid` at rest, by at most `unevenness` spacings: by a
+    /// number that its index gives, so that the same cloth begins the same.
+    pub(crate) fn make_uneven(&mut self, grid: &ClothGrid, unevenness: f32) {
+        let farthest = unevenness * grid.spacing().min_element() * grid.normal();
+        for (index, slot) in self.layout.slots().enumerate() {
+            let block = &mut self.blocks[slot.block];
+            if block.inverse_mass(slot.lane) > 0.0 {
+                let position = block.position(slot.lane) + farthest * scattered(index as u64);
+                block.set_position(slot.lane, position);
+            }
+        }
+    }
+
     /// Has nothing but its pin move a particle.
     pub(crate) fn pin(&mut self, index: usize) {
         let slot = self.layout.slot_of(index);
@@ -95,6 +108,7 @@ impl ClothParticles {
     /// Whether there are as many as `grid` has, in as many columns.
     pub(crate) fn fit(&self, grid: &ClothGrid) -> bool {
         (self.rows(), self.columns()) == (grid.rows(), grid.columns())
+            && self.blocks.len() == self.layout.blocks()
     }
 
     /// Position (m) of a particle that exists.
@@ -220,6 +234,24 @@ impl ClothParticles {
         largest.into_iter().fold(0.0, f32::max).sqrt() * (1.0 + 1.0e-6)
     }
 
+    /// Whether no particle is farther than `reach` (m) from where it is in `other`: never of other particles, nor where
+    /// a position is not a number.
+    pub(crate) fn stays_within(&self, reach: f32, other: &Self) -> bool {
+        if self.layout != other.layout {
+            return false;
+        }
+        let (mut is_near, square) = ([true; LANES], reach * reach);
+        for (block, was) in self.blocks.iter().zip(&other.blocks) {
+            let (view, was) = (block.view(), was.view());
+            for lane in 0..LANES {
+                let [x, y, z] =
+                    [X, X + LANES, X + 2 * LANES].map(|axis| view[axis + lane] - was[axis + lane]);
+                is_near[lane] &= x * x + y * y + z * z <= square;
+            }
+        }
+        is_near == [true; LANES]
+    }
+
     /// A sphere around all of them (m).
     pub(crate) fn bounding_sphere(&self) -> BoundingSphere {
         let low = self.positions().fold(Vec3::MAX, Vec3::min);
@@ -268,4 +300,14 @@ impl ClothParticles {
             self.substep = substep;
         }
     }
+}
+
+/// A number from −1 to 1 that looks random, the same for the same `index` (Steele, Lea and Flood 2014: SplitMix).
+fn scattered(index: u64) -> f32 {
+    let mut bits = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^= bits >> 31;
+    // 24 bits are what a float holds.
+    (bits >> 40) as f32 / (1 << 23) as f32 - 1.0
 }

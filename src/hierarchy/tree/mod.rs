@@ -164,11 +164,11 @@ impl QuadTree {
         }
     }
 
-    /// Whether the tree is one of `particles`.
+    /// Whether the tree is one of `particles`: as many, laid out alike.
     pub fn fits(&self, particles: &ClothParticles) -> bool {
         match &self.0 {
             Shape::Grid(tree) => tree.layout == particles.layout(),
-            Shape::Network(tree) => tree.slots.len() == particles.len(),
+            Shape::Network(tree) => tree.layout == particles.layout(),
         }
     }
 

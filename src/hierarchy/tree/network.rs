@@ -10,6 +10,8 @@ use crate::cloth::{ClothError, Layout, Slot, Spring, SpringKind};
 /// A tree over particles joined by any springs.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct NetworkTree {
+    /// Of the particles: one row.
+    pub layout: Layout,
     pub nodes: Vec<NetworkNode>,
     pub ranges: Vec<Range<u32>>,
     /// Where each particle lies.
@@ -34,10 +36,12 @@ impl NetworkTree {
             });
         }
         let mut ways = Ways::new(rest.len(), springs)?;
+        let layout = Layout::new(rest.len() as u32, 1);
         let mut tree = Self {
+            layout,
             nodes: Vec::new(),
             ranges: Vec::new(),
-            slots: Layout::new(rest.len() as u32, 1).slots().collect(),
+            slots: layout.slots().collect(),
         };
         let mut order: Vec<u32> = (0..rest.len() as u32).collect();
         let mut patches: Vec<Range<usize>> =

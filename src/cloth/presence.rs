@@ -1,0 +1,25 @@
+//! Whether anything simulates cloth: only a cloth that is spawned can say that nothing does.
+
+use bevy::{
+    ecs::{lifecycle::HookContext, resource::Resource, world::DeferredWorld},
+    log::error,
+};
+
+/// Whether a world's cloth is simulated.
+#[derive(Resource, Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ClothPresence {
+    /// A plugin does it.
+    Simulated,
+    /// None does so far, and that was logged.
+    Missed,
+}
+
+/// Logs the first cloth of a world without the plugin.
+pub(super) fn log_unsimulated(mut world: DeferredWorld, _: HookContext) {
+    if !world.contains_resource::<ClothPresence>() {
+        error!(
+            "a `Cloth` was spawned, and nothing moves it before `DrapePlugins` are added to the app"
+        );
+        world.commands().insert_resource(ClothPresence::Missed);
+    }
+}

@@ -1,0 +1,26 @@
+//! How log messages name an entity.
+
+use bevy::ecs::{entity::Entity, name::Name, query::QueryData};
+
+use super::fault::Part;
+
+/// An entity, by its [`Name`] where it has one.
+#[derive(QueryData)]
+pub(super) struct Named {
+    pub entity: Entity,
+    name: Option<&'static Name>,
+}
+
+impl NamedItem<'_, '_> {
+    /// `cloth "flag"`, or `cloth 12v0` where it has no name.
+    pub fn describe(&self, part: Part) -> String {
+        let part = match part {
+            Part::Cloth => "cloth",
+            Part::Collider => "cloth collider",
+        };
+        match self.name {
+            Some(name) => format!("{part} \"{name}\""),
+            None => format!("{part} {}", self.entity),
+        }
+    }
+}
