@@ -1,7 +1,7 @@
 //! Whether anything simulates cloth: only a cloth that is spawned can say that nothing does.
 
 use bevy::{
-    ecs::{lifecycle::HookContext, resource::Resource, world::DeferredWorld},
+    ecs::{lifecycle::HookContext, name::Name, resource::Resource, world::DeferredWorld},
     log::error,
 };
 
@@ -15,11 +15,17 @@ pub(crate) enum ClothPresence {
 }
 
 /// Logs the first cloth of a world without the plugin.
-pub(super) fn log_unsimulated(mut world: DeferredWorld, _: HookContext) {
-    if !world.contains_resource::<ClothPresence>() {
-        error!(
-            "a `Cloth` was spawned, and nothing moves it before `DrapePlugins` are added to the app"
-        );
-        world.commands().insert_resource(ClothPresence::Missed);
+pub(super) fn log_unsimulated(mut world: DeferredWorld, context: HookContext) {
+    if world.contains_resource::<ClothPresence>() {
+        return;
     }
+    world.commands().insert_resource(ClothPresence::Missed);
+    let entity = context.entity;
+    let name = match world.get::<Name>(entity) {
+        Some(name) => format!("\"{name}\""),
+        None => entity.to_string(),
+    };
+    error!(
+        "cloth {name} was spawned, and nothing moves it before `DrapePlugins` are added to the app"
+    );
 }

@@ -153,7 +153,8 @@ impl IntegratingItem<'_, '_> {
             given: self.tick.given_stretch,
             is_tethered: !self.tick.solver.tethers().is_empty(),
             masses: self.tick.masses,
-            distance: (Vec3::from(root.center).length() - root.radius()).max(0.0) / spacing,
+            distance: (Vec3::from(root.center).length() - root.radius()).max(0.0),
+            spacing: grid.spacing().min_element(),
         }
     }
 

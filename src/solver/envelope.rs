@@ -19,8 +19,8 @@ pub enum ClothLimit {
     /// The heaviest particle that is free is more than 300 times as heavy as the lightest, or with tethers more than
     /// 10,000 times.
     MassRatio,
-    /// The cloth is farther from its frame's origin, its own size not counted, than single precision resolves well: 10,000
-    /// spacings with 20 sub-steps in 1/60 s, a quarter of it with twice as many.
+    /// The cloth is farther from its frame's origin, its own size not counted, than single precision resolves well: 1,000 m
+    /// with 20 sub-steps in 1/60 s, half of it with twice as many, and 40,000 spacings.
     Distance,
     /// The cloth is damped so much that how fast it falls depends on the sub-steps, by more than a tenth: above 0.979
     /// with 20 sub-steps in 1/60 s.
@@ -34,8 +34,10 @@ pub enum ClothLimit {
 const MOST_STRETCH: f32 = 0.15;
 /// Of the masses of free particles, without tethers and with. Those of a rectangle's corners and middle differ by 4.
 const MOST_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
-/// In spacings, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one.
-const MOST_DISTANCE: f32 = 10_000.0;
+/// In metres, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one. And in
+/// spacings: where it is half a per cent of one.
+const MOST_DISTANCE: f32 = 1_000.0;
+const MOST_SPACINGS: f32 = 40_000.0;
 const USUAL_SUBSTEP: f32 = 1.0 / 1200.0;
 /// Of u = −ln(1 − D) in a sub-step: a damped fall is too fast by u ⁄ (1 − e^−u), a tenth here.
 const MOST_DAMPING: f32 = 0.194;
@@ -137,8 +139,10 @@ pub(crate) struct Load {
     pub is_tethered: bool,
     /// Masses of the lightest and of the heaviest particle that is free (kg).
     pub masses: [f32; 2],
-    /// From the frame's origin to the cloth, in spacings, its own size not counted.
+    /// From the frame's origin to the cloth (m), its own size not counted.
     pub distance: f32,
+    /// The smaller one of the cloth (m).
+    pub spacing: f32,
     /// The longest way of a small collider in a sub-step, in its radii.
     pub way: f32,
 }
@@ -165,8 +169,8 @@ impl Load {
                 MOST_MASS_RATIO[usize::from(self.is_tethered)],
             ],
             ClothLimit::Distance => {
-                let share = self.substep / USUAL_SUBSTEP;
-                [self.distance, MOST_DISTANCE * share * share]
+                let by_substep = MOST_DISTANCE * self.substep / USUAL_SUBSTEP;
+                [self.distance, by_substep.min(MOST_SPACINGS * self.spacing)]
             }
             ClothLimit::Damping => {
                 let most = 1.0 - (-MOST_DAMPING * DAMPING_REFERENCE / self.substep).exp();
@@ -194,6 +198,7 @@ mod tests {
         is_tethered: false,
         masses: [1.0e-4, 1.0e-4 * MOST_MASS_RATIO[0]],
         distance: MOST_DISTANCE,
+        spacing: 0.03,
         way: MOST_WAY,
     };
 
@@ -222,7 +227,7 @@ mod tests {
             ),
             (
                 Load {
-                    distance: 1.1e4,
+                    distance: 1.1e3,
                     ..WITHIN
                 },
                 ClothLimit::Distance,
@@ -246,14 +251,22 @@ mod tests {
         for (load, limit) in exceeded {
             assert_eq!(beyond(load), [limit]);
         }
-        // Halved sub-steps reach a quarter as far, and hold more damping.
+        // Halved sub-steps reach half as far, and hold more damping.
         let halved = Load {
             substep: USUAL_SUBSTEP / 2.0,
-            distance: 0.26 * MOST_DISTANCE,
+            distance: 0.51 * MOST_DISTANCE,
             damping: 0.99,
             ..WITHIN
         };
         assert_eq!(beyond(halved), [ClothLimit::Distance]);
+        // A fine cloth is rounded sooner, and one that is walked with for 11 m is not.
+        let fine = |distance: f32| Load {
+            spacing: 0.001,
+            distance,
+            ..WITHIN
+        };
+        assert_eq!(beyond(fine(11.0)), []);
+        assert_eq!(beyond(fine(41.0)), [ClothLimit::Distance]);
     }
 
     #[test]

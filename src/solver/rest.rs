@@ -61,3 +61,63 @@ impl Rest {
         self.is_asleep = false;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::math::Vec3;
+
+    const TICK: f32 = 1.0 / 64.0;
+
+    /// Two metres, the least that half a swing takes being 1.2 s: 75.5 ticks after the one that is compared with.
+    fn asleep_after(ticks: u32, at: impl Fn(u32) -> f32) -> bool {
+        let mut rest = Rest::default();
+        for tick in 0..ticks {
+            let place = [Vec3::ZERO, Vec3::new(1.0, at(tick), 0.0)];
+            let particles = ClothParticles::new(&place, &[1.0; 2]).expect("two particles");
+            rest.observe(TICK, &particles, 2.0);
+        }
+        rest.is_asleep()
+    }
+
+    #[test]
+    fn sleeps_when_nothing_has_left_its_place_for_half_a_swing() {
+        assert!(!asleep_after(75, |_| 0.0));
+        assert!(asleep_after(77, |_| 0.0));
+        let trembling = |tick: u32| if tick % 2 == 0 { 0.0009 } else { -0.0009 };
+        assert!(asleep_after(77, trembling), "in its place, however fast");
+        let creeping = |tick: u32| 0.002 * tick as f32 * TICK;
+        assert!(!asleep_after(640, creeping), "a pixel in a second");
+        let creeping = |tick: u32| 0.0015 * tick as f32 * TICK;
+        assert!(asleep_after(640, creeping));
+    }
+
+    /// A swing that an eye sees, seen first at its turning point, of the period that is the longest for its size.
+    #[test]
+    fn does_not_sleep_at_a_turning_point() {
+        let swing = |amplitude: f32| {
+            let omega = 2.405 / 2.0 * (GRAVITY / 2.0_f32).sqrt();
+            move |tick: u32| amplitude * (omega * tick as f32 * TICK).cos()
+        };
+        assert!(!asleep_after(6400, swing(0.0022)));
+        assert!(asleep_after(6400, swing(0.0009)));
+    }
+
+    #[test]
+    fn wakes_when_it_is_disturbed_and_knows_what_it_slept_as() {
+        let mut rest = Rest::default();
+        let particles = ClothParticles::new(&[Vec3::ZERO], &[1.0]).expect("a particle");
+        for _ in 0..64 {
+            rest.observe(TICK, &particles, 0.1);
+        }
+        assert!(rest.is_asleep() && rest.sleeps_as(&particles.clone()));
+        let mut moved = particles.clone();
+        moved.set_velocity(0, Vec3::X).expect("it exists");
+        assert!(!rest.sleeps_as(&moved));
+        rest.disturb();
+        assert!(!rest.is_asleep() && !rest.sleeps_as(&particles));
+        let nan = ClothParticles::default();
+        rest.observe(TICK, &nan, 0.1);
+        assert!(!rest.is_asleep());
+    }
+}

@@ -1,18 +1,24 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
 mod attach;
+mod drawing;
 mod envelope;
 mod faults;
 mod frame;
 mod lifetime;
+mod log;
 mod mesh;
 mod motion;
 mod near;
 mod precision;
 mod rapier;
+mod reflection;
 mod rest;
 mod schedule;
 mod search;
 mod shapes;
+mod spin;
+mod startup;
 mod support;
 mod touch;
+mod uneven;

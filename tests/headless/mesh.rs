@@ -9,7 +9,7 @@ use bevy_drape::prelude::*;
 
 use crate::support::*;
 
-fn vertices(app: &App, cloth: Entity, attribute: bevy::mesh::MeshVertexAttribute) -> Vec<Vec3> {
+pub fn vertices(app: &App, cloth: Entity, attribute: bevy::mesh::MeshVertexAttribute) -> Vec<Vec3> {
     let handle = &app.world().get::<Mesh3d>(cloth).expect("a mesh").0;
     let mesh = app
         .world()
@@ -124,7 +124,10 @@ fn a_new_grid_gets_a_new_mesh() {
         gravity: Some(Vec3::ZERO),
         ..default()
     };
-    let cloth = app.world_mut().spawn((Cloth::new(3, 4, 0.2), still)).id();
+    let cloth = app
+        .world_mut()
+        .spawn((Cloth::new(3, 4, 0.2).flat(), still))
+        .id();
     tick(&mut app, 2);
     let normals = vertices(&app, cloth, Mesh::ATTRIBUTE_NORMAL);
     assert_eq!(normals.len(), 12);
@@ -135,6 +138,15 @@ fn a_new_grid_gets_a_new_mesh() {
         .resource::<Assets<Mesh>>()
         .get(&handle)
         .expect("an asset");
+    let Some(VertexAttributeValues::Float32x4(tangents)) = mesh.attribute(Mesh::ATTRIBUTE_TANGENT)
+    else {
+        panic!("no tangents");
+    };
+    assert!(
+        tangents
+            .iter()
+            .all(|tangent| *tangent == [1.0, 0.0, 0.0, 1.0])
+    );
     assert_eq!(mesh.indices().expect("indices").len(), 2 * 3 * 6);
     let Some(VertexAttributeValues::Float32x2(uvs)) = mesh.attribute(Mesh::ATTRIBUTE_UV_0) else {
         panic!("no UVs");

@@ -172,7 +172,8 @@ fn a_grabbed_particle_stays_grabbed() {
 #[test]
 fn games_may_write_particles() {
     let mut app = app();
-    let cloth = app.world_mut().spawn((Cloth::default(), Pins::none())).id();
+    let cloth = (Cloth::default().flat(), Pins::none());
+    let cloth = app.world_mut().spawn(cloth).id();
     tick(&mut app, 1);
     change::<ClothParticles>(&mut app, cloth, |particles| {
         for index in 0..particles.len() {

@@ -8,6 +8,7 @@ use bevy_drape::{
     plugin::{ClothGizmosPlugin, ClothPlugin, ClothSearch, ClothTopology},
     prelude::*,
 };
+use bevy_transform_interpolation::prelude::TransformInterpolationPlugin;
 
 /// Bevy's fixed tick (s).
 pub const TICK: f32 = 1.0 / 64.0;
@@ -28,6 +29,17 @@ pub fn app_that_draws(schedule: impl ScheduleLabel) -> App {
         VisibilityPlugin,
         GizmoPlugin,
         DrapePlugins::new(schedule),
+    ))
+}
+
+/// The same in which what has a `TransformInterpolation` is drawn between fixed ticks.
+pub fn app_that_draws_smoothly() -> App {
+    with_plugins((
+        AssetPlugin::default(),
+        MeshPlugin,
+        VisibilityPlugin,
+        TransformInterpolationPlugin::default(),
+        DrapePlugins::default(),
     ))
 }
 

@@ -3,6 +3,7 @@
 
 mod catenary;
 mod compliance;
+mod distance;
 mod energy;
 mod precision;
 mod scenes;

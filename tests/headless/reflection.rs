@@ -1,0 +1,197 @@
+//! Scenes, inspectors and Blender's exports author components by reflection.
+
+use bevy::{
+    ecs::{
+        component::ComponentId,
+        entity::{EntityHashMap, SceneEntityMapper},
+        reflect::{AppTypeRegistry, ReflectMapEntities},
+    },
+    prelude::*,
+    reflect::{
+        TypeRegistry,
+        serde::{ReflectDeserializer, ReflectSerializer},
+    },
+};
+use bevy_drape::{
+    plugin::{ClothMesh, ClothSearch, ClothTopology},
+    prelude::*,
+};
+use serde::de::DeserializeSeed;
+
+use crate::support::*;
+
+/// Every component of ours on an entity, with its name; those that nobody can name outside are none.
+fn components(app: &App, entity: Entity) -> Vec<(ComponentId, String)> {
+    let world = app.world();
+    let entity = world.entity(entity);
+    let archetype = entity.archetype();
+    let info = |id: &ComponentId| {
+        let name = world.components().get_name(*id)?.to_string();
+        let is_private = ["ClothTick", "Vicinity", "ColliderMotion"]
+            .iter()
+            .any(|private| name.ends_with(private));
+        (name.starts_with("bevy_drape") && !is_private).then_some((*id, name))
+    };
+    archetype.components().iter().filter_map(info).collect()
+}
+
+fn registry(app: &App) -> impl std::ops::Deref<Target = TypeRegistry> {
+    app.world().resource::<AppTypeRegistry>().read()
+}
+
+/// A cloth and a collider with every component that they may have.
+fn everything() -> (App, [Entity; 3]) {
+    let mut app = app_that_draws(FixedUpdate);
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let cloth = (
+        Cloth::default().lying(),
+        Pins::new([
+            Pin::Index(3),
+            Pin::Cell(1, 2),
+            Pin::Row(0),
+            Pin::Column(2),
+            Pin::Corner(Corner::BottomRight),
+        ]),
+        ClothAttachments::new([(Pin::Column(0), pole)]),
+        ShowClothGizmos::default(),
+        Visibility::default(),
+    );
+    let cloth = app.world_mut().spawn(cloth).id();
+    let ball = (ClothCollider::ball(0.3), RapierClothCollider);
+    let ball = app
+        .world_mut()
+        .spawn((ball, Transform::from_xyz(0.7, 0.25, 0.7)))
+        .id();
+    let bad = app.world_mut().spawn(Cloth::new(1, 1, 0.1)).id();
+    tick(&mut app, 5);
+    app.world_mut().entity_mut(cloth).insert(ClothTeleport);
+    assert!(app.world().get::<ClothFault>(bad).is_some());
+    assert!(stats(&app, cloth).contacts > 0);
+    (app, [cloth, ball, bad])
+}
+
+/// Entities are text with Bevy's feature `serialize` only: these travel as values.
+const NAMES_ENTITIES: [&str; 3] = ["ClothAttachments", "ClothContacts", "ClothFault"];
+
+/// Each component of a living cloth goes into text and back, and onto another entity.
+#[test]
+fn every_component_travels() {
+    let (mut app, entities) = everything();
+    let mut names = Vec::new();
+    for entity in entities {
+        for (_, name) in components(&app, entity) {
+            let other = app.world_mut().spawn_empty().id();
+            let app_registry = app.world().resource::<AppTypeRegistry>().clone();
+            let registry = app_registry.read();
+            let registration = registry
+                .get_with_type_path(&name)
+                .unwrap_or_else(|| panic!("{name} is not registered"));
+            let component = registration
+                .data::<ReflectComponent>()
+                .unwrap_or_else(|| panic!("{name} is not reflected as a component"));
+            let value = component
+                .reflect(app.world().entity(entity))
+                .expect("it is there");
+            let back = if NAMES_ENTITIES.iter().any(|names| name.ends_with(names)) {
+                value.as_partial_reflect().to_dynamic()
+            } else {
+                let serializer = ReflectSerializer::new(value.as_partial_reflect(), &registry);
+                let text = serde_json::to_string(&serializer)
+                    .unwrap_or_else(|error| panic!("{name}: {error}"));
+                let mut deserializer = serde_json::Deserializer::from_str(&text);
+                ReflectDeserializer::new(&registry)
+                    .deserialize(&mut deserializer)
+                    .unwrap_or_else(|error| panic!("{name}: {error}"))
+            };
+            let other_world = app.world_mut();
+            component.insert(&mut other_world.entity_mut(other), &*back, &registry);
+            let other = app.world().entity(other);
+            assert!(component.contains(other), "{name}");
+            names.push(name);
+        }
+    }
+    for name in [
+        std::any::type_name::<Cloth>(),
+        std::any::type_name::<Pins>(),
+        std::any::type_name::<ClothMaterial>(),
+        std::any::type_name::<ClothParticles>(),
+        std::any::type_name::<ClothSettings>(),
+        std::any::type_name::<SearchMethod>(),
+        std::any::type_name::<NarrowPhase>(),
+        std::any::type_name::<ClothAttachments>(),
+        std::any::type_name::<ClothTeleport>(),
+        std::any::type_name::<ClothContacts>(),
+        std::any::type_name::<ClothFrame>(),
+        std::any::type_name::<ClothStats>(),
+        std::any::type_name::<ClothFault>(),
+        std::any::type_name::<ClothTopology>(),
+        std::any::type_name::<ClothSearch>(),
+        std::any::type_name::<ClothMesh>(),
+        std::any::type_name::<ClothCollider>(),
+        std::any::type_name::<RapierClothCollider>(),
+        std::any::type_name::<ShowClothGizmos>(),
+    ] {
+        assert!(names.iter().any(|known| known == name), "{name}");
+    }
+}
+
+/// What a scene file says of pins pins the same; a predicate, which is code, pins nothing.
+#[test]
+fn pins_travel_but_for_predicates() {
+    let app = app();
+    let registry = registry(&app);
+    let through_text = |pins: &Pins| -> Pins {
+        let text = serde_json::to_string(&ReflectSerializer::new(pins, &registry));
+        let text = text.expect("pins are text");
+        let mut deserializer = serde_json::Deserializer::from_str(&text);
+        let back = ReflectDeserializer::new(&registry).deserialize(&mut deserializer);
+        Pins::from_reflect(&*back.expect("and back")).expect("pins")
+    };
+    let pins = Pins::new([Pin::Row(1), Pin::Corner(Corner::TopLeft), Pin::Cell(2, 3)]);
+    assert_eq!(through_text(&pins), pins);
+    let grid = Cloth::new(4, 4, 0.1).grid(Vec3::ONE).expect("a grid");
+    let predicate = through_text(&Pins::filter(|_, _| true));
+    assert_eq!(predicate.validate(&grid), Ok(()));
+    let mut app = self::app();
+    let cloth = app
+        .world_mut()
+        .spawn((Cloth::new(4, 4, 0.1), predicate))
+        .id();
+    tick(&mut app, 1);
+    assert!(particles(&app, cloth).inverse_masses().all(|w| w > 0.0));
+}
+
+/// Entities that a component names are mapped when a scene is spawned.
+#[test]
+fn named_entities_are_mapped() {
+    let (mut app, [cloth, ball, _]) = everything();
+    let old = |attachments: &ClothAttachments| attachments.iter().map(|each| each.target).next();
+    let mut attachments = app
+        .world()
+        .get::<ClothAttachments>(cloth)
+        .expect("attachments")
+        .clone();
+    let mut contacts = app
+        .world()
+        .get::<ClothContacts>(cloth)
+        .expect("contacts")
+        .clone();
+    let pole = old(&attachments).expect("a pole");
+    let new = [(); 2].map(|()| app.world_mut().spawn_empty().id());
+    let mut map = EntityHashMap::from_iter([(pole, new[0]), (ball, new[1])]);
+    let app_registry = app.world().resource::<AppTypeRegistry>().clone();
+    let registry = app_registry.read();
+    let world = app.world_mut();
+    SceneEntityMapper::world_scope(&mut map, world, |_, mapper| {
+        let map_entities = |type_id| {
+            registry
+                .get_type_data::<ReflectMapEntities>(type_id)
+                .expect("it names entities")
+        };
+        use std::any::TypeId;
+        map_entities(TypeId::of::<ClothAttachments>()).map_entities(&mut attachments, mapper);
+        map_entities(TypeId::of::<ClothContacts>()).map_entities(&mut contacts, mapper);
+    });
+    assert_eq!(old(&attachments), Some(new[0]));
+    assert!(contacts.with(new[1]).is_some() && contacts.with(ball).is_none());
+}
