@@ -4,6 +4,7 @@ mod attach;
 mod envelope;
 mod faults;
 mod frame;
+mod gizmos;
 mod lifetime;
 mod mesh;
 mod motion;
