@@ -35,6 +35,8 @@ fn main() -> ExitCode {
         name: "ball",
         about: "A ball strikes a hanging cloth. Opens a window where it can, and runs headless otherwise.",
         seconds: "12",
+        // So fine that it drapes as fabric does.
+        particles: 48,
         window: controls::run,
         headless: headless::run,
     }

@@ -36,9 +36,12 @@ fn main() -> ExitCode {
         name: "shapes",
         about: "A cloth falls over every shape there is. Opens a window where it can, and runs headless otherwise.",
         seconds: "6",
-        window: || {
+        particles: scene::PARTICLES,
+        window: |grid| {
             let title = "a cloth over every shape";
-            window::run(window::app(title, scene::ScenePlugin, scene::SHOT, &[]))
+            let mut app = window::app(title, scene::ScenePlugin, scene::SHOT, &[]);
+            app.insert_resource(grid);
+            window::run(app)
         },
         headless: headless::run,
     }
