@@ -44,7 +44,7 @@ impl Plugin for ScenePlugin {
                 DrapePlugins::default(),
                 StagePlugin {
                     has_floor: true,
-                    light_from: Vec3::new(4.0, 8.0, 3.0),
+                    light_from: Vec3::new(5.5, 6.5, 1.8),
                 },
             ))
             .add_systems(Startup, (spawn_ball, spawn_cloth))
@@ -54,7 +54,7 @@ impl Plugin for ScenePlugin {
 
 /// The whole cloth, a little from the side.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(4.6, 2.7, 5.0),
+    from: Vec3::new(2.5, 3.1, 6.6),
     focus: Vec3::new(0.0, 1.8, 0.2),
     fov: 0.7,
 };
@@ -62,7 +62,7 @@ pub const SHOT: Shot = Shot {
 /// When the ball last is this far past the cloth's plane, within `seconds` of simulation: the cloth is well
 /// wrapped around it.
 pub fn best_moment(seconds: f64) -> f64 {
-    let past = f64::from((TURNING + 0.45) / SPEED);
+    let past = f64::from((TURNING + 1.2) / SPEED);
     let period = f64::from(4.0 * TURNING / SPEED);
     if seconds < past {
         seconds

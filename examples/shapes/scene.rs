@@ -125,7 +125,7 @@ fn spawn_cloth(
             // Keeps the flat triangles between the particles off the box's corners.
             particle_radius: 0.015,
             // So that it stays inside of its envelope as it lands.
-            ..ClothSettings::substeps(30)
+            ..ClothSettings::substeps(36)
         },
         MeshMaterial3d(material),
         // Sheer fabric lets the light through.

@@ -104,18 +104,32 @@ fn spawn_cameras(mut commands: Commands, shot: Res<Shot>) {
     ));
 }
 
+/// As wide a picture as in a window of 16 : 9 without the panel, in whatever place the panel leaves.
 fn draw_beside_panel(
     panel: Res<ClothPanel>,
+    shot: Res<Shot>,
     window: Single<&Window, With<PrimaryWindow>>,
-    mut camera: Single<&mut Camera, With<Camera3d>>,
+    camera: Single<(&mut Camera, &mut Projection), With<Camera3d>>,
 ) {
     let viewport = panel.viewport(window.physical_size(), window.scale_factor());
     let place = |of: &Option<_>| {
         of.as_ref()
             .map(|viewport: &Viewport| (viewport.physical_position, viewport.physical_size))
     };
+    let (mut camera, mut projection) = camera.into_inner();
     if place(&camera.viewport) != place(&viewport) {
         camera.viewport = viewport;
+    }
+    let size = place(&camera.viewport).map_or(window.physical_size(), |(_, size)| size);
+    // A window that is minimised has no size.
+    let size = size.as_vec2().max(Vec2::ONE);
+    let narrower = (16.0 / 9.0) / (size.x / size.y);
+    let fov = 2.0 * ((shot.fov / 2.0).tan() * narrower.max(1.0)).atan();
+    if let Projection::Perspective(perspective) = projection.bypass_change_detection()
+        && perspective.fov != fov
+    {
+        perspective.fov = fov;
+        projection.set_changed();
     }
 }
 
