@@ -34,16 +34,18 @@ use serde::Serialize;
 
 use crate::shared::{
     headless::{Picture, Run, median, print, ticks_in},
-    stage::{Shot, StagePlugin},
+    stage::{Grid, Shot, StagePlugin},
     start::{Example, Options},
     view::View,
     window,
+    woven::woven,
 };
 
-/// Particles along either side of a cloth, and the distance between them (m). This and all places are sums of few powers
-/// of two, so that the cloths differ by nothing, not even by rounding.
+/// Particles along either side of a cloth, unless asked.
 const PARTICLES: u32 = 32;
-const SPACING: f32 = 3.0 / 64.0;
+/// Width of a cloth (m). This and all places are sums of few powers of two, so that the cloths differ by nothing, not even
+/// by rounding.
+const WIDTH: f32 = 1.5;
 /// The level that is drawn first: patches of 4 × 4 particles.
 const LEVEL: usize = 3;
 /// The ball's radius (m).
@@ -66,7 +68,7 @@ impl Plugin for ScenePlugin {
             light_from: Vec3::new(4.0, 8.0, 3.0),
         };
         app.add_plugins((stage, DrapePlugins::default()))
-            .insert_resource(ClearColor(Color::srgb(0.1, 0.11, 0.13)))
+            .insert_resource(ClearColor(Color::srgb(0.22, 0.24, 0.27)))
             .add_systems(Startup, spawn_panels)
             .add_systems(FixedUpdate, swing.before(ClothSystems::Prepare))
             .add_systems(Update, write_labels);
@@ -80,35 +82,34 @@ struct Swing(Vec3);
 fn spawn_panels(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
+    mut images: ResMut<Assets<Image>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
+    grid: Res<Grid>,
     mut store: ResMut<GizmoConfigStore>,
 ) {
     let (config, look) = store.config_mut::<ClothGizmos>();
     config.line.width = 1.6;
     look.unvisited = Color::srgba(0.5, 0.6, 0.7, 0.12);
+    let weave = woven(&mut images, 2, |_, _| Color::srgb(0.33, 0.43, 0.72));
     let cloth_material = materials.add(StandardMaterial {
         // The ball, behind, is seen through it.
-        base_color: Color::srgba(0.33, 0.43, 0.72, 0.6),
+        base_color: Color::WHITE.with_alpha(0.6),
         alpha_mode: AlphaMode::Blend,
-        perceptual_roughness: 0.9,
-        double_sided: true,
-        cull_mode: None,
-        ..default()
+        ..weave
     });
     let ball_material = materials.add(Color::srgb(0.95, 0.6, 0.2));
     let ball_mesh = meshes.add(Sphere::new(RADIUS).mesh().uv(64, 32));
-    let width = SPACING * (PARTICLES - 1) as f32;
     for (place, (_, volume)) in BoundingVolume::ALL.into_iter().enumerate() {
         let (row, column) = ((place / 3) as f32, (place % 3) as f32);
         let middle = Vec3::new((column - 1.0) * PITCH.x, (0.5 - row) * PITCH.y, 0.0);
         commands.spawn((
             Name::new(volume.name()),
-            Cloth::new(PARTICLES, PARTICLES, SPACING),
+            Cloth::new(grid.0, grid.0, WIDTH / (grid.0 - 1) as f32).centred(),
             SearchMethod::Tree(volume, BoundRule::Refit),
             ShowClothGizmos::level(LEVEL),
             MeshMaterial3d(cloth_material.clone()),
             NotShadowCaster,
-            Transform::from_translation(middle + Vec3::new(-width / 2.0, width / 2.0, 0.0)),
+            Transform::from_translation(middle),
         ));
         let rest = middle + Vec3::new(0.125, -0.1875, 0.0);
         commands.spawn((
@@ -133,10 +134,9 @@ fn write_labels(
     cloths: Query<(&Transform, &SearchMethod, &ClothStats), With<Cloth>>,
     mut gizmos: Gizmos,
 ) {
-    let width = SPACING * (PARTICLES - 1) as f32;
     for (transform, method, stats) in &cloths {
         let mut write = |text: &str, size: f32, up: f32, color: Color| {
-            let place = transform.translation + Vec3::new(width / 2.0, up, 0.0);
+            let place = transform.translation + Vec3::Y * (WIDTH / 2.0 + up);
             gizmos.text(
                 Isometry3d::from_translation(place),
                 text,
@@ -193,9 +193,10 @@ fn measure(mut cloths: Query<(&ClothStats, &mut Measured)>) {
     }
 }
 
-fn headless(view: View, options: &Options) -> ExitCode {
+fn headless(view: View, grid: Grid, options: &Options) -> ExitCode {
     let mut app = App::new();
     app.add_plugins((view.plugins("volumes"), ScenePlugin))
+        .insert_resource(grid)
         .register_required_components::<Cloth, Measured>()
         .add_systems(FixedLast, measure);
     let ticks = ticks_in(&app, options.seconds).max(1);
@@ -222,7 +223,7 @@ fn headless(view: View, options: &Options) -> ExitCode {
     }
     let report = Report {
         ticks,
-        particles: PARTICLES * PARTICLES,
+        particles: grid.0 * grid.0,
         cloths: rows,
         same,
         picture,
@@ -260,7 +261,12 @@ fn main() -> ExitCode {
         name: "volumes",
         about: "Six kinds of bounding volume, side by side. Opens a window where it can, and runs headless otherwise.",
         seconds: "3",
-        window: || window::run(window::app("volumes", ScenePlugin, SHOT, &[])),
+        particles: PARTICLES,
+        window: |grid| {
+            let mut app = window::app("volumes", ScenePlugin, SHOT, &[]);
+            app.insert_resource(grid);
+            window::run(app)
+        },
         headless,
     }
     .run()

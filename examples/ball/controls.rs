@@ -7,11 +7,11 @@ use bevy_drape::prelude::*;
 
 use crate::{
     scene::{self, ScenePlugin},
-    shared::window,
+    shared::{stage::Grid, window},
 };
 
 /// Runs the scene in a window until it is closed.
-pub fn run() -> ExitCode {
+pub fn run(grid: Grid) -> ExitCode {
     let more_keys = &[("Up, Down", "faster, slower ball")];
     let mut app = window::app(
         "the ball and the cloth",
@@ -19,7 +19,8 @@ pub fn run() -> ExitCode {
         scene::SHOT,
         more_keys,
     );
-    app.add_systems(Update, press_ball_keys);
+    app.insert_resource(grid)
+        .add_systems(Update, press_ball_keys);
     window::run(app)
 }
 

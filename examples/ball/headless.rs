@@ -11,6 +11,7 @@ use crate::{
     scene::{self, Ball, ScenePlugin},
     shared::{
         headless::{Picture, Run, median, print, ticks_in},
+        stage::Grid,
         start::Options,
         view::View,
     },
@@ -64,9 +65,10 @@ struct Measured {
 }
 
 /// Simulates, prints the report, and saves `ball.png` if `view` can draw.
-pub fn run(view: View, options: &Options) -> ExitCode {
+pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let mut app = App::new();
     app.add_plugins((view.plugins("the ball and the cloth"), ScenePlugin))
+        .insert_resource(grid)
         .init_resource::<Measured>()
         .add_systems(
             FixedUpdate,

@@ -1,19 +1,21 @@
 //! The cloth, the ball that rapier moves, light, and a floor to cast shadows on.
 
-use std::f32::consts::FRAC_PI_4;
-
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{
     Collider, NoUserData, PhysicsSet, RapierPhysicsPlugin, RigidBody, TimestepMode, Velocity,
 };
+use bevy_transform_interpolation::prelude::{TransformInterpolation, TransformInterpolationPlugin};
 
-use crate::shared::stage::{Shot, StagePlugin};
+use crate::shared::{
+    stage::{Grid, Shot, StagePlugin},
+    woven::woven,
+};
 
-/// Particles along either side, as in the paper.
-const PARTICLES: u32 = 16;
-/// Distance between them (m): the cloth is 3 m wide.
-const SPACING: f32 = 0.2;
+/// Width of the cloth (m): 16 particles of the paper, 0.2 m apart.
+const WIDTH: f32 = 3.0;
+/// The level of the tree that is drawn: 16 × 16 volumes, whatever the grid.
+const LEVEL: usize = 4;
 /// Height of the top row above the floor (m).
 const TOP: f32 = 3.7;
 /// The paper's ball (m).
@@ -34,33 +36,33 @@ impl Plugin for ScenePlugin {
             .resource::<Time<Fixed>>()
             .timestep()
             .as_secs_f32();
-        app.insert_resource(TimestepMode::Fixed { dt, substeps: 1 })
+        app.init_resource::<Grid>()
+            .insert_resource(TimestepMode::Fixed { dt, substeps: 1 })
             .add_plugins((
                 RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
+                TransformInterpolationPlugin::default(),
                 DrapePlugins::default(),
                 StagePlugin {
                     has_floor: true,
-                    light_from: Vec3::new(4.0, 8.0, 3.0),
+                    light_from: Vec3::new(5.5, 6.5, 1.8),
                 },
             ))
             .add_systems(Startup, (spawn_ball, spawn_cloth))
-            .add_systems(FixedFirst, remember_ball)
-            .add_systems(FixedUpdate, drive_ball.before(PhysicsSet::SyncBackend))
-            .add_systems(Update, smooth_ball);
+            .add_systems(FixedUpdate, drive_ball.before(PhysicsSet::SyncBackend));
     }
 }
 
 /// The whole cloth, a little from the side.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(5.2, 2.9, 2.75),
-    focus: Vec3::new(0.0, 1.95, 0.2),
-    fov: FRAC_PI_4,
+    from: Vec3::new(2.5, 3.1, 6.6),
+    focus: Vec3::new(0.0, 1.8, 0.2),
+    fov: 0.7,
 };
 
 /// When the ball last is this far past the cloth's plane, within `seconds` of simulation: the cloth is well
 /// wrapped around it.
 pub fn best_moment(seconds: f64) -> f64 {
-    let past = f64::from((TURNING + 0.45) / SPEED);
+    let past = f64::from((TURNING + 1.2) / SPEED);
     let period = f64::from(4.0 * TURNING / SPEED);
     if seconds < past {
         seconds
@@ -70,10 +72,10 @@ pub fn best_moment(seconds: f64) -> f64 {
 }
 
 /// The cloth of the scene.
-pub fn cloth() -> impl Bundle {
+pub fn cloth(Grid(particles): Grid) -> impl Bundle {
     (
         Name::new("cloth"),
-        Cloth::new(PARTICLES, PARTICLES, SPACING),
+        Cloth::new(particles, particles, WIDTH / (particles - 1) as f32).centred(),
         Pins::top_row(),
         ClothMaterial::COTTON,
         // So small a cloth would be scanned: here the tree is to be seen.
@@ -83,30 +85,35 @@ pub fn cloth() -> impl Bundle {
             particle_radius: 0.02,
             ..default()
         },
-        Transform::from_xyz(-0.5 * SPACING * (PARTICLES - 1) as f32, TOP, 0.0),
+        Transform::from_xyz(0.0, TOP - 0.5 * WIDTH, 0.0),
     )
 }
 
-fn spawn_cloth(mut commands: Commands, mut materials: ResMut<Assets<StandardMaterial>>) {
-    let material = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.33, 0.43, 0.72),
-        perceptual_roughness: 0.9,
-        double_sided: true,
-        cull_mode: None,
-        ..default()
-    });
-    commands.spawn((cloth(), MeshMaterial3d(material), ShowClothGizmos::level(4)));
+fn spawn_cloth(
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    grid: Res<Grid>,
+) {
+    // Chambray: one way blue, the other lighter.
+    let material = materials.add(woven(&mut images, 4, |runs_down, _| {
+        if runs_down {
+            Color::srgb(0.20, 0.33, 0.64)
+        } else {
+            Color::srgb(0.42, 0.54, 0.80)
+        }
+    }));
+    let half = Rect::new(0.5, 0.0, 1.0, 1.0);
+    commands.spawn((
+        cloth(*grid),
+        MeshMaterial3d(material),
+        ShowClothGizmos::level(LEVEL).within(half),
+    ));
 }
 
-/// The ball's body, with where it was a tick ago.
+/// The ball's body.
 #[derive(Component)]
-pub struct Ball {
-    previous: Vec3,
-}
-
-/// What is seen of the ball: drawn between two ticks, as the cloth is.
-#[derive(Component)]
-struct BallMesh;
+pub struct Ball;
 
 fn spawn_ball(
     mut commands: Commands,
@@ -123,7 +130,9 @@ fn spawn_ball(
     commands
         .spawn((
             Name::new("ball"),
-            Ball { previous: start },
+            Ball,
+            // Drawn between two ticks, as the cloth is.
+            TransformInterpolation,
             RigidBody::KinematicVelocityBased,
             Velocity::linear(Vec3::Z * SPEED),
             Collider::ball(RADIUS),
@@ -132,7 +141,7 @@ fn spawn_ball(
             Transform::from_translation(start),
             Visibility::default(),
         ))
-        .with_child((BallMesh, Mesh3d(mesh), MeshMaterial3d(material)));
+        .with_child((Mesh3d(mesh), MeshMaterial3d(material)));
 }
 
 /// Back and forth along z. Rapier does the moving.
@@ -147,24 +156,5 @@ pub fn drive_ball(mut balls: Query<(&Transform, &ClothColliderSpeed, &mut Veloci
         };
         // A still ball keeps the way that it will go.
         velocity.linear = Vec3::Z * direction * speed.0.max(f32::MIN_POSITIVE);
-    }
-}
-
-fn remember_ball(mut balls: Query<(&Transform, &mut Ball)>) {
-    for (transform, mut ball) in &mut balls {
-        ball.previous = transform.translation;
-    }
-}
-
-fn smooth_ball(
-    balls: Query<(&Transform, &Ball), Without<BallMesh>>,
-    mut drawn: Query<(&mut Transform, &ChildOf), With<BallMesh>>,
-    time: Res<Time<Fixed>>,
-) {
-    for (mut transform, child_of) in &mut drawn {
-        if let Ok((body, ball)) = balls.get(child_of.parent()) {
-            let back = ball.previous - body.translation;
-            transform.translation = back * (1.0 - time.overstep_fraction());
-        }
     }
 }

@@ -105,7 +105,7 @@ impl Drawn {
         let mut cloth = self.app.world_mut().entity_mut(self.cloth);
         let show = ShowClothGizmos {
             levels,
-            springs: false,
+            ..ShowClothGizmos::nothing()
         };
         cloth.insert((SearchMethod::Tree(volume, BoundRule::Refit), show));
     }

@@ -30,6 +30,7 @@ mod scene;
 #[path = "../shared"]
 mod shared {
     pub mod stage;
+    pub mod woven;
 }
 mod scaling;
 mod stability;

@@ -10,6 +10,7 @@ use crate::{
     scene::{self, ScenePlugin},
     shared::{
         headless::{Picture, Run, median, print, ticks_in},
+        stage::Grid,
         start::Options,
         view::View,
     },
@@ -72,9 +73,10 @@ struct Measured {
 }
 
 /// Simulates, prints the report, and saves `shapes.png` if `view` can draw.
-pub fn run(view: View, options: &Options) -> ExitCode {
+pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let mut app = App::new();
     app.add_plugins((view.plugins("a cloth over every shape"), ScenePlugin))
+        .insert_resource(grid)
         .init_resource::<Measured>()
         .add_systems(FixedLast, measure);
     let ticks = ticks_in(&app, options.seconds).max(1);

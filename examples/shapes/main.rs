@@ -1,4 +1,4 @@
-//! A tablecloth of 96 × 96 particles falls over every shape there is: a ball, a standing capsule, a box, and a ring of
+//! A sheer cloth of 64 × 64 particles falls over every shape there is: a ball, a standing capsule, a box, and a ring of
 //! marbles so small that the cloth is tested against them by its triangles; below them, a floor that is a plane.
 //!
 //! Each is an entity with a `ClothCollider`, a `Transform` and a mesh. Nothing is asked of the search: the plugin
@@ -36,9 +36,12 @@ fn main() -> ExitCode {
         name: "shapes",
         about: "A cloth falls over every shape there is. Opens a window where it can, and runs headless otherwise.",
         seconds: "6",
-        window: || {
+        particles: scene::PARTICLES,
+        window: |grid| {
             let title = "a cloth over every shape";
-            window::run(window::app(title, scene::ScenePlugin, scene::SHOT, &[]))
+            let mut app = window::app(title, scene::ScenePlugin, scene::SHOT, &[]);
+            app.insert_resource(grid);
+            window::run(app)
         },
         headless: headless::run,
     }

@@ -1,30 +1,29 @@
 //! The cloth and the shapes.
 
-use std::f32::consts::{FRAC_PI_2, TAU};
+use std::f32::consts::TAU;
 
-use bevy::{
-    asset::RenderAssetUsages,
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
+use bevy::{light::NotShadowCaster, prelude::*};
 use bevy_drape::prelude::*;
 
-use crate::shared::stage::{Shot, StagePlugin};
+use crate::shared::{
+    stage::{Grid, Shot, StagePlugin},
+    woven::woven,
+};
 
 /// Particles along either side.
-const PARTICLES: u32 = 96;
+pub const PARTICLES: u32 = 64;
 /// Width of the cloth (m).
 const WIDTH: f32 = 2.4;
 /// The height that it falls from (m).
 const HEIGHT: f32 = 0.8;
 /// Radius of a marble: less than 2.5 spacings (m).
-const MARBLE: f32 = 0.062;
+const MARBLE: f32 = 0.08;
 
 /// The whole of it, from a little above.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(0.8, 2.9, 3.1),
-    focus: Vec3::new(0.0, 0.08, 0.06),
-    fov: 0.49,
+    from: Vec3::new(0.9, 2.3, 3.5),
+    focus: Vec3::new(0.0, 0.1, 0.0),
+    fov: 0.5,
 };
 
 /// The scene, without a camera.
@@ -59,24 +58,24 @@ fn spawn_shapes(
     };
     spawn(
         "ball",
-        ClothCollider::ball(0.27),
-        Sphere::new(0.27).mesh().uv(64, 32),
-        Transform::from_xyz(-0.6, 0.27, -0.55),
-        Color::srgb(0.95, 0.6, 0.2),
+        ClothCollider::ball(0.3),
+        Sphere::new(0.3).mesh().uv(64, 32),
+        Transform::from_xyz(-0.6, 0.3, -0.5),
+        Color::srgb(0.92, 0.42, 0.04),
     );
     spawn(
         "capsule",
-        ClothCollider::capsule(0.1, 0.3),
-        Capsule3d::new(0.1, 0.3).into(),
-        Transform::from_xyz(0.62, 0.25, -0.55),
-        Color::srgb(0.3, 0.65, 0.4),
+        ClothCollider::capsule(0.13, 0.3),
+        Capsule3d::new(0.13, 0.3).into(),
+        Transform::from_xyz(0.6, 0.28, -0.55),
+        Color::srgb(0.05, 0.48, 0.28),
     );
     spawn(
         "box",
         ClothCollider::cuboid(0.44, 0.2, 0.36),
         Cuboid::new(0.44, 0.2, 0.36).into(),
         Transform::from_xyz(0.6, 0.1, 0.4).with_rotation(Quat::from_rotation_y(0.5)),
-        Color::srgb(0.75, 0.3, 0.3),
+        Color::srgb(0.72, 0.08, 0.14),
     );
     for marble in 0..4 {
         let angle = TAU * marble as f32 / 4.0;
@@ -86,7 +85,7 @@ fn spawn_shapes(
             ClothCollider::ball(MARBLE),
             Sphere::new(MARBLE).mesh().uv(32, 16),
             Transform::from_translation(Vec3::new(-0.5, 0.0, 0.5) + place),
-            Color::srgb(0.35, 0.55, 0.85),
+            Color::srgb(0.08, 0.28, 0.72),
         );
     }
 }
@@ -95,21 +94,27 @@ fn spawn_cloth(
     mut commands: Commands,
     mut images: ResMut<Assets<Image>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
+    grid: Res<Grid>,
 ) {
-    let material = materials.add(StandardMaterial {
-        base_color_texture: Some(images.add(checks())),
-        perceptual_roughness: 0.95,
-        reflectance: 0.2,
-        double_sided: true,
-        cull_mode: None,
-        ..default()
+    // A tea towel: off-white, with a thin stripe every so often along both ways.
+    let weave = woven(&mut images, 5, |_, yarn| {
+        if (29..33).contains(&yarn) {
+            Color::srgb(0.50, 0.16, 0.22)
+        } else {
+            Color::srgb(0.93, 0.91, 0.86)
+        }
     });
-    // Laid out from its transform along x and, turned down, along z.
-    let flat = Transform::from_xyz(-WIDTH / 2.0, HEIGHT, -WIDTH / 2.0)
-        .with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
+    let material = materials.add(StandardMaterial {
+        // So sheer that what is below is seen.
+        base_color: Color::WHITE.with_alpha(0.42),
+        alpha_mode: AlphaMode::Blend,
+        ..weave
+    });
     commands.spawn((
         Name::new("cloth"),
-        Cloth::new(PARTICLES, PARTICLES, WIDTH / (PARTICLES - 1) as f32),
+        Cloth::new(grid.0, grid.0, WIDTH / (grid.0 - 1) as f32)
+            .lying()
+            .centred(),
         Pins::none(),
         ClothMaterial {
             friction: 0.4,
@@ -119,42 +124,13 @@ fn spawn_cloth(
         ClothSettings {
             // Keeps the flat triangles between the particles off the box's corners.
             particle_radius: 0.015,
-            ..default()
+            // So that it stays inside of its envelope as it lands.
+            ..ClothSettings::substeps(36)
         },
         MeshMaterial3d(material),
-        ShowClothGizmos {
-            levels: None,
-            springs: false,
-        },
-        flat,
+        // Sheer fabric lets the light through.
+        NotShadowCaster,
+        ShowClothGizmos::nothing(),
+        Transform::from_xyz(0.0, HEIGHT, 0.0),
     ));
-}
-
-/// A checked weave: stripes along both ways, darker where they cross.
-fn checks() -> Image {
-    const SIZE: u32 = 512;
-    const STRIPES: u32 = 12;
-    let is_stripe = |at: u32| (at * STRIPES * 2 / SIZE) % 2;
-    let mut texels = Vec::new();
-    for row in 0..SIZE {
-        for column in 0..SIZE {
-            texels.extend_from_slice(match is_stripe(row) + is_stripe(column) {
-                0 => &[236, 232, 222, 255],
-                1 => &[150, 172, 206, 255],
-                _ => &[70, 104, 160, 255],
-            });
-        }
-    }
-    let size = Extent3d {
-        width: SIZE,
-        height: SIZE,
-        depth_or_array_layers: 1,
-    };
-    Image::new(
-        size,
-        TextureDimension::D2,
-        texels,
-        TextureFormat::Rgba8UnormSrgb,
-        RenderAssetUsages::RENDER_WORLD,
-    )
 }

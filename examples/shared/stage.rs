@@ -1,9 +1,34 @@
 //! Light, sky, floor and the camera's place.
 
 use bevy::{
-    camera::RenderTarget, core_pipeline::tonemapping::Tonemapping,
-    ecs::schedule::SingleThreadedExecutor, prelude::*,
+    camera::{Hdr, RenderTarget},
+    core_pipeline::tonemapping::Tonemapping,
+    ecs::schedule::SingleThreadedExecutor,
+    light::CascadeShadowConfigBuilder,
+    prelude::*,
 };
+
+/// Colour of the sky at the horizon, where the floor ends in it.
+const SKY: Color = Color::srgb(0.93, 0.95, 0.97);
+/// Of the sun, shared by its lamps (lux).
+const SUN: f32 = 6_000.0;
+/// Of the sky (cd/m²).
+const SKYLIGHT: f32 = 700.0;
+/// Lamps of the sun: shadows with a soft edge are what a few hard ones make together.
+const LAMPS: u32 = 4;
+/// How far they are from the sun's middle, as seen from the scene (rad).
+const SUN_RADIUS: f32 = 0.025;
+
+/// Particles along either side of a cloth.
+#[derive(Resource, Clone, Copy)]
+pub struct Grid(pub u32);
+
+impl Default for Grid {
+    /// As in the paper.
+    fn default() -> Self {
+        Self(16)
+    }
+}
 
 /// Light and sky, and a floor to cast shadows on if there is to be one.
 #[derive(Resource, Clone, Copy)]
@@ -16,46 +41,96 @@ pub struct StagePlugin {
 impl Plugin for StagePlugin {
     fn build(&self, app: &mut App) {
         app.insert_resource(*self)
-            .insert_resource(ClearColor(Color::srgb(0.87, 0.91, 0.95)))
-            .insert_resource(GlobalAmbientLight {
-                brightness: 700.0,
-                ..default()
-            })
+            .insert_resource(ClearColor(SKY))
             // A tick is one chain of short systems: waking threads for each would cost as much as they do.
             .edit_schedule(FixedUpdate, |schedule| {
                 schedule.set_executor(SingleThreadedExecutor::new());
             })
-            .add_systems(Startup, spawn_light);
+            .add_systems(Startup, spawn_sun)
+            .add_observer(give_camera_its_sky);
         if self.has_floor {
-            app.add_systems(Startup, spawn_floor);
+            app.add_systems(Startup, spawn_floor)
+                .add_observer(give_camera_its_fog);
         }
     }
 }
 
-fn spawn_light(mut commands: Commands, stage: Res<StagePlugin>) {
-    commands.spawn((
-        DirectionalLight {
-            illuminance: 7_000.0,
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_translation(stage.light_from).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
+fn spawn_sun(mut commands: Commands, stage: Res<StagePlugin>) {
+    let sun = Transform::from_translation(stage.light_from).looking_at(Vec3::ZERO, Vec3::Y);
+    for lamp in 0..LAMPS {
+        let around = Quat::from_rotation_z(lamp as f32 / LAMPS as f32 * std::f32::consts::TAU);
+        let aside = Quat::from_rotation_x(SUN_RADIUS);
+        commands.spawn((
+            DirectionalLight {
+                color: Color::srgb(1.0, 0.96, 0.90),
+                illuminance: SUN / LAMPS as f32,
+                shadow_maps_enabled: true,
+                ..default()
+            },
+            // One map for each lamp, over the scene alone.
+            CascadeShadowConfigBuilder {
+                num_cascades: 1,
+                maximum_distance: 2.0 * stage.light_from.length(),
+                ..default()
+            }
+            .build(),
+            sun.with_rotation(sun.rotation * around * aside),
+        ));
+    }
 }
 
+/// So large, and so much in the fog, that its edge is not seen.
 fn spawn_floor(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     commands.spawn((
-        Mesh3d(meshes.add(Plane3d::default().mesh().size(40.0, 40.0))),
+        Mesh3d(meshes.add(Plane3d::default().mesh().size(400.0, 400.0))),
         MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: Color::srgb(0.36, 0.38, 0.42),
+            base_color: Color::srgb(0.62, 0.63, 0.65),
             perceptual_roughness: 0.95,
+            reflectance: 0.1,
             ..default()
         })),
     ));
+}
+
+/// Light from all sides: the sky from above, what the floor throws back from below.
+fn give_camera_its_sky(
+    added: On<Add, Camera3d>,
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+) {
+    let sky = EnvironmentMapLight {
+        intensity: SKYLIGHT,
+        ..EnvironmentMapLight::hemispherical_gradient(
+            &mut images,
+            Color::srgb(0.93, 0.96, 1.0),
+            Color::srgb(0.80, 0.83, 0.87),
+            Color::srgb(0.55, 0.53, 0.50),
+        )
+    };
+    commands.entity(added.entity).insert(sky);
+}
+
+/// The floor becomes the sky.
+fn give_camera_its_fog(
+    added: On<Add, Camera3d>,
+    cameras: Query<&Transform>,
+    mut commands: Commands,
+) {
+    let distance = cameras
+        .get(added.entity)
+        .map_or(5.0, |camera| camera.translation.length());
+    commands.entity(added.entity).insert(DistanceFog {
+        color: SKY,
+        falloff: FogFalloff::Linear {
+            start: 1.3 * distance,
+            end: 6.0 * distance,
+        },
+        ..default()
+    });
 }
 
 /// Where the camera is, and what it looks at.
@@ -75,13 +150,15 @@ impl Shot {
         });
         (
             Camera3d::default(),
+            // So that the sky behind takes the same way to the screen as the fog before it.
+            Hdr,
             target,
             Projection::from(PerspectiveProjection {
                 fov: self.fov,
                 ..default()
             }),
             // Needs no look-up table, unlike Bevy's default.
-            Tonemapping::AcesFitted,
+            Tonemapping::KhronosPbrNeutral,
             Transform::from_translation(self.from).looking_at(self.focus, Vec3::Y),
         )
     }

@@ -4,7 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use clap::{CommandFactory, FromArgMatches, Parser};
 
-use super::view::View;
+use super::{stage::Grid, view::View};
 
 /// Opens a window where it can, and runs headless otherwise.
 #[derive(Parser)]
@@ -12,6 +12,9 @@ pub struct Options {
     /// Run without a window, as fast as possible, and print a report
     #[arg(long)]
     headless: bool,
+    /// Particles along either side of a cloth
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=512))]
+    particles: Option<u32>,
     /// Headless: how long to simulate (s)
     #[arg(long, value_name = "S", default_value_t = 12.0, value_parser = seconds)]
     pub seconds: f64,
@@ -36,8 +39,10 @@ pub struct Example {
     pub about: &'static str,
     /// How long it simulates without a window, unless asked (s).
     pub seconds: &'static str,
-    pub window: fn() -> ExitCode,
-    pub headless: fn(View, &Options) -> ExitCode,
+    /// Particles along either side of a cloth, unless asked.
+    pub particles: u32,
+    pub window: fn(Grid) -> ExitCode,
+    pub headless: fn(View, Grid, &Options) -> ExitCode,
 }
 
 impl Example {
@@ -54,12 +59,13 @@ impl Example {
             Ok(options) => options,
             Err(error) => error.exit(),
         };
+        let grid = Grid(options.particles.unwrap_or(self.particles));
         if !options.headless {
             if View::Window.can_be_had() {
-                return (self.window)();
+                return (self.window)(grid);
             }
             eprintln!("No window can be opened here: running headless.");
         }
-        (self.headless)(View::without_window(), &options)
+        (self.headless)(View::without_window(), grid, &options)
     }
 }

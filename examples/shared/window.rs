@@ -2,17 +2,22 @@
 
 use std::process::ExitCode;
 
-use bevy::prelude::*;
+use bevy::{
+    camera::{CameraOutputMode, Viewport, visibility::RenderLayers},
+    prelude::*,
+    render::render_resource::BlendState,
+    window::PrimaryWindow,
+};
 use bevy_drape::{
     plugin::{ClothPanel, ClothTopology},
     prelude::*,
 };
-use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui, input::EguiWantsInput};
+use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext, input::EguiWantsInput};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin};
 
 use super::{stage::Shot, view::View};
 
-/// The keys of every example, as they stand on screen.
+/// The keys of every example, as they stand in the panel.
 const KEYS: [(&str, &str); 10] = [
     ("mouse", "orbit, pan, zoom"),
     ("Space", "pause, go on"),
@@ -23,20 +28,18 @@ const KEYS: [(&str, &str); 10] = [
     ("C", "contact by particles, triangles"),
     ("M", "next material"),
     ("R", "new cloth"),
-    ("P", "panel on, off"),
+    ("P", "this panel on, off"),
 ];
 
-/// Keys of one example, and what they do.
-#[derive(Resource)]
-struct MoreKeys(&'static [(&'static str, &'static str)]);
-
-/// An app that runs a scene in a window, with keys of its own to be told of.
-pub fn app(
-    title: &str,
-    scene: impl Plugin,
-    shot: Shot,
-    more_keys: &'static [(&'static str, &'static str)],
-) -> App {
+/// An app that runs a scene in a window, beside the panel, with keys of its own to be told of.
+pub fn app(title: &str, scene: impl Plugin, shot: Shot, more_keys: &[(&str, &str)]) -> App {
+    let keys = KEYS.iter().chain(more_keys);
+    let panel = ClothPanel {
+        keys: keys
+            .map(|(key, what)| (key.to_string(), what.to_string()))
+            .collect(),
+        ..default()
+    };
     let mut app = App::new();
     app.add_plugins((
         View::Window.plugins(title),
@@ -44,19 +47,20 @@ pub fn app(
         ClothPanelPlugin,
         PanOrbitCameraPlugin,
     ))
-    .insert_resource(MoreKeys(more_keys))
+    .insert_resource(panel)
     .insert_resource(shot)
-    .add_systems(Startup, spawn_camera)
+    .add_systems(PreStartup, keep_egui_off_the_scene)
+    .add_systems(Startup, spawn_cameras)
     .add_systems(
         Update,
         (
+            draw_beside_panel,
             free_mouse_for_panel,
             press_clock_keys,
             press_gizmo_keys,
             press_cloth_keys,
         ),
-    )
-    .add_systems(EguiPrimaryContextPass, show_keys);
+    );
     app
 }
 
@@ -68,7 +72,12 @@ pub fn run(mut app: App) -> ExitCode {
     }
 }
 
-fn spawn_camera(mut commands: Commands, shot: Res<Shot>) {
+/// It would take the scene's camera, and its viewport, for its own.
+fn keep_egui_off_the_scene(mut egui: ResMut<EguiGlobalSettings>) {
+    egui.auto_create_primary_context = false;
+}
+
+fn spawn_cameras(mut commands: Commands, shot: Res<Shot>) {
     commands.spawn((
         shot.camera(None),
         PanOrbitCamera {
@@ -77,6 +86,51 @@ fn spawn_camera(mut commands: Commands, shot: Res<Shot>) {
             ..default()
         },
     ));
+    // Egui's, over the whole window: it draws nothing else, and over what the scene's has drawn.
+    commands.spawn((
+        PrimaryEguiContext,
+        Camera2d,
+        Camera {
+            order: 1,
+            output_mode: CameraOutputMode::Write {
+                blend_state: Some(BlendState::ALPHA_BLENDING),
+                clear_color: ClearColorConfig::None,
+            },
+            clear_color: Color::NONE.into(),
+            ..default()
+        },
+        RenderLayers::none(),
+        Msaa::Off,
+    ));
+}
+
+/// As wide a picture as in a window of 16 : 9 without the panel, in whatever place the panel leaves.
+fn draw_beside_panel(
+    panel: Res<ClothPanel>,
+    shot: Res<Shot>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    camera: Single<(&mut Camera, &mut Projection), With<Camera3d>>,
+) {
+    let viewport = panel.viewport(window.physical_size(), window.scale_factor());
+    let place = |of: &Option<_>| {
+        of.as_ref()
+            .map(|viewport: &Viewport| (viewport.physical_position, viewport.physical_size))
+    };
+    let (mut camera, mut projection) = camera.into_inner();
+    if place(&camera.viewport) != place(&viewport) {
+        camera.viewport = viewport;
+    }
+    let size = place(&camera.viewport).map_or(window.physical_size(), |(_, size)| size);
+    // A window that is minimised has no size.
+    let size = size.as_vec2().max(Vec2::ONE);
+    let narrower = (16.0 / 9.0) / (size.x / size.y);
+    let fov = 2.0 * ((shot.fov / 2.0).tan() * narrower.max(1.0)).atan();
+    if let Projection::Perspective(perspective) = projection.bypass_change_detection()
+        && perspective.fov != fov
+    {
+        perspective.fov = fov;
+        projection.set_changed();
+    }
 }
 
 fn free_mouse_for_panel(mut cameras: Query<&mut PanOrbitCamera>, egui: Res<EguiWantsInput>) {
@@ -156,18 +210,4 @@ fn press_cloth_keys(
 fn next<T: Copy + PartialEq, const N: usize>(all: [T; N], now: T) -> T {
     let place = all.iter().position(|each| *each == now);
     all[place.map_or(0, |place| (place + 1) % N)]
-}
-
-fn show_keys(mut contexts: EguiContexts, more: Res<MoreKeys>) -> Result {
-    let area = egui::Window::new("Keys").anchor(egui::Align2::RIGHT_BOTTOM, [-12.0, -12.0]);
-    area.resizable(false).show(contexts.ctx_mut()?, |ui| {
-        egui::Grid::new("keys").show(ui, |ui| {
-            for (key, what) in KEYS.iter().chain(more.0) {
-                ui.strong(*key);
-                ui.label(*what);
-                ui.end_row();
-            }
-        });
-    });
-    Ok(())
 }

@@ -9,6 +9,7 @@ use bevy::{
     ecs::{
         component::Component,
         query::QueryData,
+        reflect::ReflectComponent,
         schedule::IntoScheduleConfigs,
         system::{Local, Query, Res},
     },
@@ -17,7 +18,7 @@ use bevy::{
         config::{GizmoConfigGroup, GizmoConfigStore},
         gizmos::Gizmos,
     },
-    math::{Isometry3d, Quat, Vec3},
+    math::{Isometry3d, Quat, Rect, Vec2, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::{TransformSystems, components::Transform},
 };
@@ -26,7 +27,7 @@ use super::{
     ClothFrame, ClothSearch, ClothStats, ClothSystems, ClothTopology, components::ClothTick,
 };
 use crate::{
-    cloth::{ClothParticles, SpringKind},
+    cloth::{ClothGrid, ClothParticles, SpringKind},
     hierarchy::{
         BoundRule, BoundingVolume, NodeBounds, NodeState, NodeVolume, SearchMethod, TopDownQuery,
     },
@@ -69,14 +70,27 @@ impl Default for ClothGizmos {
 }
 
 /// Draws the gizmos of one visible cloth, as Bevy's `ShowAabbGizmo` does an entity's box.
-#[derive(Component, Reflect, Debug, Clone, PartialEq, Eq)]
-#[reflect(Default, Debug, Clone, PartialEq)]
+///
+/// Half of the cloth with its volumes, the other half as it looks in the game:
+///
+/// ```
+/// use bevy::math::Rect;
+/// use bevy_drape::prelude::*;
+///
+/// let right_half = ShowClothGizmos::level(4).within(Rect::new(0.5, 0.0, 1.0, 1.0));
+/// # assert_eq!(right_half.region.min.x, 0.5);
+/// ```
+#[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ShowClothGizmos {
     /// Levels of the tree whose volumes are drawn, 0 for the root; those deeper than the tree are its leaves'.
     /// `None` for no volumes. They are those that the cloth's [`SearchMethod`] asks for, by default spheres.
     pub levels: Option<RangeInclusive<usize>>,
     /// Whether the springs are drawn.
     pub springs: bool,
+    /// The part of the cloth that is drawn, in the UV coordinates of its mesh: from (0, 0), where particle 0 is, to (1, 1).
+    /// A volume is drawn if its patch's middle is inside, a spring if both ends are. All of it by default.
+    pub region: Rect,
 }
 
 impl Default for ShowClothGizmos {
@@ -96,16 +110,39 @@ impl ShowClothGizmos {
     pub fn levels(levels: RangeInclusive<usize>) -> Self {
         Self {
             levels: Some(levels),
-            springs: false,
+            ..Self::nothing()
         }
     }
 
     /// The springs and no volumes.
     pub fn springs() -> Self {
         Self {
-            levels: None,
             springs: true,
+            ..Self::nothing()
         }
+    }
+
+    /// Neither volumes nor springs, for keys or a panel to switch on.
+    pub fn nothing() -> Self {
+        Self {
+            levels: None,
+            springs: false,
+            region: Rect::new(0.0, 0.0, 1.0, 1.0),
+        }
+    }
+
+    /// The same of one [`region`](Self::region) alone.
+    pub fn within(mut self, region: Rect) -> Self {
+        self.region = region;
+        self
+    }
+
+    /// Whether a particle lies in the region.
+    fn contains(&self, grid: &ClothGrid, particle: u32) -> bool {
+        let (row, column) = (particle / grid.columns(), particle % grid.columns());
+        let last = Vec2::new((grid.columns() - 1) as f32, (grid.rows() - 1) as f32);
+        self.region
+            .contains(Vec2::new(column as f32, row as f32) / last)
     }
 }
 
@@ -167,16 +204,10 @@ fn draw_cloths(
         {
             if let Some(levels) = &show.levels {
                 drawing.search(&cloth);
-                drawing.draw(&cloth, levels, look, &mut gizmos);
+                drawing.draw(&cloth, show, levels, look, &mut gizmos);
             }
             if show.springs {
-                draw_springs(
-                    cloth.topology,
-                    cloth.particles,
-                    cloth.frame,
-                    look,
-                    &mut gizmos,
-                );
+                draw_springs(&cloth, show, look, &mut gizmos);
             }
         }
     }
@@ -221,6 +252,7 @@ impl Drawing {
     fn draw(
         &self,
         cloth: &DrawnItem,
+        show: &ShowClothGizmos,
         levels: &RangeInclusive<usize>,
         look: &ClothGizmos,
         gizmos: &mut Gizmos<ClothGizmos>,
@@ -238,6 +270,9 @@ impl Drawing {
                 radius
             };
             for node in tree.levels()[level].clone() {
+                if !show.contains(grid, tree.node(node).middle) {
+                    continue;
+                }
                 let color = match self.states.get(node as usize) {
                     Some(NodeState::Touching) => look.touching,
                     Some(NodeState::Untouched) => look.untouched,
@@ -306,22 +341,27 @@ fn draw_faces(
 }
 
 fn draw_springs(
-    topology: &ClothTopology,
-    particles: &ClothParticles,
-    frame: &ClothFrame,
+    cloth: &DrawnItem,
+    show: &ShowClothGizmos,
     look: &ClothGizmos,
     gizmos: &mut Gizmos<ClothGizmos>,
 ) {
     use bevy::color::Alpha;
-    topology.springs.for_each(|_, spring| {
+    let ClothTopology { springs, grid, .. } = cloth.topology;
+    springs.for_each(|_, spring| {
+        if !spring.ends.iter().all(|&end| show.contains(grid, end)) {
+            return;
+        }
         let color = match spring.kind {
             SpringKind::Structural => look.springs,
             SpringKind::Shear => look.springs.with_alpha(look.springs.alpha() * 0.5),
             SpringKind::Bend => look.springs.with_alpha(look.springs.alpha() * 0.25),
         };
-        let [a, b] = spring.ends.map(|end| particles.position(end as usize));
+        let [a, b] = spring
+            .ends
+            .map(|end| cloth.particles.position(end as usize));
         if let (Some(a), Some(b)) = (a, b) {
-            gizmos.line(frame.to_world(a), frame.to_world(b), color);
+            gizmos.line(cloth.frame.to_world(a), cloth.frame.to_world(b), color);
         }
     });
 }

@@ -5,6 +5,7 @@ mod drawing;
 mod envelope;
 mod faults;
 mod frame;
+mod gizmos;
 mod lifetime;
 mod log;
 mod mesh;

@@ -1,0 +1,301 @@
+//! What a game developer seldom needs: how contacts are searched for, how springs are solved, and what it cost.
+
+use bevy::{
+    diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
+    ecs::{change_detection::DetectChangesMut, system::Commands},
+};
+use bevy_egui::egui::{RichText, Ui};
+
+use super::{
+    PanelClothItem,
+    row::{choose, line, slide},
+};
+use crate::{
+    cloth::ClothMaterial,
+    contact::NarrowPhase,
+    hierarchy::{SearchMethod, SearchReason},
+    plugin::{ClothDiagnosticsPlugin, ClothStats, ShowClothGizmos},
+    solver::{ClothSettings, Precision},
+};
+
+/// Means of the last second or so, of all cloths together (ms).
+pub(super) struct Times {
+    integrate: f64,
+    rebuild: f64,
+    query: f64,
+}
+
+impl Times {
+    pub fn of(diagnostics: &DiagnosticsStore) -> Self {
+        type Plugin = ClothDiagnosticsPlugin;
+        let mean = |path: &DiagnosticPath| {
+            diagnostics
+                .get(path)
+                .and_then(Diagnostic::smoothed)
+                .unwrap_or(0.0)
+        };
+        Self {
+            integrate: mean(&Plugin::INTEGRATE),
+            rebuild: mean(&Plugin::REBUILD),
+            query: mean(&Plugin::QUERY),
+        }
+    }
+
+    pub fn total(&self) -> f64 {
+        self.integrate + self.rebuild + self.query
+    }
+
+    pub fn explain(&self) -> String {
+        let Self {
+            integrate,
+            rebuild,
+            query,
+        } = self;
+        format!(
+            "Time that a fixed tick takes for all cloths together (ms), a mean of the last ticks:\n\
+             sub-steps of the solver {integrate:.3}, volumes brought up to date {rebuild:.4}, search {query:.4}."
+        )
+    }
+}
+
+/// All that is folded away, of one cloth.
+pub(super) fn show(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
+    show_figures(ui, cloth);
+    show_gizmos(ui, cloth, commands);
+    show_search(ui, cloth);
+    let mut settings = *cloth.settings;
+    show_settings(ui, &mut settings);
+    cloth.settings.set_if_neq(settings);
+    let mut material = *cloth.material;
+    show_material(ui, &mut material);
+    cloth.material.set_if_neq(material);
+}
+
+fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
+    let stats = cloth.stats;
+    let nodes = cloth.topology.tree().len();
+    for (name, figure, tip) in [
+        (
+            "particles",
+            format!("{}", cloth.topology.grid().len()),
+            "Particles of the cloth",
+        ),
+        (
+            "contacts",
+            format!("{}", stats.contacts),
+            "Particles that were pushed out of a collider in the last tick, or cells of two triangles where it is small",
+        ),
+        (
+            "nodes visited",
+            format!("{} of {nodes}", stats.nodes_visited),
+            "Nodes of the tree of bounding volumes that the last tick's search looked at",
+        ),
+        (
+            "tested",
+            format!("{}", stats.leaf_tests),
+            "Particles that the last tick's search tested against a collider",
+        ),
+        (
+            "stretch",
+            format!("{:.1} %", 100.0 * stats.stretch.structural),
+            "The largest stretch of a thread, at the end of the last tick (% of its length)",
+        ),
+        (
+            "sub-steps",
+            format!("{}", stats.substeps),
+            "Sub-steps of the last tick; none where the cloth sleeps",
+        ),
+    ] {
+        line(
+            ui,
+            RichText::new(format!("{name:<13} {figure:>17}")).monospace(),
+            tip,
+        );
+    }
+    let found = search_text(stats);
+    let tip = format!(
+        "{found}\n{} colliders near, {} of them against triangles, {} searches again within the tick",
+        stats.colliders_near, stats.by_triangles, stats.requeries
+    );
+    line(ui, found, &tip);
+}
+
+/// What was chosen, and why.
+fn search_text(stats: &ClothStats) -> String {
+    match stats.reason {
+        SearchReason::NothingNear | SearchReason::Asleep => format!("no search: {}", stats.reason),
+        reason => format!("{} ({reason})", stats.search),
+    }
+}
+
+fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
+    let tree = cloth.topology.tree();
+    let deepest = tree.levels().len().saturating_sub(1);
+    let mut shown = cloth
+        .show
+        .as_deref()
+        .cloned()
+        .unwrap_or_else(ShowClothGizmos::nothing);
+    let was = shown.clone();
+    let level = was
+        .levels
+        .as_ref()
+        .map(|levels| (*levels.start()).min(deepest));
+    let now = level.map_or_else(|| "none".to_string(), |level| format!("level {level}"));
+    let levels = (0..=deepest).map(|level| {
+        let (visited, touching) = cloth.search.query().level(tree, level);
+        let figures = format!("{visited} visited, {touching} touching");
+        (format!("level {level}"), figures, Some(level..=level))
+    });
+    choose(
+        ui,
+        "volumes",
+        "Which level of the tree of bounding volumes is drawn, 0 being the root: red and dark where a collider touches, \
+         green and bright where none does, faint where the search did not look",
+        &mut shown.levels,
+        &now,
+        std::iter::once(("none".to_string(), String::new(), None)).chain(levels),
+    );
+    ui.checkbox(&mut shown.springs, "draw springs")
+        .on_hover_text("Threads along rows and columns; diagonals and bend springs fainter");
+    match &mut cloth.show {
+        Some(show) => {
+            show.set_if_neq(shown);
+        }
+        None if shown != was => {
+            commands.entity(cloth.entity).try_insert(shown);
+        }
+        None => {}
+    }
+}
+
+fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
+    let mut method = *cloth.search_method;
+    choose(
+        ui,
+        "search",
+        "How contacts are searched for: all particles one by one, or a tree of volumes by a rule. Auto takes what costs least",
+        &mut method,
+        &cloth.search_method.to_string(),
+        SearchMethod::ALL.map(|each| (each.to_string(), String::new(), each)),
+    );
+    cloth.search_method.set_if_neq(method);
+
+    let mut narrow_phase = *cloth.narrow_phase;
+    let is_it = |(_, each): &&(&'static str, NarrowPhase)| *each == narrow_phase;
+    let now = NarrowPhase::ALL
+        .iter()
+        .find(is_it)
+        .map_or("", |(name, _)| name);
+    choose(
+        ui,
+        "contact by",
+        "What colliders are tested against. Auto takes triangles for small balls and capsules, particles for all else",
+        &mut narrow_phase,
+        now,
+        NarrowPhase::ALL.map(|(name, each)| (name.to_string(), String::new(), each)),
+    );
+    cloth.narrow_phase.set_if_neq(narrow_phase);
+}
+
+fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
+    let precision = &mut settings.precision;
+    let fixed = matches!(precision, Precision::Substeps(_));
+    ui.horizontal(|ui| {
+        let is_fixed = ui.radio(fixed, "fixed sub-steps").on_hover_text(
+            "The same number in each tick. Recommended: a cloth that comes to rest stays there, and each tick costs the same",
+        );
+        if is_fixed.clicked() && !fixed {
+            *precision = Precision::default();
+        }
+        let is_tolerance = ui.radio(!fixed, "tolerance").on_hover_text(
+            "As many sub-steps as keep the stretch below a limit. Their number changes from tick to tick, and that alone \
+             can keep a resting cloth moving",
+        );
+        if is_tolerance.clicked() && fixed {
+            *precision = ClothSettings::tolerance(0.01).precision;
+        }
+    });
+    match precision {
+        Precision::Substeps(substeps) => {
+            let tip = "Sub-steps of each fixed tick, 1 to 80: more hold the threads' lengths better, and each costs the same time";
+            slide(ui, "sub-steps", tip, substeps, 1..=80, |slider| slider);
+        }
+        Precision::Tolerance {
+            stretch,
+            most_substeps,
+        } => {
+            let mut percent = 100.0 * *stretch;
+            let tip = "The largest stretch that is allowed (% of a thread's length), 0.1 to 20";
+            if slide(ui, "stretch, %", tip, &mut percent, 0.1..=20.0, |slider| {
+                slider.logarithmic(true)
+            }) {
+                *stretch = percent / 100.0;
+            }
+            let tip = "The most sub-steps that a tick may take, 1 to 400";
+            slide(ui, "at most", tip, most_substeps, 1..=400, |slider| slider);
+        }
+    }
+    ui.checkbox(&mut settings.tethers, "tethers").on_hover_text(
+        "No particle gets farther from the pins than the cloth between them is long: less stretch for the same sub-steps",
+    );
+    ui.checkbox(&mut settings.sleeps, "sleeps at rest")
+        .on_hover_text("A cloth that has come to rest is left alone until something disturbs it");
+}
+
+/// The exact values, in their units.
+fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
+    line(
+        ui,
+        "material, exact",
+        "The values behind the sliders further up; two clicks on a number edit it",
+    );
+    let tip = "Mass per area (kg/m²)";
+    slide(
+        ui,
+        "kg/m²",
+        tip,
+        &mut material.areal_density,
+        0.01..=5.0,
+        |slider| slider.logarithmic(true),
+    );
+    for (value, name, tip) in [
+        (
+            &mut material.stretch_compliance,
+            "stretch, m/N",
+            "Compliance along rows and columns (m/N): how far a square patch grows under 1 N. 0 is rigid",
+        ),
+        (
+            &mut material.shear_compliance,
+            "shear, m/N",
+            "Compliance along both diagonals (m/N). 0 is rigid, infinity is no shear springs",
+        ),
+        (
+            &mut material.bend_compliance,
+            "bend, m/N",
+            "Compliance between every second particle (m/N). 0 is rigid, infinity is no bend springs",
+        ),
+    ] {
+        slide(ui, name, tip, value, 0.0..=10.0, |slider| {
+            slider.logarithmic(true).smallest_positive(1.0e-6)
+        });
+    }
+    let tip = "The part of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";
+    slide(
+        ui,
+        "damping D",
+        tip,
+        &mut material.damping,
+        0.0..=0.2,
+        |slider| slider,
+    );
+    let tip = "Coulomb's coefficient of friction against colliders (no unit)";
+    slide(
+        ui,
+        "friction μ",
+        tip,
+        &mut material.friction,
+        0.0..=2.0,
+        |slider| slider,
+    );
+}

@@ -1,0 +1,363 @@
+//! An egui panel at the window's left edge: what fabric is like on top, how it is simulated folded away below.
+
+mod debugging;
+mod quality;
+mod row;
+#[cfg(test)]
+mod tests;
+
+use bevy::{
+    app::{App, Plugin},
+    camera::Viewport,
+    diagnostic::DiagnosticsStore,
+    ecs::{
+        change_detection::DetectChangesMut,
+        component::Component,
+        entity::Entity,
+        error::Result,
+        name::Name,
+        query::QueryData,
+        reflect::{ReflectComponent, ReflectResource},
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut, SystemParam},
+    },
+    math::UVec2,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    time::{Fixed, Time, Virtual},
+};
+use bevy_egui::{
+    EguiContexts, EguiPlugin, EguiPrimaryContextPass,
+    egui::{self, CollapsingHeader, Frame, Id, RichText, ScrollArea, Ui},
+};
+
+use self::{
+    debugging::Times,
+    quality::Quality,
+    row::{choose, line, slide},
+};
+use super::{ClothGravity, ClothSearch, ClothStats, ClothTopology, ShowClothGizmos};
+use crate::{
+    cloth::ClothMaterial, contact::NarrowPhase, hierarchy::SearchMethod, solver::ClothSettings,
+};
+
+/// The panel at the left edge of the window, as high as it and always [`WIDTH`](Self::WIDTH) wide.
+///
+/// It covers what a camera draws below it. To draw beside it instead, give the camera its [`viewport`](Self::viewport)
+/// whenever panel or window change, and egui a camera of its own, since egui is laid out in the viewport of its camera:
+///
+/// ```
+/// use bevy::{camera::RenderTarget, prelude::*, window::PrimaryWindow};
+/// use bevy_drape::plugin::ClothPanel;
+///
+/// fn draw_beside_panel(
+///     panel: Res<ClothPanel>,
+///     window: Single<&Window, With<PrimaryWindow>>,
+///     mut camera: Single<&mut Camera, With<Camera3d>>,
+/// ) {
+///     camera.viewport = panel.viewport(window.physical_size(), window.scale_factor());
+/// }
+/// ```
+#[derive(Resource, Reflect, Debug, Clone, PartialEq, Eq)]
+#[reflect(Resource, Default, Debug, Clone, PartialEq)]
+pub struct ClothPanel {
+    /// Shown or hidden.
+    pub visible: bool,
+    /// The game's keys and what they do, for a list at the panel's end.
+    pub keys: Vec<(String, String)>,
+}
+
+impl Default for ClothPanel {
+    fn default() -> Self {
+        Self {
+            visible: true,
+            keys: Vec::new(),
+        }
+    }
+}
+
+impl ClothPanel {
+    /// Width of the panel while it is shown (logical pixels).
+    pub const WIDTH: f32 = 304.0;
+
+    /// What the panel leaves of a window of this size (physical pixels); `None`, the whole of it, while it is hidden or
+    /// where the window is no wider than twice the panel.
+    pub fn viewport(&self, window: UVec2, scale_factor: f32) -> Option<Viewport> {
+        let panel = (Self::WIDTH * scale_factor).round() as u32;
+        (self.visible && window.x > 2 * panel && window.y > 0).then(|| Viewport {
+            physical_position: UVec2::new(panel, 0),
+            physical_size: UVec2::new(window.x - panel, window.y),
+            ..Default::default()
+        })
+    }
+}
+
+/// Speed of a collider (m/s), for the panel to set. The game moves the collider and reads it.
+#[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct ClothColliderSpeed(pub f32);
+
+/// Shows a panel on the primary window: pause and single step (of the fixed schedules), the time that a tick takes; for each
+/// cloth what its fabric is like, from presets or by how stretchy, stiff, heavy, slippery and damped it is; gravity, and
+/// the speed of each collider with a [`ClothColliderSpeed`]. Folded: how contacts are searched for and drawn, sub-steps,
+/// and the material's values. All of it says in tooltips what it is, in which unit.
+///
+/// Adds `EguiPlugin` if the app has none yet. The resource [`ClothPanel`] shows and hides it.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct ClothPanelPlugin;
+
+impl Plugin for ClothPanelPlugin {
+    fn build(&self, app: &mut App) {
+        if !app.is_plugin_added::<EguiPlugin>() {
+            app.add_plugins(EguiPlugin::default());
+        }
+        app.register_type::<ClothPanel>()
+            .register_type::<ClothColliderSpeed>()
+            .init_resource::<ClothPanel>()
+            .init_resource::<ClothGravity>()
+            .add_systems(EguiPrimaryContextPass, draw_panel);
+    }
+}
+
+fn draw_panel(mut contexts: EguiContexts, mut shown: Shown) -> Result {
+    if shown.panel.visible {
+        shown.draw(contexts.ctx_mut()?);
+    }
+    Ok(())
+}
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct PanelCloth {
+    entity: Entity,
+    name: Option<&'static Name>,
+    settings: &'static mut ClothSettings,
+    material: &'static mut ClothMaterial,
+    search_method: &'static mut SearchMethod,
+    narrow_phase: &'static mut NarrowPhase,
+    show: Option<&'static mut ShowClothGizmos>,
+    topology: &'static ClothTopology,
+    search: &'static ClothSearch,
+    stats: &'static ClothStats,
+}
+
+/// Letters of a cloth's name that there is room for.
+const LONGEST_NAME: usize = 36;
+
+impl PanelClothItem<'_, '_> {
+    fn name(&self) -> String {
+        let name = self
+            .name
+            .map_or_else(|| format!("cloth {}", self.entity), ToString::to_string);
+        // A header is not cut off by itself.
+        name.chars().take(LONGEST_NAME).collect()
+    }
+}
+
+/// All that the panel shows and sets.
+#[derive(SystemParam)]
+struct Shown<'w, 's> {
+    panel: Res<'w, ClothPanel>,
+    cloths: Query<'w, 's, PanelCloth>,
+    speeds: Query<
+        'w,
+        's,
+        (
+            Entity,
+            Option<&'static Name>,
+            &'static mut ClothColliderSpeed,
+        ),
+    >,
+    gravity: ResMut<'w, ClothGravity>,
+    running: ResMut<'w, Time<Virtual>>,
+    fixed: ResMut<'w, Time<Fixed>>,
+    diagnostics: Option<Res<'w, DiagnosticsStore>>,
+    commands: Commands<'w, 's>,
+}
+
+impl Shown<'_, '_> {
+    /// Draws the panel and returns the place that it takes.
+    fn draw(&mut self, context: &egui::Context) -> egui::Rect {
+        let place = egui::vec2(ClothPanel::WIDTH, context.content_rect().height());
+        // An area, and not a side panel of egui's: a mouse over it is known to be egui's.
+        let area = egui::Area::new(Id::new("bevy_drape: panel"))
+            .fixed_pos(egui::Pos2::ZERO)
+            .constrain(false)
+            .movable(false)
+            .show(context, |ui| {
+                // What does not fit is cut off: it must not make the panel wider.
+                let (rect, _) = ui.allocate_exact_size(place, egui::Sense::hover());
+                let frame = Frame::side_top_panel(ui.style());
+                ui.painter().rect_filled(rect, 0.0, frame.fill);
+                let inside = egui::UiBuilder::new().max_rect(rect.shrink(10.0));
+                let mut inside = ui.new_child(inside);
+                inside.shrink_clip_rect(rect);
+                ScrollArea::vertical()
+                    .auto_shrink(false)
+                    .show(&mut inside, |ui| self.draw_all(ui));
+            });
+        area.response.rect
+    }
+
+    fn draw_all(&mut self, ui: &mut Ui) {
+        self.draw_clock(ui);
+        let few = self.cloths.iter().len() <= 2;
+        for mut cloth in &mut self.cloths {
+            ui.separator();
+            CollapsingHeader::new(RichText::new(cloth.name()).strong())
+                .id_salt(cloth.entity)
+                .default_open(few)
+                .show_unindented(ui, |ui| draw_fabric(ui, &mut cloth.material));
+        }
+        ui.separator();
+        self.draw_world(ui);
+        ui.separator();
+        CollapsingHeader::new("debugging")
+            .default_open(false)
+            .show_unindented(ui, |ui| {
+                for mut cloth in &mut self.cloths {
+                    if few {
+                        ui.push_id(cloth.entity, |ui| {
+                            debugging::show(ui, &mut cloth, &mut self.commands);
+                        });
+                    } else {
+                        CollapsingHeader::new(cloth.name())
+                            .id_salt(cloth.entity)
+                            .show_unindented(ui, |ui| {
+                                debugging::show(ui, &mut cloth, &mut self.commands);
+                            });
+                    }
+                }
+            });
+        if !self.panel.keys.is_empty() {
+            ui.separator();
+            CollapsingHeader::new("keys")
+                .default_open(true)
+                .show_unindented(ui, |ui| {
+                    egui::Grid::new("keys").spacing([10.0, 2.0]).show(ui, |ui| {
+                        for (key, what) in &self.panel.keys {
+                            ui.strong(key);
+                            ui.label(what);
+                            ui.end_row();
+                        }
+                    });
+                });
+        }
+    }
+
+    /// Pause and step, and a line that says how the cloths are.
+    fn draw_clock(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let paused = self.running.is_paused();
+            let button = egui::Button::new(if paused { "Run" } else { "Pause" });
+            if ui.add(button.min_size(egui::vec2(64.0, 0.0))).clicked() {
+                if paused {
+                    self.running.unpause();
+                } else {
+                    self.running.pause();
+                }
+            }
+            let step = ui.add_enabled(paused, egui::Button::new("Single step"));
+            let timestep = self.fixed.timestep();
+            let tip = format!(
+                "One fixed tick: {:.1} ms of simulated time",
+                timestep.as_secs_f64() * 1.0e3
+            );
+            if step
+                .on_hover_text(&tip)
+                .on_disabled_hover_text(tip)
+                .clicked()
+            {
+                self.fixed.accumulate_overstep(timestep);
+            }
+        });
+        let times = self.diagnostics.as_deref().map(Times::of);
+        let (time, mut tip) = times.map_or_else(Default::default, |times| {
+            (
+                format!("{:7.3} ms a tick", times.total()),
+                times.explain() + "\n",
+            )
+        });
+        let (mut cloths, mut asleep) = (0, 0);
+        let mut limits = Vec::new();
+        for cloth in &self.cloths {
+            cloths += 1;
+            asleep += usize::from(cloth.stats.is_asleep);
+            limits.extend(cloth.stats.exceeded);
+        }
+        tip += "A cloth that has come to rest sleeps, and costs next to nothing.";
+        for limit in &limits {
+            tip += &format!(
+                "\nBeyond what is simulated well: {limit} {}.",
+                limit.remedy()
+            );
+        }
+        let state = match (limits.is_empty(), cloths, asleep) {
+            (false, ..) => "beyond its limits".to_string(),
+            (_, _, 0) => "moving".to_string(),
+            (_, 1, _) => "asleep".to_string(),
+            _ => format!("{asleep} of {cloths} asleep"),
+        };
+        let mut text = RichText::new(format!("{time} · {state}")).monospace();
+        if !limits.is_empty() {
+            text = text.color(ui.visuals().warn_fg_color);
+        }
+        line(ui, text, &tip);
+    }
+
+    /// What all cloths share.
+    fn draw_world(&mut self, ui: &mut Ui) {
+        let mut down = -self.gravity.0.y;
+        let tip = "Gravity, downwards (m/s²): 9.81 on Earth, 1.62 on the Moon. Cloths with a gravity of their own keep it";
+        slide(ui, "gravity", tip, &mut down, 0.0..=25.0, |slider| {
+            slider.fixed_decimals(2)
+        });
+        let changed = ClothGravity(self.gravity.0.with_y(-down));
+        self.gravity.set_if_neq(changed);
+        for (entity, name, mut speed) in &mut self.speeds {
+            let name = name.map_or_else(|| entity.to_string(), ToString::to_string);
+            let mut value = speed.0;
+            let tip = format!("Speed of {name} (m/s)");
+            slide(ui, &name, &tip, &mut value, 0.0..=10.0, |slider| {
+                slider.fixed_decimals(2)
+            });
+            speed.set_if_neq(ClothColliderSpeed(value));
+        }
+    }
+}
+
+/// A preset, and how stretchy, stiff, heavy, slippery and damped the fabric is. Only what someone moves is changed.
+fn draw_fabric(ui: &mut Ui, material: &mut impl DetectChangesMut<Inner = ClothMaterial>) {
+    let mut changed = *material.bypass_change_detection();
+    let presets = ClothMaterial::PRESETS;
+    let now = presets
+        .iter()
+        .find(|(_, preset)| *preset == changed)
+        .map_or("custom", |(name, _)| name);
+    choose(
+        ui,
+        "fabric",
+        "What the cloth is made of",
+        &mut changed,
+        now,
+        presets.map(|(name, preset)| {
+            let qualities =
+                Quality::ALL.map(|each| format!("{} {:.0}", each.name(), each.of(&preset)));
+            (name.to_string(), qualities.join(", "), preset)
+        }),
+    );
+    for quality in Quality::ALL {
+        let mut place = quality.of(&changed);
+        let tip = quality.explain(&changed);
+        if slide(
+            ui,
+            quality.name(),
+            &tip,
+            &mut place,
+            0.0..=100.0,
+            |slider| slider.fixed_decimals(0),
+        ) {
+            quality.set(&mut changed, place);
+        }
+    }
+    material.set_if_neq(changed);
+}

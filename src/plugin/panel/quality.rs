@@ -1,0 +1,191 @@
+//! What fabric is like, in plain words: each a scale from 0 to 100 over one or two values of a material.
+
+use crate::cloth::ClothMaterial;
+
+/// A quality of fabric that a slider of the panel sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quality {
+    Stretchy,
+    Stiff,
+    Heavy,
+    Slippery,
+    Damped,
+}
+
+/// Where the scales begin and end. Rubber's stretch, silk's bending, and twice what either needs.
+const STRETCH: Logarithmic = Logarithmic([1.0e-6, 1.0e-2]);
+const BEND: Logarithmic = Logarithmic([1.0e1, 1.0e-4]);
+const DENSITY: Logarithmic = Logarithmic([0.02, 5.0]);
+/// The most damping D that the scale has.
+const DAMPING: f32 = 0.2;
+/// Shear compliance in parts of bend compliance, where a material has none of its own that is finite.
+const SHEAR_OF_BEND: f32 = 0.01;
+
+impl Quality {
+    pub const ALL: [Self; 5] = [
+        Self::Stretchy,
+        Self::Stiff,
+        Self::Heavy,
+        Self::Slippery,
+        Self::Damped,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stretchy => "stretchy",
+            Self::Stiff => "stiff",
+            Self::Heavy => "heavy",
+            Self::Slippery => "slippery",
+            Self::Damped => "damped",
+        }
+    }
+
+    /// Where a material is on the scale; below 0 or above 100 if it is beyond.
+    pub fn of(self, material: &ClothMaterial) -> f32 {
+        match self {
+            Self::Stretchy if material.stretch_compliance == 0.0 => 0.0,
+            Self::Stretchy => STRETCH.place(material.stretch_compliance),
+            Self::Stiff if material.bend_compliance.is_infinite() => 0.0,
+            Self::Stiff if material.bend_compliance == 0.0 => 100.0,
+            Self::Stiff => BEND.place(material.bend_compliance),
+            Self::Heavy => DENSITY.place(material.areal_density),
+            Self::Slippery => 100.0 * (1.0 - material.friction),
+            Self::Damped => 100.0 * material.damping / DAMPING,
+        }
+    }
+
+    /// Makes a material so. What the scale does not name stays as it is.
+    pub fn set(self, material: &mut ClothMaterial, place: f32) {
+        match self {
+            Self::Stretchy if place <= 0.0 => material.stretch_compliance = 0.0,
+            Self::Stretchy => material.stretch_compliance = STRETCH.value(place),
+            Self::Stiff => {
+                let bend = BEND.value(place);
+                let ratio = material.shear_compliance / material.bend_compliance;
+                let ratio = if ratio.is_finite() && ratio > 0.0 {
+                    ratio
+                } else {
+                    SHEAR_OF_BEND
+                };
+                material.bend_compliance = bend;
+                material.shear_compliance = ratio * bend;
+            }
+            Self::Heavy => material.areal_density = DENSITY.value(place),
+            Self::Slippery => material.friction = (1.0 - place / 100.0).max(0.0),
+            Self::Damped => material.damping = (DAMPING * place / 100.0).clamp(0.0, 1.0),
+        }
+    }
+
+    /// What it is in physics: quantity, exact value with its unit, and the values at both ends of the scale.
+    pub fn explain(self, material: &ClothMaterial) -> String {
+        let ClothMaterial {
+            areal_density,
+            stretch_compliance,
+            shear_compliance,
+            bend_compliance,
+            damping,
+            friction,
+        } = material;
+        match self {
+            Self::Stretchy => format!(
+                "How much it gives when it is pulled.\n\
+                 Stretch compliance: {stretch_compliance} m/N. A square patch of it, pulled by 1 N, grows by {} mm.\n\
+                 0 is rigid, 1 is 0.000001 m/N, 100 is {} m/N.",
+                1.0e3 * stretch_compliance,
+                STRETCH.0[1]
+            ),
+            Self::Stiff => format!(
+                "How much it resists bends and folds.\n\
+                 Bend compliance: {bend_compliance} m/N; shear compliance, which goes with it: {shear_compliance} m/N.\n\
+                 0 is {} m/N of bend compliance, 100 is {} m/N.",
+                BEND.0[0], BEND.0[1]
+            ),
+            Self::Heavy => format!(
+                "How much it weighs.\n\
+                 Mass per area: {areal_density} kg/m².\n\
+                 0 is {} kg/m², 100 is {} kg/m². A shirt has 0.12, jeans have 0.45.",
+                DENSITY.0[0], DENSITY.0[1]
+            ),
+            Self::Slippery => format!(
+                "How easily it slides over what it touches.\n\
+                 Coulomb's coefficient of friction μ: {friction} (no unit).\n\
+                 0 is μ = 1, which holds on a slope of 45°; 100 is μ = 0, without friction."
+            ),
+            Self::Damped => format!(
+                "How soon it calms down.\n\
+                 Damping D: {damping} (no unit), the part of its velocity that it loses in 1/60 s.\n\
+                 0 is D = 0, 100 is D = {DAMPING}."
+            ),
+        }
+    }
+}
+
+/// From the value at 0 to that at 100 in equal ratios.
+struct Logarithmic([f32; 2]);
+
+impl Logarithmic {
+    fn place(&self, value: f32) -> f32 {
+        let [start, end] = self.0;
+        100.0 * (value / start).ln() / (end / start).ln()
+    }
+
+    fn value(&self, place: f32) -> f32 {
+        let [start, end] = self.0;
+        start * (end / start).powf(place / 100.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_scale_goes_both_ways_and_leaves_the_others_alone() {
+        for (name, preset) in ClothMaterial::PRESETS {
+            for quality in Quality::ALL {
+                let at = quality.of(&preset);
+                assert!((0.0..=100.0).contains(&at), "{name} {quality:?}: {at}");
+                for place in [0.0, 1.0, 37.0, 100.0] {
+                    let mut material = preset;
+                    quality.set(&mut material, place);
+                    assert_eq!(material.validate(), Ok(()));
+                    assert!((quality.of(&material) - place).abs() < 1.0e-3);
+                    for other in Quality::ALL {
+                        let same = other.of(&material) == other.of(&preset);
+                        assert!(same || other == quality, "{quality:?} moves {other:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn more_of_it_is_more_of_it() {
+        let [silk, canvas, rubber] = [
+            ClothMaterial::SILK,
+            ClothMaterial::CANVAS,
+            ClothMaterial::RUBBER,
+        ];
+        assert!(Quality::Stretchy.of(&rubber) > Quality::Stretchy.of(&canvas));
+        assert!(Quality::Stiff.of(&canvas) > Quality::Stiff.of(&silk));
+        assert!(Quality::Heavy.of(&rubber) > Quality::Heavy.of(&silk));
+        assert!(Quality::Slippery.of(&silk) > Quality::Slippery.of(&rubber));
+    }
+
+    #[test]
+    fn what_has_no_place_on_a_scale_is_at_its_end() {
+        let mut loose = ClothMaterial {
+            stretch_compliance: 0.0,
+            shear_compliance: f32::INFINITY,
+            bend_compliance: f32::INFINITY,
+            ..ClothMaterial::COTTON
+        };
+        assert_eq!(Quality::Stretchy.of(&loose), 0.0);
+        assert_eq!(Quality::Stiff.of(&loose), 0.0);
+        Quality::Stiff.set(&mut loose, 50.0);
+        assert_eq!(loose.validate(), Ok(()));
+        assert!(loose.shear_compliance.is_finite());
+        loose.bend_compliance = 0.0;
+        assert_eq!(Quality::Stiff.of(&loose), 100.0);
+    }
+}

@@ -1,0 +1,75 @@
+//! Rows of the panel: a name, what sets it, and an explanation; all of the same width whatever they say.
+
+use std::ops::RangeInclusive;
+
+use bevy_egui::egui::{self, Align, ComboBox, Label, Layout, Response, Slider, SliderClamping, Ui};
+
+/// Width of a name, of a slider, and of the value beside it (logical pixels).
+const NAME: f32 = 84.0;
+const SLIDER: f32 = 110.0;
+const VALUE: f32 = 62.0;
+
+/// A name, and what is added beside it.
+pub(super) fn row<R>(ui: &mut Ui, name: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.horizontal(|ui| {
+        let size = egui::vec2(NAME, ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_width(NAME);
+            ui.add(Label::new(name).selectable(false).truncate());
+        })
+        .response
+        .on_hover_text(tip);
+        ui.spacing_mut().slider_width = SLIDER;
+        ui.spacing_mut().interact_size.x = VALUE;
+        ui.spacing_mut().combo_width = SLIDER + VALUE;
+        add(ui)
+    })
+    .inner
+}
+
+/// A slider that leaves a value outside of its range alone until someone moves it. Whether someone did.
+pub(super) fn slide<T: egui::emath::Numeric>(
+    ui: &mut Ui,
+    name: &str,
+    tip: &str,
+    value: &mut T,
+    range: RangeInclusive<T>,
+    look: impl FnOnce(Slider<'_>) -> Slider<'_>,
+) -> bool {
+    let slider = look(Slider::new(value, range).clamping(SliderClamping::Edits));
+    row(ui, name, tip, |ui| ui.add(slider))
+        .on_hover_text(tip)
+        .changed()
+}
+
+/// A menu of values with their names and explanations. A value that is not among them is left alone.
+pub(super) fn choose<T: Clone + PartialEq>(
+    ui: &mut Ui,
+    name: &str,
+    tip: &str,
+    value: &mut T,
+    now: &str,
+    all: impl IntoIterator<Item = (String, String, T)>,
+) -> Response {
+    row(ui, name, tip, |ui| {
+        ComboBox::from_id_salt(name)
+            .selected_text(now)
+            .truncate()
+            .show_ui(ui, |ui| {
+                for (name, tip, each) in all {
+                    let choice = ui.selectable_value(value, each, name);
+                    if !tip.is_empty() {
+                        choice.on_hover_text(tip);
+                    }
+                }
+            })
+            .response
+    })
+    .on_hover_text(tip)
+}
+
+/// A line of text that is cut off where the panel ends; all of it is in the tooltip.
+pub(super) fn line(ui: &mut Ui, text: impl Into<egui::RichText>, tip: &str) {
+    ui.add(Label::new(text.into()).selectable(false).truncate())
+        .on_hover_text(tip);
+}
