@@ -2,11 +2,14 @@
 
 use std::alloc::System;
 
-use bevy::math::Vec3;
+use bevy::{
+    ecs::schedule::SingleThreadedExecutor, math::Vec3, prelude::*, time::TimeUpdateStrategy,
+};
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
     contact::{Detection, MovingCollider, NarrowPhase, Terms},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
+    prelude::{ClothAttachments, ClothGravity, DrapePlugins, Pin, Pins},
     solver::{Control, PinMotion, Precision, Solver, Stretch, Tethers, TickStep},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -109,4 +112,49 @@ fn a_step_does_not_allocate() {
         );
         assert!(pushed > 0.0, "the ball was touched");
     }
+    attachments_and_what_is_animated_allocate_nothing_more();
+}
+
+/// Allocations of 20 ticks of an app on one thread: Bevy's own, whatever they are, and ours.
+fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
+        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+        .edit_schedule(FixedUpdate, |schedule| {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        });
+    app.finish();
+    app.cleanup();
+    let target = app.world_mut().spawn(Transform::default()).id();
+    let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
+    let attached = ClothAttachments::new(attached);
+    let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached);
+    let cloth = app.world_mut().spawn(cloth).id();
+    let mut tick = |count: u32| {
+        let some = 0.01 * (count % 7) as f32;
+        let world = app.world_mut();
+        if moves {
+            let mut place = world.get_mut::<Transform>(target).expect("a place");
+            place.translation.x = some;
+        }
+        if is_animated {
+            world.resource_mut::<ClothGravity>().0.y = -9.81 - 10.0 * some;
+            let mut material = world.get_mut::<ClothMaterial>(cloth).expect("a material");
+            material.damping = 0.01 + some;
+            material.friction = 0.4 + some;
+        }
+        app.update();
+    };
+    (0..100).for_each(&mut tick);
+    let region = Region::new(ALLOCATOR);
+    (100..120).for_each(&mut tick);
+    let change = region.change();
+    change.allocations + change.reallocations
+}
+
+/// Whether a cloth has one attached pin or two hundred, and whether what tethers do not depend on is animated.
+fn attachments_and_what_is_animated_allocate_nothing_more() {
+    let one = in_ticks(1, true, false);
+    assert_eq!(in_ticks(200, true, false), one, "attachments");
+    assert_eq!(in_ticks(1, true, true), one, "gravity, damping, friction");
 }

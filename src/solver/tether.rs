@@ -144,11 +144,11 @@ impl Tethers {
         }
     }
 
-    /// The acceleration (m/s²) to make tethers for where `acceleration` acts: at least 9.81, and doubled until it is
-    /// as large, so that tethers outlast an acceleration that changes from tick to tick.
+    /// The acceleration (m/s²) to make tethers for where `acceleration` acts: 9.81, doubled until four fifths of
+    /// `acceleration` are no more, so that tethers outlast one that changes from tick to tick.
     pub fn made_for(acceleration: f32) -> f32 {
         let mut rounded = LEAST_ACCELERATION;
-        while rounded < acceleration {
+        while rounded < 0.8 * acceleration {
             rounded *= 2.0;
         }
         rounded
@@ -280,6 +280,16 @@ mod tests {
     use super::*;
     use crate::cloth::Cloth;
     use bevy::math::Vec3;
+
+    #[test]
+    fn tethers_outlast_small_changes_of_gravity() {
+        let made_for = [0.0, 1.62, 9.81, 12.2, 12.3, 24.5, 24.6].map(Tethers::made_for);
+        let [usual, double, fourfold] = [1.0, 2.0, 4.0].map(|times| times * 9.81);
+        assert_eq!(
+            made_for,
+            [usual, usual, usual, usual, double, double, fourfold]
+        );
+    }
 
     /// Pins anywhere: what each particle gets is nearer than the next pin but for a fraction of a cell.
     #[test]

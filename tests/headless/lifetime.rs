@@ -126,3 +126,60 @@ fn components_may_be_removed() {
         "it goes on from where it was"
     );
 }
+
+/// Particles that come with a cloth keep their masses; pins pin all the same.
+#[test]
+fn particles_that_come_with_a_cloth_keep_their_masses() {
+    let mut app = app();
+    let grid = Cloth::new(4, 4, 0.1).grid(Vec3::ONE).expect("a grid");
+    let mut own = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("particles");
+    own.set_inverse_mass((3, 3), 5.0).expect("a particle");
+    own.set_inverse_mass((2, 0), 0.0).expect("a particle");
+    let cloth = app.world_mut().spawn((Cloth::new(4, 4, 0.1), own)).id();
+    tick(&mut app, 2);
+    let inverse_mass = |cell: (u32, u32)| particles(&app, cloth).inverse_mass(cell);
+    assert_eq!(inverse_mass((3, 3)), Some(5.0));
+    assert_eq!(inverse_mass((2, 0)), Some(0.0));
+    assert_eq!(inverse_mass((0, 1)), Some(0.0));
+}
+
+/// What a tick has prepared is not done in another: a cloth that lost its particles between two systems of a tick, with
+/// pins that were to move, and that comes back smaller and at fault.
+#[test]
+fn what_was_prepared_does_not_outlast_its_tick() {
+    #[derive(Resource, Default)]
+    struct Loses(bool);
+    let mut app = app();
+    app.init_resource::<Loses>();
+    let lose = |loses: Res<Loses>, cloths: Query<Entity, With<Cloth>>, mut commands: Commands| {
+        if loses.0 {
+            for cloth in &cloths {
+                commands.entity(cloth).remove::<ClothParticles>();
+            }
+        }
+    };
+    let between = lose
+        .after(ClothSystems::Prepare)
+        .before(ClothSystems::Rebuild);
+    app.add_systems(FixedUpdate, between);
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let attached = ClothAttachments::new([(Pin::Row(19), pole)]);
+    let cloth = (Cloth::new(20, 20, 0.1), Pins::none(), attached);
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 2);
+    change::<Transform>(&mut app, pole, |place| place.translation.x = 0.05);
+    app.insert_resource(Loses(true));
+    tick(&mut app, 1);
+    app.insert_resource(Loses(false));
+    app.world_mut().despawn(pole);
+    let smaller = (Cloth::new(3, 3, 0.1), ClothParticles::default());
+    app.world_mut().entity_mut(cloth).insert(smaller);
+    tick(&mut app, 3);
+    assert!(app.world().get::<ClothFault>(cloth).is_some());
+    app.world_mut()
+        .entity_mut(cloth)
+        .remove::<ClothAttachments>();
+    tick(&mut app, 3);
+    assert!(app.world().get::<ClothFault>(cloth).is_none());
+    assert_eq!(particles(&app, cloth).len(), 9);
+}

@@ -70,8 +70,13 @@ fn everything() -> (App, [Entity; 3]) {
     (app, [cloth, ball, bad])
 }
 
-/// Entities are text with Bevy's feature `serialize` only: these travel as values.
-const NAMES_ENTITIES: [&str; 3] = ["ClothAttachments", "ClothContacts", "ClothFault"];
+/// Entities and ranges are text with Bevy's feature `serialize` only: what has them travels as a value.
+const AS_VALUES: [&str; 4] = [
+    "ClothAttachments",
+    "ClothContacts",
+    "ClothFault",
+    "ShowClothGizmos",
+];
 
 /// Each component of a living cloth goes into text and back, and onto another entity.
 #[test]
@@ -92,7 +97,7 @@ fn every_component_travels() {
             let value = component
                 .reflect(app.world().entity(entity))
                 .expect("it is there");
-            let back = if NAMES_ENTITIES.iter().any(|names| name.ends_with(names)) {
+            let back = if AS_VALUES.iter().any(|it| name.ends_with(it)) {
                 value.as_partial_reflect().to_dynamic()
             } else {
                 let serializer = ReflectSerializer::new(value.as_partial_reflect(), &registry);

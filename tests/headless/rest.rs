@@ -181,3 +181,75 @@ fn a_mended_cloth_goes_on() {
     assert!(app.world().get::<ClothFault>(cloth).is_none());
     assert!(position(&app, cloth, (8, 4)).z > 0.0);
 }
+
+/// Two seconds to three after an eye sees no motion any more, and never while it does: an eye sees what moves by a
+/// thousandth of the cloth's diagonal, a pixel where that fills the screen, within a second.
+#[test]
+fn it_sleeps_soon_after_an_eye_sees_no_motion() {
+    let tablecloth = |app: &mut App| {
+        let table = ClothCollider::cuboid(1.0, 0.1, 1.0);
+        app.world_mut()
+            .spawn((table, Transform::from_xyz(0.0, 0.7, 0.0)));
+        app.world_mut().spawn(ClothCollider::plane());
+        let cloth = (Cloth::new(63, 62, 0.0255).lying().centred(), Pins::none());
+        let above = Transform::from_xyz(0.0, 0.9, 0.0);
+        app.world_mut().spawn((cloth, above)).id()
+    };
+    let flag = |app: &mut App| {
+        let flag = (Cloth::new(24, 16, 0.06), Pins::new([Pin::Column(0)]));
+        app.world_mut().spawn(flag).id()
+    };
+    let spawns: [(&str, &dyn Fn(&mut App) -> Entity); 2] =
+        [("tablecloth", &tablecloth), ("flag", &flag)];
+    for (name, spawn) in spawns {
+        let mut app = app();
+        let cloth = spawn(&mut app);
+        tick(&mut app, 1);
+        let grid = *app.world().get::<Cloth>(cloth).expect("a cloth");
+        let pixel = 1.0e-3 * grid.width().hypot(grid.height());
+        let mut history: Vec<Vec<Vec3>> = Vec::new();
+        let mut last_seen = 0;
+        while !stats(&app, cloth).is_asleep {
+            tick(&mut app, 1);
+            history.push(particles(&app, cloth).positions().collect());
+            let now = history.len() - 1;
+            let second_ago = &history[now.saturating_sub(64)];
+            let moves = |(a, b): (&Vec3, &Vec3)| a.distance_squared(*b) > pixel * pixel;
+            if history[now].iter().zip(second_ago).any(moves) {
+                last_seen = now;
+            }
+            assert!(now < 64 * 30, "{name} never sleeps");
+        }
+        let waited = (history.len() - last_seen) as f32 / 64.0;
+        println!(
+            "{name}: an eye sees the last of it after {:.1} s, it sleeps {waited:.2} s later",
+            last_seen as f32 / 64.0
+        );
+        // What moved by a pixel within the second before `last_seen` may have done so at its beginning.
+        assert!((0.0..3.0).contains(&waited), "{name}: {waited} s");
+        let still = &history[history.len() - 32];
+        let end = &history[history.len() - 1];
+        let moved = still.iter().zip(end).map(|(a, b)| a.distance(*b));
+        assert!(moved.fold(0.0, f32::max) < pixel, "{name}");
+    }
+}
+
+/// Who saves particles, or writes back what was there, does not wake a cloth; whoever moves one does.
+#[test]
+fn saved_particles_let_it_sleep() {
+    let (mut app, cloth, _) = asleep();
+    change::<ClothParticles>(&mut app, cloth, |particles| {
+        let saved = particles.clone();
+        *particles = saved;
+    });
+    tick(&mut app, 2);
+    assert!(stats(&app, cloth).is_asleep);
+    change::<ClothParticles>(&mut app, cloth, |particles| {
+        let at = particles.position(40).expect("a particle");
+        particles
+            .set_position(40, at + Vec3::Z * 1.0e-3)
+            .expect("a particle");
+    });
+    tick(&mut app, 1);
+    assert!(!stats(&app, cloth).is_asleep);
+}

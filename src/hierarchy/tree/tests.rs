@@ -188,3 +188,16 @@ fn validate_finds_what_is_broken() {
     assert!(break_it(|tree| tree.levels[1].rows[0].children = 1..2).is_err());
     assert!(QuadTree::of_grid(&grid, true).validate(16).is_err());
 }
+
+/// As many particles in rows and columns lie elsewhere than those of a network, which lie in one row.
+#[test]
+fn a_network_is_not_of_particles_in_a_grid() {
+    let grid = Cloth::new(12, 3, 0.1)
+        .grid(Vec3::ONE)
+        .expect("a sound grid");
+    let in_grid = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("particles");
+    let rest: Vec<Vec3> = in_grid.positions().collect();
+    let in_row = ClothParticles::new(&rest, &vec![1.0; rest.len()]).expect("particles");
+    let tree = QuadTree::of_network(&rest, &[]).expect("a tree");
+    assert!(tree.fits(&in_row) && !tree.fits(&in_grid));
+}
