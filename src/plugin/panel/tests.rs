@@ -125,3 +125,49 @@ fn the_rest_of_the_window_is_left_to_the_scene() {
     panel.visible = false;
     assert!(panel.viewport(UVec2::new(1280, 720), 1.0).is_none());
 }
+
+/// Every widget is hovered, pressed and released, folded parts and menus that open on the way included.
+#[test]
+fn clicks_anywhere_leave_it_working() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    app.world_mut().spawn(ClothColliderSpeed(1.0));
+    app.update();
+    let context = egui::Context::default();
+    let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 1400.0));
+    let mut state = SystemState::<Shown>::new(app.world_mut());
+    for column in [20.0, 60.0, 150.0, 190.0, 250.0] {
+        for row in 1..110 {
+            let pos = egui::pos2(column, 12.0 * row as f32);
+            let button = |pressed| egui::Event::PointerButton {
+                pos,
+                button: egui::PointerButton::Primary,
+                pressed,
+                modifiers: egui::Modifiers::NONE,
+            };
+            let frames = [egui::Event::PointerMoved(pos), button(true), button(false)];
+            for event in frames {
+                let mut shown = state.get_mut(app.world_mut()).expect("the panel's data");
+                context.begin_pass(egui::RawInput {
+                    screen_rect: Some(screen),
+                    events: vec![event],
+                    ..Default::default()
+                });
+                let place = shown.draw(&context);
+                let _output = context.end_pass();
+                state.apply(app.world_mut());
+                assert_eq!(place.width(), ClothPanel::WIDTH, "{pos}");
+            }
+        }
+        app.update();
+        let material = app.world().get::<ClothMaterial>(cloth).expect("one");
+        assert_eq!(material.validate(), Ok(()), "{column}");
+        assert!(app.world().get::<super::super::ClothFault>(cloth).is_none());
+    }
+    let material = app.world().get::<ClothMaterial>(cloth).expect("one");
+    let shows = app.world().entity(cloth).contains::<ShowClothGizmos>();
+    assert!(
+        *material != ClothMaterial::default() && shows,
+        "clicks reach widgets"
+    );
+}
