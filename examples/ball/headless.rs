@@ -64,6 +64,9 @@ struct Measured {
     deepest_left: f64,
 }
 
+/// How far the ball is past the cloth's plane (m) when the cloth is well wrapped around it.
+const WRAPPED: f32 = 1.2;
+
 /// Simulates, prints the report, and saves `ball.png` if `view` can draw.
 pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let mut app = App::new();
@@ -82,7 +85,8 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
         )
         .add_systems(FixedLast, look_at_the_worst);
     let ticks = ticks_in(&app, options.seconds).max(1);
-    let picture_tick = ticks_in(&app, scene::best_moment(options.seconds)).clamp(1, ticks);
+    let picture_tick =
+        ticks_in(&app, scene::moment_beyond(WRAPPED, options.seconds)).clamp(1, ticks);
     let mut run = Run::new(app, view, ticks);
     let start = Instant::now();
     run.until(picture_tick);

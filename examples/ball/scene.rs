@@ -59,10 +59,9 @@ pub const SHOT: Shot = Shot {
     fov: 0.7,
 };
 
-/// When the ball last is this far past the cloth's plane, within `seconds` of simulation: the cloth is well
-/// wrapped around it.
-pub fn best_moment(seconds: f64) -> f64 {
-    let past = f64::from((TURNING + 1.2) / SPEED);
+/// When the ball last is `past` metres beyond the cloth's plane, within `seconds` of simulation.
+pub fn moment_beyond(past: f32, seconds: f64) -> f64 {
+    let past = f64::from((TURNING + past) / SPEED);
     let period = f64::from(4.0 * TURNING / SPEED);
     if seconds < past {
         seconds

@@ -8,6 +8,7 @@ use std::{
 };
 
 use bevy::{
+    camera::Hdr,
     core_pipeline::core_3d::Transparent3d,
     gizmos::{GizmoAsset, GizmoHandles},
     log::LogPlugin,
@@ -23,7 +24,7 @@ use bevy::{
 use bevy_drape::prelude::*;
 
 use crate::{
-    scene::{SHOT, ScenePlugin, best_moment},
+    scene::{SHOT, ScenePlugin, moment_beyond},
     view::View,
 };
 
@@ -120,9 +121,9 @@ impl Drawn {
         self.app.insert_resource(TimeUpdateStrategy::Automatic);
     }
 
-    /// Goes on, with few frames, until the cloth is well wrapped around the ball.
+    /// Goes on, with few frames, until the ball's centre is 0.45 m past the cloth's plane.
     pub fn go_to_best_moment(&mut self) {
-        let until = best_moment(4.0);
+        let until = moment_beyond(0.45, 4.0);
         self.app
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(8));
         while self.seconds() < until {
@@ -181,8 +182,14 @@ impl Lines {
     };
 }
 
-/// As plain as the paper's scene: what is to be seen is what the hierarchy costs, not what shadows and a floor do.
+/// As plain as the paper's scene: what is to be seen is what the hierarchy costs, not what shadows, sky and a floor do.
 fn make_plain(world: &mut World) {
+    let mut cameras = world.query_filtered::<Entity, With<Camera3d>>();
+    for camera in cameras.iter(world).collect::<Vec<_>>() {
+        world
+            .entity_mut(camera)
+            .remove::<(DistanceFog, EnvironmentMapLight, Hdr)>();
+    }
     let mut lights = world.query::<&mut DirectionalLight>();
     for mut light in lights.iter_mut(world) {
         light.shadow_maps_enabled = false;

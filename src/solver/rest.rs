@@ -84,7 +84,13 @@ mod tests {
     fn sleeps_when_nothing_has_left_its_place_for_half_a_swing() {
         assert!(!asleep_after(75, |_| 0.0));
         assert!(asleep_after(77, |_| 0.0));
-        let trembling = |tick: u32| if tick % 2 == 0 { 0.0009 } else { -0.0009 };
+        let trembling = |tick: u32| {
+            if tick.is_multiple_of(2) {
+                0.0009
+            } else {
+                -0.0009
+            }
+        };
         assert!(asleep_after(77, trembling), "in its place, however fast");
         let creeping = |tick: u32| 0.002 * tick as f32 * TICK;
         assert!(!asleep_after(640, creeping), "a pixel in a second");

@@ -18,9 +18,12 @@ const TURN: f32 = 2.0;
 /// How a carrier is moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Moved {
-    InTicks,
-    InTicksInterpolated,
-    InFrames,
+    /// In each fixed tick.
+    Ticked,
+    /// Likewise, and drawn between them.
+    Smoothed,
+    /// In each frame.
+    Framed,
 }
 
 fn carry(mut carriers: Query<&mut Transform, With<Carrier>>, time: Res<Time>) {
@@ -33,7 +36,7 @@ fn carry(mut carriers: Query<&mut Transform, With<Carrier>>, time: Res<Time>) {
 fn app(moved: Moved) -> App {
     let mut app = app_that_draws_smoothly();
     match moved {
-        Moved::InFrames => app.add_systems(Update, carry),
+        Moved::Framed => app.add_systems(Update, carry),
         _ => app.add_systems(FixedUpdate, carry.before(ClothSystems::Prepare)),
     };
     app
@@ -43,7 +46,7 @@ fn app(moved: Moved) -> App {
 fn spawn_carrier(app: &mut App, moved: Moved, bundle: impl Bundle) -> Entity {
     let place = Transform::from_xyz(0.3, 1.0, -0.2);
     let mut carrier = app.world_mut().spawn((place, bundle));
-    if moved == Moved::InTicksInterpolated {
+    if moved == Moved::Smoothed {
         carrier.insert(TransformInterpolation);
     }
     carrier.id()
@@ -75,7 +78,7 @@ fn drawn_at(app: &App, entity: Entity) -> GlobalTransform {
 /// next particles are as far away as the cloth has them, which was pulled at by all that motion.
 #[test]
 fn pins_are_drawn_where_their_carriers_are() {
-    for moved in [Moved::InTicks, Moved::InTicksInterpolated, Moved::InFrames] {
+    for moved in [Moved::Ticked, Moved::Smoothed, Moved::Framed] {
         for is_attached in [true, false] {
             let mut app = app(moved);
             let cloth = Cloth::new(9, 7, 0.1);
@@ -122,7 +125,7 @@ fn pins_are_drawn_where_their_carriers_are() {
 /// by more than the chord between two ticks is below the arc.
 #[test]
 fn an_interpolated_ball_stays_behind_the_curtain() {
-    let mut app = app(Moved::InTicks);
+    let mut app = app(Moved::Ticked);
     let cloth = app
         .world_mut()
         .spawn((Cloth::new(24, 24, 0.05).centred(), Visibility::default()))
@@ -154,7 +157,7 @@ fn a_hidden_cloth_is_not_updated() {
     let cloth = app.world_mut().spawn(cloth).id();
     tick(&mut app, 10);
     change::<Visibility>(&mut app, cloth, |visibility| {
-        *visibility = Visibility::Hidden
+        *visibility = Visibility::Hidden;
     });
     tick(&mut app, 1);
     let hidden = drawn(&app, cloth);
@@ -162,7 +165,7 @@ fn a_hidden_cloth_is_not_updated() {
     assert_eq!(drawn(&app, cloth), hidden);
     let before: Vec<Vec3> = particles(&app, cloth).positions().collect();
     change::<Visibility>(&mut app, cloth, |visibility| {
-        *visibility = Visibility::Visible
+        *visibility = Visibility::Visible;
     });
     tick(&mut app, 1);
     // With no overstep the picture is that of a tick ago.

@@ -247,3 +247,38 @@ fn the_usual_is_within() {
         assert_eq!(told, [], "{name}: {stretch:?}");
     }
 }
+
+/// How far the defaults carry, and what more sub-steps give: the stretch of a cloth that has come to rest after 10 s, as
+/// README says it. What a sweep leaves grows with the square of the particles in a thread and falls with that of the
+/// sub-steps: of a flag's top threads three times as many sub-steps leave less than a third.
+#[test]
+fn what_the_defaults_hold() {
+    let rest_stretch = |name: &str, substeps: u32, spawn: &dyn Fn(&mut App) -> Entity| {
+        let mut app = app();
+        let cloth = spawn(&mut app);
+        app.world_mut()
+            .entity_mut(cloth)
+            .insert(ClothSettings::substeps(substeps));
+        tick(&mut app, 640);
+        let stretch = stats(&app, cloth).stretch.structural;
+        println!("{name}, {substeps} sub-steps: {:.1} %", 100.0 * stretch);
+        stretch
+    };
+    let curtain = |app: &mut App| app.world_mut().spawn(Cloth::new(32, 32, 0.05)).id();
+    let tablecloth = |app: &mut App| {
+        let table = ClothCollider::cuboid(1.0, 0.1, 1.0);
+        app.world_mut()
+            .spawn((table, Transform::from_xyz(0.0, -0.4, 0.0)));
+        let cloth = (Cloth::new(64, 64, 0.025).lying().centred(), Pins::none());
+        app.world_mut().spawn(cloth).id()
+    };
+    let flag = |app: &mut App| {
+        let flag = (Cloth::new(48, 32, 0.03), Pins::new([Pin::Column(0)]));
+        app.world_mut().spawn(flag).id()
+    };
+    assert!(rest_stretch("curtain of 32²", 20, &curtain) < 0.05);
+    let cloth = rest_stretch("tablecloth of 64²", 20, &tablecloth);
+    assert!(rest_stretch("tablecloth of 64²", 40, &tablecloth) < cloth);
+    let limp = rest_stretch("flag of 48 × 32", 20, &flag);
+    assert!(rest_stretch("flag of 48 × 32", 60, &flag) < limp / 3.0);
+}

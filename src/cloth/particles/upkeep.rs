@@ -302,7 +302,7 @@ impl ClothParticles {
     }
 }
 
-/// A number from −1 to 1 that looks random, the same for the same `index` (Steele, Lea and Flood 2014: SplitMix).
+/// A number from −1 to 1 that looks random, the same for the same `index` (Steele, Lea and Flood 2014, `SplitMix`).
 fn scattered(index: u64) -> f32 {
     let mut bits = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
