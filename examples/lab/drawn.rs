@@ -185,7 +185,9 @@ impl Lines {
 /// As plain as the paper's scene: what is to be seen is what the hierarchy costs, not what shadows, sky and a floor do.
 fn make_plain(world: &mut World) {
     let mut cameras = world.query_filtered::<Entity, With<Camera3d>>();
-    for camera in cameras.iter(world).collect::<Vec<_>>() {
+    // Without a renderer Bevy's hooks on these do not find what they need, and nobody sees them.
+    let is_drawn = world.contains_resource::<RenderDevice>();
+    for camera in cameras.iter(world).filter(|_| is_drawn).collect::<Vec<_>>() {
         world
             .entity_mut(camera)
             .remove::<(DistanceFog, EnvironmentMapLight, Hdr)>();

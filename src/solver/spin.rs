@@ -12,6 +12,9 @@ use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
 /// How far pins may be beside the line, in metres for each metre along it.
 const STRAIGHT: f32 = 1.0e-3;
 
+/// How far a cloth is turned back in a tick at most (rad).
+const LARGEST_TURN: f32 = 0.01;
+
 /// What a cloth turns by around the line of its pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spin {
@@ -76,7 +79,8 @@ impl Spin {
         if !turn.is_finite() {
             return;
         }
-        let back = turn * substeps as f32 / 2.0;
+        // So little that the arc is its tangent.
+        let back = (turn * substeps as f32 / 2.0).clamp(-LARGEST_TURN, LARGEST_TURN);
         for block in particles.blocks_mut() {
             for lane in 0..LANES {
                 let turned = self.turned(block.view(), lane);
