@@ -87,7 +87,9 @@ pub enum ClothError {
         shape: String,
     },
     /// Columns of particles that do not fit the grid.
-    #[error("the cloth has {expected} particles, its `ClothParticles` hold {found}")]
+    #[error(
+        "the cloth has {expected} particles, its `ClothParticles` hold {found}: give it as many, or empty them"
+    )]
     ParticleCount {
         /// What the grid asks for.
         expected: usize,

@@ -9,7 +9,7 @@ use bevy::{
 
 use super::{ClothError, ClothGrid};
 
-/// A corner of the cloth at rest, seen from +z.
+/// A corner of the cloth at rest, seen from where it faces: +z, of a lying cloth +y.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Corner {
     /// (0, 0).

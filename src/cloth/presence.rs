@@ -1,7 +1,10 @@
 //! Whether anything simulates cloth: only a cloth that is spawned can say that nothing does.
 
 use bevy::{
-    ecs::{lifecycle::HookContext, name::Name, resource::Resource, world::DeferredWorld},
+    ecs::{
+        lifecycle::HookContext, name::Name, resource::Resource, schedule::Schedules,
+        world::DeferredWorld,
+    },
     log::error,
 };
 
@@ -14,9 +17,9 @@ pub(crate) enum ClothPresence {
     Missed,
 }
 
-/// Logs the first cloth of a world without the plugin.
+/// Logs the first cloth of an app's world without the plugin. Other worlds, as those of scene assets, run no schedules.
 pub(super) fn log_unsimulated(mut world: DeferredWorld, context: HookContext) {
-    if world.contains_resource::<ClothPresence>() {
+    if world.contains_resource::<ClothPresence>() || !world.contains_resource::<Schedules>() {
         return;
     }
     world.commands().insert_resource(ClothPresence::Missed);

@@ -57,6 +57,21 @@ impl ClothTopology {
         &self.tree
     }
 
+    /// Gives pinned particles the masses that the material gives them.
+    pub(super) fn release_pins(&self, particles: &mut ClothParticles) {
+        let Some((_, material, _)) = &self.woven else {
+            return;
+        };
+        if !self.fits(particles) {
+            return;
+        }
+        for index in 0..particles.len() {
+            if particles.inverse_mass(index) == Some(0.0) {
+                particles.reweigh(index, &self.grid, material, &Pins::none());
+            }
+        }
+    }
+
     /// Whether springs and tree are those of `particles`: not before the first tick, nor once a game has
     /// emptied the particles, until the next.
     pub(super) fn fits(&self, particles: &ClothParticles) -> bool {
@@ -176,8 +191,9 @@ pub(super) struct ClothTick {
     pub known: Option<(ClothSettings, SearchMethod, NarrowPhase, Vec3)>,
     /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
     pub tethered: Option<(bool, f32)>,
-    /// How many particles are pinned.
+    /// How many particles are pinned, and a number that is new whenever others are.
     pub pinned: usize,
+    pub pins_version: u32,
     /// What `attached` was made from.
     pub attachments: Vec<ClothAttachment>,
     pub attached: Vec<Attached>,

@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{
-        entity::Entity,
+        entity::{Entity, EntityHashSet},
         message::{Message, MessageWriter},
         system::{Local, Query},
     },
@@ -19,7 +19,7 @@ const TICKS: u32 = 8;
 /// What is so many times as large as when it was reported is reported again.
 const WORSE: f32 = 10.0;
 
-/// Reports are gathered for as many ticks, so that many cloths are one line of the log.
+/// Reports are gathered for as many ticks, half a second of Bevy's 64 Hz, so that many cloths are one line of the log.
 const GATHERED: u32 = 32;
 
 /// A cloth has left the envelope in which it is simulated well, for more than an instant. It is logged as well, with the
@@ -66,15 +66,15 @@ impl Excess {
 /// Cloths beyond one limit that the log does not know of yet.
 #[derive(Debug, Default)]
 pub(super) struct Gathered {
-    cloths: usize,
+    cloths: EntityHashSet,
     ticks: u32,
     /// The one that is farthest beyond, with its quantity and up to where that is good.
     worst: Option<(String, [f32; 2])>,
 }
 
 impl Gathered {
-    fn add(&mut self, name: impl FnOnce() -> String, quantity: [f32; 2]) {
-        self.cloths += 1;
+    fn add(&mut self, cloth: Entity, name: impl FnOnce() -> String, quantity: [f32; 2]) {
+        self.cloths.insert(cloth);
         let known = self.worst.as_ref().map(|(_, [worst, good])| worst / good);
         if known.is_none_or(|worst| quantity[0] / quantity[1] > worst) {
             self.worst = Some((name(), quantity));
@@ -83,13 +83,14 @@ impl Gathered {
 
     /// A tick has passed. Returns what is to be logged, if anything is.
     fn line(&mut self, limit: ClothLimit) -> Option<String> {
-        self.ticks += u32::from(self.cloths > 0);
+        self.ticks += u32::from(!self.cloths.is_empty());
         if self.ticks < GATHERED {
             return None;
         }
         let Self { cloths, worst, .. } = std::mem::take(self);
         let (name, quantity) = worst?;
         let (figures, remedy) = (limit.figures(quantity), limit.remedy());
+        let cloths = cloths.len();
         Some(if cloths == 1 {
             format!("{name} is {limit}: {figures}: {remedy}")
         } else {
@@ -124,7 +125,8 @@ pub(super) fn report_limits(
                     quantity,
                     good_up_to,
                 });
-                gathered[index].add(|| name.describe(Part::Cloth), [quantity, good_up_to]);
+                let figures = [quantity, good_up_to];
+                gathered[index].add(name.entity, || name.describe(Part::Cloth), figures);
             }
         }
     }
@@ -163,7 +165,9 @@ mod tests {
             if tick < 30 {
                 for cloth in [2 * tick, 2 * tick + 1] {
                     let stretch = if cloth == 17 { 0.31 } else { 0.2 };
-                    gathered.add(|| format!("cloth \"flag {cloth}\""), [stretch, 0.15]);
+                    let name = || format!("cloth \"flag {cloth}\"");
+                    let entity = Entity::from_raw_u32(cloth).expect("an entity");
+                    gathered.add(entity, name, [stretch, 0.15]);
                 }
             }
             lines.extend(gathered.line(LIMIT));
@@ -178,7 +182,16 @@ mod tests {
     #[test]
     fn one_is_named_with_its_figures() {
         let mut gathered = Gathered::default();
-        gathered.add(|| "cloth \"flag\"".into(), [0.31, 0.15]);
+        let mut add = |stretch| {
+            gathered.add(
+                Entity::PLACEHOLDER,
+                || "cloth \"flag\"".into(),
+                [stretch, 0.15],
+            );
+        };
+        // Ten times worse within the same half second is one cloth all the same.
+        add(0.031);
+        add(0.31);
         let line = (0..GATHERED).find_map(|_| gathered.line(LIMIT));
         let line = line.expect("a line");
         let expected = "cloth \"flag\" is overstretched: 31 % (limit 15 %): ";

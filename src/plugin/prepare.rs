@@ -136,10 +136,7 @@ impl PreparingItem<'_, '_> {
             if !self.tick.solver.tethers().are_of(&self.particles) {
                 self.tick.tethered = None;
             }
-            // One that is awake is watched all the same.
-            if self.tick.rest.is_asleep() {
-                self.tick.rest.disturb();
-            }
+            self.tick.rest.disturb();
         }
         let acceleration = self.frame.isometry().rotation.inverse() * gravity;
         self.tether(settings.tethers, &material, gravity.length());
@@ -149,7 +146,9 @@ impl PreparingItem<'_, '_> {
             self.tick.rest.disturb();
         } else if !self.tick.rest.is_asleep() {
             let diagonal = self.topology.grid.diagonal();
-            self.tick.rest.observe(seconds, &self.particles, diagonal);
+            let pull = acceleration.length();
+            let rest = &mut self.tick.rest;
+            rest.observe(seconds, &self.particles, diagonal, pull);
         }
         // The plugin's own writing, up to here.
         self.tick.written = Some(self.particles.last_changed());

@@ -194,12 +194,17 @@ fn add_parts_to_earlier<C: Component, Parts: Bundle + Default>(world: &mut World
     }
 }
 
-/// What the plugin added to a cloth goes with it; its particles and settings stay, they are the game's.
+/// What the plugin added to a cloth goes with it; its particles and settings stay, they are the game's. What was pinned
+/// gets its mass back.
 fn clear_removed_cloth(
     removed: On<Remove, Cloth>,
     faults: Query<&ClothFault>,
+    mut cloths: Query<(&ClothTopology, &mut ClothParticles)>,
     mut commands: Commands,
 ) {
+    if let Ok((topology, mut particles)) = cloths.get_mut(removed.entity) {
+        topology.release_pins(&mut particles);
+    }
     commands.entity(removed.entity).try_remove::<(
         ClothTopology,
         ClothFrame,

@@ -4,7 +4,7 @@ use super::prepare::PreparingItem;
 use crate::{
     cloth::{ClothError, ClothGrid, ClothMaterial, ClothParticles, Pins, SpringKind, Springs},
     hierarchy::QuadTree,
-    plugin::ClothTopology,
+    plugin::{ClothAttachments, ClothTopology},
     solver::{Solver, Tethers, given_stretch},
 };
 
@@ -43,7 +43,18 @@ impl PreparingItem<'_, '_> {
         let mut particles = if self.topology.woven.is_some() || self.particles.is_empty() {
             let mut particles = ClothParticles::at_rest(&grid, material)?;
             particles.weigh(&grid, material, pins)?;
-            particles.make_uneven(&grid, self.cloth.unevenness);
+            // What is attached will be pinned where it is.
+            let mut is_held = vec![false; grid.len()];
+            let attached = self
+                .attachments
+                .into_iter()
+                .flat_map(ClothAttachments::iter);
+            for attachment in attached.filter(|each| each.pin.validate(&grid).is_ok()) {
+                attachment
+                    .pin
+                    .for_each(&grid, |index| is_held[index] = true);
+            }
+            particles.make_uneven(&grid, self.cloth.unevenness, |index| is_held[index]);
             particles
         } else {
             check_count(&self.particles, &grid)?;
@@ -106,7 +117,9 @@ impl PreparingItem<'_, '_> {
             if had_diagonals != has_diagonals {
                 topology.tree = QuadTree::of_grid(&topology.grid, has_diagonals);
             }
+            let tethers = self.tick.solver.take_tethers();
             self.tick.solver = Solver::new(&topology.springs, &self.particles);
+            self.tick.solver.set_tethers(tethers);
             // The stretch that bounds rely on is measured over other springs now.
             self.tick.written = None;
         }
@@ -126,6 +139,7 @@ impl PreparingItem<'_, '_> {
                 .filter(|w| *w == 0.0)
                 .count();
             self.tick.masses = self.particles.free_masses();
+            self.tick.pins_version = self.tick.pins_version.wrapping_add(1);
         }
         self.tick.given_stretch = given_stretch(grid, material, self.tick.pinned, acceleration);
         let acceleration = Tethers::made_for(acceleration);

@@ -88,7 +88,8 @@ impl ClothLimit {
         };
         let percent = |value: f32| {
             let percent = 100.0 * value;
-            let decimals = if percent < 10.0 { 1 } else { 0 };
+            let is_whole = (percent - percent.round()).abs() < 0.05 || percent >= 100.0;
+            let decimals = usize::from(!is_whole);
             format!("{percent:.decimals$} %")
         };
         let [found, good] = match self {

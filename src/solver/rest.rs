@@ -10,14 +10,17 @@ const REACH: f32 = 1.0e-3;
 const LARGEST_REACH: f32 = 5.0e-3;
 
 /// How long it has to stay so near (s): half a swing, √(g/L) × 2.405/2 being the angular frequency of a sheet of length
-/// L that hangs by its upper edge. What swings farther leaves its place in that time, also from a turning point.
+/// L that hangs by its upper edge. What swings by more than one and a half times as far to either side leaves its place in that time,
+/// wherever it is in its swing: in half a one that is farther by two thirds of its amplitude at least.
 const HALF_SWING: f32 = 2.61;
-const GRAVITY: f32 = 9.81;
-const PATIENCE: [f32; 2] = [0.5, 2.5];
+const PATIENCE: [f32; 2] = [0.5, 20.0];
+
+/// Where nothing swings, as there is no gravity (s).
+const WITHOUT_GRAVITY: f32 = 2.5;
 
 /// Whether a cloth is at rest, told by what an eye sees: no particle has moved by more than a thousandth of the cloth's
-/// diagonal, at most 5 mm, for as long as half a swing of a sheet as long as that takes (1.3 s for 2.3 m), from 0.5 to
-/// 2.5 s. Speeds do not count: what trembles in its place is at rest.
+/// diagonal, at most 5 mm, for as long as half a swing of a sheet as long as that takes (1.3 s for 2.3 m on Earth), from
+/// 0.5 to 20 s. Speeds do not count: what trembles in its place is at rest.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Rest {
     /// Where the particles were when they were last seen to move; as they sleep, if they do.
@@ -28,10 +31,21 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// Takes what a tick of so many seconds ended with, of a cloth that measures `diagonal` (m) at rest.
-    pub fn observe(&mut self, seconds: f32, particles: &ClothParticles, diagonal: f32) {
+    /// Takes what a tick of so many seconds ended with, of a cloth that measures `diagonal` (m) at rest, under an
+    /// `acceleration` (m/s²).
+    pub fn observe(
+        &mut self,
+        seconds: f32,
+        particles: &ClothParticles,
+        diagonal: f32,
+        acceleration: f32,
+    ) {
         let reach = (REACH * diagonal).min(LARGEST_REACH);
-        let patience = HALF_SWING * (diagonal / GRAVITY).sqrt();
+        let patience = if acceleration > 0.0 {
+            HALF_SWING * (diagonal / acceleration).sqrt()
+        } else {
+            WITHOUT_GRAVITY
+        };
         let is_near = particles.stays_within(reach, &self.origin);
         if !is_near {
             self.origin.copy_from(particles);
@@ -68,14 +82,19 @@ mod tests {
     use bevy::math::Vec3;
 
     const TICK: f32 = 1.0 / 64.0;
+    const GRAVITY: f32 = 9.81;
 
     /// Two metres, the least that half a swing takes being 1.2 s: 75.5 ticks after the one that is compared with.
     fn asleep_after(ticks: u32, at: impl Fn(u32) -> f32) -> bool {
+        asleep_under(GRAVITY, ticks, at)
+    }
+
+    fn asleep_under(gravity: f32, ticks: u32, at: impl Fn(u32) -> f32) -> bool {
         let mut rest = Rest::default();
         for tick in 0..ticks {
             let place = [Vec3::ZERO, Vec3::new(1.0, at(tick), 0.0)];
             let particles = ClothParticles::new(&place, &[1.0; 2]).expect("two particles");
-            rest.observe(TICK, &particles, 2.0);
+            rest.observe(TICK, &particles, 2.0, gravity);
         }
         rest.is_asleep()
     }
@@ -101,12 +120,15 @@ mod tests {
     /// A swing that an eye sees, seen first at its turning point, of the period that is the longest for its size.
     #[test]
     fn does_not_sleep_at_a_turning_point() {
-        let swing = |amplitude: f32| {
-            let omega = 2.405 / 2.0 * (GRAVITY / 2.0_f32).sqrt();
-            move |tick: u32| amplitude * (omega * tick as f32 * TICK).cos()
-        };
-        assert!(!asleep_after(6400, swing(0.0022)));
-        assert!(asleep_after(6400, swing(0.0009)));
+        for gravity in [GRAVITY, 1.62, 0.3] {
+            let swing = |amplitude: f32| {
+                let omega = 2.405 / 2.0 * (gravity / 2.0_f32).sqrt();
+                move |tick: u32| amplitude * (omega * tick as f32 * TICK).cos()
+            };
+            let asleep_after = |at: &dyn Fn(u32) -> f32| asleep_under(gravity, 6400, at);
+            assert!(!asleep_after(&swing(0.0031)), "{gravity} m/s²");
+            assert!(asleep_after(&swing(0.0009)), "{gravity} m/s²");
+        }
     }
 
     #[test]
@@ -114,7 +136,7 @@ mod tests {
         let mut rest = Rest::default();
         let particles = ClothParticles::new(&[Vec3::ZERO], &[1.0]).expect("a particle");
         for _ in 0..64 {
-            rest.observe(TICK, &particles, 0.1);
+            rest.observe(TICK, &particles, 0.1, GRAVITY);
         }
         assert!(rest.is_asleep() && rest.sleeps_as(&particles.clone()));
         let mut moved = particles.clone();
@@ -123,7 +145,7 @@ mod tests {
         rest.disturb();
         assert!(!rest.is_asleep() && !rest.sleeps_as(&particles));
         let nan = ClothParticles::default();
-        rest.observe(TICK, &nan, 0.1);
+        rest.observe(TICK, &nan, 0.1, GRAVITY);
         assert!(!rest.is_asleep());
     }
 }

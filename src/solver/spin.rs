@@ -1,12 +1,13 @@
 //! The angular momentum of a cloth that hangs by a vertical line, as a flag by its pole.
 //!
 //! Neither springs nor pins nor gravity turn such a cloth around that line, so that its angular momentum there is lost
-//! to damping alone. A sweep does turn it: what one spring corrects turns those that are corrected after it, by a torque
+//! to damping alone, whether the line stands still or moves without turning. A sweep does turn it: what one spring corrects turns those that are corrected after it, by a torque
 //! of the order of (tension/mass)² Δt², always to the same side. Damping is all that holds against it: a limp flag of
 //! 24 × 16 particles went round its pole at 0.25 rad/s for ever with 20 sub-steps in 1/64 s, at 0.025 rad/s with 80.
 
 use bevy::math::Vec3;
 
+use super::{PinMotion, TickStep};
 use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
 
 /// How far pins may be beside the line, in metres for each metre along it.
@@ -18,72 +19,108 @@ const LARGEST_TURN: f32 = 0.01;
 /// What a cloth turns by around the line of its pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spin {
-    /// A point of the line, and its direction, of length 1.
+    /// A point of the line as the tick begins, and the direction of the line, of length 1.
     origin: Vec3,
     axis: Vec3,
+    /// How far the line moves in the tick, and in a sub-step (m).
+    shift: Vec3,
+    way: Vec3,
+    substeps: u32,
+    /// As the tick begins.
+    before: Turning,
+}
+
+/// How a cloth turns, as seen from the line.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+struct Turning {
     /// Angular momentum times the length of a sub-step (kg m²).
     momentum: f32,
+    /// Moment of inertia (kg m²).
+    inertia: f32,
+    /// What the line's own way in a sub-step would be as angular momentum, if the cloth went along (kg m²).
+    carried: f32,
 }
 
 impl Spin {
-    /// Of a cloth whose pins are on one line along `acceleration` (m/s²), if they are.
-    pub fn of(particles: &ClothParticles, acceleration: Vec3) -> Option<Self> {
-        let axis = acceleration.try_normalize()?;
-        let layout = particles.layout();
+    /// Of a cloth whose pins are on one line along gravity, which stands still or moves without turning, if they are.
+    pub fn of(particles: &ClothParticles, step: &TickStep, pins: &[PinMotion]) -> Option<Self> {
+        let axis = step.acceleration.try_normalize()?;
         let is_pinned = |slot: &Slot| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0;
         let position = |slot: Slot| particles.blocks()[slot.block].position(slot.lane);
-        let mut pinned = layout.slots().filter(is_pinned).map(position);
+        let mut pinned = particles.layout().slots().filter(is_pinned).map(position);
         let origin = pinned.next()?;
+        let mut count = 1;
         let on_line = |pin: Vec3| {
+            count += 1;
             let beside = (pin - origin).reject_from_normalized(axis);
             beside.length() <= STRAIGHT * pin.distance(origin)
         };
-        let mut spin = Self {
-            origin,
-            axis,
-            momentum: 0.0,
+        if !pinned.all(on_line) {
+            return None;
+        }
+        let shift = pins.first().map_or(Vec3::ZERO, |pin| pin.to - pin.from);
+        // To a rounding of where they are.
+        let is_along = |moved: Vec3, at: Vec3| {
+            moved.distance(shift)
+                <= STRAIGHT * shift.length() + 1.0e-6 * (at.length() + origin.length())
         };
-        pinned.all(on_line).then(|| {
-            spin.momentum = spin.measure(particles).0;
+        let mut moved = pins.iter();
+        let some_stay = pins.len() < count && !is_along(Vec3::ZERO, origin);
+        let moves_as_one = !some_stay && moved.all(|pin| is_along(pin.to - pin.from, pin.to));
+        moves_as_one.then(|| {
+            let substeps = step.substeps.max(1);
+            let mut spin = Self {
+                origin,
+                axis,
+                shift,
+                way: shift / substeps as f32,
+                substeps,
+                before: Turning::default(),
+            };
+            spin.before = spin.measure(particles, origin);
             spin
         })
     }
 
-    /// Angular momentum times the length of a sub-step, and moment of inertia (kg m²).
-    fn measure(&self, particles: &ClothParticles) -> (f32, f32) {
-        let (mut momentum, mut inertia) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    fn measure(&self, particles: &ClothParticles, origin: Vec3) -> Turning {
+        let mut sums = [[0.0_f32; LANES]; 3];
         for block in particles.blocks() {
             let view = block.view();
             for lane in 0..LANES {
-                let turned = self.turned(view, lane);
-                let moved = lane_of(view, DX, lane);
-                let free = view[W + lane] > 0.0;
-                let mass = if free { 1.0 / view[W + lane] } else { 0.0 };
-                momentum[lane] += mass * turned.dot(moved);
-                inertia[lane] += mass * turned.length_squared();
+                let turned = self.axis.cross(lane_of(view, X, lane) - origin);
+                let moved = lane_of(view, DX, lane) - self.way;
+                let is_free = view[W + lane] > 0.0;
+                let mass = if is_free { 1.0 / view[W + lane] } else { 0.0 };
+                sums[0][lane] += mass * turned.dot(moved);
+                sums[1][lane] += mass * turned.length_squared();
+                sums[2][lane] += mass * turned.dot(self.way);
             }
         }
-        (momentum.iter().sum(), inertia.iter().sum())
+        let [momentum, inertia, carried] = sums.map(|lanes| lanes.iter().sum());
+        Turning {
+            momentum,
+            inertia,
+            carried,
+        }
     }
 
-    /// How a particle moves when the cloth turns around the axis by 1 rad (m).
-    fn turned(&self, view: &View, lane: usize) -> Vec3 {
-        self.axis.cross(lane_of(view, X, lane) - self.origin)
-    }
-
-    /// Has the cloth turn as a whole so that its angular momentum is `kept` of what it was, and takes back by how far it
-    /// was turned in the tick's `substeps`, in which the difference has grown evenly.
-    pub fn restore(&self, particles: &mut ClothParticles, kept: f32, substeps: u32) {
-        let (momentum, inertia) = self.measure(particles);
-        let turn = (kept * self.momentum - momentum) / inertia;
+    /// Has the cloth turn as a whole so that its angular momentum is what damping leaves of it, the part `kept` of each
+    /// velocity; and takes back by how far it was turned in the tick, in which the difference has grown evenly.
+    pub fn restore(&self, particles: &mut ClothParticles, kept: f32) {
+        let origin = self.origin + self.shift;
+        let after = self.measure(particles, origin);
+        // Damping holds against the air, not against the line.
+        let expected = kept * self.before.momentum - (1.0 - kept) * self.before.carried;
+        let turn = (expected - after.momentum) / after.inertia;
         if !turn.is_finite() {
             return;
         }
         // So little that the arc is its tangent.
-        let back = (turn * substeps as f32 / 2.0).clamp(-LARGEST_TURN, LARGEST_TURN);
+        let back = turn * self.substeps as f32 / 2.0;
+        let back = back.clamp(-LARGEST_TURN, LARGEST_TURN);
         for block in particles.blocks_mut() {
             for lane in 0..LANES {
-                let turned = self.turned(block.view(), lane);
+                let turned = self.axis.cross(lane_of(block.view(), X, lane) - origin);
                 if block.inverse_mass(lane) > 0.0 {
                     block.set_displacement(lane, block.displacement(lane) + turned * turn);
                     block.set_position(lane, block.position(lane) + turned * back);

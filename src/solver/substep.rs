@@ -143,6 +143,11 @@ impl Solver {
         self.tethers = tethers;
     }
 
+    /// Its tethers, for another solver of the same particles. It has none from now on.
+    pub(crate) fn take_tethers(&mut self) -> Tethers {
+        std::mem::take(&mut self.tethers)
+    }
+
     /// The tethers.
     pub fn tethers(&self) -> &Tethers {
         &self.tethers
@@ -189,11 +194,8 @@ impl Solver {
             Sweep::Grid(sweep) => sweep.bands(self.bands),
             Sweep::List(..) => 1,
         };
-        // What else turns the cloth is not known here.
-        let spin = match pins.is_empty() {
-            true => Spin::of(particles, step.acceleration),
-            false => None,
-        };
+        // What else turns the cloth, or carries it in another way, is not known here.
+        let spin = Spin::of(particles, &step, pins);
         let mut is_pushed = false;
         let mut respond = |particles: &mut ClothParticles, substep| {
             let pushes = respond(particles, substep);
@@ -206,7 +208,7 @@ impl Solver {
             && !is_pushed
         {
             let kept = (1.0 - step.damping).powf(step.seconds / DAMPING_REFERENCE);
-            spin.restore(particles, kept, step.substeps.max(1));
+            spin.restore(particles, kept);
         }
         for pin in existing(pins, particles.len()) {
             // Not a rounding beside it.

@@ -171,3 +171,71 @@ fn a_hidden_cloth_is_not_updated() {
     // With no overstep the picture is that of a tick ago.
     assert_eq!(drawn(&app, cloth), before);
 }
+
+/// From one target to another, one metre beside it, the picture moves no more than the cloth does.
+#[test]
+fn another_attachment_moves_the_picture_no_more_than_the_cloth() {
+    let mut app = app_that_draws_smoothly();
+    let targets = [0.0, 1.0].map(|x| {
+        let place = Transform::from_xyz(x, 0.0, 0.0);
+        app.world_mut().spawn(place).id()
+    });
+    let attached = |target| ClothAttachments::new([(Pin::Column(0), target)]);
+    let cloth = (Cloth::new(9, 7, 0.1), Pins::none(), attached(targets[0]));
+    let cloth = (cloth, Visibility::default());
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 10);
+    let before = drawn(&app, cloth)[30];
+    let quarter = Duration::from_secs_f32(TICK / 4.0);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(quarter));
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert(attached(targets[1]));
+    for _ in 0..8 {
+        app.update();
+        let moved = drawn(&app, cloth)[30].distance(before);
+        // It falls, at 2 m/s by now, for two ticks.
+        assert!(moved < 0.07, "{moved} m");
+    }
+}
+
+/// A row that is pinned to a still entity and a corner that a hand pulls about: both are drawn where they are, with no
+/// seam beside either, and so they are at the origin, in the first tick of a motion.
+#[test]
+fn each_pin_is_drawn_on_its_own_carrier() {
+    for start in [Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0)] {
+        let mut app = app(Moved::Ticked);
+        let hand = Transform::from_translation(start + Vec3::new(0.0, -0.6, 0.0));
+        let hand = app.world_mut().spawn(hand).id();
+        let corner = Pin::Corner(Corner::BottomLeft);
+        let attached = ClothAttachments::new([(corner, hand)]);
+        let place = Transform::from_translation(start);
+        let cloth = (
+            Cloth::new(9, 7, 0.1),
+            attached,
+            place,
+            Visibility::default(),
+        );
+        let cloth = app.world_mut().spawn(cloth).id();
+        app.update();
+        app.update();
+        app.world_mut().entity_mut(hand).insert(Carrier);
+        let third = Duration::from_secs_f32(TICK / 3.0);
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(third));
+        for _ in 0..6 {
+            app.update();
+            let (vertices, hand) = (drawn(&app, cloth), drawn_at(&app, hand));
+            for column in 0..9 {
+                let expected = start + Vec3::X * 0.1 * column as f32;
+                let off = vertices[column].distance(expected);
+                assert!(off < 1.0e-5, "column {column}: {off} m");
+                let below = vertices[column + 9].distance(vertices[column]);
+                assert!((0.08..0.12).contains(&below), "column {column}: {below} m");
+            }
+            let off = vertices[6 * 9].distance(hand.translation());
+            assert!(off < 1.0e-5, "{off} m");
+            let beside = vertices[6 * 9 + 1].distance(vertices[6 * 9]);
+            assert!((0.08..0.135).contains(&beside), "{beside} m");
+        }
+    }
+}

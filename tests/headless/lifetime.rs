@@ -183,3 +183,20 @@ fn what_was_prepared_does_not_outlast_its_tick() {
     assert!(app.world().get::<ClothFault>(cloth).is_none());
     assert_eq!(particles(&app, cloth).len(), 9);
 }
+
+/// What was pinned and attached is free again when it becomes a cloth anew without pins.
+#[test]
+fn a_removed_cloth_is_not_pinned_for_ever() {
+    let mut app = app();
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let attached = ClothAttachments::new([(Pin::Column(0), pole)]);
+    let cloth = app.world_mut().spawn((Cloth::default(), attached)).id();
+    tick(&mut app, 5);
+    let mut entity = app.world_mut().entity_mut(cloth);
+    entity.remove::<(Cloth, ClothAttachments)>();
+    entity.insert((Cloth::default(), Pins::none()));
+    tick(&mut app, 64);
+    let particles = particles(&app, cloth);
+    assert!(particles.inverse_masses().all(|w| w > 0.0));
+    assert!(particles.positions().all(|at| at.y < -2.0));
+}

@@ -81,3 +81,51 @@ fn a_flag_that_is_turned_keeps_its_angular_momentum() {
         "{before} {after}"
     );
 }
+
+/// So does one that is attached, however uneven it began; and on a pole that goes up and down, or steadily along, it does
+/// not circle: after it has swung out, it faces where it faced, but for what a damped swing of a metre may still be off.
+#[test]
+fn an_attached_flag_does_not_circle_its_pole() {
+    let material = ClothMaterial {
+        damping: 0.05,
+        ..default()
+    };
+    for (name, speed) in [
+        ("still", Vec3::ZERO),
+        ("up and down", Vec3::Y * 0.003),
+        ("along", Vec3::X * 0.2),
+    ] {
+        let mut app = app();
+        let pole = app.world_mut().spawn(Transform::default()).id();
+        let attached = ClothAttachments::new([(Pin::Column(0), pole)]);
+        let cloth = Cloth {
+            unevenness: 0.02,
+            ..Cloth::new(24, 16, 0.06)
+        };
+        let cloth = (cloth, Pins::none(), attached, material);
+        let cloth = app.world_mut().spawn(cloth).id();
+        let mut ticks = 0;
+        let mut run = |app: &mut App, seconds: u32| {
+            for _ in 0..64 * seconds {
+                ticks += 1;
+                let phase = std::f32::consts::TAU * 0.5 * ticks as f32 * TICK;
+                let way = match name {
+                    "up and down" => phase.cos(),
+                    _ => 1.0,
+                };
+                change::<Transform>(app, pole, |place| place.translation += speed * way * TICK);
+                tick(app, 1);
+            }
+        };
+        let heading = |app: &App| {
+            let arm = position(app, cloth, (8, 23)) - position(app, cloth, (8, 0));
+            arm.with_y(0.0).normalize()
+        };
+        run(&mut app, 20);
+        let before = heading(&app);
+        run(&mut app, 20);
+        let turned = before.angle_between(heading(&app)).to_degrees();
+        assert!(turned < 20.0, "{name}: {turned}°");
+        assert_eq!(stats(&app, cloth).is_asleep, speed == Vec3::ZERO, "{name}");
+    }
+}

@@ -23,6 +23,9 @@ fn cloth_may_be_spawned_before_the_plugin() {
     let settings = ClothSettings::substeps(7);
     let name = Name::new("early bird");
     let cloth = || (Cloth::default(), Pins::none(), settings, name.clone());
+    // A world that no app runs, as a scene's, is nobody's business.
+    World::new().spawn(cloth());
+    assert_eq!(lines_with(UNSIMULATED).len(), 0);
     let earlier = [(); 2].map(|()| app.world_mut().spawn(cloth()).id());
     assert_eq!(lines_with(UNSIMULATED).len(), 1);
     app.add_plugins(DrapePlugins::default());

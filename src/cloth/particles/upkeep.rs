@@ -37,13 +37,18 @@ impl ClothParticles {
         Ok(())
     }
 
-    /// Moves each particle that is not pinned off the plane of a `grid` at rest, by at most `unevenness` spacings: by a
-    /// number that its index gives, so that the same cloth begins the same.
-    pub(crate) fn make_uneven(&mut self, grid: &ClothGrid, unevenness: f32) {
+    /// Moves each particle that is neither pinned nor held off the plane of a `grid` at rest, by at most `unevenness`
+    /// spacings: by a number that its index gives, so that the same cloth begins the same.
+    pub(crate) fn make_uneven(
+        &mut self,
+        grid: &ClothGrid,
+        unevenness: f32,
+        is_held: impl Fn(usize) -> bool,
+    ) {
         let farthest = unevenness * grid.spacing().min_element() * grid.normal();
         for (index, slot) in self.layout.slots().enumerate() {
             let block = &mut self.blocks[slot.block];
-            if block.inverse_mass(slot.lane) > 0.0 {
+            if block.inverse_mass(slot.lane) > 0.0 && !is_held(index) {
                 let position = block.position(slot.lane) + farthest * scattered(index as u64);
                 block.set_position(slot.lane, position);
             }

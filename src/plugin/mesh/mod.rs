@@ -29,7 +29,7 @@ use bevy::{
     transform::{TransformSystems, components::GlobalTransform},
 };
 
-use super::{ClothAttachments, ClothFrame, ClothSystems, ClothTopology, components::ClothTick};
+use super::{ClothFrame, ClothSystems, ClothTopology, components::ClothTick};
 use crate::cloth::{Cloth, ClothGrid, ClothParticles};
 use placing::{Carriers, Drawn};
 use surface::{flat_mesh, write_mesh};
@@ -64,6 +64,8 @@ pub struct ClothMesh {
     /// Positions to be drawn, in the entity's frame.
     #[reflect(ignore)]
     drawn: Vec<Vec3>,
+    #[reflect(ignore)]
+    normals: Vec<Vec3>,
     /// What is drawn of a cloth that sleeps: when its particles were written, and where its entity is.
     #[reflect(ignore)]
     settled: Option<(Tick, GlobalTransform)>,
@@ -184,7 +186,6 @@ struct Drawing {
     particles: Ref<'static, ClothParticles>,
     frame: &'static ClothFrame,
     tick: &'static ClothTick,
-    attachments: Option<&'static ClothAttachments>,
     transform: Option<&'static GlobalTransform>,
     visibility: Option<&'static InheritedVisibility>,
     mesh: &'static mut ClothMesh,
@@ -225,71 +226,61 @@ impl DrawingItem<'_, '_> {
         }
         let own = GlobalTransform::from(self.frame.affine());
         let entity = self.transform.copied().unwrap_or(own);
-        // What sleeps is drawn once.
-        let state = (self.tick.rest.is_asleep() && self.mesh.rested)
-            .then_some((self.particles.last_changed(), entity));
-        if state.is_some() && self.mesh.settled == state {
-            return;
-        }
         let ClothMesh {
             handle,
             previous,
             carriers,
             targets,
             drawn,
+            normals,
+            rested,
             settled,
             ..
         } = &mut *self.mesh;
+        // Those of the tick: what has been attached since has yet to be taken over.
+        let drawn_at = self.tick.attachments.iter();
+        let drawn_at = drawn_at.map_while(|each| transforms.get(each.target).ok());
+        targets.clear();
+        targets.extend(drawn_at.map(GlobalTransform::affine));
+        // What sleeps is drawn once.
+        let state = (self.tick.rest.is_asleep() && *rested && !carriers.differ_from(targets))
+            .then_some((self.particles.last_changed(), entity));
+        if state.is_some() && *settled == state {
+            return;
+        }
         let Some(mut mesh) = meshes.get_mut(&*handle) else {
             return;
         };
         if mesh.count_vertices() != self.particles.len() {
             return;
         }
-        let attachments = self
-            .attachments
-            .into_iter()
-            .flat_map(ClothAttachments::iter);
-        let drawn_at = attachments.map_while(|each| transforms.get(each.target).ok());
-        targets.clear();
-        targets.extend(drawn_at.map(GlobalTransform::affine));
+        interpolate(drawn, previous, &self.particles, fraction);
         let place = Drawn {
             tick: self.tick,
-            carriers,
+            grid: &self.topology.grid,
+            particles: &self.particles,
             entity,
             targets,
             fraction,
         };
-        interpolate(
-            drawn,
-            previous,
-            &self.particles,
-            fraction,
-            &place.to_entity(),
-        );
-        place.put_pins(drawn);
-        write_mesh(&mut mesh, &self.topology.grid, drawn);
+        place.place(carriers, drawn);
+        write_mesh(&mut mesh, &self.topology.grid, drawn, normals);
         *settled = state;
     }
 }
 
-/// Where the particles are to be drawn: `fraction` of the way from the last tick to this one.
+/// Where the particles are to be drawn: `fraction` of the way from the last tick to this one, in the cloth's frame.
 fn interpolate(
     drawn: &mut Vec<Vec3>,
     previous: &[Vec3],
     particles: &ClothParticles,
     fraction: f32,
-    to_entity: &Affine3A,
 ) {
     drawn.clear();
     if previous.len() == particles.len() {
         let pairs = previous.iter().zip(particles.positions());
-        drawn.extend(pairs.map(|(from, to)| to_entity.transform_point3(from.lerp(to, fraction))));
+        drawn.extend(pairs.map(|(from, to)| from.lerp(to, fraction)));
     } else {
-        drawn.extend(
-            particles
-                .positions()
-                .map(|position| to_entity.transform_point3(position)),
-        );
+        drawn.extend(particles.positions());
     }
 }

@@ -1,11 +1,12 @@
 //! Where a cloth is drawn between two ticks, so that its pins are drawn where that is drawn which carries them.
 //!
 //! The cloth is interpolated between the last two ticks. Its entity, or what it is attached to, may be drawn elsewhere:
-//! where the latest tick left it, if nobody interpolates it, or where it went since. The picture of the cloth is moved
-//! along, as one body, by as much as its carrier is drawn away from its own interpolation, so that no seam opens beside
-//! the pins; attached particles are put on their targets exactly.
+//! where the latest tick left it, if nobody interpolates it, or where it went since. Particles are moved along by as much
+//! as their carriers are drawn away from their own interpolation: pins wholly, others the less the farther they are
+//! from them, so that no seam opens beside a pin and what hangs far away does not tremble.
 
 use bevy::{
+    ecs::entity::Entity,
     math::{Affine3A, Isometry3d, Vec3},
     transform::components::GlobalTransform,
 };
@@ -15,12 +16,13 @@ use super::super::{
     attach::{Attached, rigid},
     components::ClothTick,
 };
+use crate::cloth::{ClothGrid, ClothParticles};
 
 /// Where a cloth's frame and its targets were as a tick ended.
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct Places {
+struct Places {
     frame: ClothFrame,
-    targets: Vec<Affine3A>,
+    targets: Vec<(Entity, Affine3A)>,
 }
 
 /// Places as of the last two ticks.
@@ -28,6 +30,8 @@ pub(super) struct Places {
 pub(super) struct Carriers {
     before: Places,
     now: Places,
+    is_known: bool,
+    weights: Weights,
 }
 
 impl Carriers {
@@ -35,26 +39,142 @@ impl Carriers {
     pub fn follow(&mut self, frame: ClothFrame, tick: &ClothTick) {
         std::mem::swap(&mut self.before, &mut self.now);
         self.now.frame = frame;
-        self.now.targets.clone_from(&tick.targets);
+        self.now.targets.clear();
+        let entities = tick.attachments.iter().map(|each| each.target);
+        self.now
+            .targets
+            .extend(entities.zip(tick.targets.iter().copied()));
         // What jumps, or begins to be carried, does not come from anywhere.
-        if tick.teleports || self.before.frame == ClothFrame::default() {
-            self.before.frame = frame;
+        if tick.teleports || !self.is_known {
+            self.before.clone_from(&self.now);
         }
-        if tick.teleports || self.before.targets.len() != self.now.targets.len() {
-            self.before.targets.clone_from(&self.now.targets);
+        self.is_known = true;
+        self.before.targets.truncate(self.now.targets.len());
+        for (index, now) in self.now.targets.iter().enumerate() {
+            match self.before.targets.get_mut(index) {
+                Some(before) if before.0 == now.0 => {}
+                Some(before) => *before = *now,
+                None => self.before.targets.push(*now),
+            }
         }
     }
 
-    /// Whether anything that carries pins has moved in the last tick.
-    fn moved(&self) -> bool {
-        self.before != self.now
+    /// Whether a target is drawn elsewhere than where the last tick had it.
+    pub fn differ_from(&self, drawn: &[Affine3A]) -> bool {
+        let known = self.now.targets.iter().map(|(_, target)| target);
+        !known.eq(drawn)
     }
+}
+
+/// By how much of each carrier's correction each particle is moved: of the targets in their order, then of the entity.
+#[derive(Debug, Default)]
+struct Weights {
+    /// The pins that they are for.
+    made_for: Option<u32>,
+    carriers: usize,
+    of_particle: Vec<f32>,
+    /// Particles that are pinned to the entity.
+    own: Vec<u32>,
+}
+
+impl Weights {
+    /// Makes them anew if the pins have changed.
+    fn follow(&mut self, grid: &ClothGrid, particles: &ClothParticles, tick: &ClothTick) {
+        if self.made_for == Some(tick.pins_version) {
+            return;
+        }
+        self.made_for = Some(tick.pins_version);
+        let targets = tick.attachments.len();
+        self.carriers = targets + 1;
+        let mut carrier_of = vec![None; particles.len()];
+        for (carrier, inverse_mass) in carrier_of.iter_mut().zip(particles.inverse_masses()) {
+            *carrier = (inverse_mass == 0.0).then_some(targets);
+        }
+        for attached in &tick.attached {
+            carrier_of[attached.particle as usize] = Some(attached.attachment);
+        }
+        self.own.clear();
+        let own = (0..particles.len()).filter(|&index| carrier_of[index] == Some(targets));
+        self.own.extend(own.map(|index| index as u32));
+        let distances: Vec<Vec<f32>> = (0..self.carriers)
+            .map(|carrier| distances(grid, |index| carrier_of[index] == Some(carrier)))
+            .collect();
+        let nearest = |index: usize| {
+            let of_carriers = distances.iter().map(|distance| distance[index]);
+            of_carriers.fold(f32::INFINITY, f32::min)
+        };
+        let farthest = (0..particles.len()).map(nearest).fold(0.0, f32::max);
+        self.of_particle.clear();
+        for index in 0..particles.len() {
+            let nearest = nearest(index);
+            // All of it beside the pins, nothing at the particle that is farthest from them.
+            let fades = if nearest > 0.0 {
+                1.0 - nearest / farthest
+            } else {
+                1.0
+            };
+            let share = |distance: f32| {
+                let ratio = if distance > 0.0 {
+                    nearest / distance
+                } else {
+                    1.0
+                };
+                ratio * ratio
+            };
+            let shares = || distances.iter().map(|distance| share(distance[index]));
+            let sum: f32 = shares().sum();
+            let weights = shares().map(|share| share / sum * fades);
+            self.of_particle
+                .extend(weights.map(|weight| if weight.is_finite() { weight } else { 0.0 }));
+        }
+    }
+}
+
+/// How far it is at rest from each particle to the nearest that `is_source`, along rows, columns and diagonals (m);
+/// infinite without any.
+fn distances(grid: &ClothGrid, is_source: impl Fn(usize) -> bool) -> Vec<f32> {
+    let source = |index| if is_source(index) { 0.0 } else { f32::INFINITY };
+    let mut distance: Vec<f32> = (0..grid.len()).map(source).collect();
+    let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
+    let spacing = grid.spacing();
+    // Once down with the neighbours before, once up with those after (Rosenfeld and Pfaltz 1966).
+    for is_back in [false, true] {
+        for step in 0..grid.len() {
+            let index = if is_back { grid.len() - 1 - step } else { step };
+            let (row, column) = (index / columns, index % columns);
+            let (left, right) = (column > 0, column + 1 < columns);
+            let other_row = if is_back { row + 1 < rows } else { row > 0 };
+            let beside = if is_back { right } else { left };
+            let at = |down: isize, across: isize| {
+                let offset = down * columns as isize + across;
+                index.wrapping_add_signed(if is_back { -offset } else { offset })
+            };
+            // Mirrored on the way back.
+            let (diagonal, other) = if is_back {
+                (right, left)
+            } else {
+                (left, right)
+            };
+            for (exists, from, way) in [
+                (beside, at(0, -1), spacing.x),
+                (other_row, at(-1, 0), spacing.y),
+                (other_row && diagonal, at(-1, -1), spacing.length()),
+                (other_row && other, at(-1, 1), spacing.length()),
+            ] {
+                if exists {
+                    distance[index] = distance[index].min(distance[from] + way);
+                }
+            }
+        }
+    }
+    distance
 }
 
 /// How a cloth is drawn in a frame.
 pub(super) struct Drawn<'a> {
     pub tick: &'a ClothTick,
-    pub carriers: &'a Carriers,
+    pub grid: &'a ClothGrid,
+    pub particles: &'a ClothParticles,
     /// Where its entity is drawn.
     pub entity: GlobalTransform,
     /// Where the targets of its attachments are drawn, in their order; empty where it has none.
@@ -64,34 +184,60 @@ pub(super) struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// From the frame that the particles are given in to that of the entity, which the mesh is given in.
-    pub fn to_entity(&self) -> Affine3A {
-        let frame = self.carriers.now.frame;
-        let moves = self.entity.affine() != frame.affine() || self.carriers.moved();
-        match self.correction() {
-            Some(correction) => {
-                self.entity.affine().inverse() * Affine3A::from(correction * frame.isometry())
+    /// Moves the interpolated particles from the frame that they are given in to that of the entity, which the mesh is
+    /// given in, along with what carries them.
+    pub fn place(&self, carriers: &mut Carriers, drawn: &mut [Vec3]) {
+        let frame = carriers.now.frame;
+        let mut is_corrected = false;
+        if self.tick.pinned > 0 {
+            for index in 0..=carriers.now.targets.len() {
+                if let Some(correction) = self.correction(carriers, index) {
+                    if !is_corrected {
+                        carriers
+                            .weights
+                            .follow(self.grid, self.particles, self.tick);
+                        is_corrected = true;
+                    }
+                    // In the cloth's frame, one carrier after the other: each moves its own part.
+                    let by = frame.isometry().inverse() * correction * frame.isometry();
+                    let Weights {
+                        carriers: count,
+                        of_particle,
+                        ..
+                    } = &carriers.weights;
+                    let weights = of_particle.chunks_exact(*count);
+                    for (place, weights) in drawn.iter_mut().zip(weights) {
+                        let weight = weights.get(index).copied().unwrap_or_default();
+                        *place += (by * *place - *place) * weight;
+                    }
+                }
             }
-            None if moves => self.entity.affine().inverse() * Affine3A::from(frame.isometry()),
-            None => frame.to_entity(),
+        }
+        let to_entity = if self.entity.affine() == frame.affine() {
+            frame.to_entity()
+        } else {
+            self.entity.affine().inverse() * Affine3A::from(frame.isometry())
+        };
+        for place in &mut *drawn {
+            *place = to_entity.transform_point3(*place);
+        }
+        if is_corrected {
+            self.put_pins(carriers, drawn);
         }
     }
 
-    /// How far what carries the pins is drawn from its interpolation, where that is anything and there are pins.
-    fn correction(&self) -> Option<Isometry3d> {
-        let Carriers { before, now } = self.carriers;
-        if let (Some(was), Some(is), Some(drawn)) = (
-            before.targets.first(),
-            now.targets.first(),
-            self.targets.first(),
-        ) {
-            let differs = was != is || drawn != is;
-            return differs.then(|| self.beyond(rigid(was), rigid(is), rigid(drawn)));
-        }
-        let drawn = self.entity.affine();
-        let differs = before.frame != now.frame || drawn != now.frame.affine();
-        let (was, is) = (before.frame.isometry(), now.frame.isometry());
-        (self.tick.pinned > 0 && differs).then(|| self.beyond(was, is, rigid(&drawn)))
+    /// How far a carrier is drawn from its interpolation, where that is anything.
+    fn correction(&self, carriers: &Carriers, index: usize) -> Option<Isometry3d> {
+        let Carriers { before, now, .. } = carriers;
+        let Some((_, is)) = now.targets.get(index) else {
+            let drawn = self.entity.affine();
+            let differs = before.frame != now.frame || drawn != now.frame.affine();
+            let (was, is) = (before.frame.isometry(), now.frame.isometry());
+            return differs.then(|| self.beyond(was, is, rigid(&drawn)));
+        };
+        let ((_, was), drawn) = (before.targets.get(index)?, self.targets.get(index)?);
+        let differs = was != is || drawn != is;
+        differs.then(|| self.beyond(rigid(was), rigid(is), rigid(drawn)))
     }
 
     fn beyond(&self, was: Isometry3d, is: Isometry3d, drawn: Isometry3d) -> Isometry3d {
@@ -103,15 +249,11 @@ impl Drawn<'_> {
     }
 
     /// Puts pinned particles where they are drawn exactly, in the entity's frame.
-    pub fn put_pins(&self, drawn: &mut [Vec3]) {
-        if self.tick.rest.is_asleep() && !self.carriers.moved() {
-            return;
-        }
-        let scale_out = self.carriers.now.frame.to_entity();
-        for pin in &self.tick.pins {
-            if let Some(place) = drawn.get_mut(pin.particle as usize) {
-                *place = scale_out.transform_point3(pin.to);
-            }
+    fn put_pins(&self, carriers: &Carriers, drawn: &mut [Vec3]) {
+        let scale_out = carriers.now.frame.to_entity();
+        for &particle in &carriers.weights.own {
+            let position = self.particles.position_at(particle as usize);
+            drawn[particle as usize] = scale_out.transform_point3(position);
         }
         let from_world = self.entity.affine().inverse();
         for Attached {
@@ -125,6 +267,34 @@ impl Drawn<'_> {
                 drawn.get_mut(*particle as usize),
             ) {
                 *place = from_world.transform_point3(target.transform_point3(*offset));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::Cloth;
+
+    /// Along rows, columns and diagonals, from wherever the sources are.
+    #[test]
+    fn distances_are_those_of_the_nearest_source() {
+        let grid = Cloth::new(9, 7, 0.1).grid(Vec3::ONE).expect("a sound grid");
+        for sources in [&[0][..], &[62], &[31], &[4, 40, 58]] {
+            let found = distances(&grid, |index| sources.contains(&index));
+            for (index, found) in found.into_iter().enumerate() {
+                let way = |source: usize| {
+                    let (down, across) = (
+                        (source / 9).abs_diff(index / 9),
+                        (source % 9).abs_diff(index % 9),
+                    );
+                    let diagonal = down.min(across) as f32;
+                    0.1 * ((down.max(across) as f32 - diagonal) + diagonal * 2.0_f32.sqrt())
+                };
+                let expected = sources.iter().map(|&source| way(source));
+                let expected = expected.fold(f32::INFINITY, f32::min);
+                assert!((found - expected).abs() < 1.0e-5, "{sources:?} {index}");
             }
         }
     }

@@ -35,60 +35,64 @@ pub(super) fn flat_mesh(grid: &ClothGrid) -> Mesh {
 }
 
 /// Writes where the particles are drawn into a mesh, with normals and, if it still has them, tangents.
-pub(super) fn write_mesh(mesh: &mut Mesh, grid: &ClothGrid, drawn: &[Vec3]) {
+pub(super) fn write_mesh(
+    mesh: &mut Mesh,
+    grid: &ClothGrid,
+    drawn: &[Vec3],
+    normals: &mut Vec<Vec3>,
+) {
     if let Ok(VertexAttributeValues::Float32x3(values)) =
         mesh.try_attribute_mut(Mesh::ATTRIBUTE_POSITION)
     {
-        values
-            .iter_mut()
-            .zip(drawn)
-            .for_each(|(value, position)| *value = position.to_array());
+        for (value, position) in values.iter_mut().zip(drawn) {
+            *value = position.to_array();
+        }
     }
-    let edges = || {
-        grid.cells()
-            .map(|(row, column)| Edges::at(grid, drawn, row, column))
-    };
+    normals.clear();
+    for_each_row(grid, drawn, |above, row, below| {
+        for column in 0..row.len() {
+            let up = above[column] - below[column];
+            let normal = along(row, column).cross(up);
+            normals.push(normal.normalize_or(grid.normal()));
+        }
+    });
     if let Ok(VertexAttributeValues::Float32x3(values)) =
         mesh.try_attribute_mut(Mesh::ATTRIBUTE_NORMAL)
     {
-        values
-            .iter_mut()
-            .zip(edges())
-            .for_each(|(value, edges)| *value = edges.normal(grid).to_array());
+        for (value, normal) in values.iter_mut().zip(&*normals) {
+            *value = normal.to_array();
+        }
     }
     if let Ok(VertexAttributeValues::Float32x4(values)) =
         mesh.try_attribute_mut(Mesh::ATTRIBUTE_TANGENT)
     {
-        values
-            .iter_mut()
-            .zip(edges())
-            .for_each(|(value, edges)| *value = tangent(edges.along, edges.normal(grid)));
+        let mut vertices = values.iter_mut().zip(&*normals);
+        for_each_row(grid, drawn, |_, row, _| {
+            for (column, (value, normal)) in vertices.by_ref().take(row.len()).enumerate() {
+                *value = tangent(along(row, column), *normal);
+            }
+        });
     }
 }
 
-/// From neighbour to neighbour of a particle: along its row and up its column (m).
-struct Edges {
-    along: Vec3,
-    up: Vec3,
+/// Visits each row with the one above and the one below it; beside a border with itself.
+fn for_each_row(
+    grid: &ClothGrid,
+    places: &[Vec3],
+    mut visit: impl FnMut(&[Vec3], &[Vec3], &[Vec3]),
+) {
+    let columns = grid.columns() as usize;
+    let row = |row: usize| &places[row * columns..(row + 1) * columns];
+    let last = grid.rows() as usize - 1;
+    for index in 0..=last {
+        let (above, below) = (index.saturating_sub(1), (index + 1).min(last));
+        visit(row(above), row(index), row(below));
+    }
 }
 
-impl Edges {
-    fn at(grid: &ClothGrid, position: &[Vec3], row: u32, column: u32) -> Self {
-        let at = |row, column| position[grid.index(row, column) as usize];
-        let (right, below) = (
-            (column + 1).min(grid.columns() - 1),
-            (row + 1).min(grid.rows() - 1),
-        );
-        Self {
-            along: at(row, right) - at(row, column.saturating_sub(1)),
-            up: at(row.saturating_sub(1), column) - at(below, column),
-        }
-    }
-
-    /// Of the surface through the neighbours.
-    fn normal(&self, grid: &ClothGrid) -> Vec3 {
-        self.along.cross(self.up).normalize_or(grid.normal())
-    }
+/// From one neighbour in a row to the other (m).
+fn along(row: &[Vec3], column: usize) -> Vec3 {
+    row[(column + 1).min(row.len() - 1)] - row[column.saturating_sub(1)]
 }
 
 /// The way in which u grows, across the normal; 1 says that normal × tangent is the way in which v shrinks, as Bevy has
