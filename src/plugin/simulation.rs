@@ -49,7 +49,7 @@ use crate::{
 /// what came of it after [`WriteBack`](Self::WriteBack).
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ClothSystems {
-    /// Weaves new cloths, checks every input, takes over transforms, gravity and colliders.
+    /// Builds new cloths, checks every input, takes over transforms, gravity and colliders.
     Prepare,
     /// Finds which colliders are near, chooses how to search, and brings the bounding volumes up to date.
     Rebuild,
