@@ -190,7 +190,7 @@ impl Drawn<'_> {
         let frame = carriers.now.frame;
         let mut is_corrected = false;
         if self.tick.pinned > 0 {
-            for index in 0..=carriers.now.targets.len() {
+            for index in 0..=self.tick.attachments.len() {
                 if let Some(correction) = self.correction(carriers, index) {
                     if !is_corrected {
                         carriers
@@ -229,13 +229,14 @@ impl Drawn<'_> {
     /// How far a carrier is drawn from its interpolation, where that is anything.
     fn correction(&self, carriers: &Carriers, index: usize) -> Option<Isometry3d> {
         let Carriers { before, now, .. } = carriers;
-        let Some((_, is)) = now.targets.get(index) else {
+        if index == self.tick.attachments.len() {
             let drawn = self.entity.affine();
             let differs = before.frame != now.frame || drawn != now.frame.affine();
             let (was, is) = (before.frame.isometry(), now.frame.isometry());
             return differs.then(|| self.beyond(was, is, rigid(&drawn)));
-        };
-        let ((_, was), drawn) = (before.targets.get(index)?, self.targets.get(index)?);
+        }
+        let ((_, was), (_, is)) = (before.targets.get(index)?, now.targets.get(index)?);
+        let drawn = self.targets.get(index)?;
         let differs = was != is || drawn != is;
         differs.then(|| self.beyond(rigid(was), rigid(is), rigid(drawn)))
     }
