@@ -10,10 +10,13 @@ const REACH: f32 = 1.0e-3;
 const LARGEST_REACH: f32 = 5.0e-3;
 
 /// How long it has to stay so near (s): half a swing, √(g/L) × 2.405/2 being the angular frequency of a sheet of length
-/// L that hangs by its upper edge. What swings by more than one and a half times as far to either side leaves its place in that time,
-/// wherever it is in its swing: in half a one that is farther by two thirds of its amplitude at least.
+/// L that hangs by its upper edge. What swings by more than one and a half times as far to either side leaves its place in
+/// that time, wherever it is in its swing: in half a swing it gets two thirds of its amplitude away at least.
 const HALF_SWING: f32 = 2.61;
 const PATIENCE: [f32; 2] = [0.5, 20.0];
+
+/// How long what moves is not looked at (s).
+const PAUSE: f32 = 0.125;
 
 /// Where nothing swings, as there is no gravity (s).
 const WITHOUT_GRAVITY: f32 = 2.5;
@@ -25,6 +28,8 @@ const WITHOUT_GRAVITY: f32 = 2.5;
 pub struct Rest {
     /// Where the particles were when they were last seen to move; as they sleep, if they do.
     origin: ClothParticles,
+    /// How long until they are looked at again, after they have moved (s): who moves is not copied in each tick.
+    wait: f32,
     /// For how long they have been near it (s).
     calm: f32,
     is_asleep: bool,
@@ -46,10 +51,17 @@ impl Rest {
         } else {
             WITHOUT_GRAVITY
         };
+        if self.wait > 0.0 {
+            self.wait -= seconds;
+            if self.wait <= 0.0 {
+                self.origin.copy_from(particles);
+                self.calm = 0.0;
+            }
+            return;
+        }
         let is_near = particles.stays_within(reach, &self.origin);
         if !is_near {
-            self.origin.copy_from(particles);
-            self.calm = 0.0;
+            self.wait = PAUSE;
             return;
         }
         self.calm += seconds;
@@ -84,7 +96,8 @@ mod tests {
     const TICK: f32 = 1.0 / 64.0;
     const GRAVITY: f32 = 9.81;
 
-    /// Two metres, the least that half a swing takes being 1.2 s: 75.5 ticks after the one that is compared with.
+    /// Two metres, the least that half a swing takes being 1.2 s: 75.5 ticks after the one that is compared with, which is the
+    /// ninth.
     fn asleep_after(ticks: u32, at: impl Fn(u32) -> f32) -> bool {
         asleep_under(GRAVITY, ticks, at)
     }
@@ -101,8 +114,8 @@ mod tests {
 
     #[test]
     fn sleeps_when_nothing_has_left_its_place_for_half_a_swing() {
-        assert!(!asleep_after(75, |_| 0.0));
-        assert!(asleep_after(77, |_| 0.0));
+        assert!(!asleep_after(83, |_| 0.0));
+        assert!(asleep_after(85, |_| 0.0));
         let trembling = |tick: u32| {
             if tick.is_multiple_of(2) {
                 0.0009
@@ -110,7 +123,7 @@ mod tests {
                 -0.0009
             }
         };
-        assert!(asleep_after(77, trembling), "in its place, however fast");
+        assert!(asleep_after(85, trembling), "in its place, however fast");
         let creeping = |tick: u32| 0.002 * tick as f32 * TICK;
         assert!(!asleep_after(640, creeping), "a pixel in a second");
         let creeping = |tick: u32| 0.0015 * tick as f32 * TICK;

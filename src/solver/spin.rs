@@ -3,12 +3,12 @@
 //! Neither springs nor pins nor gravity turn such a cloth around that line, so that its angular momentum there is lost
 //! to damping alone, whether the line stands still or moves without turning. A sweep does turn it: what one spring corrects turns those that are corrected after it, by a torque
 //! of the order of (tension/mass)² Δt², always to the same side. Damping is all that holds against it: a limp flag of
-//! 24 × 16 particles went round its pole at 0.25 rad/s for ever with 20 sub-steps in 1/64 s, at 0.025 rad/s with 80.
+//! 24 × 16 particles went round its pole at 0.25 rad/s for ever with 20 sub-steps in 1/64 s, at a tenth of that with 80.
 
 use bevy::math::Vec3;
 
 use super::{PinMotion, TickStep};
-use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
+use crate::cloth::{ClothParticles, DX, LANES, View, W, X};
 
 /// How far pins may be beside the line, in metres for each metre along it.
 const STRAIGHT: f32 = 1.0e-3;
@@ -45,9 +45,20 @@ impl Spin {
     /// Of a cloth whose pins are on one line along gravity, which stands still or moves without turning, if they are.
     pub fn of(particles: &ClothParticles, step: &TickStep, pins: &[PinMotion]) -> Option<Self> {
         let axis = step.acceleration.try_normalize()?;
-        let is_pinned = |slot: &Slot| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0;
-        let position = |slot: Slot| particles.blocks()[slot.block].position(slot.lane);
-        let mut pinned = particles.layout().slots().filter(is_pinned).map(position);
+        let layout = particles.layout();
+        let blocks = particles.blocks().iter().enumerate();
+        // Most blocks hold no pin: they are passed over as a whole.
+        let mut pinned = blocks
+            .filter(|(_, block)| block.view()[W..W + LANES].contains(&0.0))
+            .flat_map(|(index, block)| {
+                let in_row = index % layout.strip as usize;
+                let is_pinned = move |lane: &usize| {
+                    block.inverse_mass(*lane) == 0.0 && layout.column(in_row, *lane).is_some()
+                };
+                (0..LANES)
+                    .filter(is_pinned)
+                    .map(|lane| block.position(lane))
+            });
         let origin = pinned.next()?;
         let mut count = 1;
         let on_line = |pin: Vec3| {

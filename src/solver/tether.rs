@@ -146,7 +146,7 @@ impl Tethers {
 
     /// The acceleration (m/s²) to make tethers for where `acceleration` acts: 9.81, doubled until four fifths of
     /// `acceleration` are no more, so that tethers outlast one that changes from tick to tick.
-    pub fn made_for(acceleration: f32) -> f32 {
+    pub(crate) fn made_for(acceleration: f32) -> f32 {
         let mut rounded = LEAST_ACCELERATION;
         while rounded < 0.8 * acceleration {
             rounded *= 2.0;

@@ -4,8 +4,11 @@ use bevy::math::{Isometry3d, Vec3, bounding::BoundingSphere};
 
 use super::{ClothParticles, is_sound};
 use crate::cloth::{
-    Block, ClothError, ClothGrid, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, W, X,
+    Block, ClothError, ClothGrid, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, W, X, Y, Z,
 };
+
+/// Blocks that are compared at a time.
+const BLOCKS: usize = 64;
 
 /// What one pass over the particles finds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -245,16 +248,29 @@ impl ClothParticles {
         if self.layout != other.layout {
             return false;
         }
-        let (mut is_near, square) = ([true; LANES], reach * reach);
-        for (block, was) in self.blocks.iter().zip(&other.blocks) {
-            let (view, was) = (block.view(), was.view());
-            for lane in 0..LANES {
-                let [x, y, z] =
-                    [X, X + LANES, X + 2 * LANES].map(|axis| view[axis + lane] - was[axis + lane]);
-                is_near[lane] &= x * x + y * y + z * z <= square;
+        let blocks = self.blocks.chunks(BLOCKS).zip(other.blocks.chunks(BLOCKS));
+        // What moves is mostly found out by the first few.
+        blocks.into_iter().all(|(now, before)| {
+            // Not a number outlasts a sum, and an infinite square is no less.
+            let (mut largest, mut sum) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+            for (block, was) in now.iter().zip(before) {
+                let (view, was) = (block.view(), was.view());
+                for lane in 0..LANES {
+                    let x = view[X + lane] - was[X + lane];
+                    let y = view[Y + lane] - was[Y + lane];
+                    let z = view[Z + lane] - was[Z + lane];
+                    let square = x * x + y * y + z * z;
+                    sum[lane] += square;
+                    largest[lane] = if square > largest[lane] {
+                        square
+                    } else {
+                        largest[lane]
+                    };
+                }
             }
-        }
-        is_near == [true; LANES]
+            let farthest = largest.into_iter().fold(0.0, f32::max);
+            farthest <= reach * reach && sum.iter().all(|sum| !sum.is_nan())
+        })
     }
 
     /// A sphere around all of them (m).
