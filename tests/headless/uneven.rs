@@ -86,3 +86,20 @@ fn rest_lengths_are_those_of_the_plane() {
     tick(&mut app, 1);
     assert!(stats(&app, cloth).stretch.structural < 3.0e-6);
 }
+
+/// What is attached from the start begins in the plane, as what is pinned does: a flag's edge is as straight as its pole.
+#[test]
+fn attached_particles_begin_in_the_plane() {
+    let mut app = app();
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let cloth = Cloth {
+        unevenness: 0.1,
+        ..Cloth::new(9, 7, 0.1)
+    };
+    let attached = ClothAttachments::new([(Pin::Column(0), pole)]);
+    let cloth = (cloth, Pins::none(), attached);
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 1);
+    assert!((0..7).all(|row| position(&app, cloth, (row, 0)).z == 0.0));
+    assert!((0..7).any(|row| position(&app, cloth, (row, 1)).z != 0.0));
+}
