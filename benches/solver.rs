@@ -6,7 +6,7 @@ mod shared;
 use std::time::Duration;
 
 use bevy_drape::solver::{
-    Instructions, Solver,
+    SimdLevel, Solver,
     methods::{Method, Scene, Stepper},
 };
 use criterion::{
@@ -37,12 +37,12 @@ fn sweeps(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(
             scene.springs.len() as u64 * u64::from(SUBSTEPS),
         ));
-        for (name, instructions) in [
-            ("widest instructions", Instructions::Widest),
-            ("baseline instructions", Instructions::Baseline),
+        for (name, simd_level) in [
+            ("widest instructions", SimdLevel::Auto),
+            ("baseline instructions", SimdLevel::Baseline),
         ] {
             let mut solver = scene.solver(false);
-            solver.set_instructions(instructions);
+            solver.set_simd_level(simd_level);
             time(
                 &mut group,
                 BenchmarkId::new(name, side),
@@ -91,7 +91,7 @@ fn methods(criterion: &mut Criterion) {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    let scene = Scene::swinging(32, 2.0, 0.5, 1.0e-3).expect("a sound scene");
+    let scene = Scene::swinging(32, 2.0, 0.5, 1.0e-3).expect("a valid scene");
     let fall = scene.acceleration.to_array();
     for (name, method, steps) in [
         ("explicit forces, 200 steps", Method::Hooke, 200_u32),
@@ -107,9 +107,9 @@ fn methods(criterion: &mut Criterion) {
             1,
         ),
     ] {
-        let start = scene.network::<f32>().expect("a sound network");
+        let start = scene.network::<f32>().expect("a valid network");
         let seconds = f64::from(scene.seconds) / f64::from(steps);
-        let mut stepper = Stepper::new(method, &start, seconds).expect("a sound method");
+        let mut stepper = Stepper::new(method, &start, seconds).expect("a valid method");
         group.bench_function(name, |bencher| {
             bencher.iter_batched_ref(
                 || start.clone(),

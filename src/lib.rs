@@ -42,7 +42,8 @@ pub mod solver;
 /// What most games need, to be imported with `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{
-        Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, Corner, Pin, Pins,
+        Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, ClothShape, Corner, Pin, Pins,
+        Surface,
     };
     pub use crate::contact::{ClothCollider, ContactPoint, NarrowPhase};
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
@@ -59,7 +60,7 @@ pub mod prelude {
     pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
-    pub use crate::solver::{ClothLimit, ClothSettings, Precision};
+    pub use crate::solver::{ClothLimit, ClothSettings, Substepping};
 }
 
 /// The README's snippets, compiled with the doc tests.

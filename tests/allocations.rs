@@ -7,10 +7,10 @@ use bevy::{
 };
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
-    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::{ClothAttachments, ClothGravity, DrapePlugins, Pin, Pins},
-    solver::{Control, PinMotion, Precision, Solver, Stretch, Tethers, TickStep},
+    solver::{Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -22,24 +22,24 @@ fn a_step_does_not_allocate() {
     let material = ClothMaterial::COTTON;
     let grid = Cloth::new(40, 40, 0.05)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+        .expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     for column in 0..40 {
         particles
             .set_inverse_mass((0, column), 0.0)
             .expect("it exists");
     }
     let springs = Springs::of_grid(&grid, &material);
-    let list = Springs::of_list(&springs.to_vec(), particles.len()).expect("sound springs");
-    let precision = Precision::Tolerance {
+    let list = Springs::of_list(&springs.to_vec(), particles.len()).expect("valid springs");
+    let substepping = Substepping::Adaptive {
         stretch: 0.01,
-        most_substeps: 60,
+        max_substeps: 60,
     };
     let ball = MovingCollider {
         turn: Vec3::Y * 0.1,
         ..MovingCollider::ball(0.3, Vec3::new(1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.02))
     };
-    let mut terms = Terms {
+    let mut settings = ContactSettings {
         particle_radius: 0.01,
         friction: 0.4,
         ..Default::default()
@@ -55,7 +55,7 @@ fn a_step_does_not_allocate() {
         (&springs, NarrowPhase::Particles),
         (&list, NarrowPhase::Triangles),
     ] {
-        terms.narrow_phase = narrow_phase;
+        settings.narrow_phase = narrow_phase;
         let mut particles = particles.clone();
         let mut solver = Solver::new(springs, &particles);
         let mut detection = Detection::default();
@@ -73,13 +73,13 @@ fn a_step_does_not_allocate() {
         let mut ticks = |count: u32| {
             for _ in 0..count {
                 let step = TickStep {
-                    substeps: control.substeps(precision),
+                    substeps: control.substeps(substepping),
                     acceleration: Vec3::NEG_Y * 9.81,
                     ..Default::default()
                 };
                 let root = tree.root_sphere(&particles, stretch.bound);
                 detection.begin(50.0);
-                let (probe, against) = detection.probe(&ball, &terms, &grid, 0.2, &root);
+                let (probe, against) = detection.probe(&ball, &settings, &grid, 0.2, &root);
                 for (bounds, choice) in bounds.iter_mut().zip(choices) {
                     query.clear();
                     let known = bounds.rebuild(choice, &tree, &particles, stretch.bound);
@@ -88,7 +88,7 @@ fn a_step_does_not_allocate() {
                 }
                 detection.add(0, &ball, against, query.candidates(), &particles, &grid);
                 stretch = solver.advance(&mut particles, step, &pins, |particles, substep| {
-                    detection.respond(particles, &terms, substep, |_| {})
+                    detection.respond(particles, &settings, substep, |_| {})
                 });
                 assert_eq!(detection.requeries(), 0);
                 pushed = pushed.max(
@@ -97,7 +97,7 @@ fn a_step_does_not_allocate() {
                         .first()
                         .map_or(0.0, |touch| touch.deepest),
                 );
-                let _ = control.observe(precision, stretch);
+                let _ = control.observe(substepping, stretch);
             }
         };
         // The first tick makes room.

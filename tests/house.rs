@@ -1,10 +1,20 @@
 //! Holds the house's order: a file imports from floors below its own only, and the floors below the plugin's
-//! hold no systems, queries, resources or app.
+//! hold no systems, queries, resources or app. Within a floor, files import each other in no circle.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
+
+use source::{code, is_of_tests, source_folder, sources};
+
+#[path = "house/circles.rs"]
+mod circles;
+#[path = "house/implementations.rs"]
+mod implementations;
+#[path = "house/imports.rs"]
+mod imports;
+#[path = "house/modules.rs"]
+mod modules;
+#[path = "house/source.rs"]
+mod source;
 
 /// Each floor's modules, from the ground up. Modules of one floor may not import each other.
 const FLOORS: [&[&str]; 4] = [
@@ -13,31 +23,6 @@ const FLOORS: [&[&str]; 4] = [
     &["contact"],
     &["plugin"],
 ];
-
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").path());
-    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
-    let below = folders.iter().flat_map(|folder| sources(folder));
-    below
-        .chain(files)
-        .filter(|path| path.extension().is_some_and(|end| end == "rs"))
-        .collect()
-}
-
-/// The code of a file, without comments and without what follows `#[cfg(test)]`.
-fn code(path: &Path) -> String {
-    let text = fs::read_to_string(path).expect("a source file");
-    let code = text
-        .split("#[cfg(test)]\nmod tests {")
-        .next()
-        .unwrap_or_default();
-    code.lines()
-        .filter(|line| !line.trim_start().starts_with("//"))
-        .collect::<Vec<_>>()
-        .join("\n")
-}
 
 /// Modules of this crate that a text names, as `crate::name` or in `crate::{name, …}`.
 fn modules_named(code: &str) -> Vec<String> {
@@ -67,18 +52,6 @@ fn modules_named(code: &str) -> Vec<String> {
     }
     names.retain(|name| !name.is_empty());
     names
-}
-
-fn source_folder() -> PathBuf {
-    // Asked as the test runs: checkouts that share a target folder may share the compiled test.
-    let folder = std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the crate is");
-    Path::new(&folder).join("src")
-}
-
-/// Tests may look at all floors.
-fn is_of_tests(file: &Path) -> bool {
-    let mut parts = file.components();
-    parts.any(|part| ["tests", "tests.rs"].contains(&part.as_os_str().to_str().unwrap_or_default()))
 }
 
 #[test]

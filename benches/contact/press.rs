@@ -5,7 +5,7 @@ use std::time::Instant;
 use bevy::math::{Vec3, bounding::BoundingSphere};
 use bevy_drape::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
-    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::TopDownQuery,
     solver::{Solver, TickStep},
 };
@@ -28,14 +28,14 @@ pub struct Pressed {
 pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
     let grid = Cloth::new(SIDE, SIDE, SPACING)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     let material = ClothMaterial {
         stretch_compliance: 5.0e-3,
         shear_compliance: 1.0e-2,
         damping: 0.05,
         ..ClothMaterial::COTTON
     };
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     let rim =
         |row: u32, column: u32| row.is_multiple_of(SIDE - 1) || column.is_multiple_of(SIDE - 1);
     let pinned: Vec<(u32, u32)> = grid
@@ -46,7 +46,7 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
         particles.set_inverse_mass(cell, 0.0).expect("it exists");
     }
     let mut solver = Solver::new(&Springs::of_grid(&grid, &material), &particles);
-    let terms = Terms {
+    let settings = ContactSettings {
         particle_radius: 0.0,
         friction: 0.3,
         narrow_phase,
@@ -65,7 +65,7 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
         let ball = MovingCollider::ball(radius, at(height(tick)), at(height(tick + 1)));
         detection.begin(0.1);
         let cloth = BoundingSphere::new(at(0.0), 2.0);
-        let (probe, against) = detection.probe(&ball, &terms, &grid, 4.0 * SPACING, &cloth);
+        let (probe, against) = detection.probe(&ball, &settings, &grid, 4.0 * SPACING, &cloth);
         query.clear();
         query.scan(&particles, &probe);
         detection.add(0, &ball, against, query.candidates(), &particles, &grid);
@@ -78,7 +78,7 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
         let mut spent = 0.0;
         solver.advance(&mut particles, step, &[], |particles, substep| {
             let start = Instant::now();
-            let moved = detection.respond(particles, &terms, substep, |_| {});
+            let moved = detection.respond(particles, &settings, substep, |_| {});
             spent += start.elapsed().as_secs_f64();
             moved
         });

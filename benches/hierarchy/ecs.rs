@@ -12,7 +12,7 @@ struct Times {
     taken: Vec<f64>,
 }
 
-/// Rebuild and query of so many awake cloths, with one ball far away from all of them (ns a cloth).
+/// Rebuild and query of this many awake cloths, with one ball far away from all of them (ns a cloth).
 pub fn nanoseconds_a_cloth(count: usize) -> f64 {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))

@@ -24,9 +24,9 @@ impl Draped {
     pub fn new(side: u32) -> Self {
         let grid = Cloth::new(side, side, SPACING)
             .grid(Vec3::ONE)
-            .expect("a sound grid");
+            .expect("a valid grid");
         let material = ClothMaterial::COTTON;
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
         for (row, column) in grid.cells() {
             let [across, down] = [column, row].map(|index| index as f32 / (side - 1) as f32);
             let wave = (across * 2.0 * std::f32::consts::TAU).sin() * (down * 3.0).cos();
@@ -56,7 +56,7 @@ impl Draped {
         self.ball_at(self.side * 11 / 23, self.side * 12 / 23)
     }
 
-    /// So many balls all over the cloth.
+    /// This many balls all over the cloth.
     pub fn balls(&self, count: u32) -> Vec<Probe> {
         let a_side = f64::from(count).sqrt().ceil() as u32;
         let at = |index: u32| (2 * index + 1) * self.side / (2 * a_side);

@@ -8,7 +8,7 @@ pub const SUBSTEPS: u32 = 20;
 
 /// The cloth hung by two corners, a quarter of a second into its fall: no column is flat, no number tiny.
 pub fn in_motion(side: u32) -> Scene {
-    let mut scene = Scene::hung_by_corners(side, 2.0).expect("a sound scene");
+    let mut scene = Scene::hung_by_corners(side, 2.0).expect("a valid scene");
     let mut solver = scene.solver(true);
     let mut particles = scene.particles.clone();
     for _ in 0..15 {

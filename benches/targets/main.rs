@@ -169,7 +169,7 @@ fn sleep() {
 }
 
 fn hung_by_corners(side: u32, substeps: u32) {
-    let scene = Scene::hung_by_corners(side, 2.0).expect("a sound scene");
+    let scene = Scene::hung_by_corners(side, 2.0).expect("a valid scene");
     let structural: Vec<_> = scene
         .springs
         .to_vec()

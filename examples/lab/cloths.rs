@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use bevy::math::{Vec3, bounding::BoundingSphere};
 use bevy_drape::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
-    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, Probe, QuadTree, SearchMethod, TopDownQuery},
     solver::{Solver, Tethers, TickStep},
 };
@@ -49,13 +49,13 @@ const TURNING: f32 = 2.8;
 const SPEED: f32 = 1.5;
 
 impl Recording {
-    /// Of so many ticks, 64 a second. From the beginning of the ball's way there is a touch after some 80.
+    /// Of this many ticks, 64 a second. From the beginning of the ball's way there is a touch after some 80.
     pub fn new(ticks: u32) -> Self {
         let material = ClothMaterial::COTTON;
         let grid = Cloth::new(SIDE, SIDE, SPACING)
             .grid(Vec3::ONE)
-            .expect("a sound grid");
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+            .expect("a valid grid");
+        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
         for column in 0..SIDE {
             particles
                 .set_inverse_mass((0, column), 0.0)
@@ -69,7 +69,7 @@ impl Recording {
             damping: material.damping,
             ..Default::default()
         };
-        let terms = Terms {
+        let settings = ContactSettings {
             particle_radius: 0.02,
             friction: material.friction,
             narrow_phase: NarrowPhase::Particles,
@@ -92,17 +92,17 @@ impl Recording {
         for tick in 0..ticks {
             let ball = MovingCollider::ball(RADIUS, at(tick), at(tick + 1));
             detection.begin(reach);
-            let (probe, against) = detection.probe(&ball, &terms, &grid, 2.0 * SPACING, &cloth);
+            let (probe, against) = detection.probe(&ball, &settings, &grid, 2.0 * SPACING, &cloth);
             query.clear();
             query.scan(&particles, &probe);
             detection.add(0, &ball, against, query.candidates(), &particles, &grid);
             let stretch = solver.advance(&mut particles, step, &[], |particles, substep| {
-                detection.respond(particles, &terms, substep, |_| {})
+                detection.respond(particles, &settings, substep, |_| {})
             });
             states.push(State {
                 particles: particles.clone(),
                 stretch: stretch.bound,
-                ball: Probe::ball(at(tick + 1), RADIUS, terms.particle_radius),
+                ball: Probe::ball(at(tick + 1), RADIUS, settings.particle_radius),
             });
         }
         Self {

@@ -153,7 +153,7 @@ impl Drawn {
         buffer.map_or(Lines::NONE, |buffer| {
             let colours = buffer.list_colors.len() + buffer.strip_colors.len();
             let positions = buffer.list_positions.len() + buffer.strip_positions.len();
-            // A strip ends where a position is no number.
+            // A strip ends where a position is NaN.
             let ends = buffer.strip_positions.iter().filter(|end| end.is_nan());
             let strips = ends.count();
             Lines {

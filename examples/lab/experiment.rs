@@ -65,7 +65,7 @@ impl Run {
         self.settings.push((name.into(), value.to_string()));
     }
 
-    /// Begins a progress bar of so many steps.
+    /// Begins a progress bar of this many steps.
     pub fn begin(&mut self, name: &'static str, steps: usize) {
         self.bar.finish_and_clear();
         let style = ProgressStyle::with_template("{msg:>12} {bar:40} {pos}/{len}, {eta} left");

@@ -99,8 +99,8 @@ impl Experiment for Frames {
         let count = |kind| of(rows, kind).count();
         let first = kinds.first().map_or(0, |&kind| count(kind));
         let is_even = kinds.iter().all(|&kind| count(kind) == first);
-        let is_sound = rows.iter().all(|row| row.fps > 0.0 && row.fps.is_finite());
-        if kinds.len() == 7 && is_even && is_sound {
+        let is_valid = rows.iter().all(|row| row.fps > 0.0 && row.fps.is_finite());
+        if kinds.len() == 7 && is_even && is_valid {
             Ok(())
         } else {
             Err("as many frames by each of six volumes as with nothing drawn".into())

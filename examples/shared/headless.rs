@@ -37,7 +37,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Of an app with all its plugins and systems, for so many ticks.
+    /// Of an app with all its plugins and systems, for this many ticks.
     pub fn new(mut app: App, view: View, ticks: u64) -> Self {
         app.finish();
         app.cleanup();
@@ -53,7 +53,7 @@ impl Run {
         }
     }
 
-    /// Goes on until so many ticks are done.
+    /// Goes on until this many ticks are done.
     pub fn until(&mut self, ticks: u64) {
         while self.done < ticks {
             let together = (ticks - self.done).min(TICKS_AN_UPDATE) as u32;
@@ -87,7 +87,7 @@ impl Run {
     }
 }
 
-/// Fixed ticks in so many seconds.
+/// Fixed ticks in this many seconds.
 pub fn ticks_in(app: &App, seconds: f64) -> u64 {
     let timestep = app.world().resource::<Time<Fixed>>().timestep();
     (seconds / timestep.as_secs_f64()).round() as u64

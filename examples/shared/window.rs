@@ -31,7 +31,7 @@ const KEYS: [(&str, &str); 10] = [
     ("P", "this panel on, off"),
 ];
 
-/// An app that runs a scene in a window, beside the panel, with keys of its own to be told of.
+/// An app that runs a scene in a window, beside the panel, with keys of its own to be listed.
 pub fn app(title: &str, scene: impl Plugin, shot: Shot, more_keys: &[(&str, &str)]) -> App {
     let keys = KEYS.iter().chain(more_keys);
     let panel = ClothPanel {

@@ -9,7 +9,7 @@ use bevy::{
 };
 use thiserror::Error;
 
-use super::{Spring, grid::MAX_PARTICLES, particles::ParticleId, pins::Pin};
+use super::{MAX_PARTICLES, ParticleId, Pin, Spring};
 
 /// Why a cloth or a collider is not simulated, with the value that is at fault.
 ///
@@ -48,15 +48,100 @@ pub enum ClothError {
         /// What it is.
         value: f32,
     },
+    /// Rows and columns were asked of a cloth that was not made from a grid.
+    #[error("the cloth is a mesh, which has neither rows nor columns")]
+    NotAGrid,
     /// A pin that names a particle outside of the cloth.
-    #[error("{pin:?} is outside of a cloth of {columns} columns × {rows} rows")]
+    #[error("{pin:?} is outside of a cloth of {cloth}")]
     PinOutOfRange {
         /// The pin.
         pin: Pin,
-        /// Particles along the width.
-        columns: u32,
-        /// Particles along the height.
-        rows: u32,
+        /// Its columns and rows, or its particles and vertices.
+        cloth: String,
+    },
+    /// A pin by rows and columns on a cloth that has neither.
+    #[error(
+        "{pin:?} names rows and columns, and the cloth is a mesh: pin it by vertex, place, colour or attribute"
+    )]
+    PinNeedsGrid {
+        /// The pin.
+        pin: Pin,
+    },
+    /// A pin by a vertex attribute that the mesh does not have, or not as numbers.
+    #[error("{pin:?} asks for an attribute that the mesh does not have; it has: {attributes}")]
+    NoSuchAttribute {
+        /// The pin.
+        pin: Pin,
+        /// The names of those that it has.
+        attributes: String,
+    },
+    /// A pin by place, colour or attribute that no particle answers to.
+    #[error("{pin:?} holds for no particle of the cloth")]
+    PinFindsNothing {
+        /// The pin.
+        pin: Pin,
+    },
+    /// The asset of a cloth from a mesh is not there, and nothing loads it.
+    #[error("the cloth's mesh has not been loaded, and nothing is loading it: is there a `Mesh3d` with it?")]
+    MeshNotLoaded,
+    /// The asset of a cloth from a mesh is being loaded: the cloth waits for it. Neither logged nor marked.
+    #[error("the cloth's mesh is being loaded")]
+    MeshLoading,
+    /// The asset of a cloth from a mesh could not be loaded.
+    #[error("the cloth's mesh could not be loaded: {reason}")]
+    MeshFailed {
+        /// What the asset server says.
+        reason: String,
+    },
+    /// A mesh whose vertices are in the render world alone.
+    #[error(
+        "the cloth's mesh is in the render world only: load it with `RenderAssetUsages::MAIN_WORLD` too, as by default"
+    )]
+    MeshNotReadable,
+    /// A mesh of lines or points.
+    #[error("a cloth needs a mesh of triangles, as a list or a strip, not a {topology}")]
+    MeshTopology {
+        /// What it is made of.
+        topology: String,
+    },
+    /// A mesh without positions of three floats.
+    #[error("the cloth's mesh has no positions of three floats")]
+    MeshWithoutPositions,
+    /// Indices that are not three for each triangle.
+    #[error("{indices} indices are no whole number of triangles")]
+    MeshIndexCount {
+        /// How many there are.
+        indices: usize,
+    },
+    /// A triangle of a vertex that does not exist.
+    #[error("triangle {triangle} has the corners {corners:?}, and there are {vertices} vertices")]
+    TriangleOutOfRange {
+        /// Which triangle.
+        triangle: usize,
+        /// Its corners.
+        corners: [u32; 3],
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A vertex that is not finite or beyond all measure.
+    #[error("vertex {vertex} is not finite, or beyond 10¹² m: {position}")]
+    VertexNotFinite {
+        /// Which vertex.
+        vertex: usize,
+        /// Where it is (m).
+        position: Vec3,
+    },
+    /// A mesh in which no triangle has an area.
+    #[error("none of the mesh's {triangles} triangles has an area")]
+    MeshWithoutArea {
+        /// How many there are.
+        triangles: usize,
+    },
+    /// A mesh of more particles than [`MAX_MESH_PARTICLES`](super::MAX_MESH_PARTICLES).
+    #[error("{particles} particles are more than the 262144 that a cloth from a mesh may have")]
+    MeshTooLarge {
+        /// How many there would be.
+        particles: usize,
     },
     /// A transform that is not finite, that is scaled to nothing, or that an ancestor lacks.
     #[error("the global transform must be finite, with a scale other than zero: {transform}")]
@@ -86,12 +171,12 @@ pub enum ClothError {
         /// The kind of shape that it is.
         shape: String,
     },
-    /// Columns of particles that do not fit the grid.
+    /// Particles that are not those of the surface.
     #[error(
         "the cloth has {expected} particles, its `ClothParticles` hold {found}: give it as many, or empty them"
     )]
     ParticleCount {
-        /// What the grid asks for.
+        /// What the surface asks for.
         expected: usize,
         /// What was found.
         found: usize,
@@ -125,6 +210,14 @@ pub enum ClothError {
         pin: Pin,
         /// What it is attached to.
         target: Entity,
+    },
+    /// No entity has the name that a pin is attached to.
+    #[error("{pin:?} is attached to \"{name}\", and no entity with a transform has that name")]
+    NoTargetNamed {
+        /// The attached pin.
+        pin: Pin,
+        /// The name.
+        name: String,
     },
     /// A particle that does not exist was written to.
     #[error("{id:?} is outside of a cloth of {columns} columns × {rows} rows")]

@@ -1,54 +1,11 @@
-//! The grid of particles that a cloth is woven from.
+//! The grid of particles that a cloth may be made from.
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
     math::{Vec2, Vec3, Vec3Swizzles},
     reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::Transform,
 };
 
-use super::{ClothError, ClothMaterial, ClothParticles, Pins, presence::log_unsimulated};
-
-/// The most particles that one cloth may have: 4096 × 4096.
-pub const MAX_PARTICLES: usize = 1 << 24;
-
-/// A cloth: a grid of `columns` × `rows` particles, `spacing` metres apart.
-///
-/// Spawning this is enough. It hangs by its top row from the entity's [`Transform`], laid out from (0, 0, 0)
-/// to (width, −height, 0) in the entity's frame; [`lying`](Self::lying) lays it out in the horizontal plane and
-/// [`centred`](Self::centred) around its transform. Particle (row, column) has the index
-/// `row × columns + column` (paper, equation 1). Position, rotation and scale are respected at spawn; moved
-/// later, the transform carries the pinned particles along and the others follow by their springs.
-///
-/// Changing this component builds a new cloth at rest.
-///
-/// ```
-/// use bevy_drape::prelude::*;
-///
-/// let curtain = Cloth::new(32, 32, 0.05);
-/// let tablecloth = Cloth::new(64, 64, 0.025).lying().centred();
-/// # let _ = (curtain, tablecloth);
-/// ```
-#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
-#[reflect(Component, Default, Debug, Clone, PartialEq)]
-#[component(on_add = log_unsimulated)]
-#[require(ClothParticles, ClothMaterial, Pins, Transform)]
-pub struct Cloth {
-    /// Particles along the width, at least 2.
-    pub columns: u32,
-    /// Particles along the height, at least 2.
-    pub rows: u32,
-    /// Distance between neighbours in a row or column (m), before the transform's scale.
-    pub spacing: f32,
-    /// The plane that it is laid out in.
-    pub plane: ClothPlane,
-    /// Whether its middle is at the entity's origin; otherwise particle (0, 0) is.
-    pub centred: bool,
-    /// How far particles that are not pinned begin beside the plane, at most, in spacings: as real cloth, which is
-    /// never flat. Without it nothing moves a flat cloth out of a vertical plane, and a flag stays a board. The same
-    /// for the same cloth, and no part of its rest lengths. From 0 to 0.1.
-    pub unevenness: f32,
-}
+use super::{ClothError, MAX_PARTICLES};
 
 /// The plane that a [`Cloth`] is laid out in, in its entity's frame.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -76,71 +33,41 @@ impl ClothPlane {
     }
 }
 
-impl Default for Cloth {
-    /// 16 × 16 particles, 0.1 m apart.
-    fn default() -> Self {
-        Self::new(16, 16, 0.1)
-    }
+/// The grid that a cloth is made from, before the transform's scale.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Debug, Clone, PartialEq)]
+pub struct GridShape {
+    /// Particles along the width, at least 2.
+    pub columns: u32,
+    /// Particles along the height, at least 2.
+    pub rows: u32,
+    /// Distance between neighbours in a row or column (m).
+    pub spacing: f32,
+    /// The plane that it is laid out in.
+    pub plane: ClothPlane,
+    /// Whether its middle is at the entity's origin; otherwise particle (0, 0) is.
+    pub centred: bool,
 }
 
-impl Cloth {
-    /// What [`unevenness`](Self::unevenness) is by default: a hundredth of a millimetre in a cloth with 0.1 m between
-    /// its particles.
-    pub const DEFAULT_UNEVENNESS: f32 = 1.0e-4;
-
-    /// A cloth of `columns` × `rows` particles, `spacing` metres apart, hanging from its transform.
-    pub const fn new(columns: u32, rows: u32, spacing: f32) -> Self {
-        Self {
-            columns,
-            rows,
-            spacing,
-            plane: ClothPlane::Hanging,
-            centred: false,
-            unevenness: Self::DEFAULT_UNEVENNESS,
-        }
-    }
-
-    /// Laid out in the horizontal plane, facing up.
-    pub const fn lying(mut self) -> Self {
-        self.plane = ClothPlane::Lying;
-        self
-    }
-
-    /// With its middle at the entity's origin.
-    pub const fn centred(mut self) -> Self {
-        self.centred = true;
-        self
-    }
-
-    /// Exactly flat: for tests and comparisons that need its symmetry.
-    pub const fn flat(mut self) -> Self {
-        self.unevenness = 0.0;
-        self
-    }
-
-    /// (columns − 1) × spacing (m).
-    pub fn width(&self) -> f32 {
-        self.columns.saturating_sub(1) as f32 * self.spacing
-    }
-
-    /// (rows − 1) × spacing (m).
-    pub fn height(&self) -> f32 {
-        self.rows.saturating_sub(1) as f32 * self.spacing
+impl GridShape {
+    /// (columns − 1) and (rows − 1) × spacing (m).
+    pub fn size(&self) -> Vec2 {
+        let sides = [self.columns, self.rows].map(|count| count.saturating_sub(1) as f32);
+        Vec2::from(sides) * self.spacing
     }
 
     /// The checked grid under a transform's `scale`.
     ///
     /// # Errors
     /// Too few or too many particles; a spacing that is zero, negative, not finite, below 10⁻⁹ m, or of a cloth
-    /// larger than 10¹² m; an unevenness out of range.
-    pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
+    /// larger than 10¹² m.
+    pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
         let Self {
             columns,
             rows,
             spacing,
             plane,
             centred,
-            unevenness,
         } = *self;
         if columns < 2 || rows < 2 {
             return Err(ClothError::GridTooSmall { columns, rows });
@@ -153,12 +80,6 @@ impl Cloth {
         }
         let name = "spacing (m)";
         ClothError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
-        ClothError::check(
-            unevenness,
-            |u| (0.0..=0.1).contains(&u),
-            "unevenness (spacings)",
-            "from 0 to 0.1",
-        )?;
         let scaled = spacing
             * match plane {
                 ClothPlane::Hanging => scale.truncate(),
@@ -180,12 +101,13 @@ impl Cloth {
             rows,
             spacing: scaled,
             plane,
+            scale,
             origin: if centred { middle } else { Vec2::ZERO },
         })
     }
 }
 
-/// A grid known to be sound: what springs, trees and meshes are built from.
+/// A grid known to be valid: what springs, trees and meshes are built from.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 pub struct ClothGrid {
     columns: u32,
@@ -193,6 +115,8 @@ pub struct ClothGrid {
     /// Distance along the width and the height (m), scaled; negative under a mirroring scale.
     spacing: Vec2,
     plane: ClothPlane,
+    /// The transform's scale that is in it.
+    scale: Vec3,
     /// How far from particle (0, 0) the frame's origin is, along the width and the height (m).
     origin: Vec2,
 }
@@ -217,6 +141,16 @@ impl ClothGrid {
     pub fn diagonal(&self) -> f32 {
         let sides = Vec2::new(self.columns as f32 - 1.0, self.rows as f32 - 1.0);
         (sides * self.spacing()).length()
+    }
+
+    /// The transform's scale that is in it.
+    pub(crate) fn scale(&self) -> Vec3 {
+        self.scale
+    }
+
+    /// How far it is at rest to a particle that is some rows down and columns across (m).
+    pub(crate) fn step_length(&self, (down, across): (u32, i32)) -> f32 {
+        (self.spacing() * Vec2::new(across as f32, down as f32)).length()
     }
 
     /// Number of particles.
@@ -281,15 +215,16 @@ impl ClothGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cloth::Cloth;
 
     #[test]
     fn lies_from_the_origin_to_width_and_minus_height() {
         let cloth = Cloth::new(5, 3, 0.5);
-        let grid = cloth.grid(Vec3::ONE).expect("a sound grid");
+        let grid = cloth.grid(Vec3::ONE).expect("a valid grid");
         assert_eq!(grid.rest_position(0, 0), Vec3::ZERO);
         assert_eq!(
             grid.rest_position(2, 4),
-            Vec3::new(cloth.width(), -cloth.height(), 0.0)
+            Vec3::new(2.0, -1.0, 0.0)
         );
         let indices: Vec<u32> = grid.cells().map(|(r, c)| grid.index(r, c)).collect();
         assert_eq!(indices, (0..15).collect::<Vec<_>>());
@@ -300,7 +235,7 @@ mod tests {
     fn lies_and_is_centred_as_asked() {
         let scale = Vec3::new(2.0, 3.0, 5.0);
         let rest = |cloth: Cloth, row, column| {
-            let grid = cloth.grid(scale).expect("a sound grid");
+            let grid = cloth.grid(scale).expect("a valid grid");
             grid.rest_position(row, column)
         };
         let cloth = Cloth::new(5, 3, 0.5);
@@ -315,7 +250,7 @@ mod tests {
     #[test]
     fn areas_add_up_and_triangles_face_forward() {
         for cloth in [Cloth::new(5, 4, 0.5), Cloth::new(5, 4, 0.5).lying()] {
-            check_areas_and_triangles(&cloth.grid(Vec3::ONE).expect("a sound grid"));
+            check_areas_and_triangles(&cloth.grid(Vec3::ONE).expect("a valid grid"));
         }
     }
 
@@ -338,16 +273,6 @@ mod tests {
 
     #[test]
     fn refuses_what_cannot_be_built() {
-        for unevenness in [-0.1, 0.2, f32::NAN] {
-            let cloth = Cloth {
-                unevenness,
-                ..Cloth::default()
-            };
-            assert!(matches!(
-                cloth.grid(Vec3::ONE),
-                Err(ClothError::Quantity { .. })
-            ));
-        }
         assert!(matches!(
             Cloth::new(1, 8, 0.1).grid(Vec3::ONE),
             Err(ClothError::GridTooSmall {

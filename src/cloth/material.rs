@@ -10,7 +10,7 @@ use super::ClothError;
 /// What a cloth is made of. May change at any time.
 ///
 /// A compliance is that of a *square patch of the cloth*, whatever the patch's size: pulled by one newton at
-/// two opposite edges, that kind of springs alone would let it grow by so many metres. A square's compliance
+/// two opposite edges, that kind of springs alone would let it grow by this many metres. A square's compliance
 /// does not depend on its size, so stretch and shear keep their meaning under any resolution: a spring of a
 /// strip `w` wide and `l` long gets compliance × l ⁄ w. Zero is rigid.
 ///
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn presets_are_sound_and_each_bad_value_is_named() {
+    fn presets_are_valid_and_each_bad_value_is_named() {
         for (name, material) in ClothMaterial::PRESETS {
             assert_eq!(material.validate(), Ok(()), "{name}");
         }

@@ -1,21 +1,28 @@
-//! Floor 0: what a cloth *is*: its grid, particles, springs, material and pins.
+//! Floor 0: what a cloth *is*: its surface, particles, springs, material and pins.
 
 mod error;
 mod grid;
 mod lanes;
+mod limits;
 mod material;
 mod particles;
 mod pins;
 mod presence;
+mod recipe;
 mod springs;
+mod surface;
 
 pub use error::ClothError;
-pub use grid::{Cloth, ClothGrid, ClothPlane, MAX_PARTICLES};
+pub use grid::{ClothGrid, ClothPlane, GridShape};
+pub use limits::MAX_PARTICLES;
 pub use material::ClothMaterial;
 pub use particles::{ClothParticles, ParticleId};
-pub use pins::{Corner, Pin, PinPredicate, Pins};
+pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
+pub use recipe::{Cloth, ClothShape};
 pub use springs::{Spring, SpringKind, Springs};
+pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttribute};
 
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use presence::ClothPresence;
-pub(crate) use springs::{Compliances, Weave, rest_length};
+pub(crate) use springs::{Compliances, SpringList, SpringStorage};
+pub(crate) use surface::{Flat, Graph, ShortestPaths};

@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn shapes_are_scaled() {
         let scale = Vec3::new(1.0, -3.0, 2.0);
-        let scaled = |collider: ClothCollider| collider.scaled(scale).expect("a sound collider");
+        let scaled = |collider: ClothCollider| collider.scaled(scale).expect("a valid collider");
         assert_eq!(
             scaled(ClothCollider::default()),
             ColliderShape::Ball { radius: 3.0 }

@@ -5,11 +5,11 @@ use bevy::math::Vec3;
 use super::{
     MovingCollider,
     response::{Push, first_touch},
-    touch::Terms,
+    touch::ContactSettings,
     triangle::{NearestPoints, at, nearest},
 };
 use crate::{
-    cloth::{Block, ClothParticles, Layout, Slot},
+    cloth::{Block, ClothParticles, Slot, Surface},
     hierarchy::{Core, Probe},
     solver::SubStep,
 };
@@ -48,16 +48,6 @@ impl Corners {
     }
 }
 
-/// The two triangles of the cell whose first particle and its right neighbour these are.
-pub(super) fn triangles_of(layout: Layout, a: Slot, b: Slot) -> [[Slot; 3]; 2] {
-    let below = |slot: Slot| Slot {
-        block: slot.block + layout.strip as usize,
-        ..slot
-    };
-    let (c, d) = (below(a), below(b));
-    [[a, c, b], [b, c, d]]
-}
-
 /// Where a triangle touches.
 pub(super) struct Touching {
     pub weights: [f32; 3],
@@ -69,9 +59,9 @@ pub(super) struct Touching {
 }
 
 /// A collider's way through a sub-step, as triangles are tested against it.
-pub(super) struct Course<'a> {
+pub(super) struct SubstepMotion<'a> {
     pub collider: &'a MovingCollider,
-    pub terms: &'a Terms,
+    pub settings: &'a ContactSettings,
     pub substep: SubStep,
     /// How near the core may come (m).
     pub reach: f32,
@@ -82,31 +72,31 @@ pub(super) struct Course<'a> {
     at_end: [Vec3; 2],
 }
 
-impl<'a> Course<'a> {
-    pub fn new(collider: &'a MovingCollider, terms: &'a Terms, substep: SubStep) -> Self {
+impl<'a> SubstepMotion<'a> {
+    pub fn new(
+        collider: &'a MovingCollider,
+        settings: &'a ContactSettings,
+        substep: SubStep,
+    ) -> Self {
         let count = substep.count as f32;
         Self {
             collider,
-            terms,
+            settings,
             substep,
-            reach: collider.shape.radius().unwrap_or(0.0) + terms.particle_radius,
+            reach: collider.shape.radius().unwrap_or(0.0) + settings.particle_radius,
             slide: (collider.to - Vec3::from(collider.from.translation)) / count,
             swing: collider.swing() / count,
             at_end: segment(collider, substep.end()),
         }
     }
 
-    /// Whether nothing of a cell can have come near in the sub-step: most candidates are too far away.
+    /// Whether nothing of the faces that a particle stands for can have come near in the sub-step: most candidates are too
+    /// far away. `corners` are all of theirs, and `own` is the particle's.
     #[inline]
-    pub fn is_beyond(&self, blocks: &[Block], strip: usize, a: Slot, b: Slot) -> bool {
-        let first = blocks[a.block].position(a.lane);
+    pub fn is_beyond(&self, blocks: &[Block], own: Slot, corners: &[Slot]) -> bool {
+        let first = blocks[own.block].position(own.lane);
         let (mut edge, mut speed) = (0.0_f32, 0.0_f32);
-        for (block, lane) in [
-            (a.block, a.lane),
-            (b.block, b.lane),
-            (a.block + strip, a.lane),
-            (b.block + strip, b.lane),
-        ] {
+        for &Slot { block, lane } in corners {
             let block = &blocks[block];
             edge = edge.max(block.position(lane).distance_squared(first));
             speed = speed.max(block.displacement(lane).distance_squared(self.slide));
@@ -119,7 +109,7 @@ impl<'a> Course<'a> {
         } else {
             start
         };
-        // A little more than rounding. What is not a number is looked at.
+        // A little more than rounding. NaN is looked at.
         let near = (self.reach + edge.sqrt() + speed.sqrt() + self.swing) * (1.0 + 1.0e-5);
         first.distance_squared(nearest) > near * near
     }
@@ -159,7 +149,7 @@ impl<'a> Course<'a> {
         }
         // What came less far than to half of the reach, and is not nearer, is still on the side that it came from.
         let is_plain = speed <= reach / 2.0 && distance >= reach / 2.0;
-        if self.terms.is_swept && !is_plain && speed.is_finite() {
+        if self.settings.is_swept && !is_plain && speed.is_finite() {
             let tolerance = 1.0e-3 * reach;
             let hit = first_touch(speed, reach, tolerance, |part| {
                 nearest(corners.when(part), segment(part)).offset.length()
@@ -185,7 +175,7 @@ impl<'a> Course<'a> {
 
 /// The core of a ball or a capsule when a part of the tick has passed.
 fn segment(collider: &MovingCollider, part: f32) -> [Vec3; 2] {
-    match collider.shape.core(collider.pose(part)).0 {
+    match collider.shape.core(collider.pose_at(part)).0 {
         Core::Point(centre) => [centre; 2],
         Core::Segment(ends) => ends,
         Core::Cuboid { .. } | Core::HalfSpace { .. } => [Vec3::NAN; 2],
@@ -202,29 +192,24 @@ fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
     }
 }
 
-/// Whether a probe meets a triangle of those cells, as the particles lie now. Of a box or a half-space, it does where
-/// it meets the particles themselves.
-pub fn meets_triangles(particles: &ClothParticles, cells: &[u32], probe: &Probe) -> bool {
+/// Whether a probe meets a triangle of a surface that one of those particles stands for, as they lie now. Of a box or a
+/// half-space, it does where it meets the particles themselves.
+pub fn meets_triangles(
+    surface: &Surface,
+    particles: &ClothParticles,
+    found: &[u32],
+    probe: &Probe,
+) -> bool {
     let segment = match probe.core {
         Core::Point(centre) => [centre; 2],
         Core::Segment(ends) => ends,
-        Core::Cuboid { .. } | Core::HalfSpace { .. } => return !cells.is_empty(),
+        Core::Cuboid { .. } | Core::HalfSpace { .. } => return !found.is_empty(),
     };
     let reach = probe.reach() as f32;
     let layout = particles.layout();
-    let triangles = cells.iter().filter_map(|&cell| {
-        let (row, column) = (cell / layout.columns, cell % layout.columns);
-        let begins_cell = row + 1 < layout.rows && column + 1 < layout.columns;
-        begins_cell.then(|| {
-            triangles_of(
-                layout,
-                layout.slot(row, column),
-                layout.slot(row, column + 1),
-            )
-        })
-    });
-    triangles.flatten().any(|slots| {
-        let corners = Corners::of(particles, slots);
+    let mut faces = found.iter().flat_map(|&particle| surface.faces().of(particle));
+    faces.any(|face| {
+        let corners = Corners::of(particles, face.map(|corner| layout.slot_of(corner as usize)));
         nearest(corners.positions, segment).offset.length_squared() < reach * reach
     })
 }

@@ -1,35 +1,38 @@
 //! Which particles each collider may touch in a tick, kept true while the tick goes on, and what came of it.
 
+use std::sync::Arc;
+
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
     MovingCollider, NarrowPhase,
+    faces::{ResumePoint, SubstepMotion, push_triangles},
     particle::push_particles,
-    surface::{Course, Cursor, push_triangles},
-    touch::{Candidate, ContactPoint, Terms, Touch},
+    touch::{Candidate, ContactPoint, Fans, ContactSettings, Touch},
 };
 use crate::{
-    cloth::{ClothGrid, ClothParticles},
+    cloth::{ClothParticles, Surface},
     hierarchy::{Probe, TopDownQuery},
     solver::SubStep,
 };
 
 /// How often a sub-step measures how far particles have moved, before it searches again.
-const MOST_MEASURED: u32 = 2;
+const MAX_MEASURED: u32 = 2;
 
 /// Which particles each collider may touch in a tick.
 ///
 /// They are those that come within the collider, all along its way, as far as a *margin*. Nothing is missed while no
 /// particle has moved farther than the margin since: that is watched from sub-step to sub-step, and if one has, all
 /// particles are searched again from where they are then.
-#[derive(Debug, Default, Clone, PartialEq)]
+#[derive(Debug, Default, Clone)]
 pub struct Detection {
     /// In the order of their numbers, so that the result is the same whenever they were found.
     touches: Vec<Touch>,
     candidates: Vec<Candidate>,
     /// All that were searched for, touching or not, and among what: to search again.
     colliders: Vec<(usize, MovingCollider)>,
-    grid: ClothGrid,
+    surface: Arc<Surface>,
+    fans: Fans,
     /// How far a particle may move before the candidates are searched for again (m).
     margin: f32,
     /// How far one may have moved since they were (m): as the largest moves and pushes add up, or as measured.
@@ -37,7 +40,7 @@ pub struct Detection {
     /// The particles as they were then, if anything was searched for.
     origin: ClothParticles,
     has_origin: bool,
-    /// Whether the sum of moves has exceeded the margin in this tick, and whether it had in the last: to remember all
+    /// Whether the sum of moves has exceeded the margin in this tick, and whether it is expected to: to remember all
     /// particles is worth it then.
     was_outrun: bool,
     expects: bool,
@@ -51,15 +54,17 @@ pub struct Detection {
 }
 
 impl Detection {
-    /// Begins a tick in which no particle is expected to move farther than `margin` (m).
-    pub fn begin(&mut self, margin: f32) {
+    /// Begins a tick in which no particle is expected to move farther than `margin` (m). `expects` says whether one may all the
+    /// same, as in the tick before: all are remembered then, to measure how far.
+    pub fn begin(&mut self, margin: f32, expects: bool) {
         self.touches.clear();
         self.candidates.clear();
+        self.fans.clear();
         self.colliders.clear();
         self.margin = margin;
         (self.moved, self.moved_now) = (0.0, 0.0);
         self.has_origin = false;
-        self.expects = std::mem::take(&mut self.was_outrun);
+        (self.expects, self.was_outrun) = (expects, false);
         self.requeries = 0;
     }
 
@@ -68,14 +73,14 @@ impl Detection {
     pub fn probe(
         &self,
         collider: &MovingCollider,
-        terms: &Terms,
-        grid: &ClothGrid,
+        settings: &ContactSettings,
+        surface: &Surface,
         longest_edge: f32,
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
-        let spacing = grid.spacing().max_element();
+        let spacing = surface.spacing().longest;
         let narrow_phase =
-            terms
+            settings
                 .narrow_phase
                 .chosen(collider.shape.radius(), collider.travel(), spacing);
         let cover = match narrow_phase {
@@ -84,8 +89,12 @@ impl Detection {
         };
         // What each sub-step's rounding of a position may add to its move.
         let farthest = Vec3::from(cloth.center).length() + cloth.radius();
-        let rounding = (farthest + collider.beyond(cloth)) * 1.0e-5;
-        let probe = collider.probe(self.margin + cover + rounding, terms.particle_radius, cloth);
+        let rounding = (farthest + collider.farthest_distance(cloth)) * 1.0e-5;
+        let probe = collider.probe(
+            self.margin + cover + rounding,
+            settings.particle_radius,
+            cloth,
+        );
         (probe, narrow_phase)
     }
 
@@ -98,9 +107,12 @@ impl Detection {
         narrow_phase: NarrowPhase,
         found: &[u32],
         particles: &ClothParticles,
-        grid: &ClothGrid,
+        surface: &Arc<Surface>,
     ) {
-        self.grid = *grid;
+        if !Arc::ptr_eq(&self.surface, surface) {
+            self.surface = surface.clone();
+            self.fans.max_faces = surface.max_faces() as f32;
+        }
         if self.expects && !self.has_origin {
             self.remember(particles);
         }
@@ -123,21 +135,24 @@ impl Detection {
         if found.is_empty() {
             return;
         }
-        let grid = self.grid;
         let first = self.candidates.len();
         let layout = particles.layout();
-        self.candidates.extend(found.iter().map(|&particle| {
-            let (row, column) = (particle / layout.columns, particle % layout.columns);
-            let slot = |column| layout.slot(row, column);
-            Candidate {
+        let by_triangles = narrow_phase == NarrowPhase::Triangles;
+        for &particle in found {
+            let [corners, faces] = if by_triangles {
+                self.fans.add(&self.surface, layout, particle)
+            } else {
+                [[0; 2]; 2]
+            };
+            self.candidates.push(Candidate {
                 particle,
-                slot: slot(column),
-                beside: (row + 1 < layout.rows && column + 1 < layout.columns)
-                    .then(|| slot(column + 1)),
-                area: grid.tributary_area(row, column),
+                slot: layout.slot_of(particle as usize),
+                corners,
+                faces,
+                area: self.surface.area_of(particle as usize),
                 depth: f32::NEG_INFINITY,
-            }
-        }));
+            });
+        }
         // In the order of the cloth, whatever the search's: so the result is the same whichever it is.
         self.candidates[first..].sort_unstable_by_key(|candidate| candidate.particle);
         let candidates = first..self.candidates.len();
@@ -182,14 +197,14 @@ impl Detection {
     /// Whether particles have moved so far that candidates may be missing. The sum of all moves says so first; it counts
     /// every jitter, so what it says is measured.
     fn is_outrun(&mut self, particles: &ClothParticles) -> bool {
-        // Not a number is no less.
+        // NaN is no less.
         let is_beyond = |moved: f32, margin: f32| moved > margin || moved.is_nan();
         if !is_beyond(self.moved, self.margin) {
             return false;
         }
         self.was_outrun = true;
         // Searching again widens the margin: cheaper than to measure for every push.
-        if self.has_origin && self.measured < MOST_MEASURED {
+        if self.has_origin && self.measured < MAX_MEASURED {
             self.measured += 1;
             self.moved = particles.farthest_from(&self.origin);
         }
@@ -197,7 +212,7 @@ impl Detection {
     }
 
     /// Searches for the candidates of all colliders again, among the particles as they are.
-    fn search(&mut self, particles: &ClothParticles, terms: &Terms) {
+    fn search(&mut self, particles: &ClothParticles, settings: &ContactSettings) {
         if self.colliders.is_empty() {
             // There is nothing to miss.
             self.margin = f32::INFINITY;
@@ -227,13 +242,14 @@ impl Detection {
             touch.candidates = 0..0;
         }
         self.candidates.clear();
+        self.fans.clear();
         let cloth = particles.bounding_sphere();
-        let longest_edge = particles.longest_edge();
+        let longest_edge = particles.longest_face_reach(&self.surface);
         let mut found = std::mem::take(&mut self.found);
         let colliders = std::mem::take(&mut self.colliders);
         for (id, collider) in &colliders {
             let (probe, narrow_phase) =
-                self.probe(collider, terms, &self.grid, longest_edge, &cloth);
+                self.probe(collider, settings, &self.surface, longest_edge, &cloth);
             found.clear();
             if probe
                 .core
@@ -277,7 +293,7 @@ impl Detection {
     pub fn respond(
         &mut self,
         particles: &mut ClothParticles,
-        terms: &Terms,
+        settings: &ContactSettings,
         substep: SubStep,
         mut others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
@@ -285,12 +301,12 @@ impl Detection {
         self.moved_now = substep.farthest_move;
         self.measured = 0;
         let mut is_pushed = false;
-        let (mut next, mut from) = (0, Cursor::default());
+        let (mut next, mut from) = (0, ResumePoint::default());
         let (mut area, mut volume) = (0.0, 0.0);
         loop {
             if self.is_outrun(particles) {
                 others(&mut self.colliders);
-                self.search(particles, terms);
+                self.search(particles, settings);
             }
             let at = self.touches.partition_point(|touch| touch.id < next);
             let Some(touch) = self.touches.get_mut(at) else {
@@ -301,11 +317,11 @@ impl Detection {
             let (found, stopped) = match touch.narrow_phase {
                 NarrowPhase::Triangles => {
                     let room = self.margin - self.moved;
-                    let course = Course::new(collider, terms, substep);
-                    push_triangles(particles, candidates, &course, from, room)
+                    let motion = SubstepMotion::new(collider, settings, substep);
+                    push_triangles(particles, candidates, &self.fans, &motion, from, room)
                 }
                 NarrowPhase::Auto | NarrowPhase::Particles => (
-                    push_particles(particles, candidates, collider, terms, substep),
+                    push_particles(particles, candidates, collider, settings, substep),
                     None,
                 ),
             };
@@ -344,6 +360,11 @@ impl Detection {
                 particle: candidate.particle,
                 depth: candidate.depth,
             })
+    }
+
+    /// Whether the sum of moves has exceeded the margin in the tick.
+    pub fn was_outrun(&self) -> bool {
+        self.was_outrun
     }
 
     /// How often in the tick particles moved farther than the margin.

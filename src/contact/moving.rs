@@ -42,13 +42,13 @@ impl MovingCollider {
         }
     }
 
-    /// Where it is when a part of the tick, from 0 to 1, has passed.
-    pub fn pose(&self, part: f32) -> Isometry3d {
-        let place = self.start().lerp(self.to, part);
+    /// Where it is when a fraction of the tick, from 0 to 1, has passed.
+    pub fn pose_at(&self, fraction: f32) -> Isometry3d {
+        let place = self.start().lerp(self.to, fraction);
         let rotation = if self.turn == Vec3::ZERO {
             self.from.rotation
         } else {
-            Quat::from_scaled_axis(self.turn * part) * self.from.rotation
+            Quat::from_scaled_axis(self.turn * fraction) * self.from.rotation
         };
         Isometry3d::new(place, rotation)
     }
@@ -64,7 +64,7 @@ impl MovingCollider {
 
     /// How far its surface moves at most, by travel and turn: how far it can drag what sticks to it (m). Of a
     /// half-space that turns, no farther than `within` of its origin.
-    pub fn drag(&self, within: f32) -> f32 {
+    pub fn max_surface_travel(&self, within: f32) -> f32 {
         let turn = self.turn.length();
         let swing = if turn > 0.0 {
             turn * self.shape.extent().min(within)
@@ -87,7 +87,7 @@ impl MovingCollider {
     /// What its motion from one part of the tick to a later one makes of a point that moves with it (m), and of a
     /// normal. A ball's normals do not turn with it: it is the same all around.
     pub(super) fn carry(&self, [from, to]: [f32; 2], point: Vec3, normal: Vec3) -> (Vec3, Vec3) {
-        let (before, after) = (self.pose(from), self.pose(to));
+        let (before, after) = (self.pose_at(from), self.pose_at(to));
         let rotation = match self.shape {
             ColliderShape::Ball { .. } => Quat::IDENTITY,
             _ => after.rotation * before.rotation.inverse(),
@@ -113,10 +113,13 @@ impl MovingCollider {
             ColliderShape::Capsule { .. }
             | ColliderShape::Cuboid { .. }
             | ColliderShape::HalfSpace => {
-                let pose = self.pose(0.5);
+                let pose = self.pose_at(0.5);
                 let (core, radius) = self.shape.core(pose);
                 // Particles may leave the sphere as far as the margin.
-                (core, radius + self.drag(self.beyond(cloth) + margin) / 2.0)
+                (
+                    core,
+                    radius + self.max_surface_travel(self.farthest_distance(cloth) + margin) / 2.0,
+                )
             }
         };
         Probe {
@@ -127,7 +130,7 @@ impl MovingCollider {
     }
 
     /// How far the far end of a cloth is from the origin, at most (m).
-    pub fn beyond(&self, cloth: &BoundingSphere) -> f32 {
+    pub fn farthest_distance(&self, cloth: &BoundingSphere) -> f32 {
         let distance = |place: Vec3| place.distance(cloth.center.into());
         distance(self.start()).max(distance(self.to)) + cloth.radius()
     }
@@ -141,6 +144,6 @@ impl MovingCollider {
     /// How a point lies to it when a part of the tick has passed.
     #[inline]
     pub(super) fn nearest(&self, part: f32, point: Vec3) -> Nearest {
-        self.shape.nearest(self.pose(part), point)
+        self.shape.nearest(self.pose_at(part), point)
     }
 }

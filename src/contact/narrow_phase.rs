@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-/// From so many spacings of radius on, a collider is tested against particles, below against triangles.
+/// From this many spacings of radius on, a collider is tested against particles, below against triangles.
 ///
 /// A ball that is pressed into a cloth until it wraps it dips into the flat triangles between the particles that hold it:
 /// by 22 % of its radius at 1.5 spacings, 11 at 2, 6.6 at 2.5, 4.6 at 3, 2.7 at 4, and falls through at 1 and below;
@@ -13,7 +13,7 @@ use bevy::{
 /// --bench contact`). Five per cent is what an eye notices.
 pub const PARTICLES_FROM: f32 = 3.0;
 
-/// What moves farther in a tick than so many of its radii parts the particles before it faster than the springs can hold
+/// What moves farther in a tick than this many of its radii parts the particles before it faster than the springs can hold
 /// them together: it is tested against triangles.
 const SLOW_RADII: f32 = 2.0;
 

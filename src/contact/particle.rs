@@ -4,9 +4,9 @@ use bevy::math::{Isometry3d, Vec3};
 
 use super::{
     MovingCollider,
-    response::{Contact, MOST_STEPS, first_touch},
+    response::{Contact, MAX_STEPS, first_touch},
     shape::Nearest,
-    touch::{Candidate, Terms},
+    touch::{Candidate, ContactSettings},
 };
 use crate::{
     cloth::{Block, ClothParticles, Slot},
@@ -33,14 +33,14 @@ pub(super) fn push_particles(
     particles: &mut ClothParticles,
     candidates: &mut [Candidate],
     collider: &MovingCollider,
-    terms: &Terms,
+    settings: &ContactSettings,
     substep: SubStep,
 ) -> Found {
-    let particle_radius = terms.particle_radius;
-    let pose = collider.pose(substep.end());
+    let particle_radius = settings.particle_radius;
+    let pose = collider.pose_at(substep.end());
     let centre = Vec3::from(pose.translation);
     let thickness = collider.shape.thickness() + particle_radius;
-    let sweep = Sweep::new(collider, substep, terms, thickness);
+    let sweep = Sweep::new(collider, substep, settings, thickness);
     let mut side = None;
     let mut found = Found::default();
     for index in 0..candidates.len() {
@@ -90,7 +90,7 @@ pub(super) fn push_particles(
             depth,
             relative,
         }
-        .push(terms.friction);
+        .push(settings.friction);
         let block = &mut particles.blocks_mut()[candidate.slot.block];
         block.set_position(lane, position + push.position);
         block.set_displacement(lane, displacement + push.displacement);
@@ -115,16 +115,21 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    fn new(collider: &'a MovingCollider, substep: SubStep, terms: &Terms, thickness: f32) -> Self {
+    fn new(
+        collider: &'a MovingCollider,
+        substep: SubStep,
+        settings: &ContactSettings,
+        thickness: f32,
+    ) -> Self {
         let count = substep.count as f32;
         Self {
             collider,
             substep,
-            particle_radius: terms.particle_radius,
+            particle_radius: settings.particle_radius,
             thickness,
             slide: (collider.to - Vec3::from(collider.from.translation)) / count,
             swing: collider.swing() / count,
-            is_on: terms.is_swept,
+            is_on: settings.is_swept,
         }
     }
 
@@ -190,7 +195,7 @@ fn way_out(
     particle_radius: f32,
 ) -> Option<f32> {
     let mut gone = 0.0;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let depth = particle_radius
             - collider
                 .shape

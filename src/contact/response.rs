@@ -47,7 +47,7 @@ impl Contact {
 }
 
 /// How many steps are taken along a way towards what may be hit on it.
-pub(super) const MOST_STEPS: u32 = 32;
+pub(super) const MAX_STEPS: u32 = 32;
 
 /// The part of a sub-step, from 0 to 1, after which two things first are as near as `touch` (m), to a `tolerance` (m)
 /// above it, stepping no farther at a time than can be without coming nearer (conservative advancement; Mirtich
@@ -63,7 +63,7 @@ pub(super) fn first_touch(
     distance: impl Fn(f32) -> f32,
 ) -> Option<f32> {
     let mut part = 0.0;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let left = distance(part) - touch;
         if left <= tolerance {
             return Some(part);

@@ -15,7 +15,7 @@ mod volume;
 
 use bevy::math::{Isometry3d, Vec3};
 
-use super::{Detection, MovingCollider, Terms};
+use super::{ContactSettings, Detection, MovingCollider};
 /// What `shots` calls the crate, which the lab reads, too.
 use crate as library;
 use crate::{
@@ -30,19 +30,19 @@ const ONLY: SubStep = SubStep {
     farthest_move: 0.0,
 };
 
-fn weave(columns: u32, rows: u32, spacing: f32) -> (ClothGrid, ClothParticles) {
+fn build(columns: u32, rows: u32, spacing: f32) -> (ClothGrid, ClothParticles) {
     let grid = Cloth::new(columns, rows, spacing)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     let particles =
-        ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
+        ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material");
     (grid, particles)
 }
 
 /// A tick in which every particle is a candidate of every collider: nothing can be missed.
 fn all_of(
     colliders: &[MovingCollider],
-    terms: &Terms,
+    settings: &ContactSettings,
     grid: &ClothGrid,
     particles: &ClothParticles,
 ) -> Detection {
@@ -51,7 +51,7 @@ fn all_of(
     let all: Vec<u32> = (0..particles.len() as u32).collect();
     let cloth = particles.bounding_sphere();
     for (id, collider) in colliders.iter().enumerate() {
-        let (_, narrow_phase) = detection.probe(collider, terms, grid, 0.0, &cloth);
+        let (_, narrow_phase) = detection.probe(collider, settings, grid, 0.0, &cloth);
         detection.add(id, collider, narrow_phase, &all, particles, grid);
     }
     detection
@@ -67,7 +67,7 @@ fn deepest_at(
     super::deepest_penetration(
         particles,
         &collider.shape,
-        collider.pose(part),
+        collider.pose_at(part),
         particle_radius,
     )
 }
@@ -75,7 +75,7 @@ fn deepest_at(
 /// Particles of no grid at rest, of mass 1 kg.
 fn loose(positions: &[Vec3], displacements: &[Vec3]) -> ClothParticles {
     let mut particles =
-        ClothParticles::new(positions, &vec![1.0; positions.len()]).expect("sound particles");
+        ClothParticles::new(positions, &vec![1.0; positions.len()]).expect("valid particles");
     for (index, &displacement) in displacements.iter().enumerate() {
         particles
             .set_displacement(index, displacement)

@@ -14,7 +14,7 @@ use crate::cloth::ClothError;
 /// takes as long as the search of the tree (`cargo bench --profile dev --bench hierarchy`).
 pub const SEARCH_FROM: usize = 64 * 64;
 
-/// With a collider near for so many particles or fewer, a refit pays: at 256 × 256 from 100 balls on.
+/// With a collider near for this many particles or fewer, a refit pays: at 256 × 256 from 100 balls on.
 const PARTICLES_A_COLLIDER: f32 = 600.0;
 
 /// How the particles are found that a collider may touch. Whatever is asked for, the same are found, [`Paper`]'s
@@ -69,7 +69,7 @@ impl SearchMethod {
         }
     }
 
-    /// What costs least for so many particles and colliders near, at a stretch
+    /// What costs least for this many particles and colliders near, at a stretch
     /// ([`Stretch::bound`](crate::solver::Stretch)), if that is to be chosen; and why.
     pub fn chosen(self, particles: usize, near: usize, stretch: f32) -> (Self, SearchReason) {
         if self != Self::Auto {

@@ -11,8 +11,10 @@
 //!   those of the columns say all. Columns are parted strip by strip first, and all strips are then halved
 //!   alike. So, where nodes are no wider than a strip, eight lanes hold eight nodes of one level, and one
 //!   instruction works on all of them.
-//! - *Networks.* Any particles, joined by any springs. A patch is halved along its longest extent at rest,
-//!   and each half along its own. Distances along the springs are shortest ways (Dijkstra 1959).
+//! - *Meshes.* Any particles, joined by any springs. A patch is halved along its longest extent at rest, and each
+//!   half along its own. Where it is folded, its radius along the surface 1.3 times that through space, it is halved
+//!   by which of its two ends is nearer along the surface: the front of a sleeve soon shares no patch with its back.
+//!   Distances along the springs are shortest paths (Dijkstra 1959).
 //!
 //! A node knows its *middle particle* *m*, and its *rest radius*: the largest distance at rest, along
 //! structural and shear springs, from *m* to a particle of its patch. Leaves, all on the last level, have 0.
@@ -109,20 +111,24 @@
 
 mod bounds;
 mod brute;
+mod found;
 mod method;
 mod probe;
 mod query;
 mod refit;
+mod rule;
 mod scan;
+mod stored;
 #[cfg(test)]
 mod tests;
 mod tree;
 mod volume;
 
-pub use bounds::{BoundRule, NodeBounds};
+pub use bounds::NodeBounds;
 pub use brute::brute_force;
 pub use method::{SEARCH_FROM, SearchMethod, SearchReason};
 pub use probe::{Core, Probe};
 pub use query::{NodeState, TopDownQuery};
+pub use rule::BoundRule;
 pub use tree::{Node, QuadTree};
 pub use volume::{BoundingVolume, KDop, NodeVolume, Obb};

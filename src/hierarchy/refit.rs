@@ -14,7 +14,7 @@ use crate::cloth::Block;
 
 /// The volumes of all levels but the last, whose nodes are the particles.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Pyramid<V: Volume> {
+pub(crate) struct RefitLevels<V: Volume> {
     /// Of levels whose nodes are no wider than a strip, eight nodes each.
     lanes: Vec<Aligned<V::Lanes>>,
     /// Of the levels above.
@@ -28,7 +28,7 @@ pub(super) struct Pyramid<V: Volume> {
 #[repr(align(64))]
 struct Aligned<T>(T);
 
-impl<V: Volume> Default for Pyramid<V> {
+impl<V: Volume> Default for RefitLevels<V> {
     fn default() -> Self {
         Self {
             lanes: Vec::new(),
@@ -38,7 +38,7 @@ impl<V: Volume> Default for Pyramid<V> {
     }
 }
 
-impl<V: Volume> Pyramid<V> {
+impl<V: Volume> RefitLevels<V> {
     /// Brings all volumes up to date.
     pub fn refit(&mut self, tree: &GridTree, blocks: &[Block]) {
         self.make_room(tree);

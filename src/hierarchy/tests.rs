@@ -61,7 +61,7 @@ proptest! {
     /// shape, over grids and over networks.
     #[test]
     fn every_volume_equals_brute_force(state in states()) {
-        let scene = state.weave();
+        let scene = state.build();
         let mut searcher = Searcher::default();
         // Slow on large ones: every sixteenth of them.
         let validates = state.columns * state.rows < 100 || state.seed.is_multiple_of(16);
@@ -87,7 +87,7 @@ fn states_in_bulk_equal_brute_force() {
             let mut contacts = 0;
             for _ in 0..per_thread {
                 let state = states().new_tree(&mut runner).expect("a state").current();
-                let scene = state.weave();
+                let scene = state.build();
                 searcher
                     .check(&scene, false)
                     .unwrap_or_else(|error| panic!("{state:?}: {error}"));
@@ -121,7 +121,7 @@ fn states_of_nodes_follow_the_search() {
     let mut query = TopDownQuery::default();
     for _ in 0..300 {
         let state = states().new_tree(&mut runner).expect("a state").current();
-        let scene = state.weave();
+        let scene = state.build();
         let truth = brute_force(&scene.particles, &scene.probe);
         for choice in COMPLETE {
             let mut bounds = NodeBounds::default();
@@ -164,7 +164,7 @@ fn searches_add_up_and_clear() {
             core: states::CoreKind::Ball,
             ..state
         }
-        .weave();
+        .build();
         let mut bounds = NodeBounds::default();
         scene.rebuild(&mut bounds, COMPLETE[0]);
         let far = Probe::ball(scene.probe.core.middle() + 1.0e3, scene.probe.radius, 0.0);
@@ -193,12 +193,12 @@ fn searches_add_up_and_clear() {
 
 #[test]
 fn what_has_no_rest_shape_is_refused() {
-    let scene = State::flat(8, 8).weave();
+    let scene = State::flat(8, 8).build();
     for (_, volume) in BoundingVolume::ALL {
         for (_, rule) in BoundRule::ALL {
             let mut bounds = NodeBounds::default();
             let outcome = bounds.rebuild((volume, rule), &scene.tree, &scene.particles, 0.0);
-            assert_eq!(outcome.is_ok(), rule.suits(volume), "{volume:?} {rule:?}");
+            assert_eq!(outcome.is_ok(), rule.matches(volume), "{volume:?} {rule:?}");
             if outcome.is_ok() {
                 assert_eq!((bounds.volume(), bounds.rule()), (volume, rule));
             } else {
@@ -211,7 +211,7 @@ fn what_has_no_rest_shape_is_refused() {
 /// Particles of another cloth than the tree's find nothing, and do no harm.
 #[test]
 fn another_cloths_tree_finds_nothing() {
-    let (scene, other) = (State::flat(8, 8).weave(), State::flat(9, 7).weave());
+    let (scene, other) = (State::flat(8, 8).build(), State::flat(9, 7).build());
     let mut bounds = NodeBounds::default();
     scene.rebuild(&mut bounds, COMPLETE[2]);
     let mut query = TopDownQuery::default();

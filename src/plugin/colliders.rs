@@ -11,7 +11,7 @@ use bevy::{
     transform::helper::TransformHelper,
 };
 
-use super::{ClothFault, ClothFrame, fault::Part, frame::global_transform};
+use super::{ClothFault, ClothFrame, frame::global_transform, naming::Part};
 use crate::{
     cloth::ClothError,
     contact::{ClothCollider, ColliderShape, MovingCollider},

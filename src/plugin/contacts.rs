@@ -13,7 +13,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::components::ClothTick;
+use super::ClothState;
 use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};
 
 /// A collider that a cloth touches.
@@ -45,9 +45,9 @@ pub struct ClothContacts {
     #[entities]
     now: Vec<ClothContact>,
     points: Vec<ContactPoint>,
-    /// Those told of, each with the most particles and the deepest penetration since the touch began.
+    /// Those reported, each with the largest number of particles and the deepest penetration since the touch began.
     #[entities]
-    told: Vec<ClothContact>,
+    reported: Vec<ClothContact>,
 }
 
 impl ClothContacts {
@@ -115,36 +115,37 @@ pub struct ClothTouchStopped {
     pub cloth: Entity,
     /// The collider's entity.
     pub collider: Entity,
-    /// The most particles that touched in one tick, while the touch lasted.
+    /// The largest number of particles that touched in one tick, while the touch lasted.
     pub particles: usize,
     /// How deep the deepest was found, while the touch lasted (m).
     pub deepest_penetration: f32,
 }
 
-/// Tells of the difference between this tick and the last.
-pub(super) fn tell_of_touches(
-    mut cloths: Query<(Entity, &ClothTick, &mut ClothContacts)>,
+/// Sends messages of the difference between this tick and the last.
+pub(super) fn send_touch_messages(
+    mut cloths: Query<(Entity, &ClothState, &mut ClothContacts)>,
     mut started: MessageWriter<ClothTouchStarted>,
     mut stopped: MessageWriter<ClothTouchStopped>,
 ) {
-    for (cloth, tick, mut contacts) in &mut cloths {
-        if contacts.now.is_empty() && contacts.told.is_empty() {
+    for (cloth, state, mut contacts) in &mut cloths {
+        if contacts.now.is_empty() && contacts.reported.is_empty() {
             continue;
         }
-        let ClothContacts { now, told, .. } = &mut *contacts;
-        if !tick.sound {
+        let ClothContacts { now, reported, .. } = &mut *contacts;
+        if !state.is_valid {
             now.clear();
         }
         for contact in now.iter() {
-            if let Some(told) = told
+            if let Some(reported) = reported
                 .iter_mut()
-                .find(|told| told.collider == contact.collider)
+                .find(|reported| reported.collider == contact.collider)
             {
-                told.particles = told.particles.max(contact.particles);
-                told.deepest_penetration =
-                    told.deepest_penetration.max(contact.deepest_penetration);
+                reported.particles = reported.particles.max(contact.particles);
+                reported.deepest_penetration = reported
+                    .deepest_penetration
+                    .max(contact.deepest_penetration);
             } else {
-                told.push(*contact);
+                reported.push(*contact);
                 started.write(ClothTouchStarted {
                     cloth,
                     collider: contact.collider,
@@ -153,10 +154,12 @@ pub(super) fn tell_of_touches(
                 });
             }
         }
-        told.retain(|told| {
-            let lasts = now.iter().any(|contact| contact.collider == told.collider);
+        reported.retain(|reported| {
+            let lasts = now
+                .iter()
+                .any(|contact| contact.collider == reported.collider);
             if !lasts {
-                stopped.write(told.stopped(cloth));
+                stopped.write(reported.stopped(cloth));
             }
             lasts
         });
@@ -164,7 +167,7 @@ pub(super) fn tell_of_touches(
 }
 
 /// A cloth that goes takes its touches with it.
-pub(super) fn tell_of_removed_cloths(
+pub(super) fn send_stopped_messages(
     removed: On<Remove, ClothContacts>,
     contacts: Query<&ClothContacts>,
     mut stopped: MessageWriter<ClothTouchStopped>,
@@ -172,9 +175,9 @@ pub(super) fn tell_of_removed_cloths(
     if let Ok(contacts) = contacts.get(removed.entity) {
         stopped.write_batch(
             contacts
-                .told
+                .reported
                 .iter()
-                .map(|told| told.stopped(removed.entity)),
+                .map(|reported| reported.stopped(removed.entity)),
         );
     }
 }

@@ -10,7 +10,7 @@ use bevy::{
     },
 };
 
-use super::{ClothStats, ClothSystems, components::ClothTick, envelope::report_limits};
+use super::{ClothState, ClothStats, ClothSystems, envelope::report_limits};
 use crate::hierarchy::{BoundRule, SearchMethod};
 
 /// Measures every tick into Bevy's `DiagnosticsStore`: times and counts added up over all cloths, and the
@@ -94,15 +94,15 @@ impl Plugin for ClothDiagnosticsPlugin {
     }
 }
 
-fn measure(cloths: Query<(&ClothTick, &ClothStats)>, mut diagnostics: Diagnostics) {
-    let sound = || {
+fn measure(cloths: Query<(&ClothState, &ClothStats)>, mut diagnostics: Diagnostics) {
+    let valid = || {
         cloths
             .iter()
-            .filter(|(tick, _)| tick.sound)
+            .filter(|(state, _)| state.is_valid)
             .map(|(_, stats)| stats)
     };
     type Plugin = ClothDiagnosticsPlugin;
-    let sum = |figure: fn(&ClothStats) -> f64| sound().map(figure).sum::<f64>();
+    let sum = |figure: fn(&ClothStats) -> f64| valid().map(figure).sum::<f64>();
     diagnostics.add_measurement(&Plugin::INTEGRATE, || sum(|stats| stats.integrate_ms));
     diagnostics.add_measurement(&Plugin::REBUILD, || sum(|stats| stats.rebuild_ms));
     diagnostics.add_measurement(&Plugin::QUERY, || sum(|stats| stats.query_ms));
@@ -112,7 +112,7 @@ fn measure(cloths: Query<(&ClothTick, &ClothStats)>, mut diagnostics: Diagnostic
     diagnostics.add_measurement(&Plugin::LEAF_TESTS, || sum(|stats| stats.leaf_tests as f64));
     let count = |method: fn(SearchMethod) -> bool| {
         let is_searched = |stats: &&ClothStats| stats.colliders_near > 0 && method(stats.search);
-        sound().filter(is_searched).count() as f64
+        valid().filter(is_searched).count() as f64
     };
     diagnostics.add_measurement(&Plugin::SCANS, || {
         count(|method| method == SearchMethod::Scan)
@@ -142,7 +142,7 @@ fn measure(cloths: Query<(&ClothTick, &ClothStats)>, mut diagnostics: Diagnostic
         sum(|stats| f64::from(u8::from(stats.is_asleep)))
     });
     diagnostics.add_measurement(&Plugin::STRETCH, || {
-        let stretch = sound().map(|stats| f64::from(stats.stretch.structural));
+        let stretch = valid().map(|stats| f64::from(stats.stretch.structural));
         100.0 * stretch.fold(0.0, f64::max)
     });
 }

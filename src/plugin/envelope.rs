@@ -10,14 +10,11 @@ use bevy::{
     reflect::Reflect,
 };
 
-use super::{ClothStats, components::ClothTick, fault::Part, naming::Named};
+use super::{
+    ClothScratch, ClothState, ClothStats,
+    naming::{Named, Part},
+};
 use crate::solver::ClothLimit;
-
-/// As many ticks in a row make a report: a blow may stretch a cloth for an instant, which does no harm.
-const TICKS: u32 = 8;
-
-/// What is so many times as large as when it was reported is reported again.
-const WORSE: f32 = 10.0;
 
 /// Reports are gathered for as many ticks, half a second of Bevy's 64 Hz, so that many cloths are one line of the log.
 const GATHERED: u32 = 32;
@@ -34,33 +31,6 @@ pub struct ClothLimitExceeded {
     pub quantity: f32,
     /// Up to where it is good.
     pub good_up_to: f32,
-}
-
-/// How far a cloth is beyond a limit.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(super) struct Excess {
-    /// For how many ticks in a row.
-    ticks: u32,
-    /// The quantity that was reported, 0 before that.
-    reported: f32,
-}
-
-impl Excess {
-    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether it is to be reported.
-    fn observe(&mut self, limit: ClothLimit, quantity: Option<f32>) -> bool {
-        let Some(quantity) = quantity else {
-            self.ticks = 0;
-            return false;
-        };
-        self.ticks = self.ticks.saturating_add(1);
-        // What passes through does so at once.
-        let lasts = self.ticks >= TICKS || limit == ClothLimit::Dart;
-        let is_news = self.reported == 0.0 || quantity >= WORSE * self.reported;
-        if lasts && is_news {
-            self.reported = quantity;
-        }
-        lasts && is_news
-    }
 }
 
 /// Cloths beyond one limit that the log does not know of yet.
@@ -101,21 +71,21 @@ impl Gathered {
 
 /// Looks at every cloth that moved in the tick.
 pub(super) fn report_limits(
-    mut cloths: Query<(Named, &mut ClothTick, &mut ClothStats)>,
+    mut cloths: Query<(Named, &mut ClothState, &mut ClothScratch, &mut ClothStats)>,
     mut exceeded: MessageWriter<ClothLimitExceeded>,
     mut gathered: Local<[Gathered; ClothLimit::ALL.len()]>,
 ) {
-    for (name, mut tick, mut stats) in &mut cloths {
+    for (name, mut state, mut scratch, mut stats) in &mut cloths {
         // Kept as it was while it sleeps or stands still; not touched, so that nothing seems to change.
-        let Some(load) = tick.load else {
+        let Some(limit_inputs) = scratch.limit_inputs else {
             continue;
         };
-        tick.load = None;
+        scratch.limit_inputs = None;
         stats.exceeded = None;
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
-            let beyond = load.beyond(limit);
+            let beyond = limit_inputs.exceeded(limit);
             stats.exceeded = stats.exceeded.or(beyond.map(|_| limit));
-            let is_news = tick.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
+            let is_news = state.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
             if let Some([quantity, good_up_to]) = beyond
                 && is_news
             {
@@ -142,19 +112,6 @@ mod tests {
     use super::*;
 
     const LIMIT: ClothLimit = ClothLimit::Stretch;
-
-    #[test]
-    fn is_reported_after_eight_ticks_and_again_when_ten_times_worse() {
-        let mut excess = Excess::default();
-        let mut observe = |quantity| excess.observe(LIMIT, quantity);
-        assert!((1..TICKS).all(|_| !observe(Some(0.2))));
-        assert!(observe(Some(0.2)));
-        assert!(!observe(Some(1.9)));
-        assert!(!observe(None));
-        assert!((1..TICKS).all(|_| !observe(Some(2.1))), "an instant again");
-        assert!(observe(Some(2.1)));
-        assert!(!observe(Some(2.2)));
-    }
 
     /// Sixty cloths within half a second are one line with the worst of them.
     #[test]

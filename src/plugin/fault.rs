@@ -12,7 +12,7 @@ use bevy::{
     reflect::Reflect,
 };
 
-use super::naming::{Named, NamedItem};
+use super::naming::{Named, NamedItem, Part};
 use crate::cloth::ClothError;
 
 /// On a cloth or collider that is left out of the simulation: why. Taken away as soon as the fault is mended.
@@ -24,13 +24,6 @@ pub struct ClothFault {
     #[entities]
     pub error: ClothError,
     part: Part,
-}
-
-/// What of an entity is at fault: it may be a cloth and a collider at once.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Part {
-    Cloth,
-    Collider,
 }
 
 impl ClothFault {

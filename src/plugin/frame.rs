@@ -85,3 +85,9 @@ impl ClothFrame {
         self.affine.inverse() * Affine3A::from(self.isometry)
     }
 }
+
+/// Where something is and how it is turned, its scale left out.
+pub(super) fn rigid(affine: &Affine3A) -> Isometry3d {
+    let (_, rotation, translation) = affine.to_scale_rotation_translation();
+    Isometry3d::new(translation, rotation.normalize())
+}

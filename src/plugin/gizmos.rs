@@ -18,16 +18,16 @@ use bevy::{
         config::{GizmoConfigGroup, GizmoConfigStore},
         gizmos::Gizmos,
     },
-    math::{Isometry3d, Quat, Rect, Vec2, Vec3},
+    math::{Isometry3d, Quat, Rect, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::{TransformSystems, components::Transform},
 };
 
 use super::{
-    ClothFrame, ClothSearch, ClothStats, ClothSystems, ClothTopology, components::ClothTick,
+    ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
 };
 use crate::{
-    cloth::{ClothGrid, ClothParticles, SpringKind},
+    cloth::{ClothParticles, SpringKind, Surface},
     hierarchy::{
         BoundRule, BoundingVolume, NodeBounds, NodeState, NodeVolume, SearchMethod, TopDownQuery,
     },
@@ -88,7 +88,8 @@ pub struct ShowClothGizmos {
     pub levels: Option<RangeInclusive<usize>>,
     /// Whether the springs are drawn.
     pub springs: bool,
-    /// The part of the cloth that is drawn, in the UV coordinates of its mesh: from (0, 0), where particle 0 is, to (1, 1).
+    /// The part of the cloth that is drawn, in the UV coordinates of its mesh: on a grid from (0, 0), where particle 0 is, to
+    /// (1, 1). Of a mesh without UVs it is all.
     /// A volume is drawn if its patch's middle is inside, a spring if both ends are. All of it by default.
     pub region: Rect,
 }
@@ -138,11 +139,9 @@ impl ShowClothGizmos {
     }
 
     /// Whether a particle lies in the region.
-    fn contains(&self, grid: &ClothGrid, particle: u32) -> bool {
-        let (row, column) = (particle / grid.columns(), particle % grid.columns());
-        let last = Vec2::new((grid.columns() - 1) as f32, (grid.rows() - 1) as f32);
-        self.region
-            .contains(Vec2::new(column as f32, row as f32) / last)
+    fn contains(&self, surface: &Surface, particle: u32) -> bool {
+        let place = surface.uvs().get(particle as usize);
+        place.is_none_or(|place| self.region.contains(*place))
     }
 }
 
@@ -178,13 +177,14 @@ struct Drawing {
 
 #[derive(QueryData)]
 struct Drawn {
-    topology: &'static ClothTopology,
+    built: &'static ClothBuilt,
     particles: &'static ClothParticles,
     frame: &'static ClothFrame,
     search: &'static ClothSearch,
     show: Option<&'static ShowClothGizmos>,
     visible: Option<&'static ViewVisibility>,
-    tick: &'static ClothTick,
+    state: &'static ClothState,
+    scratch: &'static ClothScratch,
     stats: &'static ClothStats,
 }
 
@@ -198,8 +198,8 @@ fn draw_cloths(
     let everywhere = look.draw_all.then(ShowClothGizmos::default);
     for cloth in &cloths {
         if let Some(show) = cloth.show.or(everywhere.as_ref())
-            && cloth.tick.sound
-            && cloth.topology.fits(cloth.particles)
+            && cloth.state.is_valid
+            && cloth.built.matches(cloth.particles)
             && cloth.visible.is_none_or(|visible| visible.get())
         {
             if let Some(levels) = &show.levels {
@@ -216,15 +216,15 @@ fn draw_cloths(
 impl Drawing {
     /// Finds where each volume is now, and what the search made of it.
     fn search(&mut self, cloth: &DrawnItem) {
-        let ClothTopology { tree, grid, .. } = cloth.topology;
-        let tick = cloth.tick;
-        let choice = match (tick.search, cloth.stats.search) {
+        let (tree, surface) = (cloth.built.tree(), cloth.built.surface());
+        let scratch = cloth.scratch;
+        let choice = match (scratch.search, cloth.stats.search) {
             (SearchMethod::Tree(volume, rule), _) | (_, SearchMethod::Tree(volume, rule)) => {
                 (volume, rule)
             }
             _ => (BoundingVolume::Sphere, BoundRule::RestShape),
         };
-        let stretch = tick.stretch.bound;
+        let stretch = cloth.state.stretch.bound;
         if self
             .bounds
             .rebuild(choice, tree, cloth.particles, stretch)
@@ -239,10 +239,10 @@ impl Drawing {
         // Nothing was searched, or all particles one by one: what a search would find.
         self.query.clear();
         let root = tree.root_sphere(cloth.particles, stretch);
-        for (_, collider) in &tick.near {
-            let (probe, _) = tick
-                .detection
-                .probe(collider, &tick.terms, grid, 0.0, &root);
+        for (_, collider) in &scratch.near {
+            let (probe, _) =
+                scratch.detection
+                    .probe(collider, &scratch.contact_settings, surface, 0.0, &root);
             self.query
                 .search(tree, &self.bounds, cloth.particles, &probe);
         }
@@ -257,12 +257,12 @@ impl Drawing {
         look: &ClothGizmos,
         gizmos: &mut Gizmos<ClothGizmos>,
     ) {
-        let ClothTopology { tree, grid, .. } = cloth.topology;
+        let (tree, surface) = (cloth.built.tree(), cloth.built.surface());
         let Some(leaves) = tree.levels().len().checked_sub(1) else {
             return;
         };
-        let radius = cloth.tick.terms.particle_radius;
-        let smallest = look.smallest * grid.spacing().min_element();
+        let radius = cloth.scratch.contact_settings.particle_radius;
+        let smallest = look.smallest * surface.spacing().typical;
         for level in *levels.start().min(&leaves)..=*levels.end().min(&leaves) {
             let radius = if level == leaves {
                 radius.max(smallest)
@@ -270,7 +270,7 @@ impl Drawing {
                 radius
             };
             for node in tree.levels()[level].clone() {
-                if !show.contains(grid, tree.node(node).middle) {
+                if !show.contains(surface, tree.node(node).middle) {
                     continue;
                 }
                 let color = match self.states.get(node as usize) {
@@ -347,9 +347,9 @@ fn draw_springs(
     gizmos: &mut Gizmos<ClothGizmos>,
 ) {
     use bevy::color::Alpha;
-    let ClothTopology { springs, grid, .. } = cloth.topology;
+    let (springs, surface) = (cloth.built.springs(), cloth.built.surface());
     springs.for_each(|_, spring| {
-        if !spring.ends.iter().all(|&end| show.contains(grid, end)) {
+        if !spring.ends.iter().all(|&end| show.contains(surface, end)) {
             return;
         }
         let color = match spring.kind {

@@ -1,17 +1,25 @@
 //! Floor 3: the ECS: one plugin a file, and [`DrapePlugins`] over them.
 
 mod attach;
+mod attachments;
+mod broad_phase;
+mod build;
+mod built;
+mod clock;
 mod colliders;
 mod components;
 mod contacts;
 mod diagnostics;
 mod envelope;
+mod excess;
 #[cfg(feature = "pbr")]
 mod fabric;
 mod fault;
 mod frame;
 #[cfg(feature = "gizmos")]
 mod gizmos;
+mod gravity;
+mod inputs;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod naming;
@@ -20,18 +28,24 @@ mod panel;
 mod prepare;
 #[cfg(feature = "rapier")]
 mod rapier;
+mod scratch;
 mod search;
+mod sets;
+mod shared;
 mod simulation;
+mod source;
+mod state;
+mod stats;
 mod tick;
-mod weave;
 
 use bevy::{
     app::{FixedUpdate, PluginGroup, PluginGroupBuilder},
     ecs::{intern::Interned, schedule::ScheduleLabel},
 };
 
-pub use attach::{ClothAttachment, ClothAttachments, ClothTeleport};
-pub use components::{ClothSearch, ClothStats, ClothTopology};
+pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTeleport};
+pub use built::ClothBuilt;
+pub use components::ClothSearch;
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use envelope::ClothLimitExceeded;
@@ -47,7 +61,12 @@ pub use mesh::{ClothMesh, ClothMeshPlugin};
 pub use panel::{ClothColliderSpeed, ClothPanel, ClothPanelPlugin};
 #[cfg(feature = "rapier")]
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
-pub use simulation::{ClothGravity, ClothPlugin, ClothSystems};
+pub use gravity::ClothGravity;
+pub use scratch::ClothScratch;
+pub use sets::ClothSystems;
+pub use simulation::ClothPlugin;
+pub use state::ClothState;
+pub use stats::ClothStats;
 
 /// All that a game needs: the simulation, its diagnostics and, with their features, mesh, gizmos and the
 /// bridge to rapier. Add it after Bevy's own plugins.

@@ -1,8 +1,16 @@
 //! How log messages name an entity.
 
-use bevy::ecs::{entity::Entity, name::Name, query::QueryData};
+use bevy::{
+    ecs::{entity::Entity, name::Name, query::QueryData},
+    reflect::Reflect,
+};
 
-use super::fault::Part;
+/// What of an entity is at fault: it may be a cloth and a collider at once.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    Cloth,
+    Collider,
+}
 
 /// An entity, by its [`Name`] where it has one.
 #[derive(QueryData)]

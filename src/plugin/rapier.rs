@@ -18,7 +18,7 @@ use bevy::{
 };
 use bevy_rapier3d::{geometry::Collider, plugin::PhysicsSet};
 
-use super::{ClothFault, ClothSystems, fault::Part};
+use super::{ClothFault, ClothSystems, naming::Part};
 use crate::{cloth::ClothError, contact::ClothCollider};
 
 /// Makes the rapier `Collider::ball` on the same entity a [`ClothCollider`], with the radius and scale that
@@ -52,8 +52,8 @@ impl ClothRapierPlugin {
 impl Plugin for ClothRapierPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<RapierClothCollider>()
-            .add_observer(let_go::<RapierClothCollider>)
-            .add_observer(let_go::<Collider>)
+            .add_observer(release::<RapierClothCollider>)
+            .add_observer(release::<Collider>)
             .add_systems(
                 self.schedule,
                 adopt_balls
@@ -64,7 +64,7 @@ impl Plugin for ClothRapierPlugin {
 }
 
 /// Without its marker or its rapier collider, an adopted collider is one no more.
-fn let_go<C: Component>(
+fn release<C: Component>(
     removed: On<Remove, C>,
     adopted: Query<Option<&ClothFault>, With<RapierClothCollider>>,
     mut commands: Commands,

@@ -7,27 +7,29 @@ use bevy::{
 };
 
 use super::{
-    ClothFrame, ClothSearch, ClothStats, ClothTopology,
+    ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats,
+    broad_phase::cover,
+    clock::milliseconds_since,
     colliders::ColliderMotion,
-    components::{ClothTick, Vicinity},
-    tick::milliseconds_since,
+    components::BroadPhaseBounds,
 };
 use crate::{
-    cloth::{ClothGrid, ClothParticles},
-    contact::{Detection, MovingCollider, NarrowPhase, Terms, Touch, meets_triangles},
+    cloth::ClothParticles,
+    contact::{Detection, NarrowPhase, Touch, meets_triangles},
     hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
 };
 
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct Searching {
-    topology: &'static ClothTopology,
+    built: &'static ClothBuilt,
     particles: &'static ClothParticles,
     frame: &'static ClothFrame,
     search: &'static mut ClothSearch,
-    tick: &'static mut ClothTick,
+    state: &'static mut ClothState,
+    scratch: &'static mut ClothScratch,
     stats: &'static mut ClothStats,
-    vicinity: &'static mut Vicinity,
+    broad_phase: &'static mut BroadPhaseBounds,
 }
 
 type Colliders<'w, 's> = Query<'w, 's, (Entity, &'static ColliderMotion)>;
@@ -36,15 +38,15 @@ type Colliders<'w, 's> = Query<'w, 's, (Entity, &'static ColliderMotion)>;
 /// volumes up to date where that asks for it. What comes near a cloth that sleeps, or leaves it, wakes it.
 pub(super) fn rebuild_hierarchies(mut cloths: Query<Searching>, colliders: Colliders) {
     for mut cloth in &mut cloths {
-        let Vicinity {
+        let BroadPhaseBounds {
             centre,
             radius,
             takes_part,
-            listens,
+            has_sleeping_contacts,
             ..
-        } = *cloth.vicinity;
+        } = *cloth.broad_phase;
         let is_near = |(_, motion): (Entity, &ColliderMotion)| motion.comes_near(centre, radius);
-        if takes_part && (listens || colliders.iter().any(is_near)) {
+        if takes_part && (has_sleeping_contacts || colliders.iter().any(is_near)) {
             cloth.find_near(&colliders);
         }
     }
@@ -53,7 +55,7 @@ pub(super) fn rebuild_hierarchies(mut cloths: Query<Searching>, colliders: Colli
 /// Finds the particles that each collider near may touch within the tick.
 pub(super) fn query_collisions(mut cloths: Query<Searching>) {
     for mut cloth in &mut cloths {
-        if cloth.vicinity.is_searched && cloth.topology.fits(cloth.particles) {
+        if cloth.broad_phase.is_searched && cloth.built.matches(cloth.particles) {
             cloth.query();
         }
     }
@@ -61,29 +63,29 @@ pub(super) fn query_collisions(mut cloths: Query<Searching>) {
 
 impl SearchingItem<'_, '_> {
     fn root(&self) -> BoundingSphere {
-        self.topology
-            .tree
-            .root_sphere(self.particles, self.tick.stretch.bound)
+        self.built
+            .tree()
+            .root_sphere(self.particles, self.state.stretch.bound)
     }
 
     fn find_near(&mut self, colliders: &Colliders) {
-        if !self.topology.fits(self.particles) {
+        if !self.built.matches(self.particles) {
             return;
         }
         let root = self.root();
-        if self.tick.rest.is_asleep() {
+        if self.state.rest.is_asleep() {
             if self.sleeps_on(&root, colliders) {
                 return;
             }
-            self.tick.rest.disturb();
+            self.state.rest.disturb();
         }
-        let Vicinity { centre, radius, .. } = *self.vicinity;
-        let ClothTick {
+        let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
+        let ClothScratch {
             near,
             detection,
             reach,
             ..
-        } = &mut *self.tick;
+        } = &mut *self.scratch;
         // Besides by itself, a particle may get as far as a collider drags it, to others that may drag it on.
         let mut dragged = 0.0_f32;
         loop {
@@ -95,14 +97,16 @@ impl SearchingItem<'_, '_> {
                 Some((entity, motion.seen_from(self.frame)?))
             };
             near.extend(comes_near.filter_map(seen));
-            let drags = near.iter().map(|(_, near)| near.drag(near.beyond(&root)));
-            let farthest = drags.fold(0.0, f32::max);
+            let travels = near
+                .iter()
+                .map(|(_, near)| near.max_surface_travel(near.farthest_distance(&root)));
+            let farthest = travels.fold(0.0, f32::max);
             if farthest <= dragged || !farthest.is_finite() {
                 break;
             }
             dragged = farthest;
         }
-        detection.begin(*reach + dragged);
+        detection.begin(*reach + dragged, self.state.was_outrun);
         let near = near.len();
         self.stats.colliders_near = near;
         if near == 0 {
@@ -111,13 +115,13 @@ impl SearchingItem<'_, '_> {
             self.search.query.clear();
             return;
         }
-        self.vicinity.is_searched = true;
-        let stretch = self.tick.stretch.bound;
-        let (method, reason) = self.tick.search.chosen(self.particles.len(), near, stretch);
+        self.broad_phase.is_searched = true;
+        let stretch = self.state.stretch.bound;
+        let (method, reason) = self.scratch.search.chosen(self.particles.len(), near, stretch);
         (self.stats.search, self.stats.reason) = (method, reason);
         if let SearchMethod::Tree(volume, rule) = method {
             let start = Instant::now();
-            let ClothTopology { tree, .. } = self.topology;
+            let tree = self.built.tree();
             let outcome = self
                 .search
                 .bounds
@@ -129,54 +133,47 @@ impl SearchingItem<'_, '_> {
 
     /// Whether all that touched a cloth as it fell asleep still rests where it did, and nothing else has come.
     fn sleeps_on(&mut self, root: &BoundingSphere, colliders: &Colliders) -> bool {
-        let ClothTick {
-            near,
-            detection,
-            scout,
-            terms,
-            stretch,
+        let ClothScratch {
+            sleep_query,
+            contact_settings,
             ..
-        } = &mut *self.tick;
-        let stretch = stretch.bound;
-        let touches = detection.touches();
-        let rests_on = |entity: Entity, collider: &MovingCollider| {
-            let knows = |touch: &Touch| {
-                near.get(touch.id)
-                    .is_some_and(|(known, _)| *known == entity)
-            };
-            touches
-                .iter()
-                .any(|touch| knows(touch) && touch.collider == *collider)
-        };
-        let (bounds, query) = scout;
-        let tree = &self.topology.tree;
+        } = &mut *self.scratch;
+        let stretch = self.state.stretch.bound;
+        let rests_on = &self.state.rests_on;
+        let (bounds, query) = sleep_query;
+        let (tree, surface) = (self.built.tree(), self.built.surface());
         let rest_shape = (BoundingVolume::Sphere, BoundRule::RestShape);
         let outcome = bounds.rebuild(rest_shape, tree, self.particles, stretch);
         debug_assert!(outcome.is_ok(), "spheres have a rest shape");
-        let Vicinity { centre, radius, .. } = *self.vicinity;
-        let cover = cover(terms, stretch, &self.topology.grid);
+        let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
+        let cover = cover(contact_settings, stretch, surface);
         let mut still = 0;
         // Nothing of the cloth moves towards anything.
-        let listening = Detection::default();
+        let sleep_detection = Detection::default();
         for (entity, motion) in colliders {
             let is_near = motion.comes_near(centre, radius);
-            if !is_near && touches.is_empty() {
+            if !is_near && rests_on.is_empty() {
                 continue;
             }
             let Some(collider) = motion.seen_from(self.frame) else {
                 continue;
             };
-            if rests_on(entity, &collider) {
+            if rests_on.contains(&(entity, collider)) {
                 still += 1;
             } else if is_near {
-                let (probe, narrow_phase) =
-                    listening.probe(&collider, terms, &self.topology.grid, cover, root);
+                let (probe, narrow_phase) = sleep_detection.probe(
+                    &collider,
+                    contact_settings,
+                    surface,
+                    cover,
+                    root,
+                );
                 query.clear();
                 query.search(tree, bounds, self.particles, &probe);
                 let met = match narrow_phase {
                     NarrowPhase::Triangles => {
-                        let bare = collider.probe(0.0, terms.particle_radius, root);
-                        meets_triangles(self.particles, query.candidates(), &bare)
+                        let bare = collider.probe(0.0, contact_settings.particle_radius, root);
+                        meets_triangles(surface, self.particles, query.candidates(), &bare)
                     }
                     NarrowPhase::Auto | NarrowPhase::Particles => !query.candidates().is_empty(),
                 };
@@ -185,49 +182,38 @@ impl SearchingItem<'_, '_> {
                 }
             }
         }
-        still == touches.len()
+        still == rests_on.len()
     }
 
     fn query(&mut self) {
         let start = Instant::now();
         let root = self.root();
-        let tick = &mut *self.tick;
+        let scratch = &mut *self.scratch;
         let ClothSearch { bounds, query } = &mut *self.search;
-        let ClothTopology { tree, grid, .. } = self.topology;
-        let cover = cover(&tick.terms, tick.stretch.bound, grid);
+        let (tree, surface) = (self.built.tree(), self.built.surface());
+        let cover = cover(&scratch.contact_settings, self.state.stretch.bound, surface);
         query.clear();
         let mut is_dragged = false;
-        for (id, (_, collider)) in tick.near.iter().enumerate() {
+        for (id, (_, collider)) in scratch.near.iter().enumerate() {
             let (probe, narrow_phase) =
-                tick.detection
-                    .probe(collider, &tick.terms, grid, cover, &root);
+                scratch.detection
+                    .probe(collider, &scratch.contact_settings, surface, cover, &root);
             let found = match self.stats.search {
                 SearchMethod::Tree(..) => query.search(tree, bounds, self.particles, &probe),
                 SearchMethod::Auto | SearchMethod::Scan => query.scan(self.particles, &probe),
             };
-            is_dragged |= !found.is_empty() && collider.drag(1.0) > 0.0;
+            is_dragged |= !found.is_empty() && collider.max_surface_travel(1.0) > 0.0;
             let found = &query.candidates()[found];
-            tick.detection
-                .add(id, collider, narrow_phase, found, self.particles, grid);
+            scratch.detection
+                .add(id, collider, narrow_phase, found, self.particles, surface);
         }
         if is_dragged {
-            tick.rest.disturb();
+            self.state.rest.disturb();
         }
         let by_triangles = |touch: &&Touch| touch.narrow_phase == NarrowPhase::Triangles;
-        self.stats.by_triangles = tick.detection.touches().iter().filter(by_triangles).count();
+        self.stats.by_triangles = scratch.detection.touches().iter().filter(by_triangles).count();
         self.stats.nodes_visited = query.nodes_visited();
         self.stats.leaf_tests = query.leaf_tests();
         self.stats.query_ms = milliseconds_since(start);
-    }
-}
-
-/// How far a triangle reaches from the particle that stands for it (m), at most: along a spring or two.
-pub(super) fn cover(terms: &Terms, stretch: f32, grid: &ClothGrid) -> f32 {
-    match terms.narrow_phase {
-        NarrowPhase::Particles => 0.0,
-        // Along a diagonal, without shear springs along both sides of it.
-        NarrowPhase::Auto | NarrowPhase::Triangles => {
-            grid.spacing().element_sum() * (1.0 + stretch) * (1.0 + 1.0e-5)
-        }
     }
 }

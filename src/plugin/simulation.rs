@@ -1,5 +1,9 @@
 //! The plugin that simulates: system sets, schedule, gravity.
 
+#[cfg(feature = "mesh")]
+use bevy::{
+    app::First, asset::AssetEvent, ecs::message::Messages, mesh::Mesh,
+};
 use bevy::{
     app::{App, FixedUpdate, Plugin},
     ecs::{
@@ -10,69 +14,37 @@ use bevy::{
         lifecycle::{Add, Insert, Remove},
         observer::On,
         query::With,
-        reflect::ReflectResource,
-        resource::Resource,
-        schedule::{
-            IntoScheduleConfigs, ScheduleLabel, SystemSet, common_conditions::resource_exists,
-        },
+        schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
         system::{Commands, Query},
         world::World,
     },
     log::error,
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
     time::Time,
 };
 
 use super::{
-    ClothAttachments, ClothContacts, ClothFault, ClothFrame, ClothLimitExceeded, ClothSearch,
-    ClothStats, ClothTeleport, ClothTopology, ClothTouchStarted, ClothTouchStopped,
+    ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
+    ClothLimitExceeded, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
+    ClothTeleport, ClothTouchStarted, ClothTouchStopped,
     colliders::{ColliderMotion, prepare_colliders},
-    components::{ClothTick, Vicinity},
-    contacts::{tell_of_removed_cloths, tell_of_touches},
+    components::BroadPhaseBounds,
+    contacts::{send_stopped_messages, send_touch_messages},
     envelope::report_limits,
-    fault::{Part, log_faults},
+    fault::log_faults,
+    naming::Part,
     prepare::prepare_cloths,
     search::{query_collisions, rebuild_hierarchies},
+    shared::SharedParts,
     tick::integrate,
 };
+#[cfg(feature = "mesh")]
+use super::source::{ChangedMeshes, note_changed_meshes};
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, Pins},
     contact::{ClothCollider, NarrowPhase},
     hierarchy::SearchMethod,
     solver::ClothSettings,
 };
-
-/// What happens in a tick, in this order. Each runs once a tick, not once a sub-step.
-///
-/// Systems that move colliders or write particles belong before [`Prepare`](Self::Prepare), those that read
-/// what came of it after [`WriteBack`](Self::WriteBack).
-#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ClothSystems {
-    /// Builds new cloths, checks every input, takes over transforms, gravity and colliders.
-    Prepare,
-    /// Finds which colliders are near, chooses how to search, and brings the bounding volumes up to date.
-    Rebuild,
-    /// Searches the trees from the top down, with bounds inflated by how far cloth and ball can move in the
-    /// tick: candidates.
-    Query,
-    /// All sub-steps: Verlet, one sweep over the springs, response on the candidates.
-    Integrate,
-    /// Messages and diagnostics.
-    WriteBack,
-}
-
-/// Acceleration of every cloth (m/s²), in the world; [`ClothSettings::gravity`] overrides it for one.
-#[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
-#[reflect(Resource, Default, Debug, Clone, PartialEq)]
-pub struct ClothGravity(pub Vec3);
-
-impl Default for ClothGravity {
-    /// 9.81 m/s² downwards.
-    fn default() -> Self {
-        Self(Vec3::new(0.0, -9.81, 0.0))
-    }
-}
 
 /// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws.
 #[derive(Debug, Clone, Copy)]
@@ -110,7 +82,7 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothStats>()
             .register_type::<ClothAttachments>()
             .register_type::<ClothTeleport>()
-            .register_type::<ClothTopology>()
+            .register_type::<ClothBuilt>()
             .register_type::<ClothSearch>()
             .register_type::<ClothFault>()
             .register_type::<ClothGravity>();
@@ -121,12 +93,13 @@ impl Plugin for ClothPlugin {
             .add_message::<ClothTouchStopped>()
             .add_message::<ClothLimitExceeded>()
             .insert_resource(ClothPresence::Simulated)
+            .init_resource::<SharedParts>()
             .add_observer(add_parts::<Cloth, ClothParts>)
             .add_observer(add_parts::<ClothCollider, ColliderMotion>)
-            .add_observer(tell_of_removed_cloths)
+            .add_observer(send_stopped_messages)
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
-            .add_observer(begin_anew);
+            .add_observer(reset_motion);
         app.configure_sets(
             self.schedule,
             (
@@ -148,7 +121,7 @@ impl Plugin for ClothPlugin {
                 rebuild_hierarchies.in_set(ClothSystems::Rebuild),
                 query_collisions.in_set(ClothSystems::Query),
                 integrate.in_set(ClothSystems::Integrate),
-                (tell_of_touches, report_limits, log_faults)
+                (send_touch_messages, report_limits, log_faults)
                     .chain()
                     .in_set(ClothSystems::WriteBack),
             ),
@@ -156,6 +129,11 @@ impl Plugin for ClothPlugin {
     }
 
     fn finish(&self, app: &mut App) {
+        #[cfg(feature = "mesh")]
+        if app.world().contains_resource::<Messages<AssetEvent<Mesh>>>() {
+            app.init_resource::<ChangedMeshes>()
+                .add_systems(First, note_changed_meshes);
+        }
         if !app.world().contains_resource::<Time>() {
             error!(
                 "no cloth moves: there is no clock. Add Bevy's `TimePlugin`, which is among `MinimalPlugins` and `DefaultPlugins`"
@@ -170,13 +148,14 @@ type ClothParts = (
     ClothSettings,
     SearchMethod,
     NarrowPhase,
-    ClothTopology,
+    ClothBuilt,
     ClothFrame,
     ClothSearch,
     ClothContacts,
     ClothStats,
-    ClothTick,
-    Vicinity,
+    ClothState,
+    ClothScratch,
+    BroadPhaseBounds,
 );
 
 /// Gives a new cloth or collider the parts that it was not spawned with.
@@ -199,20 +178,21 @@ fn add_parts_to_earlier<C: Component, Parts: Bundle + Default>(world: &mut World
 fn clear_removed_cloth(
     removed: On<Remove, Cloth>,
     faults: Query<&ClothFault>,
-    mut cloths: Query<(&ClothTopology, &mut ClothParticles)>,
+    mut cloths: Query<(&ClothBuilt, &mut ClothParticles)>,
     mut commands: Commands,
 ) {
     if let Ok((topology, mut particles)) = cloths.get_mut(removed.entity) {
         topology.release_pins(&mut particles);
     }
     commands.entity(removed.entity).try_remove::<(
-        ClothTopology,
+        ClothBuilt,
         ClothFrame,
         ClothSearch,
         ClothContacts,
         ClothStats,
-        ClothTick,
-        Vicinity,
+        ClothState,
+        ClothScratch,
+        BroadPhaseBounds,
     )>();
     let known = faults.get(removed.entity).ok();
     ClothFault::report(&mut commands, removed.entity, known, Part::Cloth, Ok(()));
@@ -232,7 +212,7 @@ fn clear_removed_collider(
 }
 
 /// A collider that is inserted anew has not come from where it was before.
-fn begin_anew(inserted: On<Insert, ClothCollider>, mut motions: Query<&mut ColliderMotion>) {
+fn reset_motion(inserted: On<Insert, ClothCollider>, mut motions: Query<&mut ColliderMotion>) {
     if let Ok(mut motion) = motions.get_mut(inserted.entity) {
         *motion = ColliderMotion::default();
     }

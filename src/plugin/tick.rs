@@ -8,29 +8,30 @@ use bevy::{
 };
 
 use super::{
-    ClothContacts, ClothFrame, ClothStats, ClothTopology, colliders::ColliderMotion,
-    components::ClothTick,
+    ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState, ClothStats,
+    clock::milliseconds_since, colliders::ColliderMotion,
 };
 use crate::{
     cloth::ClothParticles,
     contact::ColliderShape,
     hierarchy::Core,
-    solver::{Load, Precision, Stretch, TickStep},
+    solver::{LimitInputs, Stretch, Substepping, TickStep},
 };
 
 /// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.7 at 256².
-const LEAST_TO_SPLIT: usize = 192 * 192;
+const MIN_TO_SPLIT: usize = 192 * 192;
 
 /// Cloths whose particles × sub-steps come to less are solved one after the other on this thread.
-const LEAST_TO_SHARE: usize = 64 * 64 * 20;
+const MIN_TO_SHARE: usize = 64 * 64 * 20;
 
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct Integrating {
-    topology: &'static ClothTopology,
+    built: &'static mut ClothBuilt,
     frame: &'static ClothFrame,
     particles: &'static mut ClothParticles,
-    tick: &'static mut ClothTick,
+    state: &'static mut ClothState,
+    scratch: &'static mut ClothScratch,
     contacts: &'static mut ClothContacts,
     stats: &'static mut ClothStats,
 }
@@ -42,14 +43,14 @@ pub(super) fn integrate(
 ) {
     let (mut awake, mut work) = (0, 0);
     for cloth in &cloths {
-        if let Some(step) = cloth.tick.step
-            && !cloth.tick.rest.is_asleep()
+        if let Some(step) = cloth.scratch.step
+            && !cloth.state.rest.is_asleep()
         {
             awake += 1;
             work += cloth.particles.len() * step.substeps as usize;
         }
     }
-    if awake > 1 && work >= LEAST_TO_SHARE && threads() > 1 {
+    if awake > 1 && work >= MIN_TO_SHARE && threads() > 1 {
         cloths
             .par_iter_mut()
             .for_each(|mut cloth| cloth.integrate(&colliders));
@@ -69,14 +70,14 @@ fn threads() -> usize {
 impl IntegratingItem<'_, '_> {
     fn integrate(&mut self, colliders: &Query<(Entity, &ColliderMotion)>) {
         // Taken: a cloth that is not prepared again does not move again.
-        let Some(step) = self.tick.step.take() else {
+        let Some(step) = self.scratch.step.take() else {
             return;
         };
         // A schedule may run without time passing.
-        if !self.topology.fits(&self.particles) || step.seconds == 0.0 {
+        if !self.built.matches(&self.particles) || step.seconds == 0.0 {
             return;
         }
-        let is_asleep = self.tick.rest.is_asleep();
+        let is_asleep = self.state.rest.is_asleep();
         self.stats.is_asleep = is_asleep;
         if is_asleep {
             self.stats.integrate_ms = 0.0;
@@ -86,92 +87,104 @@ impl IntegratingItem<'_, '_> {
         let start = Instant::now();
         self.solve(step, colliders);
         self.stats.integrate_ms = milliseconds_since(start);
-        self.tick.written = Some(self.particles.last_changed());
-        self.contacts.renew(&self.tick.near, &self.tick.detection);
-        self.stats.requeries = self.tick.detection.requeries();
-        self.stats.stretch = self.tick.stretch;
+        self.state.written = Some(self.particles.last_changed());
+        self.state.was_outrun = self.scratch.detection.was_outrun();
+        self.remember_contacts();
+        self.contacts.renew(&self.scratch.near, &self.scratch.detection);
+        self.stats.requeries = self.scratch.detection.requeries();
+        self.stats.stretch = self.state.stretch;
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
+    }
+
+    /// What the cloth touches now, should it fall asleep.
+    fn remember_contacts(&mut self) {
+        let ClothScratch {
+            near, detection, ..
+        } = &*self.scratch;
+        let touches = detection.touches().iter();
+        let known = touches.filter_map(|touch| Some((near.get(touch.id)?.0, touch.collider)));
+        self.state.rests_on.clear();
+        self.state.rests_on.extend(known);
     }
 
     /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
     fn solve(&mut self, mut step: TickStep, colliders: &Query<(Entity, &ColliderMotion)>) {
-        let precision = self.tick.precision;
-        let bands = if self.particles.len() < LEAST_TO_SPLIT {
+        let substepping = self.scratch.substepping;
+        let bands = if self.particles.len() < MIN_TO_SPLIT {
             1
         } else {
             threads()
         };
-        self.tick.solver.set_bands(bands);
-        let may_repeat = matches!(precision, Precision::Tolerance { .. });
+        self.built.solver.set_bands(bands);
+        let may_repeat = matches!(substepping, Substepping::Adaptive { .. });
         if may_repeat {
-            self.tick.backup.copy_from(&self.particles);
+            self.scratch.backup.copy_from(&self.particles);
         }
         self.stats.substeps = 0;
         loop {
             let stretch = self.advance(step, colliders);
             self.stats.substeps += step.substeps;
-            self.tick.stretch = stretch;
-            let Some(more) = self.tick.control.observe(precision, stretch) else {
+            self.state.stretch = stretch;
+            let Some(more) = self.state.control.observe(substepping, stretch) else {
                 break;
             };
             step.substeps = more;
-            self.particles.copy_from(&self.tick.backup);
-            self.tick.detection.restart();
+            self.particles.copy_from(&self.scratch.backup);
+            self.scratch.detection.restart();
         }
-        self.tick.load = Some(self.load(step));
+        self.scratch.limit_inputs = Some(self.limit_inputs(step));
     }
 
     /// What the tick's last run of sub-steps asked of the cloth.
-    fn load(&self, step: TickStep) -> Load {
-        let grid = self.topology.grid();
+    fn limit_inputs(&self, step: TickStep) -> LimitInputs {
+        let spacing = self.built.surface().spacing();
         let root = self
-            .topology
-            .tree
-            .root_sphere(&self.particles, self.tick.stretch.bound);
-        let spacing = grid.spacing().max_element();
+            .built
+            .tree()
+            .root_sphere(&self.particles, self.state.stretch.bound);
         let count = step.substeps as f32;
         // Of those that come to the ball around the cloth, a capsule's turn counted.
-        let around = root.radius() + self.tick.reach;
-        let ways = self.tick.near.iter().filter_map(|(_, collider)| {
+        let around = root.radius() + self.scratch.reach;
+        let travels = self.scratch.near.iter().filter_map(|(_, collider)| {
             let core = Core::Segment([collider.from.translation.into(), collider.to]);
             if !core.may_reach(root.center.into(), around + collider.shape.extent()) {
                 return None;
             }
-            let way = match collider.shape {
+            let travel = match collider.shape {
                 ColliderShape::Ball { .. } => collider.travel(),
-                _ => collider.drag(f32::INFINITY),
+                _ => collider.max_surface_travel(f32::INFINITY),
             };
-            Load::way_of(collider.shape.radius()?, way / count, spacing)
+            LimitInputs::travel_in_radii(collider.shape.radius()?, travel / count, spacing.longest)
         });
-        Load {
-            way: ways.fold(0.0, f32::max),
-            stretch: self.tick.stretch.structural,
-            precision: self.tick.precision,
-            is_capped: self.tick.control.is_capped(),
+        LimitInputs {
+            collider_travel: travels.fold(0.0, f32::max),
+            stretch: self.state.stretch.structural,
+            substepping: self.scratch.substepping,
+            is_capped: self.state.control.is_capped(),
             substep: step.seconds / count,
             damping: step.damping,
-            given: self.tick.given_stretch,
-            is_tethered: !self.tick.solver.tethers().is_empty(),
-            masses: self.tick.masses,
+            material_stretch: self.built.material_stretch,
+            is_tethered: !self.built.solver.tethers().is_empty(),
+            masses: self.built.masses,
             distance: (Vec3::from(root.center).length() - root.radius()).max(0.0),
-            spacing: grid.spacing().min_element(),
+            spacing: spacing.shortest,
         }
     }
 
     /// One way through the sub-steps.
     fn advance(&mut self, step: TickStep, colliders: &Query<(Entity, &ColliderMotion)>) -> Stretch {
-        let ClothTick {
-            solver,
+        let ClothScratch {
             pins,
             near,
             near_set,
             detection,
-            terms,
+            contact_settings,
             ..
-        } = &mut *self.tick;
+        } = &mut *self.scratch;
+        let solver = &mut self.built.solver;
         let frame = self.frame;
         solver.advance(&mut self.particles, step, pins, |particles, substep| {
-            detection.respond(particles, terms, substep, |numbered| {
+            detection.respond(particles, contact_settings, substep, |numbered| {
                 // Those that were far away may be near now; who is known keeps its number.
                 near_set.clear();
                 near_set.extend(near.iter().map(|(known, _)| *known));
@@ -186,8 +199,4 @@ impl IntegratingItem<'_, '_> {
             })
         })
     }
-}
-
-pub(super) fn milliseconds_since(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1.0e3
 }

@@ -26,16 +26,16 @@ pub(super) fn with_threads_awake<R>(bands: usize, work: impl FnOnce() -> R) -> R
                 }
             });
         }
-        let _let_go = LetGo(&is_done);
+        let _release = Release(&is_done);
         result = Some(work());
     });
     result.expect("the scope has run its closure")
 }
 
 /// Ends the waiting even if the work panics.
-struct LetGo<'a>(&'a AtomicBool);
+struct Release<'a>(&'a AtomicBool);
 
-impl Drop for LetGo<'_> {
+impl Drop for Release<'_> {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Release);
     }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use bevy::reflect::Reflect;
 
-use super::{Precision, substep::DAMPING_REFERENCE};
+use super::{Substepping, step::DAMPING_REFERENCE};
 
 /// A limit of the envelope in which a cloth is simulated well. Beyond one it stays finite and goes on, but it no longer
 /// moves as its material says. Each was measured by the lab's experiment `stability`.
@@ -14,7 +14,7 @@ pub enum ClothLimit {
     /// A spring is stretched by 15 % more than its material gives under four times the weight of the cloth: the sub-steps
     /// do not hold it.
     Stretch,
-    /// The most sub-steps that the settings allow do not hold the tolerance that they ask for.
+    /// The largest number of sub-steps that the settings allow does not hold the tolerance that they ask for.
     Tolerance,
     /// The heaviest particle that is free is more than 300 times as heavy as the lightest, or with tethers more than
     /// 10,000 times.
@@ -27,22 +27,22 @@ pub enum ClothLimit {
     Damping,
     /// A ball or capsule thinner than half a spacing comes to the cloth by more than 6 of its radii in a sub-step: it may
     /// get through.
-    Dart,
+    SmallFastCollider,
 }
 
 /// Largest length / rest length − 1 beyond what the material gives.
-const MOST_STRETCH: f32 = 0.15;
+const MAX_STRETCH: f32 = 0.15;
 /// Of the masses of free particles, without tethers and with. Those of a rectangle's corners and middle differ by 4.
-const MOST_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
+const MAX_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
 /// In metres, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one. And in
 /// spacings: where it is half a per cent of one.
-const MOST_DISTANCE: f32 = 1_000.0;
-const MOST_SPACINGS: f32 = 40_000.0;
+const MAX_DISTANCE: f32 = 1_000.0;
+const MAX_SPACINGS: f32 = 40_000.0;
 const USUAL_SUBSTEP: f32 = 1.0 / 1200.0;
 /// Of u = −ln(1 − D) in a sub-step: a damped fall is too fast by u ⁄ (1 − e^−u), a tenth here.
-const MOST_DAMPING: f32 = 0.194;
+const MAX_DAMPING: f32 = 0.194;
 /// Of a ball, in radii in a sub-step, and which ones are meant, in spacings.
-const MOST_WAY: f32 = 6.0;
+const MAX_TRAVEL: f32 = 6.0;
 const SMALL: f32 = 0.5;
 
 impl ClothLimit {
@@ -53,7 +53,7 @@ impl ClothLimit {
         Self::MassRatio,
         Self::Distance,
         Self::Damping,
-        Self::Dart,
+        Self::SmallFastCollider,
     ];
 
     /// What brings the cloth back.
@@ -72,7 +72,7 @@ impl ClothLimit {
                 "a `Transform` that moves along with it: particles are simulated in its frame"
             }
             Self::Damping => "less damping (`ClothMaterial::damping`) or more sub-steps",
-            Self::Dart => "a thicker or slower collider, or a finer cloth",
+            Self::SmallFastCollider => "a thicker or slower collider, or a finer cloth",
         }
     }
 }
@@ -80,7 +80,7 @@ impl ClothLimit {
 impl ClothLimit {
     /// A quantity beyond it and up to where that is good, in words.
     pub(crate) fn figures(self, [quantity, good_up_to]: [f32; 2]) -> String {
-        // Three digits tell enough.
+        // Three digits say enough.
         let digits = |value: f32| match value {
             100.0.. => format!("{value:.0}"),
             10.0.. => format!("{value:.1}"),
@@ -101,7 +101,7 @@ impl ClothLimit {
             Self::MassRatio => "heaviest to lightest ",
             Self::Distance => "metres ",
             Self::Damping => "D ",
-            Self::Dart => "radii a sub-step ",
+            Self::SmallFastCollider => "radii a sub-step ",
         };
         format!("{what}{found} (limit {good})")
     }
@@ -116,24 +116,24 @@ impl fmt::Display for ClothLimit {
             Self::MassRatio => "made of too different masses",
             Self::Distance => "too far from its frame's origin",
             Self::Damping => "damped too much",
-            Self::Dart => "met by too small and fast a collider",
+            Self::SmallFastCollider => "met by too small and fast a collider",
         })
     }
 }
 
 /// What is asked of a cloth at the end of a tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(crate) struct Load {
+pub(crate) struct LimitInputs {
     /// The largest stretch of a structural spring.
     pub stretch: f32,
     /// By what it is held.
-    pub precision: Precision,
+    pub substepping: Substepping,
     /// Whether the cap on sub-steps stopped it short of its tolerance.
     pub is_capped: bool,
     /// Length of a sub-step (s).
     pub substep: f32,
     /// The stretch that the material itself may give.
-    pub given: f32,
+    pub material_stretch: f32,
     /// The paper's D.
     pub damping: f32,
     /// Whether tethers hold it.
@@ -144,40 +144,40 @@ pub(crate) struct Load {
     pub distance: f32,
     /// The smaller one of the cloth (m).
     pub spacing: f32,
-    /// The longest way of a small collider in a sub-step, in its radii.
-    pub way: f32,
+    /// The longest travel of a small collider in a sub-step, in its radii.
+    pub collider_travel: f32,
 }
 
-impl Load {
-    /// The way of a ball or capsule in a sub-step, in its radii, if it is so small that it counts as one.
-    pub fn way_of(radius: f32, way: f32, spacing: f32) -> Option<f32> {
-        (radius < SMALL * spacing && radius > 0.0).then(|| way / radius)
+impl LimitInputs {
+    /// The travel of a ball or capsule in a sub-step, in its radii, if it is so small that it counts as one.
+    pub fn travel_in_radii(radius: f32, travel: f32, spacing: f32) -> Option<f32> {
+        (radius < SMALL * spacing && radius > 0.0).then(|| travel / radius)
     }
 
     /// A limit's quantity and up to where it is good, if it is exceeded.
-    pub fn beyond(&self, limit: ClothLimit) -> Option<[f32; 2]> {
+    pub fn exceeded(&self, limit: ClothLimit) -> Option<[f32; 2]> {
         let [lightest, heaviest] = self.masses;
         let quantity = match limit {
-            ClothLimit::Stretch if matches!(self.precision, Precision::Substeps(_)) => {
-                [self.stretch, MOST_STRETCH + self.given]
+            ClothLimit::Stretch if matches!(self.substepping, Substepping::Fixed(_)) => {
+                [self.stretch, MAX_STRETCH + self.material_stretch]
             }
-            ClothLimit::Tolerance if self.is_capped => match self.precision {
-                Precision::Tolerance { stretch, .. } => [self.stretch, stretch],
-                Precision::Substeps(_) => return None,
+            ClothLimit::Tolerance if self.is_capped => match self.substepping {
+                Substepping::Adaptive { stretch, .. } => [self.stretch, stretch],
+                Substepping::Fixed(_) => return None,
             },
             ClothLimit::MassRatio if lightest > 0.0 => [
                 heaviest / lightest,
-                MOST_MASS_RATIO[usize::from(self.is_tethered)],
+                MAX_MASS_RATIO[usize::from(self.is_tethered)],
             ],
             ClothLimit::Distance => {
-                let by_substep = MOST_DISTANCE * self.substep / USUAL_SUBSTEP;
-                [self.distance, by_substep.min(MOST_SPACINGS * self.spacing)]
+                let by_substep = MAX_DISTANCE * self.substep / USUAL_SUBSTEP;
+                [self.distance, by_substep.min(MAX_SPACINGS * self.spacing)]
             }
             ClothLimit::Damping => {
-                let most = 1.0 - (-MOST_DAMPING * DAMPING_REFERENCE / self.substep).exp();
-                [self.damping, most]
+                let max = 1.0 - (-MAX_DAMPING * DAMPING_REFERENCE / self.substep).exp();
+                [self.damping, max]
             }
-            ClothLimit::Dart => [self.way, MOST_WAY],
+            ClothLimit::SmallFastCollider => [self.collider_travel, MAX_TRAVEL],
             ClothLimit::Stretch | ClothLimit::Tolerance | ClothLimit::MassRatio => return None,
         };
         (quantity[0] > quantity[1]).then_some(quantity)
@@ -189,22 +189,22 @@ mod tests {
     use super::*;
 
     /// Inside of all limits, at most of them.
-    const WITHIN: Load = Load {
-        stretch: MOST_STRETCH,
-        precision: Precision::Substeps(20),
+    const WITHIN: LimitInputs = LimitInputs {
+        stretch: MAX_STRETCH,
+        substepping: Substepping::Fixed(20),
         is_capped: false,
         substep: USUAL_SUBSTEP,
-        given: 0.0,
+        material_stretch: 0.0,
         damping: 0.97,
         is_tethered: false,
-        masses: [1.0e-4, 1.0e-4 * MOST_MASS_RATIO[0]],
-        distance: MOST_DISTANCE,
+        masses: [1.0e-4, 1.0e-4 * MAX_MASS_RATIO[0]],
+        distance: MAX_DISTANCE,
         spacing: 0.03,
-        way: MOST_WAY,
+        collider_travel: MAX_TRAVEL,
     };
 
-    fn beyond(load: Load) -> Vec<ClothLimit> {
-        let exceeds = |limit: &ClothLimit| load.beyond(*limit).is_some();
+    fn beyond(limit_inputs: LimitInputs) -> Vec<ClothLimit> {
+        let exceeds = |limit: &ClothLimit| limit_inputs.exceeded(*limit).is_some();
         ClothLimit::ALL.into_iter().filter(exceeds).collect()
     }
 
@@ -213,55 +213,61 @@ mod tests {
         assert_eq!(beyond(WITHIN), []);
         let exceeded = [
             (
-                Load {
+                LimitInputs {
                     stretch: 0.16,
                     ..WITHIN
                 },
                 ClothLimit::Stretch,
             ),
             (
-                Load {
+                LimitInputs {
                     masses: [1.0e-4, 3.1e-2],
                     ..WITHIN
                 },
                 ClothLimit::MassRatio,
             ),
             (
-                Load {
+                LimitInputs {
                     distance: 1.1e3,
                     ..WITHIN
                 },
                 ClothLimit::Distance,
             ),
             (
-                Load {
+                LimitInputs {
                     damping: 0.99,
                     ..WITHIN
                 },
                 ClothLimit::Damping,
             ),
             (
-                Load {
+                LimitInputs {
                     damping: 1.0,
                     ..WITHIN
                 },
                 ClothLimit::Damping,
             ),
-            (Load { way: 7.0, ..WITHIN }, ClothLimit::Dart),
+            (
+                LimitInputs {
+                    collider_travel: 7.0,
+                    ..WITHIN
+                },
+                ClothLimit::SmallFastCollider,
+            ),
         ];
-        for (load, limit) in exceeded {
-            assert_eq!(beyond(load), [limit]);
+        for (limit_inputs, limit) in exceeded {
+            assert_eq!(beyond(limit_inputs), [limit]);
         }
         // Halved sub-steps reach half as far, and hold more damping.
-        let halved = Load {
+        let halved = LimitInputs {
             substep: USUAL_SUBSTEP / 2.0,
-            distance: 0.51 * MOST_DISTANCE,
+            distance: 0.51 * MAX_DISTANCE,
             damping: 0.99,
             ..WITHIN
         };
         assert_eq!(beyond(halved), [ClothLimit::Distance]);
         // A fine cloth is rounded sooner, and one that is walked with for 11 m is not.
-        let fine = |distance: f32| Load {
+        let fine = |distance: f32| LimitInputs {
             spacing: 0.001,
             distance,
             ..WITHIN
@@ -272,26 +278,26 @@ mod tests {
 
     #[test]
     fn a_tolerance_is_beyond_where_the_cap_stops_it() {
-        let precision = Precision::Tolerance {
+        let substepping = Substepping::Adaptive {
             stretch: 0.01,
-            most_substeps: 20,
+            max_substeps: 20,
         };
-        let tolerant = Load {
-            precision,
+        let tolerant = LimitInputs {
+            substepping,
             ..WITHIN
         };
         assert_eq!(beyond(tolerant), [], "it takes more sub-steps");
-        let capped = Load {
+        let capped = LimitInputs {
             is_capped: true,
             ..tolerant
         };
         assert_eq!(beyond(capped), [ClothLimit::Tolerance]);
-        assert_eq!(capped.beyond(ClothLimit::Tolerance), Some([0.15, 0.01]));
+        assert_eq!(capped.exceeded(ClothLimit::Tolerance), Some([0.15, 0.01]));
     }
 
     #[test]
     fn tethers_hold_heavier_particles() {
-        let ratio = |ratio: f32| Load {
+        let ratio = |ratio: f32| LimitInputs {
             is_tethered: true,
             masses: [1.0e-4, 1.0e-4 * ratio],
             ..WITHIN
@@ -302,9 +308,9 @@ mod tests {
 
     #[test]
     fn what_the_material_gives_is_no_fault() {
-        let rubber = |stretch: f32| Load {
+        let rubber = |stretch: f32| LimitInputs {
             stretch,
-            given: 0.3,
+            material_stretch: 0.3,
             ..WITHIN
         };
         assert_eq!(beyond(rubber(0.44)), []);
@@ -312,9 +318,9 @@ mod tests {
     }
 
     #[test]
-    fn a_dart_is_thinner_than_half_a_spacing() {
-        assert_eq!(Load::way_of(0.04, 0.4, 0.1), Some(10.0));
-        assert_eq!(Load::way_of(0.06, 0.4, 0.1), None);
-        assert_eq!(Load::way_of(0.0, 0.4, 0.1), None);
+    fn a_small_collider_is_thinner_than_half_a_spacing() {
+        assert_eq!(LimitInputs::travel_in_radii(0.04, 0.4, 0.1), Some(10.0));
+        assert_eq!(LimitInputs::travel_in_radii(0.06, 0.4, 0.1), None);
+        assert_eq!(LimitInputs::travel_in_radii(0.0, 0.4, 0.1), None);
     }
 }

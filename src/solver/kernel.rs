@@ -86,7 +86,7 @@ fn one_block_at_a_time() {
 /// Its square, and what is left of it some springs farther, would be subnormal numbers, which machines are slow with:
 /// a second of a flat cloth of 64² particles that a ball pushes took 90 ms with them, and takes 39 ms without, in 20
 /// sub-steps a tick.
-pub(super) const LEAST_MOVE: f32 = 1.0e-15;
+pub(super) const MIN_MOVE: f32 = 1.0e-15;
 
 /// Ends a sub-step: displacements become positions. Raises `farthest` to the largest squared displacements (m²).
 #[inline(always)]
@@ -95,8 +95,8 @@ fn commit(row: &mut [Block], farthest: &mut Lanes) {
         let view = block.view_mut();
         for at in X..W {
             let moved = view[DX + at];
-            // What is not a number stays to be seen.
-            let moved = if moved.abs() < LEAST_MOVE { 0.0 } else { moved };
+            // NaN stays to be seen.
+            let moved = if moved.abs() < MIN_MOVE { 0.0 } else { moved };
             view[DX + at] = moved;
             view[at] += moved;
         }
@@ -223,6 +223,21 @@ pub(super) struct Longest {
     pub diagonal: Lanes,
 }
 
+impl Longest {
+    pub fn merge(&mut self, other: &Self) {
+        for (a, b) in [
+            (&mut self.moved, &other.moved),
+            (&mut self.across, &other.across),
+            (&mut self.down, &other.down),
+            (&mut self.diagonal, &other.diagonal),
+        ] {
+            for (a, b) in a.iter_mut().zip(b) {
+                *a = a.max(*b);
+            }
+        }
+    }
+}
+
 /// Raises `largest` to the squared lengths of eight springs, those of infinite softness left out.
 #[inline(always)]
 fn measure(a: &View, b: &View, softness: &Lanes, largest: &mut Lanes) {
@@ -275,18 +290,18 @@ fn measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Lo
 
 /// Which instructions a sub-step may use. The results are the same to the last bit.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
-pub enum Instructions {
+pub enum SimdLevel {
     /// The widest that the machine has: on x86-64 AVX2, found out as the program runs.
     #[default]
-    Widest,
+    Auto,
     /// What every machine of the architecture has: on x86-64 SSE2.
     Baseline,
 }
 
-impl Instructions {
+impl SimdLevel {
     pub(super) fn kernels(self) -> Kernels {
         match self {
-            Self::Widest => widest(),
+            Self::Auto => widest(),
             Self::Baseline => baseline(),
         }
     }

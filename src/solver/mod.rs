@@ -10,25 +10,28 @@ mod kernel;
 mod list;
 #[cfg(feature = "methods")]
 pub mod methods;
-mod precision;
+mod pipeline;
 mod rest;
 mod run;
 mod settings;
 mod spin;
+mod step;
 mod stretch;
 mod substep;
+mod sweep;
+mod substepping;
 #[cfg(test)]
 mod tests;
 mod tether;
-mod wave;
 
 pub use envelope::ClothLimit;
-pub(crate) use envelope::Load;
-pub use kernel::Instructions;
-pub use precision::{Control, Precision};
+pub(crate) use envelope::LimitInputs;
+pub use kernel::SimdLevel;
 pub use rest::Rest;
 pub use settings::ClothSettings;
 pub use stretch::Stretch;
-pub use substep::{PinMotion, Solver, SubStep, TickStep};
+pub use step::{PinMotion, SubStep, TickStep};
+pub use substep::Solver;
+pub use substepping::{Control, Substepping};
 pub use tether::Tethers;
-pub(crate) use tether::given_stretch;
+pub(crate) use tether::material_stretch;

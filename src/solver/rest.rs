@@ -21,7 +21,7 @@ const PAUSE: f32 = 0.125;
 /// Where nothing swings, as there is no gravity (s).
 const WITHOUT_GRAVITY: f32 = 2.5;
 
-/// Whether a cloth is at rest, told by what an eye sees: no particle has moved by more than a thousandth of the cloth's
+/// Whether a cloth is at rest, judged by what an eye sees: no particle has moved by more than a thousandth of the cloth's
 /// diagonal, at most 5 mm, for as long as half a swing of a sheet as long as that takes (1.3 s for 2.3 m on Earth), from
 /// 0.5 to 20 s. Speeds do not count: what trembles in its place is at rest.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -36,7 +36,7 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// Takes what a tick of so many seconds ended with, of a cloth that measures `diagonal` (m) at rest, under an
+    /// Takes what a tick of this many seconds ended with, of a cloth that measures `diagonal` (m) at rest, under an
     /// `acceleration` (m/s²).
     pub fn observe(
         &mut self,

@@ -1,10 +1,10 @@
 //! Springs of a grid that lie alike.
 
-use crate::cloth::{ClothGrid, Compliances, Lanes, Layout, rest_length};
+use crate::cloth::{ClothGrid, Compliances, Lanes, Layout};
 
 /// What is added to `w_a + w_b` (1/kg): nothing to speak of, but it keeps a spring between two pins from dividing
 /// by zero.
-pub(super) const LEAST_SOFTNESS: f32 = 1.0e-18;
+pub(super) const MIN_SOFTNESS: f32 = 1.0e-18;
 
 /// Springs that lie alike: one block of them for each block of a row.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ impl Run {
         let lanes = |block: usize| {
             std::array::from_fn(|lane| compliance(block, lane).unwrap_or(f32::INFINITY))
         };
-        let rest = rest_length(grid, step);
+        let rest = grid.step_length(step);
         let compliance: Vec<Lanes> = (0..layout.strip as usize).map(lanes).collect();
         Self {
             rest_square: rest * rest,
@@ -47,7 +47,7 @@ impl Run {
     pub fn soften(&mut self, inverse_dt2: f32) {
         for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
             for (softness, compliance) in softness.iter_mut().zip(compliance) {
-                *softness = compliance * inverse_dt2 + LEAST_SOFTNESS;
+                *softness = compliance * inverse_dt2 + MIN_SOFTNESS;
             }
         }
     }

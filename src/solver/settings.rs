@@ -6,15 +6,15 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::precision::{MOST_SUBSTEPS, Precision};
+use super::substepping::{MAX_SUBSTEPS, Substepping};
 use crate::cloth::ClothError;
 
 /// How a cloth is simulated. May change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSettings {
-    /// How exactly: so many sub-steps a tick, or as many as hold a tolerance.
-    pub precision: Precision,
+    /// How exactly: a number of sub-steps a tick, or as many as hold a tolerance.
+    pub substepping: Substepping,
     /// Acceleration in the world (m/s²) for this cloth alone, instead of the resource
     /// [`ClothGravity`](crate::plugin::ClothGravity).
     pub gravity: Option<Vec3>,
@@ -35,7 +35,7 @@ impl Default for ClothSettings {
     /// 20 sub-steps, the resource's gravity, particles of 1 cm radius; tethers, and sleep.
     fn default() -> Self {
         Self {
-            precision: Precision::default(),
+            substepping: Substepping::default(),
             gravity: None,
             particle_radius: 0.01,
             tethers: true,
@@ -48,7 +48,7 @@ impl ClothSettings {
     /// A fixed number of sub-steps a tick, all else by default.
     pub fn substeps(substeps: u32) -> Self {
         Self {
-            precision: Precision::Substeps(substeps),
+            substepping: Substepping::Fixed(substeps),
             ..Default::default()
         }
     }
@@ -57,9 +57,9 @@ impl ClothSettings {
     /// else by default.
     pub fn tolerance(stretch: f32) -> Self {
         Self {
-            precision: Precision::Tolerance {
+            substepping: Substepping::Adaptive {
                 stretch,
-                most_substeps: 100,
+                max_substeps: 100,
             },
             ..Default::default()
         }
@@ -72,11 +72,11 @@ impl ClothSettings {
     /// # Errors
     /// [`ClothError::Quantity`] for the first that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
-        let substeps = match self.precision {
-            Precision::Substeps(substeps) => substeps,
-            Precision::Tolerance {
+        let substeps = match self.substepping {
+            Substepping::Fixed(substeps) => substeps,
+            Substepping::Adaptive {
                 stretch,
-                most_substeps,
+                max_substeps,
             } => {
                 ClothError::check(
                     stretch,
@@ -84,12 +84,12 @@ impl ClothSettings {
                     "tolerance of stretch",
                     "positive and finite",
                 )?;
-                most_substeps
+                max_substeps
             }
         };
         ClothError::check(
             substeps as f32,
-            |v| (1.0..=MOST_SUBSTEPS as f32).contains(&v),
+            |v| (1.0..=MAX_SUBSTEPS as f32).contains(&v),
             "sub-steps",
             "from 1 to 10,000",
         )?;
@@ -121,9 +121,9 @@ mod tests {
             (ClothSettings::tolerance(f32::NAN), "tolerance"),
             (
                 ClothSettings {
-                    precision: Precision::Tolerance {
+                    substepping: Substepping::Adaptive {
                         stretch: 0.01,
-                        most_substeps: 0,
+                        max_substeps: 0,
                     },
                     ..good
                 },

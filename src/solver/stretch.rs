@@ -47,10 +47,10 @@ mod tests {
 
     #[test]
     fn finds_the_longest_spring_of_each_kind() {
-        let grid = Cloth::new(4, 4, 1.0).grid(Vec3::ONE).expect("a sound grid");
+        let grid = Cloth::new(4, 4, 1.0).grid(Vec3::ONE).expect("a valid grid");
         let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
         let mut particles =
-            ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
+            ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material");
         assert_eq!(Stretch::measure(&springs, &particles), Stretch::default());
 
         // The corner pulled out along the diagonal: both its structural springs become √(2² + 1²) long, its

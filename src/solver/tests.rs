@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::{Instructions, PinMotion, Solver, Stretch, Tethers, TickStep, kernel::LEAST_MOVE};
+use super::{PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, kernel::MIN_MOVE};
 use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs};
 
 const STEP: TickStep = TickStep {
@@ -24,8 +24,8 @@ fn random(seed: &mut u64) -> f32 {
 fn crumpled(columns: u32, rows: u32, material: &ClothMaterial) -> (ClothGrid, ClothParticles) {
     let grid = Cloth::new(columns, rows, 0.1)
         .grid(Vec3::new(1.0, 1.3, 1.0))
-        .expect("a sound grid");
-    let mut particles = ClothParticles::at_rest(&grid, material).expect("a sound material");
+        .expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&grid, material).expect("a valid material");
     let mut seed = u64::from(columns * 1000 + rows);
     for (row, column) in grid.cells() {
         let noise = Vec3::from([(); 3].map(|()| 0.04 * random(&mut seed)));
@@ -132,7 +132,7 @@ fn a_sub_step_is_that_of_a_plain_solver_in_f64() {
 /// To the last bit, whatever does the work: bands of rows on several threads, and the machine's widest
 /// instructions against those that every machine has.
 #[test]
-fn threads_and_instructions_change_no_bit() {
+fn threads_and_simd_levels_change_no_bit() {
     for (columns, rows) in [(64, 64), (40, 129), (33, 70)] {
         let material = ClothMaterial::COTTON;
         let (grid, start) = crumpled(columns, rows, &material);
@@ -142,11 +142,11 @@ fn threads_and_instructions_change_no_bit() {
             from: start.position(0).expect("it exists"),
             to: Vec3::splat(0.1),
         };
-        let run = |instructions: Instructions, bands: usize| {
+        let run = |simd_level: SimdLevel, bands: usize| {
             let mut particles = start.clone();
             let mut solver = Solver::new(&springs, &particles);
             solver.set_tethers(Tethers::new(&grid, &material, &particles, 9.81));
-            solver.set_instructions(instructions);
+            solver.set_simd_level(simd_level);
             solver.set_bands(bands);
             let mut stretch = Stretch::default();
             for _ in 0..20 {
@@ -154,11 +154,11 @@ fn threads_and_instructions_change_no_bit() {
             }
             (hash(&particles), stretch)
         };
-        let truth = run(Instructions::Widest, 1);
-        assert_eq!(run(Instructions::Baseline, 1), truth);
+        let truth = run(SimdLevel::Auto, 1);
+        assert_eq!(run(SimdLevel::Baseline, 1), truth);
         for bands in [2, 3, 4] {
-            assert_eq!(run(Instructions::Widest, bands), truth, "{bands} bands");
-            assert_eq!(run(Instructions::Baseline, bands), truth, "{bands} bands");
+            assert_eq!(run(SimdLevel::Auto, bands), truth, "{bands} bands");
+            assert_eq!(run(SimdLevel::Baseline, bands), truth, "{bands} bands");
         }
     }
 }
@@ -216,20 +216,20 @@ fn a_list_of_springs_is_solved_like_a_grid() {
     let springs = Springs::of_grid(&grid, &material);
     let positions: Vec<Vec3> = start.positions().collect();
     let inverse_masses: Vec<f32> = start.inverse_masses().collect();
-    let mut listed = ClothParticles::new(&positions, &inverse_masses).expect("sound particles");
-    let list = Springs::of_list(&springs.to_vec(), listed.len()).expect("sound springs");
+    let mut listed = ClothParticles::new(&positions, &inverse_masses).expect("valid particles");
+    let list = Springs::of_list(&springs.to_vec(), listed.len()).expect("valid springs");
     let mut solver = Solver::new(&list, &listed);
-    let mut woven = start;
-    let mut on_grid = Solver::new(&springs, &woven);
+    let mut built = start;
+    let mut on_grid = Solver::new(&springs, &built);
     let (mut stretch, mut truth) = (Stretch::default(), Stretch::default());
     for _ in 0..64 * 15 {
         stretch = solver.advance(&mut listed, STEP, &[], |_, _| false);
-        truth = on_grid.advance(&mut woven, STEP, &[], |_, _| false);
+        truth = on_grid.advance(&mut built, STEP, &[], |_, _| false);
     }
     // What one sweep leaves of a spring's load, and with it the order's part in the result, is below
     // F (w + w) Δt², as for a hanging column: 63 particles' weight on one is 63 g Δt² = 0.4 mm a spring, and seven
     // hang from each other.
-    for (a, b) in listed.positions().zip(woven.positions()) {
+    for (a, b) in listed.positions().zip(built.positions()) {
         assert!(a.distance(b) < 7.0 * 4.0e-4, "{a} {b}");
     }
     assert!((stretch.structural - truth.structural).abs() < 4.0e-3);
@@ -260,8 +260,8 @@ fn no_particle_is_beyond_its_tether() {
         };
         let grid = Cloth::new(32, 24, 0.1)
             .grid(Vec3::ONE)
-            .expect("a sound grid");
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("sound");
+            .expect("a valid grid");
+        let mut particles = ClothParticles::at_rest(&grid, &material).expect("valid");
         for pin in 0..pins {
             particles
                 .set_inverse_mass((0, (pin * 31 / pins.max(2)) as u32), 0.0)
@@ -316,9 +316,9 @@ fn what_cannot_be_satisfied_stays_finite() {
     };
     let grid = Cloth::new(12, 12, 0.1)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     for place in [Vec3::ZERO, Vec3::splat(1.0e-20), Vec3::X * 1.0e15] {
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("sound");
+        let mut particles = ClothParticles::at_rest(&grid, &material).expect("valid");
         for index in 0..particles.len() {
             let at = if index < 12 { place } else { Vec3::ZERO };
             particles.set_position(index, at).expect("it exists");
@@ -343,9 +343,9 @@ fn what_hardly_moves_does_not_move() {
     let material = ClothMaterial::COTTON;
     let grid = Cloth::new(64, 64, 0.03)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     let springs = Springs::of_grid(&grid, &material);
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     for column in 0..64 {
         particles
             .set_inverse_mass((0, column), 0.0)
@@ -363,7 +363,7 @@ fn what_hardly_moves_does_not_move() {
         solver.advance(&mut particles, step, &[], |_, _| false);
         let moves = || particles.displacements().map(|moved| moved.z.abs());
         assert!(moves().filter(|moved| *moved > 0.0).count() > 1);
-        assert!(moves().all(|moved| moved == 0.0 || moved >= LEAST_MOVE));
+        assert!(moves().all(|moved| moved == 0.0 || moved >= MIN_MOVE));
         let mut places = particles.positions().map(|at| at.z);
         assert!(places.all(|z| z == 0.0 || z.is_normal()));
     }

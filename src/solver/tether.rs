@@ -5,20 +5,22 @@
 //! (long range attachments, Kim, Chentanez and Müller 2012). It takes away energy or none: it acts only against
 //! what is beyond its length, and a pin does not move.
 
-use bevy::math::{UVec2, Vec2};
+use bevy::math::Vec2;
 
 use super::kernel::Kernels;
-use crate::cloth::{Block, ClothGrid, ClothMaterial, ClothParticles, LANES, Lanes, Layout, Slot};
+use crate::cloth::{
+    Block, ClothMaterial, ClothParticles, Flat, Graph, LANES, Lanes, Layout, Slot, Surface,
+};
 
-/// Up to so many pins each particle is tethered to all of them, with more to the nearest.
+/// Up to this many pins each particle is tethered to all of them, with more to the nearest.
 const FEW_PINS: usize = 4;
 
-/// Tethers give way up to so many times the strain that the cloth's own weight could cause at its pins, so that
+/// Tethers give way up to this many times the strain that the cloth's own weight could cause at its pins, so that
 /// they leave to the springs what is elastic: swings and colliders pull harder than weight.
 const MARGIN: f32 = 4.0;
 
 /// What a cloth is taken to weigh at least (m/s²): without gravity it is pulled at, too.
-const LEAST_ACCELERATION: f32 = 9.81;
+const MIN_ACCELERATION: f32 = 9.81;
 
 /// The length of what has none.
 const ENDLESS: f32 = f32::MAX;
@@ -47,99 +49,141 @@ pub(super) struct Anchors {
     patterns: Vec<[Lanes; 3]>,
 }
 
-/// The pull that threads are given room for (N/m): four times the weight of a cloth, over so many pins side by side.
-fn tension(grid: &ClothGrid, material: &ClothMaterial, pins: usize, acceleration: f32) -> f32 {
-    let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
-    let area = (sides.as_vec2() * grid.spacing()).element_product();
-    let width = pins as f32 * grid.spacing().min_element();
-    MARGIN * material.areal_density * area * acceleration.max(LEAST_ACCELERATION) / width
+/// The pull that threads are given room for (N/m): four times the weight of a cloth, over a number of pins side by side.
+fn tension(surface: &Surface, material: &ClothMaterial, pins: usize, acceleration: f32) -> f32 {
+    let width = pins as f32 * surface.spacing().typical;
+    MARGIN * material.areal_density * surface.area() * acceleration.max(MIN_ACCELERATION) / width
 }
 
-/// The stretch that the material itself gives under four times the weight of the cloth, hung by so many pins; without
+/// The stretch that the material itself gives under four times the weight of the cloth, hung by a number of pins; without
 /// any, by as many as it is wide.
-pub(crate) fn given_stretch(
-    grid: &ClothGrid,
+pub(crate) fn material_stretch(
+    surface: &Surface,
     material: &ClothMaterial,
     pins: usize,
     acceleration: f32,
 ) -> f32 {
     let pins = if pins == 0 {
-        grid.columns().min(grid.rows()) as usize
+        surface.particles_across()
     } else {
         pins
     };
-    material.stretch_compliance * tension(grid, material, pins, acceleration)
+    material.stretch_compliance * tension(surface, material, pins, acceleration)
+}
+
+/// How far it is over a surface at rest from each particle to a pin, with what the material gives.
+struct Lengths<'a> {
+    surface: &'a Surface,
+    material: &'a ClothMaterial,
+    tension: f32,
+}
+
+impl Lengths<'_> {
+    /// Straight, on a surface that is flat and convex.
+    fn straight(&self, flat: &Flat, particle: usize, pin: usize) -> f32 {
+        let [across, down] = flat.between(particle, pin);
+        let square = across * across + down * down;
+        let straight = square.sqrt();
+        let stretch = 1.0 + self.material.stretch_compliance * self.tension;
+        let bias = 2.0 * across * down / square;
+        // Along a thread there is nothing to shear, and infinite × 0 is NaN; nor where springs run in all directions.
+        if !flat.has_threads || bias == 0.0 {
+            return straight * stretch;
+        }
+        let sheared = straight
+            * (stretch + self.material.shear_compliance * self.tension * bias * bias);
+        let threads = (across + down) * stretch;
+        sheared.min(threads)
+    }
+
+    /// Along edges, anywhere else.
+    fn along(&self, path: f32) -> f32 {
+        path * (1.0 + self.material.stretch_compliance * self.tension)
+    }
+
+    /// Which pin each particle is tethered to in a layer, and how long the tether is.
+    fn layers(&self, pinned: &[u32]) -> Vec<Vec<(u32, f32)>> {
+        let particles = 0..self.surface.len();
+        let is_few = pinned.len() <= FEW_PINS;
+        let Some(flat) = self.surface.flat() else {
+            let sources: Vec<&[u32]> = if is_few {
+                pinned.chunks(1).collect()
+            } else {
+                vec![pinned]
+            };
+            let of_sources = |(first, sources): (usize, &[u32])| {
+                let found = self.surface.graph().distances(sources.iter().copied());
+                let tether = |(path, source): (f32, u32)| match source {
+                    u32::MAX => (0, ENDLESS),
+                    source => (first as u32 + source, self.along(path)),
+                };
+                found.into_iter().map(tether).collect()
+            };
+            return sources.into_iter().enumerate().map(of_sources).collect();
+        };
+        let tether = |particle: usize, pin: u32| {
+            (pin, self.straight(flat, particle, pinned[pin as usize] as usize))
+        };
+        if is_few {
+            let to = |pin: u32| particles.clone().map(|particle| tether(particle, pin)).collect();
+            return (0..pinned.len() as u32).map(to).collect();
+        }
+        let nearest = nearest_pins(flat, self.surface.graph(), pinned);
+        vec![particles.map(|particle| tether(particle, nearest[particle])).collect()]
+    }
 }
 
 impl Tethers {
-    /// Tethers from the particles of `grid` to those of them that are pinned. Each is as long as the straight line
-    /// between them at rest, times what the material gives under four times the weight of the whole cloth hung
-    /// by its pins, under an `acceleration` (m/s²) of at least 9.81; where threads can shear, up to the way along the
-    /// threads. The particles must be those of `grid`.
+    /// Tethers from the particles of a surface to those of them that are pinned. Each is as long as the shortest path
+    /// between them at rest, times what the material gives under four times the weight of the whole cloth hung by its
+    /// pins, under an `acceleration` (m/s²) of at least 9.81; where threads can shear, up to the path along the threads. On a
+    /// surface that is flat and convex the path is a straight line; on any other it follows the edges of its triangles, which
+    /// is a little longer than the shortest path across them. The particles must be those of the surface.
     pub fn new(
-        grid: &ClothGrid,
+        surface: &Surface,
         material: &ClothMaterial,
         particles: &ClothParticles,
         acceleration: f32,
     ) -> Self {
         let layout = particles.layout();
-        let pinned: Vec<(u32, u32, Slot)> = grid
-            .cells()
-            .zip(layout.slots())
-            .filter(|(_, slot)| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0)
-            .map(|((row, column), slot)| (row, column, slot))
+        let masses = particles.inverse_masses().enumerate();
+        let pinned: Vec<u32> = masses
+            .filter(|(_, inverse_mass)| *inverse_mass == 0.0)
+            .map(|(index, _)| index as u32)
             .collect();
-        let spacing = grid.spacing();
-        let tension = tension(grid, material, pinned.len(), acceleration);
-        let length = |(row, column): (u32, u32), pin: &(u32, u32, Slot)| {
-            // Nothing moves a pin, however far it is from others.
-            let slot = layout.slot(row, column);
-            if particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0 {
-                return ENDLESS;
-            }
-            let across = steps(column, pin.1) * spacing.x;
-            let down = steps(row, pin.0) * spacing.y;
-            let square = across * across + down * down;
-            let straight = square.sqrt();
-            let bias = 2.0 * across * down / square;
-            let stretch = 1.0 + material.stretch_compliance * tension;
-            let sheared = straight * (stretch + material.shear_compliance * tension * bias * bias);
-            let threads = (across + down) * stretch;
-            // Along a thread there is nothing to shear, and infinite × 0 is no number.
-            let longest = if bias == 0.0 {
-                straight * stretch
-            } else {
-                sheared.min(threads)
-            };
-            (longest * longest).min(ENDLESS)
+        let lengths = Lengths {
+            surface,
+            material,
+            tension: tension(surface, material, pinned.len(), acceleration),
         };
-        let layer = |choose: &dyn Fn((u32, u32)) -> usize| {
-            let pins = by_block(grid, layout, 0, |cell| choose(cell) as u32);
+        let layer = |tethers: &[(u32, f32)]| {
+            let pins = by_block(layout, 0, tethers.iter().map(|(pin, _)| *pin));
             let mut patterns = pins.clone();
             patterns.sort_unstable();
             patterns.dedup();
             // Every block's pattern is among them.
             let index = |pins| patterns.binary_search(pins).unwrap_or(0) as u32;
+            let squares = tethers.iter().zip(particles.inverse_masses());
+            let squares = squares.map(|((_, length), inverse_mass)| {
+                // Nothing moves a pin, however far it is from others.
+                let is_pinned = inverse_mass == 0.0;
+                if is_pinned { ENDLESS } else { (length * length).min(ENDLESS) }
+            });
             Layer {
                 pattern_of: pins.iter().map(index).collect(),
                 patterns,
-                length_square: by_block(grid, layout, ENDLESS, |cell| {
-                    length(cell, &pinned[choose(cell)])
-                }),
+                length_square: by_block(layout, ENDLESS, squares),
             }
         };
-        let layers = if pinned.is_empty() || pinned.len() == grid.len() {
+        let layers = if pinned.is_empty() || pinned.len() == surface.len() {
             Vec::new()
-        } else if pinned.len() <= FEW_PINS {
-            (0..pinned.len()).map(|pin| layer(&|_| pin)).collect()
         } else {
-            let nearest = nearest_pins(grid, &pinned);
-            vec![layer(&|(row, column)| {
-                nearest[grid.index(row, column) as usize] as usize
-            })]
+            let layers = lengths.layers(&pinned);
+            layers.iter().map(|tethers| layer(tethers)).collect()
         };
+        let slot = |pin: &u32| layout.slot_of(*pin as usize);
         Self {
-            pins: pinned.iter().map(|&(.., slot)| slot).collect(),
+            pins: pinned.iter().map(slot).collect(),
             layers,
         }
     }
@@ -147,7 +191,7 @@ impl Tethers {
     /// The acceleration (m/s²) to make tethers for where `acceleration` acts: 9.81, doubled until four fifths of
     /// `acceleration` are no more, so that tethers outlast one that changes from tick to tick.
     pub(crate) fn made_for(acceleration: f32) -> f32 {
-        let mut rounded = LEAST_ACCELERATION;
+        let mut rounded = MIN_ACCELERATION;
         while rounded < 0.8 * acceleration {
             rounded *= 2.0;
         }
@@ -160,7 +204,7 @@ impl Tethers {
     }
 
     /// Whether the same particles are pinned as when the tethers were made.
-    pub(crate) fn are_of(&self, particles: &ClothParticles) -> bool {
+    pub(crate) fn matches(&self, particles: &ClothParticles) -> bool {
         let slots = particles.layout().slots();
         let pinned =
             slots.filter(|slot| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0);
@@ -221,56 +265,49 @@ impl Tethers {
     }
 }
 
-/// From one row or column to another.
-fn steps(a: u32, b: u32) -> f32 {
-    a.abs_diff(b) as f32
-}
-
-/// A value for each particle, laid out as the particles are.
+/// A value for each particle, block by block.
 fn by_block<T: Copy>(
-    grid: &ClothGrid,
     layout: Layout,
     none: T,
-    value: impl Fn((u32, u32)) -> T,
+    of_particles: impl Iterator<Item = T>,
 ) -> Vec<[T; LANES]> {
     let mut values = vec![[none; LANES]; layout.blocks()];
-    for (cell, slot) in grid.cells().zip(layout.slots()) {
-        values[slot.block][slot.lane] = value(cell);
+    for (value, slot) in of_particles.zip(layout.slots()) {
+        values[slot.block][slot.lane] = value;
     }
     values
 }
 
-/// For each particle the index of the nearest pin at rest: each takes the nearest of what its neighbours know, up and
-/// down the grid twice (after Danielsson 1980, whose distances are off by a fraction of a cell at worst).
-fn nearest_pins(grid: &ClothGrid, pinned: &[(u32, u32, Slot)]) -> Vec<u32> {
+/// For each particle the place of the nearest pin at rest among `pinned`: each takes the nearest of what its neighbours know,
+/// from the first to the last and back (after Danielsson 1980, whose distances are off by a fraction of a spacing at worst).
+fn nearest_pins(flat: &Flat, graph: &Graph, pinned: &[u32]) -> Vec<u32> {
     const UNKNOWN: u32 = u32::MAX;
-    let mut nearest = vec![UNKNOWN; grid.len()];
-    for (pin, &(row, column, _)) in pinned.iter().enumerate() {
-        nearest[grid.index(row, column) as usize] = pin as u32;
+    let mut nearest = vec![UNKNOWN; graph.len()];
+    for (place, &pin) in pinned.iter().enumerate() {
+        nearest[pin as usize] = place as u32;
     }
-    let distance = |(row, column): (u32, u32), pin: u32| {
-        let Some(&(pin_row, pin_column, _)) = pinned.get(pin as usize) else {
-            return f32::INFINITY;
-        };
-        let steps = Vec2::new(steps(column, pin_column), steps(row, pin_row));
-        (steps * grid.spacing()).length_squared()
+    let distance = |particle: usize, pin: u32| match pinned.get(pin as usize) {
+        Some(&pin) => Vec2::from(flat.between(particle, pin as usize)).length_squared(),
+        None => f32::INFINITY,
     };
-    let mut visit = |index: usize| {
-        let (row, column) = (index as u32 / grid.columns(), index as u32 % grid.columns());
-        let mut best = nearest[index];
-        for row_there in row.saturating_sub(1)..(row + 2).min(grid.rows()) {
-            for column_there in column.saturating_sub(1)..(column + 2).min(grid.columns()) {
-                let known = nearest[grid.index(row_there, column_there) as usize];
-                if distance((row, column), known) < distance((row, column), best) {
-                    best = known;
-                }
+    let mut visit = |particle: usize| {
+        let known = nearest[particle];
+        let mut best = known;
+        for &(neighbour, _) in graph.of(particle as u32) {
+            let theirs = nearest[neighbour as usize];
+            if distance(particle, theirs) < distance(particle, best) {
+                best = theirs;
             }
         }
-        nearest[index] = best;
+        nearest[particle] = best;
+        best != known
     };
-    for _ in 0..2 {
-        (0..grid.len()).for_each(&mut visit);
-        (0..grid.len()).rev().for_each(&mut visit);
+    let mut changes = true;
+    while changes {
+        changes = false;
+        for particle in (0..graph.len()).chain((0..graph.len()).rev()) {
+            changes |= visit(particle);
+        }
     }
     nearest
 }
@@ -294,33 +331,20 @@ mod tests {
     /// Pins anywhere: what each particle gets is nearer than the next pin but for a fraction of a cell.
     #[test]
     fn each_particle_gets_its_nearest_pin() {
-        let grid = Cloth::new(37, 23, 0.1)
-            .grid(Vec3::new(1.0, 1.5, 1.0))
-            .expect("a sound grid");
-        let layout = Layout::new(37, 23);
+        let cloth = Cloth::new(37, 23, 0.1);
+        let surface = cloth.surface(Vec3::new(1.0, 1.5, 1.0)).expect("a valid grid");
+        let flat = surface.flat().expect("a grid is flat");
         for count in [1, 5, 17, 60] {
-            let place = |pin: u32| ((pin * 7919 + 3) % 23, (pin * 104_729 + 11) % 37);
-            let pinned: Vec<_> = (0..count)
-                .map(|pin| (place(pin).0, place(pin).1, layout.slot(0, 0)))
-                .collect();
-            let nearest = nearest_pins(&grid, &pinned);
-            for (row, column) in grid.cells() {
-                let distance = |pin: usize| {
-                    let (pin_row, pin_column, _) = pinned[pin];
-                    let (pin, own) = (
-                        grid.rest_position(pin_row, pin_column),
-                        grid.rest_position(row, column),
-                    );
-                    pin.distance(own)
-                };
-                let found = distance(nearest[grid.index(row, column) as usize] as usize);
-                let truth = (0..pinned.len())
-                    .map(distance)
-                    .fold(f32::INFINITY, f32::min);
-                assert!(
-                    found <= truth + 0.1,
-                    "{count} pins, {row} {column}: {found} {truth}"
-                );
+            let place = |pin: u32| (pin * 7919 + 3) % 23 * 37 + (pin * 104_729 + 11) % 37;
+            let pinned: Vec<u32> = (0..count).map(place).collect();
+            let nearest = nearest_pins(flat, surface.graph(), &pinned);
+            let rest = surface.rest_positions();
+            for (particle, nearest) in nearest.into_iter().enumerate() {
+                let distance = |pin: u32| rest[pin as usize].distance(rest[particle]);
+                let found = distance(pinned[nearest as usize]);
+                let truth = pinned.iter().copied().map(distance);
+                let truth = truth.fold(f32::INFINITY, f32::min);
+                assert!(found <= truth + 0.1, "{count} pins, {particle}: {found} {truth}");
             }
         }
     }

@@ -78,7 +78,7 @@ fn they_move_smoothly_over_the_sub_steps() {
 }
 
 #[test]
-fn what_is_let_go_falls_and_pins_of_the_games_own_stay() {
+fn what_is_released_falls_and_pins_of_the_games_own_stay() {
     let (mut app, flag, _) = flag(Transform::IDENTITY);
     change::<Pins>(&mut app, flag, |pins| *pins = Pins::new([Pin::Cell(0, 11)]));
     tick(&mut app, 5);
@@ -128,9 +128,9 @@ fn a_target_that_is_gone_is_named() {
     assert!(matches!(fault.error, ClothError::PinOutOfRange { .. }));
 }
 
-/// A cloth that is woven anew is attached anew, where it then is.
+/// A cloth that is built anew is attached anew, where it then is.
 #[test]
-fn attachments_outlast_a_new_weave() {
+fn attachments_outlast_a_new_build() {
     let (mut app, flag, pole) = flag(Transform::IDENTITY);
     change::<ClothParticles>(&mut app, flag, |particles| *particles = default());
     tick(&mut app, 1);

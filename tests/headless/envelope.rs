@@ -1,23 +1,23 @@
-//! Beyond the envelope in which cloth is simulated well: told once for each cloth and limit, with the quantity.
+//! Beyond the envelope in which cloth is simulated well: reported once for each cloth and limit, with the quantity.
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
 use crate::support::*;
 
-/// Ticks a cloth beside a sound one and expects a report of that limit, once, with a quantity beyond it, and of nothing
+/// Ticks a cloth beside a valid one and expects a report of that limit, once, with a quantity beyond it, and of nothing
 /// else; not again when its settings change.
-fn expect_told(mut app: App, cloth: Entity, limit: ClothLimit) {
-    let sound = app.world_mut().spawn(Cloth::default()).id();
+fn expect_reported(mut app: App, cloth: Entity, limit: ClothLimit) {
+    let valid = app.world_mut().spawn(Cloth::default()).id();
     tick(&mut app, 64);
-    let told = messages::<ClothLimitExceeded>(&mut app);
-    let [told] = told[..] else {
-        panic!("once: {told:?}");
+    let reported = messages::<ClothLimitExceeded>(&mut app);
+    let [reported] = reported[..] else {
+        panic!("once: {reported:?}");
     };
-    assert_eq!((told.cloth, told.limit), (cloth, limit));
-    assert!(told.quantity > told.good_up_to, "{told:?}");
+    assert_eq!((reported.cloth, reported.limit), (cloth, limit));
+    assert!(reported.quantity > reported.good_up_to, "{reported:?}");
     assert_eq!(exceeded(&app, cloth), Some(limit));
-    assert_eq!(exceeded(&app, sound), None);
+    assert_eq!(exceeded(&app, valid), None);
     change::<ClothSettings>(&mut app, cloth, |settings| settings.particle_radius *= 2.0);
     tick(&mut app, 64);
     assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
@@ -40,23 +40,23 @@ fn a_cloth_that_its_sub_steps_do_not_hold() {
     let pins = Pins::new([Pin::Corner(Corner::TopLeft)]);
     let cloth = (Cloth::new(32, 32, 0.05), pins, settings);
     let cloth = app.world_mut().spawn(cloth).id();
-    expect_told(app, cloth, ClothLimit::Stretch);
+    expect_reported(app, cloth, ClothLimit::Stretch);
 }
 
 #[test]
 fn a_tolerance_that_the_cap_does_not_hold() {
     let mut app = app();
     let settings = ClothSettings {
-        precision: Precision::Tolerance {
+        substepping: Substepping::Adaptive {
             stretch: 0.001,
-            most_substeps: 30,
+            max_substeps: 30,
         },
         sleeps: false,
         ..default()
     };
     let cloth = (Cloth::default(), ClothMaterial::RUBBER, settings);
     let cloth = app.world_mut().spawn(cloth).id();
-    expect_told(app, cloth, ClothLimit::Tolerance);
+    expect_reported(app, cloth, ClothLimit::Tolerance);
 }
 
 /// Without tethers a thousand times as heavy as others is too much, with them twenty thousand times is.
@@ -78,7 +78,7 @@ fn a_mass_of_many_others() {
                 .expect("it exists");
         });
         assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
-        expect_told(app, cloth, ClothLimit::MassRatio);
+        expect_reported(app, cloth, ClothLimit::MassRatio);
     }
 }
 
@@ -93,7 +93,7 @@ fn a_cloth_far_from_its_own_frame() {
     };
     let cloth = (Cloth::new(4, 4, 0.01), Pins::none(), settings);
     let cloth = app.world_mut().spawn(cloth).id();
-    expect_told(app, cloth, ClothLimit::Distance);
+    expect_reported(app, cloth, ClothLimit::Distance);
 }
 
 #[test]
@@ -109,12 +109,12 @@ fn damping_that_the_sub_steps_decide() {
     };
     let cloth = (Cloth::new(8, 8, 0.1), material, settings);
     let cloth = app.world_mut().spawn(cloth).id();
-    expect_told(app, cloth, ClothLimit::Damping);
+    expect_reported(app, cloth, ClothLimit::Damping);
 }
 
-/// A pellet of a quarter of a spacing at 1,000 m/s is told of in the tick in which it comes.
+/// A pellet of a quarter of a spacing at 1,000 m/s is reported in the tick in which it comes.
 #[test]
-fn a_dart() {
+fn a_small_fast_collider() {
     let mut app = app_with_moving_balls();
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     tick(&mut app, 2);
@@ -122,16 +122,16 @@ fn a_dart() {
     app.world_mut()
         .spawn((ClothCollider::ball(0.025), Moving(1000.0), start));
     tick(&mut app, 4);
-    let told = messages::<ClothLimitExceeded>(&mut app);
+    let reported = messages::<ClothLimitExceeded>(&mut app);
     assert!(
-        matches!(told[..], [told] if told.limit == ClothLimit::Dart && told.cloth == cloth),
-        "{told:?}"
+        matches!(reported[..], [reported] if reported.limit == ClothLimit::SmallFastCollider && reported.cloth == cloth),
+        "{reported:?}"
     );
 }
 
-/// A blow that stretches a cloth for an instant is no reason to tell anybody anything.
+/// A blow that stretches a cloth for an instant is no reason to report anything.
 #[test]
-fn an_instant_is_not_told_of() {
+fn an_instant_is_not_reported() {
     let mut app = app();
     let settings = ClothSettings {
         tethers: false,
@@ -154,7 +154,7 @@ fn an_instant_is_not_told_of() {
 
 /// Once, although gravity comes from another side in every tick, seen from the cloth.
 #[test]
-fn a_cloth_that_turns_is_told_of_once() {
+fn a_cloth_that_turns_is_reported_once() {
     let mut app = app();
     app.add_systems(
         FixedFirst,
@@ -179,7 +179,7 @@ fn a_cloth_that_turns_is_told_of_once() {
 
 /// A bullet that passes beside a cloth is none of its business.
 #[test]
-fn a_dart_beside_is_not_told_of() {
+fn a_small_fast_collider_beside_is_not_reported() {
     let mut app = app_with_moving_balls();
     app.world_mut().spawn(Cloth::default());
     tick(&mut app, 2);
@@ -190,7 +190,7 @@ fn a_dart_beside_is_not_told_of() {
     assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
 }
 
-/// What is fine, large, soft or finely stepped, but sound.
+/// What is fine, large, soft or finely stepped, but valid.
 #[test]
 fn a_fine_rubber_and_a_large_cotton_are_within() {
     let corners = || Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]);
@@ -226,7 +226,7 @@ fn a_fine_rubber_and_a_large_cotton_are_within() {
     }
 }
 
-/// The materials with all defaults, hung and struck by a ball: nothing to tell.
+/// The materials with all defaults, hung and struck by a ball: nothing to report.
 #[test]
 fn the_usual_is_within() {
     for (name, material) in ClothMaterial::PRESETS {
@@ -239,12 +239,12 @@ fn the_usual_is_within() {
         app.world_mut()
             .spawn((ClothCollider::ball(0.5), Moving(1.5), start));
         tick(&mut app, 192);
-        let told = messages::<ClothLimitExceeded>(&mut app);
+        let reported = messages::<ClothLimitExceeded>(&mut app);
         let stretch = app
             .world()
             .get::<ClothStats>(cloth)
             .map(|stats| stats.stretch);
-        assert_eq!(told, [], "{name}: {stretch:?}");
+        assert_eq!(reported, [], "{name}: {stretch:?}");
     }
 }
 

@@ -222,8 +222,8 @@ fn a_nan_that_a_game_wrote() {
 
 #[test]
 fn particles_of_another_cloth() {
-    let grid = Cloth::new(4, 4, 0.1).grid(Vec3::ONE).expect("a sound grid");
-    let foreign = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material");
+    let grid = Cloth::new(4, 4, 0.1).grid(Vec3::ONE).expect("a valid grid");
+    let foreign = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material");
     expect_fault(
         (Cloth::default(), foreign),
         |_, _| {},
@@ -311,7 +311,7 @@ fn errors_read_well() {
         .grid(Vec3::ONE)
         .expect_err("negative");
     assert_eq!(error.to_string(), "spacing (m) must be positive, not -0.5");
-    let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("sound");
+    let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("valid");
     let error = Pins::new([Pin::Row(3)])
         .validate(&grid)
         .expect_err("out of range");

@@ -25,7 +25,7 @@ fn corners(show: ShowClothGizmos) -> Vec<Vec3> {
     asset.map_or_else(Vec::new, |asset| {
         let buffer = asset.buffer();
         let corners = buffer.list_positions.iter().chain(&buffer.strip_positions);
-        // A strip ends with a position that is no number.
+        // A strip ends with a position that is NaN.
         corners.copied().filter(|corner| !corner.is_nan()).collect()
     })
 }

@@ -17,12 +17,15 @@ fn a_copy_has_its_own_touches() {
     let copy = app.world_mut().entity_mut(cloth).clone_and_spawn();
     tick(&mut app, 10);
     let started = messages::<ClothTouchStarted>(&mut app);
-    assert!(started.iter().any(|told| told.cloth == copy), "{started:?}");
+    assert!(
+        started.iter().any(|reported| reported.cloth == copy),
+        "{started:?}"
+    );
     assert_eq!(particles(&app, cloth), particles(&app, copy));
 }
 
 #[test]
-fn despawning_either_is_harmless_and_told() {
+fn despawning_either_is_harmless_and_reported() {
     let mut app = app_with_moving_balls();
     let (cloth, ball) = spawn_pass(&mut app);
     tick(&mut app, 60);

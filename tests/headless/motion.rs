@@ -221,7 +221,7 @@ fn a_change_of_substeps_keeps_the_speed() {
     let cloth = app.world_mut().spawn(cloth).id();
     for (second, substeps) in [(0.5, 20), (1.0, 3), (1.5, 7)] {
         change::<ClothSettings>(&mut app, cloth, |settings| {
-            settings.precision = Precision::Substeps(substeps);
+            settings.substepping = Substepping::Fixed(substeps);
         });
         tick(&mut app, 32);
         let speed = -particles(&app, cloth).velocity(9).expect("a particle").y;
@@ -235,7 +235,7 @@ fn a_change_of_substeps_keeps_the_speed() {
 
 /// Neither a huge step nor a change of its length blows a cloth up. In steps of seconds, in which a particle falls
 /// hundreds of metres, a cloth may come to lie around the ball in rings that cannot leave it, as nothing passes through
-/// a ball any more: it hangs sound again as soon as that is gone.
+/// a ball any more: it hangs whole again as soon as that is gone.
 #[test]
 fn huge_and_changing_steps_are_survived() {
     let mut app = app();
@@ -251,7 +251,7 @@ fn huge_and_changing_steps_are_survived() {
             .set_timestep_seconds(seconds);
         for substeps in [1, 20, 3] {
             change::<ClothSettings>(&mut app, cloth, |settings| {
-                settings.precision = Precision::Substeps(substeps);
+                settings.substepping = Substepping::Fixed(substeps);
             });
             (0..20).for_each(|_| app.update());
             let particles = particles(&app, cloth);

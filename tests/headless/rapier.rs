@@ -81,7 +81,7 @@ fn radius_and_scale_are_rapiers() {
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     tick(&mut app, 30);
     let collider = app.world().get::<ClothCollider>(ball).expect("adopted");
-    let shape = collider.scaled(Vec3::splat(3.0)).expect("a sound one");
+    let shape = collider.scaled(Vec3::splat(3.0)).expect("a valid one");
     let radius = shape.radius().expect("a ball's");
     assert!((radius - 0.6).abs() < 1e-6, "{radius}");
     let centre = Vec3::new(0.7, -0.7, 0.0);
@@ -133,7 +133,7 @@ fn what_is_no_ball_is_named_and_left_out() {
 
 /// Without its marker or its rapier collider, a ball is a cloth's collider no more.
 #[test]
-fn an_adopted_ball_can_be_let_go() {
+fn an_adopted_ball_can_be_released() {
     let mut app = app_with_rapier();
     let spawn = |app: &mut App| {
         let ball = (

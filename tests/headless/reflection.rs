@@ -27,7 +27,7 @@ fn components(app: &App, entity: Entity) -> Vec<(ComponentId, String)> {
     let archetype = entity.archetype();
     let info = |id: &ComponentId| {
         let name = world.components().get_name(*id)?.to_string();
-        let is_private = ["ClothTick", "Vicinity", "ColliderMotion"]
+        let is_private = ["ClothTick", "BroadPhaseBounds", "ColliderMotion"]
             .iter()
             .any(|private| name.ends_with(private));
         (name.starts_with("bevy_drape") && !is_private).then_some((*id, name))

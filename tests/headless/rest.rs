@@ -159,11 +159,11 @@ fn a_fault_wakes_it() {
     assert!(contacts.with(ball).is_some());
 }
 
-/// What is no number is named, and once each particle is mended the cloth goes on.
+/// NaN is named, and once each particle is mended the cloth goes on.
 #[test]
 fn a_mended_cloth_goes_on() {
     let (mut app, cloth, _) = asleep();
-    let sound = particles(&app, cloth).clone();
+    let valid = particles(&app, cloth).clone();
     change::<ClothParticles>(&mut app, cloth, |p| {
         p.set_position((3, 8), Vec3::splat(1.0e17))
             .expect("a particle");
@@ -171,7 +171,7 @@ fn a_mended_cloth_goes_on() {
     tick(&mut app, 5);
     change::<ClothParticles>(&mut app, cloth, |p| {
         for index in 0..p.len() {
-            let position = sound.position(index).expect("a particle");
+            let position = valid.position(index).expect("a particle");
             p.set_position(index, position)
                 .and_then(|()| p.set_displacement(index, Vec3::Z * 1.0e-3))
                 .expect("a particle");

@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_drape::{
-    contact::{Detection, MovingCollider, Terms},
+    contact::{ContactSettings, Detection, MovingCollider},
     hierarchy::SearchReason,
     plugin::ClothTopology,
     prelude::*,
@@ -236,7 +236,7 @@ fn what_snaps_back_is_not_missed() {
         tick(&mut app, 1);
         let to = places(&app, balls);
         let topology = app.world().get::<ClothTopology>(cloth).expect("a topology");
-        let terms = Terms {
+        let contact_settings = ContactSettings {
             particle_radius: settings.particle_radius,
             friction: stiff.friction,
             narrow_phase: NarrowPhase::Particles,
@@ -248,7 +248,14 @@ fn what_snaps_back_is_not_missed() {
         for id in 0..2 {
             let ball = MovingCollider::ball(0.4, from[id], to[id]);
             let grid = topology.grid();
-            detection.add(id, &ball, terms.narrow_phase, &everything, &by_hand, grid);
+            detection.add(
+                id,
+                &ball,
+                contact_settings.narrow_phase,
+                &everything,
+                &by_hand,
+                grid,
+            );
         }
         let step = TickStep {
             acceleration: Vec3::NEG_Y * GRAVITY,
@@ -257,7 +264,7 @@ fn what_snaps_back_is_not_missed() {
         };
         let mut solver = Solver::new(topology.springs(), &by_hand);
         solver.advance(&mut by_hand, step, &[], |particles, substep| {
-            detection.respond(particles, &terms, substep, |_| {})
+            detection.respond(particles, &contact_settings, substep, |_| {})
         });
         assert_eq!(particles(&app, cloth), &by_hand);
         let stats = stats(&app, cloth);
@@ -295,7 +302,7 @@ fn drawn(app: &App) -> Vec<LinearRgba> {
     })
 }
 
-/// However it is searched, what touches is drawn red; and what vanishes, begins anew or is no number is no trouble.
+/// However it is searched, what touches is drawn red; and what vanishes, begins anew or is NaN is no trouble.
 #[test]
 fn every_search_is_drawn() {
     let look = ClothGizmos::default();
@@ -329,7 +336,7 @@ fn every_search_is_drawn() {
                 particles.set_position(77, bad).expect("a particle");
             });
             tick(&mut app, 2);
-            assert!(drawn(&app).is_empty(), "what is not sound is not drawn");
+            assert!(drawn(&app).is_empty(), "what is not valid is not drawn");
             change::<ClothParticles>(&mut app, cloth, |particles| *particles = default());
             tick(&mut app, 2);
             assert!(drawn(&app).contains(&look.touching.to_linear()), "{method}");

@@ -39,7 +39,7 @@ fn left_inside(app: &App, cloth: Entity, collider: Entity) -> f64 {
     let settings = world.get::<ClothSettings>(cloth).expect("settings");
     let transform = world.get::<Transform>(collider).expect("a transform");
     let shape = world.get::<ClothCollider>(collider).expect("a collider");
-    let shape = shape.scaled(transform.scale).expect("a sound collider");
+    let shape = shape.scaled(transform.scale).expect("a valid collider");
     let pose = frame.isometry().inverse() * transform.to_isometry();
     deepest_penetration(
         particles(app, cloth),
@@ -183,7 +183,7 @@ fn twenty_balls_are_twenty_contacts_and_one_may_vanish() {
     assert!(
         stopped
             .iter()
-            .any(|told| (told.cloth, told.collider) == (cloth, balls[7]))
+            .any(|reported| (reported.cloth, reported.collider) == (cloth, balls[7]))
     );
     assert_eq!(contact(&app, cloth, balls[7]), None);
     assert!(touched(&app) > 10);

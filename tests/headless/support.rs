@@ -78,7 +78,7 @@ pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
     app
 }
 
-/// Runs so many ticks.
+/// Runs this many ticks.
 pub fn tick(app: &mut App, ticks: usize) {
     let before = app.world().resource::<Time<Fixed>>().elapsed_secs_f64();
     (0..ticks).for_each(|_| app.update());

@@ -2,7 +2,9 @@
 
 use bevy::prelude::*;
 use bevy_drape::{
-    contact::{ColliderShape, Detection, MovingCollider, NarrowPhase, Terms, deepest_penetration},
+    contact::{
+        ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase, deepest_penetration,
+    },
     hierarchy::NodeState,
     plugin::{ClothSearch, ClothTopology},
     prelude::*,
@@ -62,9 +64,9 @@ fn spheres_turn_red_and_back_green() {
         assert!(
             stopped
                 .iter()
-                .all(|told| told.deepest_penetration > 0.0 && told.particles > 0)
+                .all(|reported| reported.deepest_penetration > 0.0 && reported.particles > 0)
         );
-        assert!(stopped.iter().any(|told| told.particles > 10));
+        assert!(stopped.iter().any(|reported| reported.particles > 10));
     }
 }
 
@@ -281,7 +283,7 @@ fn the_candidates_are_complete() {
             let springs = app.world().get::<ClothTopology>(cloth).expect("a topology");
             let mut solver = Solver::new(springs.springs(), &by_hand);
             solver.set_tethers(Tethers::new(springs.grid(), &material, &by_hand, GRAVITY));
-            let terms = Terms {
+            let contact_settings = ContactSettings {
                 particle_radius: 0.01,
                 friction: material.friction,
                 narrow_phase: NarrowPhase::Particles,
@@ -292,10 +294,17 @@ fn the_candidates_are_complete() {
             for (id, (from, to)) in from.into_iter().zip(to).enumerate() {
                 let ball = MovingCollider::ball(0.4, from, to);
                 let grid = springs.grid();
-                detection.add(id, &ball, terms.narrow_phase, &everything, &by_hand, grid);
+                detection.add(
+                    id,
+                    &ball,
+                    contact_settings.narrow_phase,
+                    &everything,
+                    &by_hand,
+                    grid,
+                );
             }
             solver.advance(&mut by_hand, step, &[], |particles, substep| {
-                detection.respond(particles, &terms, substep, |_| {})
+                detection.respond(particles, &contact_settings, substep, |_| {})
             });
             let touches = detection.touches().iter();
             found += touches

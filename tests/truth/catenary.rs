@@ -62,8 +62,8 @@ fn hang((columns, span): Strip, compliance: f32, tethers: bool) -> (f64, f64) {
     // Two rows, side by side: each hangs by itself.
     let grid = Cloth::new(columns, 2, spacing)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+        .expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     for (row, column) in grid.cells() {
         // Up one flank of a V and down the other.
         let along = f64::from(column) / f64::from(columns - 1) - 0.5;

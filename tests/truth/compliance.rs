@@ -22,8 +22,8 @@ fn sag(along: u32, material: &ClothMaterial, substeps: u32, is_sheared: bool) ->
     };
     let grid = Cloth::new(columns, rows, spacing)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
-    let mut particles = ClothParticles::at_rest(&grid, material).expect("a sound material");
+        .expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&grid, material).expect("a valid material");
     for across in 0..(columns * rows / along) {
         let pin = if is_sheared { (across, 0) } else { (0, across) };
         particles.set_inverse_mass(pin, 0.0).expect("it exists");

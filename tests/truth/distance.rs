@@ -6,14 +6,14 @@ use bevy_drape::{
     solver::{Solver, TickStep},
 };
 
-/// A cloth of 17 × 17 particles hung by its top row and let go 0.5 rad aside, `distance` m from the origin, after a
+/// A cloth of 17 × 17 particles hung by its top row and released 0.5 rad aside, `distance` m from the origin, after a
 /// second: where its particles are from there (m), and its largest stretch.
 fn swing(spacing: f32, substeps: u32, distance: f32) -> (Vec<Vec3>, f32) {
     let grid = Cloth::new(17, 17, spacing)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     let material = ClothMaterial::COTTON;
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     let place = Vec3::new(0.8, 0.6, 0.2).normalize() * distance;
     for index in 0..particles.len() {
         let rest = particles.position(index).expect("it exists");

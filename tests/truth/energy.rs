@@ -25,8 +25,8 @@ fn a_pendulum_has_its_period() {
     };
     let grid = Cloth::new(2, 2, length)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+        .expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     for column in 0..2 {
         let down = Vec3::new(0.0, -amplitude.cos(), amplitude.sin()) * length;
         let place = Vec3::X * column as f32 * length + down;
@@ -63,7 +63,7 @@ fn a_pendulum_has_its_period() {
 
 /// The energy of a state as a network: kinetic, elastic and potential (J).
 fn energy(scene: &Scene, particles: &ClothParticles) -> f64 {
-    let mut network: MassSpring<f64> = scene.network().expect("a sound network");
+    let mut network: MassSpring<f64> = scene.network().expect("a valid network");
     for (index, position) in particles.positions().enumerate() {
         let velocity = particles.velocity(index).expect("it exists");
         network.positions[index] = position.as_dvec3().to_array();
@@ -79,9 +79,9 @@ fn energy(scene: &Scene, particles: &ClothParticles) -> f64 {
 #[test]
 fn an_undamped_swing_gains_no_energy() {
     for tethers in [false, true] {
-        let scene = Scene::swinging(17, 2.0, 0.5, 1.0e-3).expect("a sound scene");
+        let scene = Scene::swinging(17, 2.0, 0.5, 1.0e-3).expect("a valid scene");
         let mut still = scene.particles.clone();
-        let hanging = Scene::swinging(17, 2.0, 0.0, 1.0e-3).expect("a sound scene");
+        let hanging = Scene::swinging(17, 2.0, 0.0, 1.0e-3).expect("a valid scene");
         still.clone_from(&hanging.particles);
         let mut solver = hanging.solver(false);
         let damped = TickStep {
@@ -128,8 +128,8 @@ fn a_free_cloth_keeps_its_momentum() {
     };
     let grid = Cloth::new(12, 12, 0.1)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+        .expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     for index in 0..particles.len() {
         let phase = index as f32;
         let wave = Vec3::new(phase.sin(), (1.7 * phase).cos(), (0.3 * phase).sin());

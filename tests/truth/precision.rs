@@ -7,10 +7,10 @@ const TICKS: u32 = 30;
 
 /// The swing in f64, with the exact root.
 fn in_f64(scene: &Scene, substeps: u32) -> MassSpring<f64> {
-    let mut network = scene.network().expect("a sound network");
+    let mut network = scene.network().expect("a valid network");
     let method = Method::SmallSteps { substeps };
     let seconds = f64::from(scene.seconds);
-    let mut stepper = Stepper::new(method, &network, seconds).expect("a sound method");
+    let mut stepper = Stepper::new(method, &network, seconds).expect("a valid method");
     for _ in 0..TICKS {
         stepper.step(&mut network, GRAVITY.as_dvec3().to_array(), 0.0);
     }
@@ -35,7 +35,7 @@ fn ours(scene: &Scene, substeps: u32, truth: &MassSpring<f64>) -> f64 {
 /// against a converged run is within a tenth of an f64 run's, and beyond it goes on falling instead of rising.
 #[test]
 fn single_precision_holds_up_to_320_sub_steps() {
-    let scene = Scene::swinging(17, 2.0, 0.5, 1.0e-3).expect("a sound scene");
+    let scene = Scene::swinging(17, 2.0, 0.5, 1.0e-3).expect("a valid scene");
     let truth = in_f64(&scene, 2560);
     let mut at_40 = f64::INFINITY;
     for substeps in [5, 10, 20, 40, 80, 160, 320] {

@@ -2,7 +2,7 @@
 
 use bevy_drape::{
     cloth::SpringKind,
-    solver::{Control, Precision, methods::Scene},
+    solver::{Control, Substepping, methods::Scene},
 };
 
 /// What three seconds of a scene come to.
@@ -19,7 +19,7 @@ struct Run {
     jump: f32,
 }
 
-fn run(scene: &Scene, precision: Precision) -> Run {
+fn run(scene: &Scene, substepping: Substepping) -> Run {
     let mut particles = scene.particles.clone();
     let mut solver = scene.solver(true);
     let mut control = Control::default();
@@ -28,12 +28,12 @@ fn run(scene: &Scene, precision: Precision) -> Run {
     let (mut squares, mut count, mut before) = (0.0, 0_u32, 0);
     let mut backup = particles.clone();
     for frame in 0..180 {
-        let mut substeps = control.substeps(precision);
+        let mut substeps = control.substeps(substepping);
         backup.clone_from(&particles);
         let stretch = loop {
             let stretch = solver.advance(&mut particles, scene.step(substeps), &[], |_, _| false);
             total += substeps;
-            let Some(more) = control.observe(precision, stretch) else {
+            let Some(more) = control.observe(substepping, stretch) else {
                 break stretch;
             };
             particles.clone_from(&backup);
@@ -75,8 +75,8 @@ fn a_cloth_hung_by_two_corners_stretches_by_a_few_per_cent() {
         (64, 30, 0.06, 0.008),
         (128, 40, 0.25, 0.015),
     ] {
-        let scene = Scene::hung_by_corners(side, 2.0).expect("a sound scene");
-        let run = run(&scene, Precision::Substeps(substeps));
+        let scene = Scene::hung_by_corners(side, 2.0).expect("a valid scene");
+        let run = run(&scene, Substepping::Fixed(substeps));
         println!("hung by corners, {side}², {substeps} sub-steps: {run:?}");
         assert!(
             run.last_second < largest && run.rms < rms,
@@ -89,14 +89,14 @@ fn a_cloth_hung_by_two_corners_stretches_by_a_few_per_cent() {
 /// does.
 #[test]
 fn a_tolerance_takes_fewer_sub_steps_than_a_fixed_number() {
-    let scene = Scene::hung_by_corners(32, 2.0).expect("a sound scene");
-    let precision = Precision::Tolerance {
+    let scene = Scene::hung_by_corners(32, 2.0).expect("a valid scene");
+    let substepping = Substepping::Adaptive {
         stretch: 0.05,
-        most_substeps: 200,
+        max_substeps: 200,
     };
-    let chosen = run(&scene, precision);
+    let chosen = run(&scene, substepping);
     let fixed = (4..=200)
-        .map(|substeps| (substeps, run(&scene, Precision::Substeps(substeps))))
+        .map(|substeps| (substeps, run(&scene, Substepping::Fixed(substeps))))
         .find(|(_, run)| run.ever <= 0.05);
     let (smallest, fixed) = fixed.expect("some number holds it");
     println!("5 % at 32²: chosen {chosen:?}, smallest fixed number {smallest}, {fixed:?}");

@@ -40,13 +40,13 @@ impl Chart {
         }
     }
 
-    /// With so many pixels across and down.
+    /// With this many pixels across and down.
     pub fn sized(mut self, size: [u32; 2]) -> Self {
         self.size = size;
         self
     }
 
-    /// With so many panels side by side.
+    /// With this many panels side by side.
     pub fn columns(mut self, columns: usize) -> Self {
         self.columns = columns;
         self

@@ -159,8 +159,8 @@ impl Experiment for Cpu {
 
     fn check(rows: &[Row]) -> Result<(), String> {
         for row in rows {
-            let is_sound = row.cpu_percent >= 0.0 && row.cpu_percent.is_finite();
-            if !is_sound || row.fps > 1.2 * PACE {
+            let is_valid = row.cpu_percent >= 0.0 && row.cpu_percent.is_finite();
+            if !is_valid || row.fps > 1.2 * PACE {
                 return Err(format!(
                     "{}: {:.0} % at {:.0} frames a second",
                     row.volume, row.cpu_percent, row.fps

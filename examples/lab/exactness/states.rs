@@ -30,10 +30,10 @@ impl State {
         let [columns, rows] = [0; 2].map(|_| 4 + random.below(30));
         let grid = Cloth::new(columns, rows, SPACING)
             .grid(Vec3::ONE)
-            .expect("a sound grid");
+            .expect("a valid grid");
         let material = ClothMaterial::COTTON;
         let springs = Springs::of_grid(&grid, &material);
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
         let bent = bent(random, &grid);
         let moves = moves(random, &grid, &bent);
         let mut measure = |part: f32| {

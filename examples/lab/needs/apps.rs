@@ -106,7 +106,7 @@ impl Stage {
         self.app.update();
     }
 
-    /// Runs until so many cloths are asleep.
+    /// Runs until this many cloths are asleep.
     fn settle(&mut self, asleep: usize) {
         for _ in 0..4000 {
             if self.asleep() >= asleep {

@@ -2,8 +2,8 @@
 
 use super::{
     DEV, Row, apps, depth, entities, get,
-    precision::{self, SCENE as SWING},
     search::{self, REFIT, REST_SHAPE, SCAN, SCENES},
+    substepping::{self, SCENE as SWING},
 };
 use crate::chart::{Axis, Chart, Kind, Look, Panel, Point, Series};
 
@@ -96,7 +96,7 @@ fn dots(rows: &[Row], scene: &str, title: &str, error: fn(f64) -> String) -> Pan
     }
     // Tolerances stand out from fixed numbers; what they are is beside them.
     let is_held = |row: &Row| {
-        precision::TOLERANCES
+        substepping::TOLERANCES
             .iter()
             .any(|(name, _)| *name == row.choice)
     };

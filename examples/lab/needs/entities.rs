@@ -147,7 +147,7 @@ fn tick(
 pub fn measure(run: &mut Run) -> Vec<Row> {
     let turns = run.either(1, 11);
     run.set("columns or entities", format!("32², 2 m wide, hung by its top row, let go at 0.5 rad, threads of 0.001 m/N; 20 sub-steps of 1/60 s on one thread, {turns} times a second; the scalar loop over columns and that over entities sweep the springs one by one, in the solver's order"));
-    let scene = Scene::swinging(32, 2.0, 0.5, 1.0e-3).expect("a sound scene");
+    let scene = Scene::swinging(32, 2.0, 0.5, 1.0e-3).expect("a valid scene");
     let step = scene.step(SUBSTEPS);
     let method = Method::SmallSteps { substeps: SUBSTEPS };
     let mut ms = [const { Vec::new() }; 3];
@@ -155,9 +155,9 @@ pub fn measure(run: &mut Run) -> Vec<Row> {
     for _ in 0..turns {
         let mut solver = scene.solver(false);
         let mut particles = scene.particles.clone();
-        let mut scalar = scene.network::<f32>().expect("a sound scene");
+        let mut scalar = scene.network::<f32>().expect("a valid scene");
         let mut stepper =
-            Stepper::new(method, &scalar, f64::from(step.seconds)).expect("a sound step");
+            Stepper::new(method, &scalar, f64::from(step.seconds)).expect("a valid step");
         let mut entities = Entities::new(&scene);
         for _ in 0..60 {
             let times = [

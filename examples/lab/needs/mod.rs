@@ -6,10 +6,10 @@
 mod apps;
 mod charts;
 mod entities;
-mod precision;
 #[path = "../../../benches/contact/press.rs"]
 mod press;
 mod search;
+mod substepping;
 
 use serde::{Deserialize, Serialize};
 
@@ -76,7 +76,7 @@ impl Experiment for Needs {
         let parts = [
             apps::one_cloth,
             apps::many_cloths,
-            precision::measure,
+            substepping::measure,
             search::trees,
             search::narrow_phases,
             entities::measure,
@@ -91,9 +91,9 @@ impl Experiment for Needs {
 
     fn check(rows: &[Row]) -> Result<(), String> {
         for row in rows {
-            let is_sound = row.ms_per_tick > 0.0 && row.error >= 0.0;
+            let is_valid = row.ms_per_tick > 0.0 && row.error >= 0.0;
             let is_exact = ![INSIDE, WRONG].contains(&row.error_of.as_str()) || row.error == 0.0;
-            if !is_sound || !is_exact {
+            if !is_valid || !is_exact {
                 return Err(format!(
                     "{}, {}: {} {}",
                     row.scene, row.choice, row.error, row.error_of
@@ -102,8 +102,8 @@ impl Experiment for Needs {
         }
         let error =
             |scene: &str, choice: &str| get(rows, scene, choice).map_or(f64::NAN, |row| row.error);
-        for (name, stretch) in precision::TOLERANCES {
-            let found = error(precision::SCENE, name);
+        for (name, stretch) in substepping::TOLERANCES {
+            let found = error(substepping::SCENE, name);
             if !is_within(found, f64::from(stretch)) {
                 return Err(format!("{name}: stretched by {found}"));
             }
@@ -142,8 +142,8 @@ impl Experiment for Needs {
         let percent = |scene: &str, choice: &str| 100.0 * error(scene, choice);
         use apps::{ALL_ASLEEP, ALL_AWAKE, ASLEEP, FAR, HUNDRED, NEAR, ONE, ONE_TOUCHED, TOUCHING};
         use entities::{COLUMNS, ENTITIES, SCALAR, SCENE as HUNG};
-        use precision::SCENE as SWING;
         use search::{PARTICLES, REFIT, REST_SHAPE, SCAN, TRIANGLES};
+        use substepping::SCENE as SWING;
         let held = |name: &str, fixed: &str| {
             format!(
                 "{name} takes {:.3} ms for {:.1} % at most, {fixed} {:.3} ms for {:.1} %",
@@ -177,7 +177,7 @@ impl Experiment for Needs {
             format!(
                 "For the finest, {}. {}",
                 held("tolerance 1 %", "40 sub-steps"),
-                precision_verdict(rows)
+                substepping_verdict(rows)
             ),
             format!(
                 "Tree against scan, one ball: the rest shape is {} × as fast as a scan at 16², {} × at 64², {} × at 256²; with 100 balls {}, {} and {} ×, refitted AABBs {}, {} and {} ×. {}",
@@ -248,20 +248,24 @@ impl Experiment for Needs {
     }
 }
 
-/// Not a number is not.
+/// NaN is not.
 fn is_within(value: f64, limit: f64) -> bool {
     value <= limit
 }
 
 /// Whether a tolerance is the cheaper way to its own stretch.
-fn precision_verdict(rows: &[Row]) -> String {
-    let scene = || rows.iter().filter(|row| row.scene == precision::SCENE);
+fn substepping_verdict(rows: &[Row]) -> String {
+    let scene = || rows.iter().filter(|row| row.scene == substepping::SCENE);
     let mut losers = Vec::new();
-    for (name, _) in precision::TOLERANCES {
-        let Some(tolerance) = get(rows, precision::SCENE, name) else {
+    for (name, _) in substepping::TOLERANCES {
+        let Some(tolerance) = get(rows, substepping::SCENE, name) else {
             continue;
         };
-        let is_tolerance = |row: &&Row| precision::TOLERANCES.iter().any(|(t, _)| *t == row.choice);
+        let is_tolerance = |row: &&Row| {
+            substepping::TOLERANCES
+                .iter()
+                .any(|(t, _)| *t == row.choice)
+        };
         let beats =
             |row: &&Row| row.ms_per_tick <= tolerance.ms_per_tick && row.error <= tolerance.error;
         losers.extend(
@@ -353,7 +357,7 @@ mod tests {
             "scene,choice,ms_per_tick,error,error_of,ms_low,ms_high",
         );
         assert!(rows.iter().all(|row| row.ms_low <= row.ms_high));
-        let stretch = |choice| get(&rows, precision::SCENE, choice).map_or(0.0, |row| row.error);
+        let stretch = |choice| get(&rows, substepping::SCENE, choice).map_or(0.0, |row| row.error);
         assert!(stretch("5 sub-steps") > stretch("40 sub-steps"));
     }
 }

@@ -85,14 +85,14 @@ impl<'a> Group<'a> {
     }
 
     /// The smallest error of those that `are` meant (m).
-    fn least_error(&self, are: impl Fn(&str) -> bool) -> f64 {
+    fn min_error(&self, are: impl Fn(&str) -> bool) -> f64 {
         let meant = self.0.iter().filter(|row| are(&row.method));
         meant.map(|row| row.error()).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a peer comes nearer to the truth than all of ours.
     pub fn peer_is_most_exact(&self) -> bool {
-        MARGIN * self.least_error(is_rival) < self.least_error(is_ours)
+        MARGIN * self.min_error(is_rival) < self.min_error(is_ours)
     }
 
     /// The peer that is ahead of ours the most, and the fastest of ours that is as exact, if any is.
@@ -315,7 +315,7 @@ fn stiff(rows: &[Row]) -> Option<String> {
         .iter()
         .find(|group| group.first().scene == STIFF_SWINGING)?;
     let hanging = of(STIFF_HANGING, swinging.first().particles)?;
-    let least = |group: &Group| group.least_error(|method| method == PROJECTIVE);
+    let least = |group: &Group| group.min_error(|method| method == PROJECTIVE);
     let ours = swinging
         .of(OURS)
         .find(|row| row.setting == "20 sub-steps")?;

@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use bevy::math::{DVec3, Vec3, bounding::BoundingSphere};
 use bevy_drape::{
     cloth::ClothParticles,
-    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::TopDownQuery,
     solver::{
-        Control, Precision, Solver, Stretch,
+        Control, Solver, Stretch, Substepping,
         methods::{MassSpring, Method, Real, Stepper},
     },
 };
@@ -18,9 +18,9 @@ use super::scenes::{Ball, Case};
 /// A method with its settings.
 #[derive(Debug, Clone, Copy)]
 pub enum Way {
-    /// So many steps a tick.
+    /// This many steps a tick.
     Peer(Method, u32),
-    Ours(Precision, Tethers),
+    Ours(Substepping, Tethers),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +59,7 @@ impl Way {
         let fixed = |tethers| {
             substeps
                 .iter()
-                .map(move |&count| Self::Ours(Precision::Substeps(count), tethers))
+                .map(move |&count| Self::Ours(Substepping::Fixed(count), tethers))
         };
         let tolerances: &[f32] = if is_quick {
             &[0.02, 0.005]
@@ -67,12 +67,12 @@ impl Way {
             &[0.05, 0.02, 0.01, 0.005, 0.002]
         };
         let tolerance = |&stretch: &f32| {
-            let most_substeps = 100;
-            let precision = Precision::Tolerance {
+            let max_substeps = 100;
+            let substepping = Substepping::Adaptive {
                 stretch,
-                most_substeps,
+                max_substeps,
             };
-            Self::Ours(precision, Tethers::On)
+            Self::Ours(substepping, Tethers::On)
         };
         let small = |&substeps: &u32| Self::Peer(Method::SmallSteps { substeps }, 1);
         let position_based =
@@ -132,7 +132,7 @@ impl Way {
             Self::Peer(Method::PositionBased { .. }, _) => POSITION_BASED,
             Self::Peer(Method::SmallSteps { .. }, _) => SMALL_STEPS,
             Self::Peer(Method::ProjectiveDynamics { .. }, _) => PROJECTIVE,
-            Self::Ours(Precision::Tolerance { .. }, _) => TOLERANCE,
+            Self::Ours(Substepping::Adaptive { .. }, _) => TOLERANCE,
             Self::Ours(_, Tethers::On) => OURS,
             Self::Ours(_, Tethers::Off) => UNTETHERED,
         }
@@ -153,8 +153,8 @@ impl Way {
                 iterations(count, steps)
             }
             Self::Peer(Method::SmallSteps { substeps }, _)
-            | Self::Ours(Precision::Substeps(substeps), _) => format!("{substeps} sub-steps"),
-            Self::Ours(Precision::Tolerance { stretch, .. }, _) => {
+            | Self::Ours(Substepping::Fixed(substeps), _) => format!("{substeps} sub-steps"),
+            Self::Ours(Substepping::Adaptive { stretch, .. }, _) => {
                 format!("{} % of stretch", (1.0e5 * stretch).round() / 1.0e3)
             }
         }
@@ -172,8 +172,8 @@ impl<'a, R: Real> Player<'a, R> {
     pub fn new(case: &'a Case, way: Way) -> Self {
         match way {
             Way::Peer(method, steps) => Self::Peer(Box::new(Peer::new(case, method, steps))),
-            Way::Ours(precision, tethers) => {
-                Self::Ours(Box::new(Ours::new(case, precision, tethers)))
+            Way::Ours(substepping, tethers) => {
+                Self::Ours(Box::new(Ours::new(case, substepping, tethers)))
             }
         }
     }
@@ -231,7 +231,7 @@ pub struct Peer<'a, R: Real> {
 
 impl<'a, R: Real> Peer<'a, R> {
     fn new(case: &'a Case, method: Method, steps: u32) -> Self {
-        let network: MassSpring<R> = case.scene.network().expect("a sound network");
+        let network: MassSpring<R> = case.scene.network().expect("a valid network");
         // A ball is answered after each step: of small ones, after each of these.
         let (method, steps, substeps) = match method {
             Method::SmallSteps { substeps } if case.ball.is_some() => {
@@ -241,7 +241,7 @@ impl<'a, R: Real> Peer<'a, R> {
             _ => (method, steps, 1),
         };
         let seconds = f64::from(case.scene.seconds) / f64::from(steps);
-        let stepper = Stepper::new(method, &network, seconds).expect("a sound method");
+        let stepper = Stepper::new(method, &network, seconds).expect("a valid method");
         Self {
             case,
             network,
@@ -282,7 +282,7 @@ pub struct Ours<'a> {
     /// At the end of the last tick, as is the speed of the fastest particle (m/s).
     stretch: Stretch,
     fastest: f32,
-    precision: Precision,
+    substepping: Substepping,
     control: Control,
     detection: Detection,
     query: TopDownQuery,
@@ -291,7 +291,7 @@ pub struct Ours<'a> {
 }
 
 impl<'a> Ours<'a> {
-    fn new(case: &'a Case, precision: Precision, tethers: Tethers) -> Self {
+    fn new(case: &'a Case, substepping: Substepping, tethers: Tethers) -> Self {
         let solver = case.scene.solver(tethers == Tethers::On);
         Self {
             case,
@@ -300,7 +300,7 @@ impl<'a> Ours<'a> {
             stretch: solver.measure(&case.scene.particles),
             solver,
             fastest: 0.0,
-            precision,
+            substepping,
             control: Control::default(),
             detection: Detection::default(),
             query: TopDownQuery::default(),
@@ -320,7 +320,7 @@ impl<'a> Ours<'a> {
     /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
     fn tick(&mut self, tick: u32) {
         let scene = &self.case.scene;
-        let terms = Terms {
+        let contact_settings = ContactSettings {
             particle_radius: 0.0,
             friction: 0.0,
             narrow_phase: NarrowPhase::Particles,
@@ -334,17 +334,17 @@ impl<'a> Ours<'a> {
             let (probe, against) =
                 // Particles, not triangles, are tested.
                 self.detection
-                    .probe(&ball, &terms, &scene.grid, 0.0, &cloth);
+                    .probe(&ball, &contact_settings, &scene.grid, 0.0, &cloth);
             self.query.clear();
             self.query.scan(&self.particles, &probe);
             let found = self.query.candidates();
             self.detection
                 .add(0, &ball, against, found, &self.particles, &scene.grid);
         }
-        if matches!(self.precision, Precision::Tolerance { .. }) {
+        if matches!(self.substepping, Substepping::Adaptive { .. }) {
             self.backup.clone_from(&self.particles);
         }
-        let mut substeps = self.control.substeps(self.precision);
+        let mut substeps = self.control.substeps(self.substepping);
         loop {
             let step = scene.step(substeps);
             let detection = &mut self.detection;
@@ -354,12 +354,12 @@ impl<'a> Ours<'a> {
                 self.solver
                     .advance(&mut self.particles, step, &[], |particles, substep| {
                         farthest = substep.farthest_move;
-                        has_ball && detection.respond(particles, &terms, substep, |_| {})
+                        has_ball && detection.respond(particles, &contact_settings, substep, |_| {})
                     });
             self.taken += substeps;
             self.stretch = stretch;
             self.fastest = farthest * substeps as f32 / scene.seconds;
-            let Some(more) = self.control.observe(self.precision, stretch) else {
+            let Some(more) = self.control.observe(self.substepping, stretch) else {
                 // Of the way through the tick that counts: beginning anew forgets the others'.
                 let depths = self.detection.touches().iter().map(|touch| touch.deepest);
                 self.deepest = self.deepest.max(f64::from(depths.fold(0.0, f32::max)));

@@ -31,7 +31,7 @@ use scenes::{Ball, Case, STIFF_SWINGING, TICKS};
 const LONG: f64 = 0.5;
 
 /// Smaller errors (m) may be the rounding of single precision, which more sub-steps do not make less.
-const LEAST_KNOWN: f64 = 1.0e-4;
+const MIN_KNOWN: f64 = 1.0e-4;
 
 /// In short runs and in whole ones.
 const TURNS: [usize; 2] = [3, 5];
@@ -109,7 +109,7 @@ impl Experiment for Pareto {
         for (case, reference) in cases.iter().zip(&references) {
             // Neither turning a cloth nor a ball changes it.
             let frequency = frequencies.entry(case.particles()).or_insert_with(|| {
-                let network: MassSpring<f64> = case.scene.network().expect("a sound network");
+                let network: MassSpring<f64> = case.scene.network().expect("a valid network");
                 largest_frequency(&network) / case.stiffness()
             });
             let ways = Way::all(
@@ -123,11 +123,11 @@ impl Experiment for Pareto {
 
     fn check(rows: &[Row]) -> Result<(), String> {
         for row in rows {
-            let is_sound = row.ms_per_second > 0.0
+            let is_valid = row.ms_per_second > 0.0
                 && row.rms_error_m.is_finite()
                 && row.max_stretch.is_finite()
                 && row.max_penetration_m >= 0.0;
-            if !is_sound {
+            if !is_valid {
                 return Err(format!(
                     "{}: {} by {} is no result",
                     row.scene, row.method, row.setting
@@ -161,7 +161,7 @@ impl Experiment for Pareto {
             }
             let own: Vec<f64> = group.of(OURS).map(Row::error).collect();
             if let [first, .., last] = own[..]
-                && first > (4.0 * group.first().reference_error_m).max(LEAST_KNOWN)
+                && first > (4.0 * group.first().reference_error_m).max(MIN_KNOWN)
                 && last > first / 2.0
             {
                 return Err(format!(
@@ -237,7 +237,7 @@ impl Outcome {
     fn see(&mut self, threads: &[([usize; 2], f64)], positions: &[DVec3]) {
         for &([a, b], rest_length) in threads {
             let stretch = positions[a].distance(positions[b]) / rest_length - 1.0;
-            // What is no number has to be seen.
+            // NaN has to be seen.
             if stretch > self.stretch || stretch.is_nan() {
                 self.stretch = stretch;
             }

@@ -79,7 +79,7 @@ impl Reference {
     }
 }
 
-/// In f64, with so many sub-steps a tick.
+/// In f64, with this many sub-steps a tick.
 fn film(case: &Case, substeps: u32) -> Film {
     let way = Way::Peer(Method::SmallSteps { substeps }, 1);
     let mut player: Player<f64> = Player::new(case, way);

@@ -18,8 +18,8 @@ const DAMPING_BY_BALL: f32 = 0.1;
 
 /// What lies in the plane of the cloth, and what stands still (m, m/s): as the library's solver, peers take what is
 /// less for nothing. What a ball's push leaves far from it is soon below 1e-38, which machines are slow with.
-const LEAST_PLACE: f32 = 1.0e-15;
-const LEAST_SPEED: f32 = 1.0e-12;
+const MIN_PLACE: f32 = 1.0e-15;
+const MIN_SPEED: f32 = 1.0e-12;
 
 /// Those of which findings speak on their own.
 pub const BALL: &str = "ball";
@@ -37,7 +37,7 @@ impl Case {
     /// All scenes with cloths of `side`² particles.
     pub fn all(side: u32) -> [Self; 5] {
         let case = |name, angle, compliance, damping, ball| {
-            let mut scene = Scene::swinging(side, WIDTH, angle, compliance).expect("a sound scene");
+            let mut scene = Scene::swinging(side, WIDTH, angle, compliance).expect("a valid scene");
             scene.material.damping = damping;
             Self { name, scene, ball }
         };
@@ -93,7 +93,7 @@ impl Ball {
         let radius = R::from(Self::RADIUS);
         let zero = R::from(0.0);
         let dot = |a: [R; 3], b: [R; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let (least_place, least_speed) = (R::from(LEAST_PLACE), R::from(LEAST_SPEED));
+        let (min_place, min_speed) = (R::from(MIN_PLACE), R::from(MIN_SPEED));
         let flush = |values: &mut [R; 3], least: R| {
             for value in values {
                 if *value < least && *value > zero - least {
@@ -104,8 +104,8 @@ impl Ball {
         let mut deepest = zero;
         let each = network.positions.iter_mut().zip(&mut network.velocities);
         for ((position, own), &inverse_mass) in each.zip(&network.inverse_mass) {
-            flush(position, least_place);
-            flush(own, least_speed);
+            flush(position, min_place);
+            flush(own, min_speed);
             let offset = [0, 1, 2].map(|axis| position[axis] - centre[axis]);
             let square = dot(offset, offset);
             if square >= radius * radius || square <= zero || inverse_mass <= zero {

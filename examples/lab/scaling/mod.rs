@@ -25,7 +25,7 @@ use searchers::{BRUTE, PARRY, SCAN, Searcher, Ticking};
 const FITTED_FROM: u32 = 32;
 
 /// How long something short is done again and again (s).
-const LEAST: f64 = 2.0e-4;
+const MIN: f64 = 2.0e-4;
 
 pub struct Scaling;
 
@@ -99,15 +99,14 @@ impl Experiment for Scaling {
             let mut stretch_us = Vec::new();
             for _ in 0..turns {
                 let solver = ticking.seconds(&draped, &ball);
-                stretch_us.push(1.0e6 * ticking.stretch_seconds(LEAST, &draped));
+                stretch_us.push(1.0e6 * ticking.stretch_seconds(MIN, &draped));
                 for (searcher, times) in searchers.iter_mut().zip(&mut times) {
                     let rebuild = if searcher.has_rebuild() {
-                        seconds_each(LEAST, || searcher.rebuild(&draped))
+                        seconds_each(MIN, || searcher.rebuild(&draped))
                     } else {
                         0.0
                     };
-                    let search =
-                        seconds_each(LEAST, || searcher.search(&mut query, &draped, &ball));
+                    let search = seconds_each(MIN, || searcher.search(&mut query, &draped, &ball));
                     let all = [rebuild, search, solver + rebuild + search];
                     for (times, seconds) in times.iter_mut().zip(all) {
                         times.push(1.0e6 * seconds);

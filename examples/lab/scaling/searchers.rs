@@ -3,7 +3,7 @@
 use bevy::math::{Vec3, bounding::BoundingSphere};
 use bevy_drape::{
     cloth::{Cloth, ClothGrid, ClothMaterial},
-    contact::{Detection, MovingCollider, NarrowPhase, Terms},
+    contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{Core, NodeBounds, Probe, TopDownQuery, brute_force},
     solver::{Solver, TickStep},
 };
@@ -111,7 +111,7 @@ impl Ticking {
             solver: Solver::new(&draped.springs, &draped.particles),
             grid: Cloth::new(side, side, SPACING)
                 .grid(Vec3::ONE)
-                .expect("a sound grid"),
+                .expect("a valid grid"),
             detection: Detection::default(),
             query: TopDownQuery::default(),
         }
@@ -129,7 +129,7 @@ impl Ticking {
             return f64::NAN;
         };
         let collider = MovingCollider::ball(ball.radius, centre, centre);
-        let terms = Terms {
+        let settings = ContactSettings {
             particle_radius: ball.particle_radius,
             friction: ClothMaterial::COTTON.friction,
             narrow_phase: NarrowPhase::Particles,
@@ -140,7 +140,7 @@ impl Ticking {
         self.detection.begin(4.0 * SPACING);
         let (probe, against) = self
             .detection
-            .probe(&collider, &terms, &self.grid, SPACING, &cloth);
+            .probe(&collider, &settings, &self.grid, SPACING, &cloth);
         self.query.clear();
         self.query.scan(&particles, &probe);
         let found = self.query.candidates();
@@ -156,7 +156,7 @@ impl Ticking {
         } = self;
         seconds(|| {
             solver.advance(&mut particles, step, &[], |particles, substep| {
-                detection.respond(particles, &terms, substep, |_| {})
+                detection.respond(particles, &settings, substep, |_| {})
             });
         })
     }

@@ -12,7 +12,7 @@ use bevy_drape::{
 /// A method and its settings.
 #[derive(Debug, Clone, Copy)]
 pub enum Way {
-    /// A step cut into so many of the method's own.
+    /// A step cut into this many of the method's own.
     Peer(Method, u32),
     /// The library's solver.
     Ours { substeps: u32, tethers: bool },
@@ -81,7 +81,7 @@ impl Moving {
     pub fn new(scene: &Scene, way: Way, seconds: f64) -> Self {
         let kernel = match way {
             Way::Peer(method, cuts) => {
-                let mut network: MassSpring<f64> = scene.network().expect("a sound network");
+                let mut network: MassSpring<f64> = scene.network().expect("a valid network");
                 for (index, velocity) in network.velocities.iter_mut().enumerate() {
                     let given = scene.particles.velocity(index).expect("it exists");
                     *velocity = given.as_dvec3().to_array();
@@ -176,7 +176,7 @@ impl Moving {
             .sum()
     }
 
-    /// The largest stretch of a structural spring, at least 0; not a number if one's end is not.
+    /// The largest stretch of a structural spring, at least 0; NaN if one's end is.
     pub fn stretch(&self) -> f64 {
         super::largest(self.ratios().map(|ratio| ratio - 1.0))
     }

@@ -41,7 +41,7 @@ const WAYS: [(&str, fn() -> Way); 5] = [
 const ROUNDING: f64 = 1.0e-4;
 
 fn swing(damping: f32) -> Scene {
-    let mut scene = Scene::swinging(9, 1.0, 1.0, 1.0e-3).expect("a sound scene");
+    let mut scene = Scene::swinging(9, 1.0, 1.0, 1.0e-3).expect("a valid scene");
     scene.material.damping = damping;
     scene
 }

@@ -33,7 +33,7 @@ const WAYS: [(&str, fn() -> Way); 6] = [
 
 fn cell(name: &str, way: Way, ratio: f32, is_edge: bool) -> Row {
     // So stiff that what stretches is the method's fault: 0.1 % are the material's own under the heaviest edge.
-    let mut scene = Scene::swinging(SIDE, 2.0, 0.5, 1.0e-6).expect("a sound scene");
+    let mut scene = Scene::swinging(SIDE, 2.0, 0.5, 1.0e-6).expect("a valid scene");
     scene.material.damping = 0.01;
     let columns = if is_edge {
         0..SIDE
@@ -46,7 +46,7 @@ fn cell(name: &str, way: Way, ratio: f32, is_edge: bool) -> Row {
         scene
             .particles
             .set_inverse_mass(cell, w / ratio)
-            .expect("a sound mass");
+            .expect("a valid mass");
     }
     let mut moving = Moving::new(&scene, way, scene.seconds.into());
     let (mut last_second, mut ever) = (0.0, 0.0);

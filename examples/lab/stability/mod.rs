@@ -196,7 +196,7 @@ const TORN: &str = "torn";
 const SHREDDED: &str = "shredded";
 
 /// What a cloth is called whose largest stretch is this: five per cent is what an eye notices, a thread of twice its
-/// length would have torn, and one of eleven times, or one whose length is no number, is what no cloth is any more.
+/// length would have torn, and one of eleven times, or one whose length is NaN, is what no cloth is any more.
 fn outcome_of(stretch: f64) -> &'static str {
     match stretch {
         ..=0.05 => HOLDS,
@@ -232,7 +232,7 @@ fn values(rows: &[Row], column: impl Fn(&Row) -> f64) -> Vec<f64> {
     values
 }
 
-/// A value between the edges of a chart; what is beyond lies on them, and what is not a number on the far one.
+/// A value between the edges of a chart; what is beyond lies on them, and NaN on the far one.
 fn between(value: f64, [low, high]: [f64; 2]) -> f64 {
     if value.is_nan() {
         high
@@ -261,7 +261,7 @@ fn methods(rows: &[Row]) -> Vec<&str> {
     distinct(rows.iter().map(|row| row.method.as_str()))
 }
 
-/// The largest of some values; not a number if one of them is not, 0 of none.
+/// The largest of some values; NaN if one of them is, 0 of none.
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |largest: f64, value| {
         if value.is_nan() || largest.is_nan() {

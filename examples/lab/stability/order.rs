@@ -30,13 +30,13 @@ const TETHERED: &str = "bevy_drape, tethers";
 const SWEEPS: u32 = 20;
 
 fn scene(side: u32) -> Scene {
-    Scene::hung_by_corners(side, 2.0).expect("a sound scene")
+    Scene::hung_by_corners(side, 2.0).expect("a valid scene")
 }
 
 fn cell(order: &'static str, side: u32, sweeps: u32) -> Row {
     let scene = scene(side);
     let substeps = SWEEPS / sweeps;
-    let mut network: MassSpring<f32> = scene.network().expect("a sound network");
+    let mut network: MassSpring<f32> = scene.network().expect("a valid network");
     match order {
         // As a loop over the particles makes them: to the right, down, and along both diagonals.
         ROWS | ALTERNATING => network.springs.sort_by_key(|spring| {
@@ -122,7 +122,7 @@ fn with_one(rows: &[Row], order: &str, side: f64) -> f64 {
 fn check(rows: &[Row]) -> Result<(), String> {
     let (colours, by_row) = (with_one(rows, COLOURS, 32.0), with_one(rows, ROWS, 32.0));
     ensure(colours < 0.3, || format!("colour by colour: {colours}"))?;
-    // Not a number is no less.
+    // NaN is no less.
     ensure(by_row > 1.0 || by_row.is_nan(), || {
         format!("row by row: {by_row}")
     })?;

@@ -42,11 +42,11 @@ fn outcome(error: f64, without: f64) -> &'static str {
 }
 
 fn scene() -> Scene {
-    Scene::swinging(17, 2.0, 0.5, 1.0e-3).expect("a sound scene")
+    Scene::swinging(17, 2.0, 0.5, 1.0e-3).expect("a valid scene")
 }
 
 fn in_f64(scene: &Scene, substeps: u32) -> MassSpring<f64> {
-    let mut network = scene.network().expect("a sound network");
+    let mut network = scene.network().expect("a valid network");
     let method = Method::SmallSteps { substeps };
     let mut stepper =
         Stepper::new(method, &network, scene.seconds.into()).expect("a method for it");

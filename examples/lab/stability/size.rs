@@ -48,7 +48,7 @@ const ALLOWED: f64 = 0.05;
 
 /// Of cotton, as the plugin has it by default.
 fn scene(side: u32, width: f32) -> Scene {
-    let mut scene = Scene::hung_by_corners(side, width).expect("a sound scene");
+    let mut scene = Scene::hung_by_corners(side, width).expect("a valid scene");
     scene.material = ClothMaterial::COTTON;
     scene.springs = Springs::of_grid(&scene.grid, &scene.material);
     scene.seconds = 1.0 / 64.0;
@@ -268,8 +268,8 @@ fn pull(tethers: bool, speed: f32) -> Row {
             })
             .collect();
         let stretch = solver.advance(&mut particles, step, &pins, |_, _| false);
-        let is_sound = particles.validate().is_ok();
-        end = if is_sound {
+        let is_valid = particles.validate().is_ok();
+        end = if is_valid {
             f64::from(stretch.structural)
         } else {
             f64::NAN

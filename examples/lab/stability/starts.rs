@@ -51,7 +51,7 @@ const WAYS: [(&str, fn(&Scene) -> Way); 6] = [
     ("projective dynamics, 10", |_| Way::projective(10)),
     // Twice as many as the limit asks for.
     (EXPLICIT, |scene| {
-        let frequency = largest_frequency(&scene.network().expect("a sound network"));
+        let frequency = largest_frequency(&scene.network().expect("a valid network"));
         Way::explicit((f64::from(scene.seconds) * frequency).ceil() as u32)
     }),
 ];
@@ -73,7 +73,7 @@ fn outcome(stretch: f64, mean_length: f64) -> &'static str {
 
 fn at_rest() -> Scene {
     let mut scene =
-        Scene::swinging(SIDE, SPACING * (SIDE - 1) as f32, 0.0, 1.0e-3).expect("a sound scene");
+        Scene::swinging(SIDE, SPACING * (SIDE - 1) as f32, 0.0, 1.0e-3).expect("a valid scene");
     scene.material = ClothMaterial::COTTON;
     scene.springs = Springs::of_grid(&scene.grid, &scene.material);
     scene

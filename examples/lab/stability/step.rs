@@ -51,11 +51,11 @@ fn outcome(excess: f64) -> &'static str {
 }
 
 fn scene(stiffness: f64) -> Scene {
-    Scene::swinging(9, 1.0, 1.0, (1.0 / stiffness) as f32).expect("a sound scene")
+    Scene::swinging(9, 1.0, 1.0, (1.0 / stiffness) as f32).expect("a valid scene")
 }
 
 fn limit(scene: &Scene) -> f64 {
-    2.0 / largest_frequency(&scene.network().expect("a sound network"))
+    2.0 / largest_frequency(&scene.network().expect("a valid network"))
 }
 
 fn cell(name: &str, way: Way, step: f64, stiffness: f64) -> Row {

@@ -1,58 +1,35 @@
 //! The particles of a cloth, in columns.
 
+mod id;
+#[cfg(test)]
+mod tests;
+mod upkeep;
+mod validity;
+
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{
-    ClothError, ClothGrid, ClothMaterial, Pins,
-    lanes::{Block, Layout, Slot},
-};
+use super::{Block, ClothError, ClothMaterial, Layout, Pins, Slot, Surface};
 
-#[cfg(test)]
-mod tests;
-mod upkeep;
+pub use id::ParticleId;
 
 /// The sub-step that displacements span until the first tick says otherwise: 20 a tick of Bevy's 64 Hz.
 const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
 
-/// Where a particle may be at most (m): distances between such can still be squared in `f32`.
-const FARTHEST: f32 = 1.0e18;
-
-/// What an inverse mass may be at most (1/kg).
-const LARGEST_INVERSE_MASS: f32 = 1.0e15;
-
-/// Which particle: an index, or (row, column).
-#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ParticleId {
-    /// `row × columns + column`.
-    Index(usize),
-    /// (row, column), from the top left.
-    Cell(u32, u32),
-}
-
-impl From<usize> for ParticleId {
-    fn from(index: usize) -> Self {
-        Self::Index(index)
-    }
-}
-
-impl From<(u32, u32)> for ParticleId {
-    fn from((row, column): (u32, u32)) -> Self {
-        Self::Cell(row, column)
-    }
-}
-
 /// The particles of a cloth: position, displacement and inverse mass, in columns of eight lanes.
+///
+/// Those of a grid are in rows; those of a mesh are one row, in an order in which neighbours are near each other:
+/// [`Surface::particle_of_vertex`] says which particle a vertex is.
 ///
 /// Everything is in metres in the cloth's own frame: the entity's global translation and rotation, with the
 /// scale already multiplied in. The state is (position, displacement) rather than two positions because
 /// position − previous position, taken from rounded numbers, loses gravity as steps shrink.
 ///
 /// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write between
-/// ticks; emptying it (`*particles = default()`) weaves the cloth anew at rest.
+/// ticks; emptying it (`*particles = default()`) builds the cloth anew at rest.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {
@@ -72,22 +49,20 @@ impl Default for ClothParticles {
 }
 
 impl ClothParticles {
-    /// The particles of `grid`, at rest, all of them free and with masses from `material`.
+    /// The particles of a surface, at rest, all of them free and with masses from `material`.
     ///
     /// # Errors
     /// A mass that a float can't hold or invert.
-    pub fn at_rest(grid: &ClothGrid, material: &ClothMaterial) -> Result<Self, ClothError> {
-        Self::check_mass(grid, material)?;
-        let mut particles = Self::of_layout(Layout::new(grid.columns(), grid.rows()));
-        for ((row, column), slot) in grid.cells().zip(particles.layout.slots()) {
-            let position = grid.rest_position(row, column);
+    pub fn at_rest(surface: &Surface, material: &ClothMaterial) -> Result<Self, ClothError> {
+        let mut particles = Self::of_layout(Layout::of(surface));
+        for (&position, slot) in surface.rest_positions().iter().zip(particles.layout.slots()) {
             particles.blocks[slot.block].set_position(slot.lane, position);
         }
-        particles.weigh(grid, material, &Pins::none())?;
+        particles.assign_masses(surface, material, &Pins::none())?;
         Ok(particles)
     }
 
-    /// Particles of no grid, at rest: positions (m) and inverse masses (1/kg, 0 for a pinned one), in one row.
+    /// Any particles, at rest: positions (m) and inverse masses (1/kg, 0 for a pinned one), in one row.
     ///
     /// # Errors
     /// [`ClothError::ParticleCount`] if there are not as many of either;
@@ -263,20 +238,20 @@ impl ClothParticles {
     /// # Errors
     /// [`ClothError::ParticleNotFinite`] for the first particle that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
-        if self.survey().is_sound {
+        if self.survey().is_valid {
             return Ok(());
         }
-        let sound = |slot: Slot| {
+        let valid = |slot: Slot| {
             let block = &self.blocks[slot.block];
             let squares = block.position(slot.lane).length_squared()
                 + block.displacement(slot.lane).length_squared();
-            is_sound(squares, block.inverse_mass(slot.lane))
+            validity::is_valid(squares, block.inverse_mass(slot.lane))
         };
         let Some((index, slot)) = self
             .layout
             .slots()
             .enumerate()
-            .find(|(_, slot)| !sound(*slot))
+            .find(|(_, slot)| !valid(*slot))
         else {
             return Ok(());
         };
@@ -305,10 +280,4 @@ impl ClothParticles {
             rows: self.rows(),
         })
     }
-}
-
-/// Whether a particle's numbers are, by the squares of position and displacement (m²) and its inverse mass
-/// (1/kg). False for NaN too.
-fn is_sound(squares: f32, inverse_mass: f32) -> bool {
-    (squares < FARTHEST * FARTHEST) & (0.0..=LARGEST_INVERSE_MASS).contains(&inverse_mass)
 }

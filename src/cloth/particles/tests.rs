@@ -1,11 +1,11 @@
-//! Indices, masses, velocities, and what is no number.
+//! Indices, masses, velocities, and NaN.
 
 use super::*;
 use crate::cloth::Cloth;
 
 fn particles() -> ClothParticles {
-    let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("a sound grid");
-    ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a sound material")
+    let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("a valid grid");
+    ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material")
 }
 
 #[test]
@@ -34,12 +34,12 @@ fn masses_add_up_to_density_times_area() {
 }
 
 #[test]
-fn respan_keeps_velocities() {
+fn set_substep_keeps_velocities() {
     let mut particles = particles();
     particles
         .set_velocity(5, Vec3::new(1.0, -2.0, 3.0))
         .expect("it exists");
-    particles.respan(0.01);
+    particles.set_substep(0.01);
     let velocity = particles.velocity(5).expect("it exists");
     assert!((velocity - Vec3::new(1.0, -2.0, 3.0)).length() < 1e-6);
     assert!((particles.displacement(5).expect("it exists").x - 0.01).abs() < 1e-8);

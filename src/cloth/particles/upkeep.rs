@@ -2,9 +2,9 @@
 
 use bevy::math::{Isometry3d, Vec3, bounding::BoundingSphere};
 
-use super::{ClothParticles, is_sound};
+use super::{ClothParticles, validity::is_valid};
 use crate::cloth::{
-    Block, ClothError, ClothGrid, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, W, X, Y, Z,
+    Block, ClothError, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, Surface, W, X, Y, Z,
 };
 
 /// Blocks that are compared at a time.
@@ -14,45 +14,46 @@ const BLOCKS: usize = 64;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Survey {
     /// Whether all is as [`ClothParticles::validate`] wants it.
-    pub is_sound: bool,
+    pub is_valid: bool,
     /// Speed of the fastest particle (m/s).
     pub largest_speed: f32,
 }
 
 impl ClothParticles {
-    /// Sets the inverse masses from the grid's areas, the material's density and the pins.
+    /// Sets the inverse masses from the surface's areas, the material's density and the pins.
     ///
     /// # Errors
-    /// A mass that a float can't hold or invert; a pin out of range. Nothing is changed then.
-    pub(crate) fn weigh(
+    /// A mass that a float can't hold or invert; a pin that names no particle. Nothing is changed then.
+    pub(crate) fn assign_masses(
         &mut self,
-        grid: &ClothGrid,
+        surface: &Surface,
         material: &ClothMaterial,
         pins: &Pins,
     ) -> Result<(), ClothError> {
-        pins.validate(grid)?;
-        Self::check_mass(grid, material)?;
-        for ((row, column), slot) in grid.cells().zip(self.layout.slots()) {
-            let mass = material.areal_density * grid.tributary_area(row, column);
+        pins.validate(surface)?;
+        Self::check_mass(surface, material)?;
+        for (&area, slot) in surface.areas().iter().zip(self.layout.slots()) {
+            let mass = material.areal_density * area;
             self.blocks[slot.block].set_inverse_mass(slot.lane, 1.0 / mass);
         }
-        pins.for_each(grid, |index| self.pin(index));
+        pins.for_each(surface, |index| self.pin(index));
         Ok(())
     }
 
-    /// Moves each particle that is neither pinned nor held off the plane of a `grid` at rest, by at most `unevenness`
-    /// spacings: by a number that its index gives, so that the same cloth begins the same.
+    /// Moves each particle that is neither pinned nor held off the surface at rest, by at most `unevenness` spacings: by a
+    /// number that its index gives, so that the same cloth begins the same.
     pub(crate) fn make_uneven(
         &mut self,
-        grid: &ClothGrid,
+        surface: &Surface,
         unevenness: f32,
         is_held: impl Fn(usize) -> bool,
     ) {
-        let farthest = unevenness * grid.spacing().min_element() * grid.normal();
+        let farthest = unevenness * surface.spacing().typical;
         for (index, slot) in self.layout.slots().enumerate() {
             let block = &mut self.blocks[slot.block];
             if block.inverse_mass(slot.lane) > 0.0 && !is_held(index) {
-                let position = block.position(slot.lane) + farthest * scattered(index as u64);
+                let away = farthest * surface.normal_of(index);
+                let position = block.position(slot.lane) + away * scattered(index as u64);
                 block.set_position(slot.lane, position);
             }
         }
@@ -64,10 +65,11 @@ impl ClothParticles {
         self.blocks[slot.block].set_inverse_mass(slot.lane, 0.0);
     }
 
-    pub(super) fn check_mass(grid: &ClothGrid, material: &ClothMaterial) -> Result<(), ClothError> {
+    fn check_mass(surface: &Surface, material: &ClothMaterial) -> Result<(), ClothError> {
+        let smallest = surface.areas().iter().copied().fold(f32::INFINITY, f32::min);
         ClothError::check(
-            material.areal_density * grid.tributary_area(0, 0),
-            |corner| (1.0e-15..1.0e15).contains(&corner),
+            material.areal_density * smallest,
+            |mass| (1.0e-15..1.0e15).contains(&mass),
             "the mass of a particle (kg)",
             "from 10⁻¹⁵ to 10¹⁵",
         )?;
@@ -76,7 +78,7 @@ impl ClothParticles {
 
     /// Looks at every particle once.
     pub(crate) fn survey(&self) -> Survey {
-        let mut sound = [true; LANES];
+        let mut valid = [true; LANES];
         let mut largest = [0.0_f32; LANES];
         for block in &self.blocks {
             let view = block.view();
@@ -86,7 +88,7 @@ impl ClothParticles {
             };
             for lane in 0..LANES {
                 let moved = square(DX, lane);
-                sound[lane] &= is_sound(square(X, lane) + moved, view[W + lane]);
+                valid[lane] &= is_valid(square(X, lane) + moved, view[W + lane]);
                 largest[lane] = if moved > largest[lane] {
                     moved
                 } else {
@@ -95,7 +97,7 @@ impl ClothParticles {
             }
         }
         Survey {
-            is_sound: sound == [true; LANES],
+            is_valid: valid == [true; LANES],
             largest_speed: largest.into_iter().fold(0.0, f32::max).sqrt() / self.substep,
         }
     }
@@ -113,10 +115,9 @@ impl ClothParticles {
         }
     }
 
-    /// Whether there are as many as `grid` has, in as many columns.
-    pub(crate) fn fit(&self, grid: &ClothGrid) -> bool {
-        (self.rows(), self.columns()) == (grid.rows(), grid.columns())
-            && self.blocks.len() == self.layout.blocks()
+    /// Whether they are as many as the surface has, and laid out alike.
+    pub(crate) fn matches(&self, surface: &Surface) -> bool {
+        self.layout == Layout::of(surface) && self.blocks.len() == self.layout.blocks()
     }
 
     /// Position (m) of a particle that exists.
@@ -140,7 +141,7 @@ impl ClothParticles {
         &mut self.blocks
     }
 
-    /// Forgets what lanes that hold no particle have come to hold: what is no number spreads into them.
+    /// Forgets what lanes that hold no particle have come to hold: NaN spreads into them.
     pub(crate) fn clear_padding(&mut self) {
         for index in 0..self.blocks.len() {
             let mut clean = Block::EMPTY;
@@ -157,28 +158,15 @@ impl ClothParticles {
         }
     }
 
-    /// Gives a particle the mass that grid, material and pins give it.
-    pub(crate) fn reweigh(
-        &mut self,
-        index: usize,
-        grid: &ClothGrid,
-        material: &ClothMaterial,
-        pins: &Pins,
-    ) {
-        let (row, column) = (index as u32 / grid.columns(), index as u32 % grid.columns());
-        let mass = material.areal_density * grid.tributary_area(row, column);
-        let mut inverse_mass = 1.0 / mass;
-        pins.for_each(grid, |pinned| {
-            if pinned == index {
-                inverse_mass = 0.0;
-            }
-        });
+    /// Gives a particle the mass that surface and material give it.
+    pub(crate) fn assign_mass(&mut self, index: usize, surface: &Surface, material: &ClothMaterial) {
+        let mass = material.areal_density * surface.area_of(index);
         let Slot { block, lane } = self.layout.slot_of(index);
-        self.blocks[block].set_inverse_mass(lane, inverse_mass);
+        self.blocks[block].set_inverse_mass(lane, 1.0 / mass);
     }
 
     /// Forgets what the pinned particles were moved by.
-    pub(crate) fn still_pins(&mut self) {
+    pub(crate) fn zero_pin_displacements(&mut self) {
         for block in &mut self.blocks {
             let view = block.view_mut();
             for from in [DX, DY, DZ] {
@@ -191,7 +179,7 @@ impl ClothParticles {
     }
 
     /// Has a pinned particle be at `position` when the sub-step ends.
-    pub(crate) fn lead_pin(&mut self, index: usize, position: Vec3) {
+    pub(crate) fn set_pin_target(&mut self, index: usize, position: Vec3) {
         let Slot { block, lane } = self.layout.slot_of(index);
         let block = &mut self.blocks[block];
         block.set_displacement(lane, position - block.position(lane));
@@ -214,7 +202,7 @@ impl ClothParticles {
     }
 
     /// How far the particle that is farthest from where it was in `other`, or was before its last displacement, is from
-    /// there (m). Not a number if any is.
+    /// there (m). NaN if any is.
     pub(crate) fn farthest_from(&self, other: &Self) -> f32 {
         let (mut largest, mut is_nan) = ([0.0_f32; LANES], [false; LANES]);
         for (block, was) in self.blocks.iter().zip(&other.blocks) {
@@ -243,7 +231,7 @@ impl ClothParticles {
     }
 
     /// Whether no particle is farther than `reach` (m) from where it is in `other`: never of other particles, nor where
-    /// a position is not a number.
+    /// a position is NaN.
     pub(crate) fn stays_within(&self, reach: f32, other: &Self) -> bool {
         if self.layout != other.layout {
             return false;
@@ -251,7 +239,7 @@ impl ClothParticles {
         let blocks = self.blocks.chunks(BLOCKS).zip(other.blocks.chunks(BLOCKS));
         // What moves is mostly found out by the first few.
         blocks.into_iter().all(|(now, before)| {
-            // Not a number outlasts a sum, and an infinite square is no less.
+            // NaN outlasts a sum, and an infinite square is no less.
             let (mut largest, mut sum) = ([0.0_f32; LANES], [0.0_f32; LANES]);
             for (block, was) in now.iter().zip(before) {
                 let (view, was) = (block.view(), was.view());
@@ -281,23 +269,13 @@ impl ClothParticles {
         BoundingSphere::new(low.midpoint(high), radius.max(0.0))
     }
 
-    /// The longest way from a particle to a neighbour to the right, below, or across (m).
-    pub(crate) fn longest_edge(&self) -> f32 {
-        let layout = self.layout;
-        let position = |row: u32, column: u32| {
-            let Slot { block, lane } = layout.slot(row, column);
-            self.blocks[block].position(lane)
-        };
+    /// The farthest that a corner of a face is from the particle that stands for the face (m).
+    pub(crate) fn longest_face_reach(&self, surface: &Surface) -> f32 {
         let mut longest = 0.0_f32;
-        for row in 0..layout.rows {
-            for column in 0..layout.columns {
-                let from = position(row, column);
-                let (below, right) = (row + 1 < layout.rows, column + 1 < layout.columns);
-                let ways = [(below, (1, 0)), (right, (0, 1)), (below && right, (1, 1))];
-                for (_, (down, across)) in ways.into_iter().filter(|(exists, _)| *exists) {
-                    longest =
-                        longest.max(from.distance_squared(position(row + down, column + across)));
-                }
+        for particle in 0..self.len() as u32 {
+            let from = self.position_at(particle as usize);
+            for corner in surface.faces().of(particle).iter().flatten() {
+                longest = longest.max(from.distance_squared(self.position_at(*corner as usize)));
             }
         }
         longest.sqrt()
@@ -310,7 +288,7 @@ impl ClothParticles {
     }
 
     /// Has displacements span `substep` seconds from now on, at the same velocities.
-    pub(crate) fn respan(&mut self, substep: f32) {
+    pub(crate) fn set_substep(&mut self, substep: f32) {
         if substep != self.substep {
             let ratio = substep / self.substep;
             for block in &mut self.blocks {

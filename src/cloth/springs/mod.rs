@@ -1,40 +1,16 @@
 //! The springs between the particles, sorted by colour.
 
-use std::ops::Range;
-
-use bevy::{
-    math::Vec2,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
-
-use super::{ClothError, ClothGrid, ClothMaterial, lanes::Layout};
-
+mod spring;
 #[cfg(test)]
 mod tests;
 
-/// What a spring resists.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum SpringKind {
-    /// Stretch: neighbours in a row or column.
-    Structural,
-    /// Shear: neighbours along a diagonal.
-    Shear,
-    /// Bending: every second particle of a row or column.
-    Bend,
-}
+use std::{ops::Range, sync::Arc};
 
-/// A spring between two particles.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
-pub struct Spring {
-    /// What it resists.
-    pub kind: SpringKind,
-    /// Indices of its two particles.
-    pub ends: [u32; 2],
-    /// Length without a force (m), positive.
-    pub rest_length: f32,
-    /// How far a newton stretches it (m/N); 0 is rigid.
-    pub compliance: f32,
-}
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+
+use super::{ClothError, ClothGrid, ClothMaterial, Layout, Surface};
+
+pub use spring::{Spring, SpringKind};
 
 /// A cloth's springs, sorted by colour: no two springs of one colour share a particle, so that their order makes
 /// no difference and many are solved at once.
@@ -45,21 +21,56 @@ pub struct Spring {
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct Springs {
-    weave: Weave,
+    storage: SpringStorage,
 }
 
 /// Where the springs are.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Weave {
+pub(crate) enum SpringStorage {
     /// Along the rows, columns and diagonals of a grid. Nothing is stored a spring.
     Grid(ClothGrid, Compliances),
-    /// Anywhere, colour by colour.
-    List(Vec<Spring>, Vec<Range<usize>>),
+    /// Anywhere.
+    List(Arc<SpringList>),
 }
 
-impl Default for Weave {
+impl Default for SpringStorage {
     fn default() -> Self {
-        Self::List(Vec::new(), Vec::new())
+        Self::List(Arc::default())
+    }
+}
+
+/// Springs anywhere, colour by colour.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(crate) struct SpringList {
+    pub springs: Vec<Spring>,
+    pub colours: Vec<Range<usize>>,
+}
+
+impl SpringList {
+    /// Adds springs between `particles` particles, in colours of their own. Each gets the first that neither of its ends
+    /// has yet.
+    fn add(&mut self, springs: &[Spring], particles: usize) {
+        let mut taken: Vec<u64> = vec![0; particles];
+        let mut colour_of = Vec::with_capacity(springs.len());
+        for (index, spring) in springs.iter().enumerate() {
+            let [a, b] = spring.ends.map(|end| end as usize);
+            // A particle with more than 63 springs puts the rest into colours of one spring each.
+            let free = (!(taken[a] | taken[b])).trailing_zeros().min(63);
+            let colour = if free < 63 {
+                taken[a] |= 1 << free;
+                taken[b] |= 1 << free;
+                free as usize
+            } else {
+                63 + index
+            };
+            colour_of.push((colour, index));
+        }
+        colour_of.sort_unstable();
+        for group in colour_of.chunk_by(|(a, _), (b, _)| a == b) {
+            let start = self.springs.len();
+            self.springs.extend(group.iter().map(|&(_, index)| springs[index]));
+            self.colours.push(start..self.springs.len());
+        }
     }
 }
 
@@ -84,7 +95,7 @@ impl Compliances {
         let (width, narrowed) = match (down, across) {
             (0, _) => (grid.spacing().y, on_border(row, grid.rows())),
             (_, 0) => (grid.spacing().x, on_border(column, grid.columns())),
-            _ => (rest_length(grid, (down, across)), false),
+            _ => (grid.step_length((down, across)), false),
         };
         let compliance = match down.max(across.unsigned_abs()) {
             2 => self.bend,
@@ -94,13 +105,8 @@ impl Compliances {
         let narrowed = if narrowed { 2.0 } else { 1.0 };
         compliance
             .is_finite()
-            .then_some(compliance * rest_length(grid, (down, across)) / width * narrowed)
+            .then_some(compliance * grid.step_length((down, across)) / width * narrowed)
     }
-}
-
-/// Rest length (m) of springs that go so many rows down and columns across.
-pub(crate) fn rest_length(grid: &ClothGrid, (down, across): (u32, i32)) -> f32 {
-    (grid.spacing() * Vec2::new(across as f32, down as f32)).length()
 }
 
 /// The springs of a grid, colour by colour: rows down and columns across from one end to the other, and which
@@ -132,62 +138,82 @@ impl Springs {
             bend: material.bend_compliance,
         };
         Self {
-            weave: Weave::Grid(*grid, compliances),
+            storage: SpringStorage::Grid(*grid, compliances),
         }
     }
 
-    /// Springs of no grid, between `particles` particles. Each gets the first colour that neither of its ends
-    /// has yet: fewer than twice as many colours as springs meet in one particle, while that are 31 or fewer; of
+    /// Any springs between `particles` particles. Each gets the first colour that neither of its ends has yet: fewer than twice as many colours as springs meet in one particle, while that are 31 or fewer; of
     /// more than 63 each further spring is a colour by itself.
     ///
     /// # Errors
     /// [`ClothError::BadSpring`] for the first that has an end too many or twice, or a rest length or
     /// compliance out of range.
     pub fn of_list(springs: &[Spring], particles: usize) -> Result<Self, ClothError> {
-        let mut taken: Vec<u64> = vec![0; particles];
-        let mut colour_of = Vec::with_capacity(springs.len());
         for (index, spring) in springs.iter().enumerate() {
             let [a, b] = spring.ends.map(|end| end as usize);
-            let is_sound = a.max(b) < particles
+            let is_valid = a.max(b) < particles
                 && a != b
                 && (1.0e-9..1.0e12).contains(&spring.rest_length)
                 && spring.compliance >= 0.0
                 && spring.compliance.is_finite();
-            if !is_sound {
+            if !is_valid {
                 return Err(ClothError::BadSpring {
                     index,
                     spring: *spring,
                     particles,
                 });
             }
-            // A particle with more than 63 springs puts the rest into colours of one spring each.
-            let free = (!(taken[a] | taken[b])).trailing_zeros().min(63);
-            let colour = if free < 63 {
-                taken[a] |= 1 << free;
-                taken[b] |= 1 << free;
-                free as usize
-            } else {
-                63 + index
-            };
-            colour_of.push((colour, index));
         }
-        colour_of.sort_unstable();
-        let mut sorted = Vec::with_capacity(springs.len());
-        let mut colours: Vec<Range<usize>> = Vec::new();
-        for group in colour_of.chunk_by(|(a, _), (b, _)| a == b) {
-            let start = sorted.len();
-            sorted.extend(group.iter().map(|&(_, index)| springs[index]));
-            colours.push(start..sorted.len());
-        }
+        let mut list = SpringList::default();
+        list.add(springs, particles);
         Ok(Self {
-            weave: Weave::List(sorted, colours),
+            storage: SpringStorage::List(Arc::new(list)),
         })
+    }
+
+    /// The springs of a surface: those of its [grid](Self::of_grid), if it was made from one.
+    ///
+    /// Those of a mesh run along its edges, of the stretch compliance, and across each edge between the corners that face each
+    /// other there, of the bend compliance. Edges run in all directions, so they resist shear as well, as a patch of the
+    /// shear compliance `stretch` would; where the material's is less, what it lacks is added to the springs across.
+    pub fn of_surface(surface: &Surface, material: &ClothMaterial) -> Self {
+        if let Some(grid) = surface.as_grid() {
+            return Self::of_grid(grid, material);
+        }
+        let stiffness = |compliance: f32| 1.0 / compliance;
+        let bend = stiffness(material.bend_compliance);
+        let shear = stiffness(material.shear_compliance) - stiffness(material.stretch_compliance);
+        // Rigid stretch leaves nothing to add, not even to rigid shear.
+        let shear = if material.stretch_compliance > 0.0 { shear.max(0.0) } else { 0.0 };
+        let across = stiffness(bend + shear);
+        let compliance = |kind| match kind {
+            SpringKind::Structural => material.stretch_compliance,
+            SpringKind::Shear | SpringKind::Bend => across,
+        };
+        let mut list = SpringList::default();
+        // Those along edges come last: what is stiffer has the last word.
+        for kind in [SpringKind::Bend, SpringKind::Structural] {
+            let links = surface.links().iter().filter(|link| link.kind == kind);
+            let springs: Vec<Spring> = links
+                .map(|link| Spring {
+                    kind,
+                    ends: link.ends,
+                    rest_length: link.rest_length,
+                    compliance: compliance(kind) * link.slenderness,
+                })
+                .filter(|spring| spring.compliance.is_finite())
+                .collect();
+            list.add(&springs, surface.len());
+        }
+        Self {
+            storage: SpringStorage::List(Arc::new(list)),
+        }
     }
 
     /// Calls `visit` with each spring and the number of its colour, in the order in which they are swept.
     pub fn for_each(&self, mut visit: impl FnMut(usize, Spring)) {
-        match &self.weave {
-            Weave::Grid(grid, compliances) => {
+        match &self.storage {
+            SpringStorage::Grid(grid, compliances) => {
                 let strip = Layout::new(grid.columns(), grid.rows()).strip;
                 for (colour, (step, part)) in GRID_COLOURS.into_iter().enumerate() {
                     for cell in grid.cells() {
@@ -200,9 +226,9 @@ impl Springs {
                     }
                 }
             }
-            Weave::List(springs, colours) => {
-                for (colour, range) in colours.iter().enumerate() {
-                    for spring in &springs[range.clone()] {
+            SpringStorage::List(list) => {
+                for (colour, range) in list.colours.iter().enumerate() {
+                    for spring in &list.springs[range.clone()] {
                         visit(colour, *spring);
                     }
                 }
@@ -219,8 +245,8 @@ impl Springs {
 
     /// Number of springs.
     pub fn len(&self) -> usize {
-        match &self.weave {
-            Weave::Grid(grid, compliances) => {
+        match &self.storage {
+            SpringStorage::Grid(grid, compliances) => {
                 let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
                 let along = |step: usize| {
                     columns.saturating_sub(step) * rows + columns * rows.saturating_sub(step)
@@ -235,7 +261,7 @@ impl Springs {
                         2 * columns.saturating_sub(1) * rows.saturating_sub(1),
                     )
             }
-            Weave::List(springs, _) => springs.len(),
+            SpringStorage::List(list) => list.springs.len(),
         }
     }
 
@@ -246,20 +272,20 @@ impl Springs {
 
     /// Whether there are springs of `kind`.
     pub fn has(&self, kind: SpringKind) -> bool {
-        match &self.weave {
-            Weave::Grid(_, compliances) => match kind {
+        match &self.storage {
+            SpringStorage::Grid(_, compliances) => match kind {
                 SpringKind::Structural => compliances.structural,
                 SpringKind::Shear => compliances.shear,
                 SpringKind::Bend => compliances.bend,
             }
             .is_finite(),
-            Weave::List(springs, _) => springs.iter().any(|spring| spring.kind == kind),
+            SpringStorage::List(list) => list.springs.iter().any(|spring| spring.kind == kind),
         }
     }
 
     /// Where they are, for the solver.
-    pub(crate) fn weave(&self) -> &Weave {
-        &self.weave
+    pub(crate) fn storage(&self) -> &SpringStorage {
+        &self.storage
     }
 }
 
@@ -297,7 +323,7 @@ fn grid_spring(
             _ => SpringKind::Bend,
         },
         ends: [grid.index(cell.0, cell.1), grid.index(row, column)],
-        rest_length: rest_length(grid, step),
+        rest_length: grid.step_length(step),
         compliance: compliances.of_strip(grid, step, cell)?,
     })
 }

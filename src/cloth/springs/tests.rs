@@ -37,7 +37,7 @@ fn colours_share_no_particle_and_no_spring_is_missing_or_twice() {
     ] {
         let grid = Cloth::new(columns, rows, 0.1)
             .grid(Vec3::ONE)
-            .expect("a sound grid");
+            .expect("a valid grid");
         let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
         let seen = check_colours(&springs);
         let (c, r) = (columns as usize, rows as usize);
@@ -53,7 +53,7 @@ fn colours_share_no_particle_and_no_spring_is_missing_or_twice() {
 fn rest_lengths_are_those_of_the_cloth_at_rest() {
     let grid = Cloth::new(6, 5, 0.25)
         .grid(Vec3::new(2.0, -3.0, 1.0))
-        .expect("a sound grid");
+        .expect("a valid grid");
     let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
     let positions: Vec<Vec3> = grid
         .cells()
@@ -73,7 +73,7 @@ fn rest_lengths_are_those_of_the_cloth_at_rest() {
 fn an_infinite_compliance_leaves_its_springs_out() {
     let grid = Cloth::new(6, 5, 0.25)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     let material = ClothMaterial {
         shear_compliance: f32::INFINITY,
         bend_compliance: f32::INFINITY,
@@ -107,7 +107,7 @@ fn a_list_is_coloured_and_no_spring_is_lost() {
         compliance: 0.0,
     };
     let list: Vec<Spring> = ends.iter().map(spring).collect();
-    let springs = Springs::of_list(&list, 40).expect("sound springs");
+    let springs = Springs::of_list(&list, 40).expect("valid springs");
     assert_eq!(check_colours(&springs), ends);
 
     for bad in [
@@ -147,6 +147,6 @@ fn a_hub_of_more_springs_than_colours_is_coloured_too() {
             compliance: 0.0,
         })
         .collect();
-    let springs = Springs::of_list(&list, 100).expect("sound springs");
+    let springs = Springs::of_list(&list, 100).expect("valid springs");
     assert_eq!(check_colours(&springs).len(), 99);
 }

@@ -2,9 +2,9 @@
 
 use bevy::math::Vec3;
 
-use super::{ONLY, all_of, deepest_at, random::Random, weave};
+use super::{ONLY, all_of, build, deepest_at, random::Random};
 use crate::{
-    contact::{MovingCollider, NarrowPhase, Terms},
+    contact::{ContactSettings, MovingCollider, NarrowPhase},
     solver::SubStep,
 };
 
@@ -17,7 +17,7 @@ use crate::{
 fn a_sheet_is_not_split_by_a_ball_that_appears_in_it() {
     for seed in 0..50 {
         let mut random = Random(seed);
-        let (grid, mut particles) = weave(21, 21, 0.05);
+        let (grid, mut particles) = build(21, 21, 0.05);
         let noise = 0.02;
         for index in 0..particles.len() {
             let place = particles.position(index).expect("it exists");
@@ -27,18 +27,18 @@ fn a_sheet_is_not_split_by_a_ball_that_appears_in_it() {
         let before: Vec<Vec3> = particles.positions().collect();
         let centre = Vec3::new(0.5, -0.5, -0.01) + random.within(0.005);
         let ball = MovingCollider::ball(0.3, centre, centre);
-        let terms = Terms {
+        let settings = ContactSettings {
             narrow_phase: NarrowPhase::Particles,
-            ..Terms::default()
+            ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &terms, &grid, &particles);
+        let mut detection = all_of(&[ball], &settings, &grid, &particles);
         for index in 0..3 {
             let substep = SubStep {
                 index,
                 count: 3,
                 ..ONLY
             };
-            detection.respond(&mut particles, &terms, substep, |_| {});
+            detection.respond(&mut particles, &settings, substep, |_| {});
         }
         let mut beyond = 0;
         for (index, before) in before.into_iter().enumerate() {

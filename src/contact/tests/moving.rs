@@ -25,7 +25,7 @@ fn inside(random: &mut Random, collider: &MovingCollider, part: f32, beyond: f32
         }
     };
     // Within all of it by more than rounding: of lengths below 20 m, 20 × ε × 20 m.
-    let pose = collider.pose(part);
+    let pose = collider.pose_at(part);
     let point = pose * local;
     point - collider.shape.nearest(pose, point).normal * 5.0e-5
 }
@@ -44,7 +44,7 @@ proptest! {
         for time in 0..=32 {
             let part = time as f32 / 32.0;
             for _ in 0..4 {
-                let point = inside(&mut random, &collider, part, collider.beyond(&cloth));
+                let point = inside(&mut random, &collider, part, collider.farthest_distance(&cloth));
                 let is_cloth = point.distance(cloth.center.into()) <= cloth.radius();
                 // Only a half-space is searched for no farther than the cloth.
                 if is_cloth || shape != ColliderShape::HalfSpace {
@@ -66,7 +66,7 @@ proptest! {
         for time in 0..=32 {
             let part = time as f32 / 32.0;
             for _ in 0..8 {
-                let point = inside(&mut random, &collider, part, collider.beyond(&cloth) + margin);
+                let point = inside(&mut random, &collider, part, collider.farthest_distance(&cloth) + margin);
                 let before = point + random.direction() * margin * 0.999;
                 if before.distance(cloth.center.into()) <= cloth.radius() {
                     prop_assert!(probe.meets(before), "{collider:?} {part} {point}");

@@ -2,10 +2,10 @@
 
 use bevy::math::Vec3;
 
-use super::{ONLY, all_of, at, deepest_at, loose, weave};
+use super::{ONLY, all_of, at, build, deepest_at, loose};
 use crate::{
     cloth::{ClothParticles, Springs},
-    contact::{ColliderShape, Detection, MovingCollider, NarrowPhase, Terms},
+    contact::{ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase},
     solver::{Solver, SubStep, TickStep},
 };
 
@@ -21,7 +21,7 @@ fn first_against(
     particles: &ClothParticles,
     narrow_phase: NarrowPhase,
 ) -> Detection {
-    let (grid, _) = weave(2, 2, 1.0);
+    let (grid, _) = build(2, 2, 1.0);
     let mut detection = Detection::default();
     detection.begin(f32::INFINITY);
     detection.add(0, collider, narrow_phase, &[0], particles, &grid);
@@ -31,7 +31,7 @@ fn first_against(
 /// A particle on a ball of radius 1, `slope` radians from its top, without springs, after 0.1 s under
 /// gravity: its angle from the top.
 fn slide(slope: f32, friction: f32, ball: MovingCollider) -> f32 {
-    let (_, mut particles) = weave(2, 2, 1.0);
+    let (_, mut particles) = build(2, 2, 1.0);
     particles
         .set_position(0, Vec3::new(slope.sin(), slope.cos(), 0.0))
         .expect("it exists");
@@ -41,14 +41,14 @@ fn slide(slope: f32, friction: f32, ball: MovingCollider) -> f32 {
         acceleration: Vec3::NEG_Y * GRAVITY,
         damping: 0.0,
     };
-    let terms = Terms {
+    let settings = ContactSettings {
         friction,
-        ..Terms::default()
+        ..ContactSettings::default()
     };
     let mut detection = first_against(&ball, &particles, NarrowPhase::Particles);
     let mut solver = Solver::new(&Springs::default(), &particles);
     solver.advance(&mut particles, step, &[], |particles, substep| {
-        detection.respond(particles, &terms, substep, |_| {})
+        detection.respond(particles, &settings, substep, |_| {})
     });
     let position = particles.position(0).expect("it exists");
     assert!(
@@ -92,25 +92,25 @@ fn a_turning_ball_carries_what_sticks() {
 
 #[test]
 fn pushes_out_exactly_and_leaves_pins_and_neighbours() {
-    let (grid, mut particles) = weave(3, 3, 1.0);
+    let (grid, mut particles) = build(3, 3, 1.0);
     particles.set_inverse_mass(0, 0.0).expect("it exists");
     // Its last sub-step of ten is slow, so that nothing is swept.
     let end = Vec3::new(0.5, -0.5, 0.4);
     let ball = MovingCollider::ball(1.0, end + Vec3::Z * 0.6, end);
     let before: Vec<Vec3> = particles.positions().collect();
-    let terms = Terms {
+    let settings = ContactSettings {
         particle_radius: 0.05,
         friction: 0.3,
         narrow_phase: NarrowPhase::Particles,
-        ..Terms::default()
+        ..ContactSettings::default()
     };
-    let mut detection = all_of(&[ball], &terms, &grid, &particles);
+    let mut detection = all_of(&[ball], &settings, &grid, &particles);
     let last = SubStep {
         index: 9,
         count: 10,
         farthest_move: 0.0,
     };
-    assert!(detection.respond(&mut particles, &terms, last, |_| {}));
+    assert!(detection.respond(&mut particles, &settings, last, |_| {}));
     let touch = &detection.touches()[0];
     let touched: Vec<u32> = detection
         .points(touch)
@@ -136,7 +136,7 @@ fn an_overlap_becomes_no_speed() {
     ] {
         let mut particles = loose(&[Vec3::Y * 0.7], &[moving]);
         let mut detection = first_against(&still(), &particles, NarrowPhase::Particles);
-        detection.respond(&mut particles, &Terms::default(), ONLY, |_| {});
+        detection.respond(&mut particles, &ContactSettings::default(), ONLY, |_| {});
         assert_eq!(particles.position(0), Some(Vec3::Y));
         assert_eq!(particles.displacement(0), Some(left));
     }
@@ -157,11 +157,11 @@ fn a_particle_in_the_centre_finds_a_way_out() {
         let mut particles = loose(&[Vec3::ZERO], &[]);
         let collider = MovingCollider::still(shape, at(Vec3::ZERO));
         let mut detection = first_against(&collider, &particles, NarrowPhase::Particles);
-        let terms = Terms {
+        let settings = ContactSettings {
             friction: 0.5,
-            ..Terms::default()
+            ..ContactSettings::default()
         };
-        detection.respond(&mut particles, &terms, ONLY, |_| {});
+        detection.respond(&mut particles, &settings, ONLY, |_| {});
         let moved = particles.position(0).expect("it exists").length();
         assert!((moved - 1.0).abs() < 1e-6, "{shape:?}: {moved}");
     }
@@ -174,7 +174,7 @@ fn colliders_push_in_the_order_of_their_numbers() {
     let balls = [-0.4_f32, 0.4].map(|x| MovingCollider::ball(1.0, Vec3::X * x, Vec3::X * x));
     let ends = [[0, 1], [1, 0]].map(|order| {
         let mut particles = loose(&[Vec3::Y * 0.5], &[]);
-        let (grid, _) = weave(2, 2, 1.0);
+        let (grid, _) = build(2, 2, 1.0);
         let mut detection = Detection::default();
         detection.begin(1.0);
         for id in order {
@@ -187,7 +187,7 @@ fn colliders_push_in_the_order_of_their_numbers() {
                 &grid,
             );
         }
-        detection.respond(&mut particles, &Terms::default(), ONLY, |_| {});
+        detection.respond(&mut particles, &ContactSettings::default(), ONLY, |_| {});
         particles.position(0).expect("it exists")
     });
     assert_eq!(ends[0], ends[1]);

@@ -5,7 +5,7 @@ use proptest::prelude::ProptestConfig;
 
 use crate::contact::{ColliderShape, MovingCollider};
 
-/// So many cases, that are the same each time.
+/// This many cases, that are the same each time.
 pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,

@@ -4,12 +4,11 @@ use bevy::math::Vec3;
 use proptest::prelude::*;
 
 use super::{
-    ONLY, all_of, deepest_at, loose,
+    ONLY, all_of, build, deepest_at, loose,
     random::{Random, cases},
-    weave,
 };
 use crate::{
-    contact::{MovingCollider, NarrowPhase, Terms},
+    contact::{ContactSettings, MovingCollider, NarrowPhase},
     solver::SubStep,
 };
 
@@ -66,20 +65,20 @@ proptest! {
         let displacements: Vec<Vec3> =
             (0..24).map(|_| random.within(1.0) * random.part()).collect();
         let mut particles = loose(&positions, &displacements);
-        let (grid, _) = weave(24, 2, 0.1);
-        let terms = Terms {
+        let (grid, _) = build(24, 2, 0.1);
+        let settings = ContactSettings {
             particle_radius: random.between(0.0, 0.1),
             narrow_phase: NarrowPhase::Particles,
-            ..Terms::default()
+            ..ContactSettings::default()
         };
-        let mut detection = all_of(&[collider], &terms, &grid, &particles);
+        let mut detection = all_of(&[collider], &settings, &grid, &particles);
         let substep = SubStep {
             index: 1,
             count: 3,
             ..ONLY
         };
-        detection.respond(&mut particles, &terms, substep, |_| {});
-        let deepest = deepest_at(&particles, &collider, substep.end(), terms.particle_radius);
+        detection.respond(&mut particles, &settings, substep, |_| {});
+        let deepest = deepest_at(&particles, &collider, substep.end(), settings.particle_radius);
         prop_assert!(deepest < f64::from(ROUNDING), "{collider:?} {deepest}");
     }
 
@@ -102,14 +101,14 @@ proptest! {
         }
         let displacements: Vec<Vec3> = (0..8).map(|_| random.within(0.3)).collect();
         let mut particles = loose(&positions, &displacements);
-        let (grid, _) = weave(8, 2, 0.1);
-        let terms = Terms {
+        let (grid, _) = build(8, 2, 0.1);
+        let settings = ContactSettings {
             friction: random.between(0.0, 2.0),
             narrow_phase: NarrowPhase::Particles,
-            ..Terms::default()
+            ..ContactSettings::default()
         };
-        let mut detection = all_of(&[collider], &terms, &grid, &particles);
-        detection.respond(&mut particles, &terms, ONLY, |_| {});
+        let mut detection = all_of(&[collider], &settings, &grid, &particles);
+        detection.respond(&mut particles, &settings, ONLY, |_| {});
         let deepest = deepest_at(&particles, &collider, 1.0, 0.0);
         prop_assert!(deepest < f64::from(ROUNDING), "{collider:?} {deepest}");
     }

@@ -4,7 +4,7 @@ use bevy::math::{DVec3, Vec3, bounding::BoundingSphere};
 
 use super::library::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
-    contact::{Detection, MovingCollider, Terms},
+    contact::{ContactSettings, Detection, MovingCollider},
     solver::{Solver, TickStep},
 };
 
@@ -41,8 +41,8 @@ impl Shot {
         let material = ClothMaterial::COTTON;
         let grid = Cloth::new(SIDE, SIDE, SPACING)
             .grid(Vec3::ONE)
-            .expect("a sound grid");
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+            .expect("a valid grid");
+        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
         let springs = Springs::of_grid(&grid, &material);
         let mut solver = Solver::new(&springs, &particles);
         let step = TickStep {
@@ -51,11 +51,11 @@ impl Shot {
             acceleration: Vec3::NEG_Y * 9.81,
             damping: 0.01,
         };
-        let terms = Terms {
+        let settings = ContactSettings {
             particle_radius: 0.01,
             friction: 0.3,
             is_swept: self.is_swept,
-            ..Terms::default()
+            ..ContactSettings::default()
         };
         let width = (SIDE - 1) as f32 * SPACING;
         let [across, down] = self.beside;
@@ -68,12 +68,12 @@ impl Shot {
                 turn: self.spin * step.seconds,
                 ..MovingCollider::ball(self.radius, centre, to)
             };
-            let mut detection = of_all(&ball, &terms, &grid, &particles);
+            let mut detection = of_all(&ball, &settings, &grid, &particles);
             let mut before = seen(&particles, &grid, centre);
             let mut is_through = false;
             solver.advance(&mut particles, step, &[], |particles, substep| {
-                let is_pushed = detection.respond(particles, &terms, substep, |_| {});
-                let at = Vec3::from(ball.pose(substep.end()).translation);
+                let is_pushed = detection.respond(particles, &settings, substep, |_| {});
+                let at = Vec3::from(ball.pose_at(substep.end()).translation);
                 let after = seen(particles, &grid, at);
                 is_through |= before.iter().zip(&after).any(|(a, b)| crosses(*a, *b));
                 before = after;
@@ -93,7 +93,7 @@ impl Shot {
 /// A tick in which every particle is a candidate: nothing can be missed.
 fn of_all(
     ball: &MovingCollider,
-    terms: &Terms,
+    settings: &ContactSettings,
     grid: &ClothGrid,
     particles: &ClothParticles,
 ) -> Detection {
@@ -101,7 +101,7 @@ fn of_all(
     detection.begin(f32::INFINITY);
     let all: Vec<u32> = (0..particles.len() as u32).collect();
     let cloth = BoundingSphere::new(Vec3::ZERO, 100.0);
-    let (_, narrow_phase) = detection.probe(ball, terms, grid, 0.0, &cloth);
+    let (_, narrow_phase) = detection.probe(ball, settings, grid, 0.0, &cloth);
     detection.add(0, ball, narrow_phase, &all, particles, grid);
     detection
 }

@@ -4,23 +4,24 @@ use bevy::math::Vec3;
 use proptest::prelude::*;
 
 use super::{
-    ONLY, all_of, at, deepest_at, loose,
+    ONLY, all_of, at, build, deepest_at, loose,
     random::{Random, cases},
-    weave,
 };
-use crate::contact::{ColliderShape, MovingCollider, NarrowPhase, Terms, response::first_touch};
+use crate::contact::{
+    ColliderShape, ContactSettings, MovingCollider, NarrowPhase, response::first_touch,
+};
 
 /// One particle against one collider: where it ends, and its displacement.
 fn meet(collider: MovingCollider, place: Vec3, moved: Vec3, is_swept: bool) -> [Vec3; 2] {
     let mut particles = loose(&[place + moved, Vec3::splat(99.0)], &[moved]);
-    let (grid, _) = weave(2, 2, 0.1);
-    let terms = Terms {
+    let (grid, _) = build(2, 2, 0.1);
+    let settings = ContactSettings {
         narrow_phase: NarrowPhase::Particles,
         is_swept,
-        ..Terms::default()
+        ..ContactSettings::default()
     };
-    let mut detection = all_of(&[collider], &terms, &grid, &particles);
-    detection.respond(&mut particles, &terms, ONLY, |_| {});
+    let mut detection = all_of(&[collider], &settings, &grid, &particles);
+    detection.respond(&mut particles, &settings, ONLY, |_| {});
     [
         particles.position(0).expect("it exists"),
         particles.displacement(0).expect("it exists"),
@@ -66,9 +67,9 @@ fn a_turning_rod_takes_along_what_it_meets() {
     // Half a radian ahead of the rod's upper half.
     let start = Vec3::new(-0.5_f32.sin(), 0.5_f32.cos(), 0.0) * 0.8;
     let [end, _] = meet(turning, start, Vec3::ZERO, true);
-    let ahead = turning.shape.nearest(turning.pose(1.0), end);
+    let ahead = turning.shape.nearest(turning.pose_at(1.0), end);
     assert!(ahead.distance.abs() < 1e-5, "on its surface: {ahead:?}");
-    let forward = turning.pose(1.0).rotation * Vec3::NEG_X;
+    let forward = turning.pose_at(1.0).rotation * Vec3::NEG_X;
     assert!(ahead.normal.dot(forward) > 0.99, "and ahead of it");
 }
 

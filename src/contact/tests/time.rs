@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, SpringKind, Springs},
-    contact::{ColliderShape, Detection, MovingCollider, NarrowPhase, Terms},
+    contact::{ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     solver::{Solver, TickStep},
 };
@@ -22,7 +22,7 @@ struct Scene {
     springs: Springs,
     particles: ClothParticles,
     colliders: Vec<(usize, MovingCollider)>,
-    terms: Terms,
+    settings: ContactSettings,
     step: TickStep,
 }
 
@@ -31,17 +31,17 @@ fn scene(seed: u64, narrow_phase: NarrowPhase) -> Scene {
     let (columns, rows) = (6 + random.below(15), 6 + random.below(15));
     let grid = Cloth::new(columns, rows, SPACING)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     let material = ClothMaterial::COTTON;
     let springs = Springs::of_grid(&grid, &material);
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
     let seconds = 1.0 / 60.0;
     let substeps = 1 + random.below(20);
     let crumpled = random.part() * 0.5;
     let speed = if random.below(3) == 0 { 5.0 } else { 500.0 };
     let wind = random.direction() * speed * random.part();
     let noise = random.part() * speed * 0.5;
-    particles.respan(seconds / substeps as f32);
+    particles.set_substep(seconds / substeps as f32);
     for index in 0..particles.len() {
         let place = particles.position(index).expect("it exists");
         let place = place + random.within(crumpled);
@@ -73,7 +73,7 @@ fn scene(seed: u64, narrow_phase: NarrowPhase) -> Scene {
         springs,
         particles,
         colliders,
-        terms: Terms {
+        settings: ContactSettings {
             particle_radius: random.part() * 0.02,
             friction: random.part(),
             narrow_phase,
@@ -109,7 +109,7 @@ impl Scene {
         // In whatever order.
         for (id, collider) in self.colliders.iter().rev() {
             let (probe, narrow_phase) =
-                detection.probe(collider, &self.terms, &self.grid, longest, &cloth);
+                detection.probe(collider, &self.settings, &self.grid, longest, &cloth);
             let found = if by_tree {
                 query.search(&tree, &bounds, &self.particles, &probe)
             } else {
@@ -132,12 +132,12 @@ impl Scene {
         self.run_with(detection, &[])
     }
 
-    /// With colliders that the detection is told of when it asks.
+    /// With colliders that the detection is given when it asks.
     fn run_with(&self, detection: &mut Detection, others: &[(usize, MovingCollider)]) -> Outcome {
         let mut particles = self.particles.clone();
         let mut solver = Solver::new(&self.springs, &particles);
         solver.advance(&mut particles, self.step, &[], |particles, substep| {
-            detection.respond(particles, &self.terms, substep, |known| {
+            detection.respond(particles, &self.settings, substep, |known| {
                 for other in others {
                     if known.iter().all(|(id, _)| *id != other.0) {
                         known.push(*other);
@@ -158,7 +158,7 @@ impl Scene {
 
     fn brute(&self) -> Outcome {
         let colliders: Vec<MovingCollider> = self.colliders.iter().map(|(_, c)| *c).collect();
-        let mut detection = all_of(&colliders, &self.terms, &self.grid, &self.particles);
+        let mut detection = all_of(&colliders, &self.settings, &self.grid, &self.particles);
         let (positions, mut touched) = self.run(&mut detection);
         assert_eq!(detection.requeries(), 0);
         for (id, ..) in &mut touched {

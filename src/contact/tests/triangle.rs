@@ -100,7 +100,7 @@ proptest! {
     }
 }
 
-/// A triangle without area still has a nearest point, and none of its numbers is no number.
+/// A triangle without area still has a nearest point, and none of its numbers is NaN.
 #[test]
 fn degenerate_triangles_give_finite_results() {
     let (a, b) = (Vec3::new(0.3, 0.1, -0.2), Vec3::new(1.0, 2.0, 3.0));

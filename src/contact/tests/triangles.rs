@@ -4,13 +4,12 @@ use bevy::math::Vec3;
 use proptest::prelude::*;
 
 use super::{
-    ONLY, all_of,
+    ONLY, all_of, build,
     random::{Random, cases},
-    weave,
 };
 use crate::{
     cloth::{ClothGrid, ClothParticles},
-    contact::{MovingCollider, NarrowPhase, Terms, triangle::nearest},
+    contact::{ContactSettings, MovingCollider, NarrowPhase, triangle::nearest},
 };
 
 const SPACING: f32 = 0.1;
@@ -20,10 +19,10 @@ fn triangles(particles: &ClothParticles, grid: &ClothGrid) -> Vec<[Vec3; 3]> {
     grid.triangles().map(|corners| corners.map(place)).collect()
 }
 
-fn terms() -> Terms {
-    Terms {
+fn settings() -> ContactSettings {
+    ContactSettings {
         narrow_phase: NarrowPhase::Triangles,
-        ..Terms::default()
+        ..ContactSettings::default()
     }
 }
 
@@ -39,15 +38,15 @@ proptest! {
     fn a_small_ball_dents_a_cell(
         x in 0.3_f32..0.7, y in 0.3_f32..0.7, height in 0.05_f32..0.25, is_below in any::<bool>(),
     ) {
-        let (grid, mut particles) = weave(2, 2, SPACING);
+        let (grid, mut particles) = build(2, 2, SPACING);
         let sign = if is_below { -1.0 } else { 1.0 };
         let centre = Vec3::new(x, -y, sign * height) * SPACING;
         let radius = 0.3 * SPACING;
         let ball = MovingCollider::ball(radius, centre, centre);
-        let terms = Terms { particle_radius: 0.001, ..terms() };
+        let settings = ContactSettings { particle_radius: 0.001, ..settings() };
         let before: Vec<Vec3> = particles.positions().collect();
-        let mut detection = all_of(&[ball], &terms, &grid, &particles);
-        detection.respond(&mut particles, &terms, ONLY, |_| {});
+        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        detection.respond(&mut particles, &settings, ONLY, |_| {});
         let reach = radius + 0.001;
         let depth = reach - height * SPACING;
         let tolerance = depth * depth / (0.7 * SPACING) + 1e-6;
@@ -68,7 +67,7 @@ proptest! {
     /// momentum goes along the normal.
     #[test]
     fn momentum_goes_along_the_normal(u in 0.2_f32..0.4, v in 0.2_f32..0.4, seed in any::<u64>()) {
-        let (grid, mut particles) = weave(2, 2, SPACING);
+        let (grid, mut particles) = build(2, 2, SPACING);
         let mut random = Random(seed);
         let index = 3;
         // The other triangle out of the way.
@@ -81,9 +80,9 @@ proptest! {
         let before: Vec<Vec3> = particles.displacements().collect();
         let centre = Vec3::new(u, -v, 0.1) * SPACING;
         let ball = MovingCollider::ball(0.15 * SPACING, centre, centre);
-        let terms = Terms { is_swept: false, ..terms() };
-        let mut detection = all_of(&[ball], &terms, &grid, &particles);
-        let is_moved = detection.respond(&mut particles, &terms, ONLY, |_| {});
+        let settings = ContactSettings { is_swept: false, ..settings() };
+        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        let is_moved = detection.respond(&mut particles, &settings, ONLY, |_| {});
         prop_assert!(is_moved);
         let gained: Vec3 = particles.displacements().zip(before).map(|(a, b)| a - b).sum();
         // A rounding of each of four displacements of 0.02 m.
@@ -98,15 +97,15 @@ fn pinned_corners_hold() {
     let centre = Vec3::new(0.25, -0.25, 0.1) * SPACING;
     let ball = MovingCollider::ball(0.3 * SPACING, centre, centre);
     for free in [None, Some(0)] {
-        let (grid, mut particles) = weave(2, 2, SPACING);
+        let (grid, mut particles) = build(2, 2, SPACING);
         for index in 0..4 {
             if Some(index) != free {
                 particles.set_inverse_mass(index, 0.0).expect("it exists");
             }
         }
         let before: Vec<Vec3> = particles.positions().collect();
-        let mut detection = all_of(&[ball], &terms(), &grid, &particles);
-        let moved = detection.respond(&mut particles, &terms(), ONLY, |_| {});
+        let mut detection = all_of(&[ball], &settings(), &grid, &particles);
+        let moved = detection.respond(&mut particles, &settings(), ONLY, |_| {});
         assert_eq!(moved, free.is_some());
         for (index, before) in before.into_iter().enumerate() {
             let stays = particles.position(index) == Some(before);

@@ -4,8 +4,8 @@ use std::f32::consts::PI;
 
 use bevy::math::{Quat, Vec3};
 
-use super::{ONLY, all_of, at, weave};
-use crate::contact::{ColliderShape, MovingCollider, NarrowPhase, Terms};
+use super::{ONLY, all_of, at, build};
+use crate::contact::{ColliderShape, ContactSettings, MovingCollider, NarrowPhase};
 
 /// A flat grid of 2 m, 101 × 101, cut by a ball at height h: a disc of radius a = √(R² − h²), whose particles stand
 /// for its area to a ring of half a spacing around its edge; they are as deep as the ball there, 0 at the edge, so
@@ -14,15 +14,15 @@ use crate::contact::{ColliderShape, MovingCollider, NarrowPhase, Terms};
 fn a_ball_cuts_a_disc() {
     let spacing = 0.02;
     for (radius, height) in [(0.5_f32, 0.05_f32), (0.5, 0.1), (0.5, -0.3), (0.8, 0.45)] {
-        let (grid, mut particles) = weave(101, 101, spacing);
+        let (grid, mut particles) = build(101, 101, spacing);
         let centre = Vec3::new(1.003, -0.996, height);
         let ball = MovingCollider::ball(radius, centre, centre);
-        let terms = Terms {
+        let settings = ContactSettings {
             narrow_phase: NarrowPhase::Particles,
-            ..Terms::default()
+            ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &terms, &grid, &particles);
-        detection.respond(&mut particles, &terms, ONLY, |_| {});
+        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        detection.respond(&mut particles, &settings, ONLY, |_| {});
         let touch = &detection.touches()[0];
         let (h, a) = (height.abs(), (radius * radius - height * height).sqrt());
         let area = PI * a * a;
@@ -45,15 +45,15 @@ fn a_ball_cuts_a_disc() {
 #[test]
 fn a_small_ball_cuts_a_disc_out_of_a_triangle() {
     for height in [0.0_f32, 0.05, -0.12, 0.19] {
-        let (grid, mut particles) = weave(2, 2, 1.0);
+        let (grid, mut particles) = build(2, 2, 1.0);
         let centre = Vec3::new(0.25, -0.3, height);
         let ball = MovingCollider::ball(0.2, centre, centre);
-        let terms = Terms {
+        let settings = ContactSettings {
             narrow_phase: NarrowPhase::Triangles,
-            ..Terms::default()
+            ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &terms, &grid, &particles);
-        detection.respond(&mut particles, &terms, ONLY, |_| {});
+        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        detection.respond(&mut particles, &settings, ONLY, |_| {});
         let touch = &detection.touches()[0];
         let area = PI * (0.04 - height * height);
         assert!((touch.area - area).abs() < 1e-6, "{} {area}", touch.area);
@@ -70,18 +70,18 @@ fn a_small_ball_cuts_a_disc_out_of_a_triangle() {
 /// and below 10⁴ × 6e-8 for sure.
 #[test]
 fn a_half_space_holds_area_times_depth() {
-    let (grid, mut particles) = weave(101, 101, 0.02);
+    let (grid, mut particles) = build(101, 101, 0.02);
     let pose = bevy::math::Isometry3d {
         rotation: Quat::from_rotation_arc(Vec3::Y, Vec3::Z),
         ..at(Vec3::Z * 0.3)
     };
     let plane = MovingCollider::still(ColliderShape::HalfSpace, pose);
-    let terms = Terms {
+    let settings = ContactSettings {
         particle_radius: 0.05,
-        ..Terms::default()
+        ..ContactSettings::default()
     };
-    let mut detection = all_of(&[plane], &terms, &grid, &particles);
-    detection.respond(&mut particles, &terms, ONLY, |_| {});
+    let mut detection = all_of(&[plane], &settings, &grid, &particles);
+    detection.respond(&mut particles, &settings, ONLY, |_| {});
     let touch = &detection.touches()[0];
     assert!((touch.area - 4.0).abs() < 4.0 * 6e-4, "{}", touch.area);
     assert!(

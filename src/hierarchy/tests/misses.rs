@@ -14,7 +14,7 @@ use crate::hierarchy::{BoundRule, BoundingVolume, NodeBounds, TopDownQuery, brut
 /// that touches just the corner of a flat cloth of 16 × 16 is missed at the root. A box of that half side is not.
 #[test]
 fn the_papers_root_misses_its_own_corner() {
-    let scene = State::flat(16, 16).weave();
+    let scene = State::flat(16, 16).build();
     assert_eq!(brute_force(&scene.particles, &scene.probe), [0]);
     let mut query = TopDownQuery::default();
     let mut bounds = NodeBounds::default();
@@ -48,7 +48,7 @@ fn paper_misses() {
             is_network: false,
             ..state
         };
-        let scene = state.weave();
+        let scene = state.build();
         let truth = brute_force(&scene.particles, &scene.probe);
         let longest = state.columns.max(state.rows);
         let size = match longest {

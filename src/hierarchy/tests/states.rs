@@ -112,7 +112,7 @@ pub fn runner(seed: u64) -> TestRunner {
     )
 }
 
-/// A state, woven.
+/// A state, built.
 pub struct Scene {
     pub tree: QuadTree,
     pub particles: ClothParticles,
@@ -143,15 +143,15 @@ impl State {
         }
     }
 
-    pub fn weave(&self) -> Scene {
+    pub fn build(&self) -> Scene {
         let grid = Cloth::new(self.columns, self.rows, SPACING)
             .grid(Vec3::ONE)
-            .expect("a sound grid");
+            .expect("a valid grid");
         let material = ClothMaterial {
             shear_compliance: if self.diagonals { 0.0 } else { f32::INFINITY },
             ..ClothMaterial::COTTON
         };
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a sound material");
+        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
         let rest: Vec<Vec3> = particles.positions().collect();
         let mut seed = self.seed;
         let mut random = || {
@@ -185,8 +185,8 @@ impl State {
         let tree = if self.is_network {
             let positions: Vec<Vec3> = particles.positions().collect();
             let masses: Vec<f32> = particles.inverse_masses().collect();
-            particles = ClothParticles::new(&positions, &masses).expect("sound particles");
-            QuadTree::of_network(&rest, &springs.to_vec()).expect("sound springs")
+            particles = ClothParticles::new(&positions, &masses).expect("valid particles");
+            QuadTree::of_network(&rest, &springs.to_vec()).expect("valid springs")
         } else {
             QuadTree::of_grid(&grid, springs.has(SpringKind::Shear))
         };

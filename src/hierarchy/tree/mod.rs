@@ -1,87 +1,101 @@
 //! The quad-tree: which particles each node holds.
 
 mod grid;
+mod halving;
 mod network;
+mod node;
+mod shape;
 #[cfg(test)]
 mod tests;
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use bevy::{
-    math::{Vec3, bounding::BoundingSphere},
-    reflect::Reflect,
+    math::{
+        Vec3,
+        bounding::{BoundingSphere, BoundingVolume},
+    },
+    reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::bounds::{growth, middle, position};
-use crate::cloth::{ClothError, ClothGrid, ClothParticles, Spring};
+use super::stored::growth;
+use crate::cloth::{
+    ClothError, ClothGrid, ClothParticles, Graph, Spring, SpringKind, Surface,
+};
 
-pub(super) use grid::{GridTree, Level, Part};
-pub(super) use network::NetworkTree;
+use network::NetworkTree;
+use shape::Tree;
 
-/// A node of a [`QuadTree`]: a patch of the cloth.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
-pub struct Node {
-    /// Its level, 0 for the root.
-    pub level: usize,
-    /// Index of the patch's middle particle; of a leaf, its only one.
-    pub middle: u32,
-    /// Largest distance at rest, along the springs, from the middle particle to one of the patch (m). Infinite
-    /// where no way along the springs leads there.
-    pub rest_radius: f32,
-    children: [u32; 4],
-    child_count: u8,
-}
+pub use node::Node;
 
-impl Node {
-    /// Whether the node holds one particle.
-    pub fn is_leaf(&self) -> bool {
-        self.child_count == 0
-    }
-
-    /// Indices of its one to four children; none of a leaf.
-    pub fn children(&self) -> &[u32] {
-        &self.children[..usize::from(self.child_count)]
-    }
-}
+pub(super) use halving::{GridTree, Level, Part};
 
 /// A tree over the particles of a cloth: each node's patch is parted into up to four, down to one particle a
-/// leaf. It depends on the rest shape alone and is made once.
+/// leaf. It depends on the rest shape alone, is made once, and is shared by its clones.
 ///
 /// Nodes are numbered level by level from the root, 0. A grid's tree stores no nodes at all, just how its rows and
 /// its columns are halved on each level.
-#[derive(Reflect, Debug, Clone, PartialEq)]
+#[derive(Reflect, Debug, Clone)]
 #[reflect(opaque)]
-pub struct QuadTree(pub(super) Shape);
-
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
-    Grid(GridTree),
-    Network(NetworkTree),
-}
+#[reflect(Default, Debug, Clone)]
+pub struct QuadTree(Arc<dyn Tree>);
 
 impl Default for QuadTree {
     /// Of no particles.
     fn default() -> Self {
-        Self(Shape::Network(NetworkTree::default()))
+        Self(Arc::new(NetworkTree::default()))
     }
 }
 
 impl QuadTree {
+    /// Over a surface: of a [grid](Self::of_grid) by rows and columns, of a mesh by patches. `diagonals` says whether shear
+    /// springs run along the diagonals of a grid.
+    pub fn of_surface(surface: &Surface, diagonals: bool) -> Self {
+        match surface.as_grid() {
+            Some(grid) => Self::of_grid(grid, diagonals),
+            None => Self(Arc::new(NetworkTree::new(
+                surface.rest_positions(),
+                surface.graph(),
+            ))),
+        }
+    }
+
     /// Over `grid`, by halving its rows and columns. `diagonals` says whether shear springs run along them:
     /// distances along the springs are shorter then.
     pub fn of_grid(grid: &ClothGrid, diagonals: bool) -> Self {
-        Self(Shape::Grid(GridTree::new(grid, diagonals)))
+        Self(Arc::new(GridTree::new(grid, diagonals)))
     }
 
-    /// Over particles of no grid: `rest` are their positions at rest (m), `springs` what joins them, of which bend
-    /// springs don't count as ways. Patches are halved along their longest extents at rest; radii at rest come from
-    /// shortest ways along the springs (Dijkstra 1959). Takes O(n log² n) time.
+    /// Over any particles: `rest` are their positions at rest (m), `springs` what joins them, of which bend springs don't
+    /// count as paths. Takes O(n log² n) time.
     ///
     /// # Errors
     /// [`ClothError::BadSpring`] for the first with an end that is no particle, or with a rest length that is not from
     /// 10⁻⁹ to 10¹² m: what has no length at rest says nothing of how far it stretches; [`ClothError::ParticleNotFinite`] for a position that is not.
     pub fn of_network(rest: &[Vec3], springs: &[Spring]) -> Result<Self, ClothError> {
-        NetworkTree::new(rest, springs).map(|tree| Self(Shape::Network(tree)))
+        if let Some(index) = rest.iter().position(|position| !position.is_finite()) {
+            return Err(ClothError::ParticleNotFinite {
+                index,
+                position: rest[index],
+                displacement: Vec3::ZERO,
+                inverse_mass: 0.0,
+            });
+        }
+        let is_valid = |spring: &Spring| {
+            spring.ends.iter().all(|&end| (end as usize) < rest.len())
+                && (1.0e-9..=1.0e12).contains(&spring.rest_length)
+        };
+        if let Some(index) = springs.iter().position(|spring| !is_valid(spring)) {
+            return Err(ClothError::BadSpring {
+                index,
+                spring: springs[index],
+                particles: rest.len(),
+            });
+        }
+        // What a bend spring allows is not measured.
+        let paths = springs.iter().filter(|spring| spring.kind != SpringKind::Bend);
+        let graph = Graph::new(rest.len(), paths.map(|spring| (spring.ends, spring.rest_length)));
+        Ok(Self(Arc::new(NetworkTree::new(rest, &graph))))
     }
 
     /// Number of nodes.
@@ -97,10 +111,7 @@ impl QuadTree {
     /// The nodes of each level, the root's first. All leaves are on the last; a patch of one particle further up has
     /// itself as its only child.
     pub fn levels(&self) -> &[Range<u32>] {
-        match &self.0 {
-            Shape::Grid(tree) => &tree.ranges,
-            Shape::Network(tree) => &tree.ranges,
-        }
+        self.0.levels()
     }
 
     /// The level that a node is on, 0 for the root.
@@ -111,33 +122,32 @@ impl QuadTree {
     /// A node.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If there are not that many.
     pub fn node(&self, node: u32) -> Node {
-        match &self.0 {
-            Shape::Grid(tree) => tree.node(self.level_of(node), node),
-            Shape::Network(tree) => tree.node(self.level_of(node), node),
-        }
+        self.0.node(self.level_of(node), node)
     }
 
-    /// A sphere around all of its particles' centres, without touching more than one of them: the root's rest shape
-    /// at a stretch ([`Stretch::bound`](crate::solver::Stretch)).
+    /// A sphere around all of its particles' centres, without touching more than one of them for each piece of the cloth:
+    /// the root's rest shape at a stretch ([`Stretch::bound`](crate::solver::Stretch)).
     pub fn root_sphere(&self, particles: &ClothParticles, stretch: f32) -> BoundingSphere {
-        let root = match &self.0 {
-            _ if !self.fits(particles) => None,
-            Shape::Grid(tree) => tree.levels.first().map(|root| {
-                let (rows, columns) = (&root.rows[0], &root.columns[0]);
-                (
-                    middle(particles, rows, columns),
-                    root.rest_radius(rows, columns),
-                )
-            }),
-            Shape::Network(tree) => tree.nodes.first().map(|root| {
-                let slot = tree.slots[root.middle as usize];
-                (position(particles, slot), root.rest_radius)
-            }),
+        let none = BoundingSphere::new(Vec3::ZERO, 0.0);
+        if !self.matches(particles) {
+            return none;
+        }
+        let sphere = |&top: &u32| {
+            let node = self.node(top);
+            let radius = (node.rest_radius * growth(stretch)).max(0.0);
+            BoundingSphere::new(particles.position_at(node.middle as usize), radius)
         };
-        let (centre, rest_radius) = root.unwrap_or_default();
-        BoundingSphere::new(centre, (rest_radius * growth(stretch)).max(0.0))
+        let mut tops = self.0.tops().iter().map(sphere);
+        let Some(first) = tops.next() else {
+            return none;
+        };
+        tops.fold(first, |around, sphere| {
+            let merged = around.merge(&sphere);
+            // More than the rounding of a merge.
+            BoundingSphere::new(merged.center, merged.radius() * (1.0 + 1.0e-5))
+        })
     }
 
     /// Indices of the particles that a node holds.
@@ -156,23 +166,21 @@ impl QuadTree {
             .collect()
     }
 
-    /// Levels and nodes, or columns and rows: what says which volumes are whose.
+    /// Nodes and columns: what says which volumes are whose.
     pub(super) fn size(&self) -> [usize; 2] {
-        match &self.0 {
-            Shape::Grid(tree) => [tree.layout.columns as usize, tree.layout.rows as usize],
-            Shape::Network(tree) => [tree.nodes.len(), 0],
-        }
+        [self.len(), self.0.layout().columns as usize]
     }
 
     /// Whether the tree is one of `particles`: as many, laid out alike.
-    pub fn fits(&self, particles: &ClothParticles) -> bool {
-        match &self.0 {
-            Shape::Grid(tree) => tree.layout == particles.layout(),
-            Shape::Network(tree) => tree.layout == particles.layout(),
-        }
+    pub fn matches(&self, particles: &ClothParticles) -> bool {
+        self.0.layout() == particles.layout()
     }
 
-    /// Whether each node's children part its patch among them and each of so many particles is in one leaf.
+    pub(super) fn shape(&self) -> &dyn Tree {
+        &*self.0
+    }
+
+    /// Whether each node's children part its patch among them and each of this many particles is in one leaf.
     ///
     /// # Errors
     /// A sentence that names the node at fault.

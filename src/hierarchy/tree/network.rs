@@ -1,49 +1,59 @@
-//! The tree of particles on no grid: patches parted in rest space, each node stored.
+//! The tree of particles anywhere: patches parted along the surface at rest, each node stored.
 
-use std::{cmp::Reverse, collections::BinaryHeap, ops::Range};
+use std::ops::Range;
 
 use bevy::math::{DVec3, Vec3};
 
-use super::Node;
-use crate::cloth::{ClothError, Layout, Slot, Spring, SpringKind};
+use super::{Node, shape::Tree};
+use crate::{
+    cloth::{ClothParticles, Graph, Layout, ShortestPaths, Slot},
+    hierarchy::{
+        BoundRule, NodeVolume, Probe,
+        found::Found,
+        stored::{Bounds, Volumes, each, growth},
+        volume::Volume,
+    },
+};
 
-/// A tree over particles joined by any springs.
+/// From this many times on that its radius along the surface is its radius through space, a patch is folded: its halves are
+/// parted along the surface. A path along edges is up to a sixth longer than a straight one on a flat patch.
+const FOLDED: f32 = 1.3;
+
+/// A tree over particles joined in any way.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct NetworkTree {
     /// Of the particles: one row.
-    pub layout: Layout,
-    pub nodes: Vec<NetworkNode>,
-    pub ranges: Vec<Range<u32>>,
-    /// Where each particle lies.
-    pub slots: Vec<Slot>,
+    layout: Layout,
+    nodes: Vec<NetworkNode>,
+    ranges: Vec<Range<u32>>,
+    /// The uppermost nodes with a finite radius.
+    tops: Vec<u32>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct NetworkNode {
-    pub middle: u32,
-    pub rest_radius: f32,
-    pub children: Range<u32>,
+struct NetworkNode {
+    middle: u32,
+    rest_radius: f32,
+    /// Where the middle lies.
+    slot: Slot,
+    children: Range<u32>,
 }
 
 impl NetworkTree {
-    pub fn new(rest: &[Vec3], springs: &[Spring]) -> Result<Self, ClothError> {
-        if let Some(index) = rest.iter().position(|position| !position.is_finite()) {
-            return Err(ClothError::ParticleNotFinite {
-                index,
-                position: rest[index],
-                displacement: Vec3::ZERO,
-                inverse_mass: 0.0,
-            });
-        }
-        let mut ways = Ways::new(rest.len(), springs)?;
+    /// Over particles at `rest` (m), with paths along the edges of `graph`.
+    pub fn new(rest: &[Vec3], graph: &Graph) -> Self {
         let layout = Layout::new(rest.len() as u32, 1);
         let mut tree = Self {
             layout,
-            nodes: Vec::new(),
-            ranges: Vec::new(),
-            slots: layout.slots().collect(),
+            ..Self::default()
         };
-        let mut order: Vec<u32> = (0..rest.len() as u32).collect();
+        let mut splitter = Splitter {
+            rest,
+            order: (0..rest.len() as u32).collect(),
+            paths: ShortestPaths::new(graph),
+            distances: Vec::new(),
+            keys: vec![0.0; rest.len()],
+        };
         let mut patches: Vec<Range<usize>> =
             Vec::from_iter((!rest.is_empty()).then_some(0..rest.len()));
         while !patches.is_empty() {
@@ -52,11 +62,10 @@ impl NetworkTree {
             let is_last = patches.iter().all(|patch| patch.len() == 1);
             let mut parts = Vec::new();
             for patch in patches {
-                let middle = middle(&order[patch.clone()], rest);
-                let rest_radius = ways.farthest(middle, &order[patch.clone()]);
+                let (middle, rest_radius) = splitter.measure(patch.clone());
                 let child = below + parts.len() as u32;
                 if !is_last {
-                    part(&mut order, patch, rest, &mut parts);
+                    splitter.split(patch, rest_radius, &mut parts);
                 }
                 let end = if is_last {
                     child
@@ -66,20 +75,66 @@ impl NetworkTree {
                 tree.nodes.push(NetworkNode {
                     middle,
                     rest_radius,
+                    slot: layout.slot_of(middle as usize),
                     children: child..end,
                 });
             }
             tree.ranges.push(first..below);
             patches = parts;
         }
-        Ok(tree)
+        tree.find_tops();
+        tree
     }
 
-    pub fn node(&self, level: usize, node: u32) -> Node {
+    fn find_tops(&mut self) {
+        let mut queue: Vec<u32> = Vec::from_iter((!self.nodes.is_empty()).then_some(0));
+        while let Some(index) = queue.pop() {
+            let node = &self.nodes[index as usize];
+            if node.rest_radius.is_finite() || node.children.is_empty() {
+                self.tops.push(index);
+            } else {
+                queue.extend(node.children.clone());
+            }
+        }
+    }
+
+    /// Bottom up. Children come after their parents, so one way backwards does it.
+    fn refit<V: Volume>(&self, bounds: &mut Bounds<V>, particles: &ClothParticles) {
+        bounds.nodes.resize(self.nodes.len(), V::around(Vec3::ZERO, 0.0));
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let children = node.children.start as usize..node.children.end as usize;
+            let volume = match &bounds.nodes[children] {
+                [] => V::around(position(particles, node.slot), 0.0),
+                [a] => *a,
+                [a, b] => V::unite([a, b, a, b]),
+                [a, b, c] => V::unite([a, b, c, c]),
+                [a, b, c, d, ..] => V::unite([a, b, c, d]),
+            };
+            bounds.nodes[index] = volume;
+        }
+    }
+
+    /// The volume of a node.
+    #[inline(always)]
+    fn volume_of<V: Volume>(&self, bounds: &Bounds<V>, index: u32, middle: Vec3) -> V {
+        match bounds.rule {
+            BoundRule::RestShape => bounds.at_rest(middle, self.nodes[index as usize].rest_radius),
+            BoundRule::Refit | BoundRule::Paper => bounds.nodes[index as usize],
+        }
+    }
+}
+
+impl Tree for NetworkTree {
+    fn levels(&self) -> &[Range<u32>] {
+        &self.ranges
+    }
+
+    fn node(&self, level: usize, node: u32) -> Node {
         let NetworkNode {
             middle,
             rest_radius,
             ref children,
+            ..
         } = self.nodes[node as usize];
         let mut ids = [0; 4];
         for (id, child) in ids.iter_mut().zip(children.clone()) {
@@ -93,148 +148,152 @@ impl NetworkTree {
             child_count: children.len() as u8,
         }
     }
-}
 
-/// The particle nearest to the centroid of its patch at rest.
-fn middle(patch: &[u32], rest: &[Vec3]) -> u32 {
-    let at = |particle: u32| rest[particle as usize].as_dvec3();
-    let centroid = patch.iter().map(|&particle| at(particle)).sum::<DVec3>() / patch.len() as f64;
-    let distance = |&particle: &u32| at(particle).distance_squared(centroid);
-    let nearest = |a: &u32, b: &u32| distance(a).total_cmp(&distance(b));
-    patch
-        .iter()
-        .copied()
-        .min_by(nearest)
-        .expect("no patch is empty")
-}
-
-/// Halves a patch along its longest extent, and each half along its own.
-fn part(order: &mut [u32], patch: Range<usize>, rest: &[Vec3], parts: &mut Vec<Range<usize>>) {
-    for half in halves(order, patch, rest) {
-        parts.extend(halves(order, half, rest));
+    fn layout(&self) -> Layout {
+        self.layout
     }
-}
 
-fn halves(
-    order: &mut [u32],
-    patch: Range<usize>,
-    rest: &[Vec3],
-) -> impl Iterator<Item = Range<usize>> + use<> {
-    let half = patch.len().div_ceil(2);
-    let members = &mut order[patch.clone()];
-    if half < members.len() {
-        let at = |particle: &u32| rest[*particle as usize];
-        let low = members.iter().map(at).fold(Vec3::MAX, Vec3::min);
-        let high = members.iter().map(at).fold(Vec3::MIN, Vec3::max);
-        let axis = (high - low).max_position();
-        // Ties by index, so that the tree is the same everywhere.
-        members.select_nth_unstable_by(half, |a, b| {
-            at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b))
+    fn tops(&self) -> &[u32] {
+        &self.tops
+    }
+
+    fn rebuild(&self, volumes: &mut Volumes, rule: BoundRule, particles: &ClothParticles, stretch: f32) {
+        each!(volumes, bounds => {
+            // The paper's Figure 4 is of a grid.
+            bounds.rule = if rule == BoundRule::Paper { BoundRule::RestShape } else { rule };
+            bounds.growth = growth(stretch);
+            if rule == BoundRule::Refit {
+                self.refit(bounds, particles);
+            }
         });
     }
-    let parts = [
-        patch.start..patch.start + half,
-        patch.start + half..patch.end,
-    ];
-    parts.into_iter().filter(|part| !part.is_empty())
-}
 
-/// Shortest ways along the springs at rest.
-struct Ways {
-    /// Of each particle, where its neighbours begin.
-    first: Vec<usize>,
-    neighbours: Vec<(u32, f32)>,
-    /// Of each particle, in which search it was reached, and how far away (m).
-    reached: Vec<(u32, f64)>,
-    /// Of each particle, the search in which it was wanted.
-    wanted: Vec<u32>,
-    search: u32,
-    heap: BinaryHeap<Reverse<(u64, u32)>>,
-}
-
-impl Ways {
-    fn new(particles: usize, springs: &[Spring]) -> Result<Self, ClothError> {
-        let is_sound = |spring: &Spring| {
-            spring.ends.iter().all(|&end| (end as usize) < particles)
-                && (1.0e-9..=1.0e12).contains(&spring.rest_length)
-        };
-        if let Some(index) = springs.iter().position(|spring| !is_sound(spring)) {
-            return Err(ClothError::BadSpring {
-                index,
-                spring: springs[index],
-                particles,
-            });
-        }
-        // What a bend spring allows is not measured.
-        let ways = || {
-            springs
-                .iter()
-                .filter(|spring| spring.kind != SpringKind::Bend)
-        };
-        let mut first = vec![0; particles + 1];
-        for end in ways().flat_map(|spring| spring.ends) {
-            first[end as usize + 1] += 1;
-        }
-        for particle in 0..particles {
-            first[particle + 1] += first[particle];
-        }
-        let mut next = first.clone();
-        let mut neighbours = vec![(0, 0.0); first[particles]];
-        for spring in ways() {
-            let [a, b] = spring.ends;
-            for (from, to) in [(a, b), (b, a)] {
-                neighbours[next[from as usize]] = (to, spring.rest_length);
-                next[from as usize] += 1;
-            }
-        }
-        Ok(Self {
-            first,
-            neighbours,
-            reached: vec![(0, 0.0); particles],
-            wanted: vec![0; particles],
-            search: 0,
-            heap: BinaryHeap::new(),
-        })
+    fn volume(&self, volumes: &Volumes, particles: &ClothParticles, node: u32) -> NodeVolume {
+        let middle = position(particles, self.nodes[node as usize].slot);
+        each!(volumes, bounds => self.volume_of(bounds, node, middle).into())
     }
 
-    /// The distance from `start` to the farthest of `patch` (m), rounded up; infinite if one is out of reach.
-    fn farthest(&mut self, start: u32, patch: &[u32]) -> f32 {
-        self.search += 1;
-        let search = self.search;
-        for &particle in patch {
-            self.wanted[particle as usize] = search;
+    fn search(&self, volumes: &Volumes, particles: &ClothParticles, probe: &Probe, found: &mut Found) {
+        if self.nodes.is_empty() {
+            return;
         }
-        let mut left = patch.len();
-        self.heap.clear();
-        self.heap.push(Reverse((0, start)));
-        self.reached[start as usize] = (search, 0.0);
-        // Bits of floats that are not negative are in the order of the floats.
-        while let Some(Reverse((bits, particle))) = self.heap.pop() {
-            let distance = f64::from_bits(bits);
-            let at = particle as usize;
-            if distance > self.reached[at].1 {
-                continue;
-            }
-            if self.wanted[at] == search {
-                self.wanted[at] = 0;
-                left -= 1;
-                if left == 0 {
-                    return if distance > 0.0 {
-                        (distance as f32).next_up()
-                    } else {
-                        0.0
-                    };
+        let reach = probe.reach() as f32;
+        each!(volumes, bounds => {
+            let queue = &mut found.frontier[0];
+            queue.clear();
+            queue.push([0, 1, 0, 0]);
+            let mut next = 0;
+            // Children are put behind what is still to be looked at: level by level.
+            while let Some(&[first, end, ..]) = queue.get(next) {
+                next += 1;
+                for index in first..end {
+                    let node = &self.nodes[index as usize];
+                    let middle = position(particles, node.slot);
+                    let touching = self.volume_of(bounds, index, middle).may_reach(probe, reach);
+                    found.visits.push((index, touching));
+                    if node.children.is_empty() {
+                        found.leaf_tests += 1;
+                        if touching && probe.meets(middle) {
+                            found.candidates.push(node.middle);
+                        }
+                    } else if touching {
+                        queue.push([node.children.start, node.children.end, 0, 0]);
+                    }
                 }
             }
-            for &(neighbour, length) in &self.neighbours[self.first[at]..self.first[at + 1]] {
-                let further = distance + f64::from(length);
-                let known = &mut self.reached[neighbour as usize];
-                if known.0 != search || further < known.1 {
-                    *known = (search, further);
-                    self.heap.push(Reverse((further.to_bits(), neighbour)));
+        });
+    }
+}
+
+#[inline(always)]
+fn position(particles: &ClothParticles, slot: Slot) -> Vec3 {
+    particles.blocks()[slot.block].position(slot.lane)
+}
+
+/// Parts patches.
+struct Splitter<'a> {
+    rest: &'a [Vec3],
+    /// The particles, each patch's side by side.
+    order: Vec<u32>,
+    paths: ShortestPaths<'a>,
+    distances: Vec<f64>,
+    /// What the particles of a patch are sorted by.
+    keys: Vec<f32>,
+}
+
+impl Splitter<'_> {
+    /// The particle in the middle of a patch, nearest to its centroid, and the largest distance along the surface from there
+    /// to one of the patch (m).
+    fn measure(&mut self, patch: Range<usize>) -> (u32, f32) {
+        let members = &self.order[patch];
+        let at = |particle: u32| self.rest[particle as usize].as_dvec3();
+        let centroid = members.iter().map(|&particle| at(particle)).sum::<DVec3>() / members.len() as f64;
+        let distance = |&particle: &u32| at(particle).distance_squared(centroid);
+        let nearest = |a: &u32, b: &u32| distance(a).total_cmp(&distance(b));
+        let middle = members.iter().copied().min_by(nearest).expect("no patch is empty");
+        (middle, self.paths.farthest(middle, members))
+    }
+
+    /// Halves a patch, and each half.
+    fn split(&mut self, patch: Range<usize>, rest_radius: f32, parts: &mut Vec<Range<usize>>) {
+        let is_folded = self.is_folded(patch.clone(), rest_radius);
+        for half in self.halve(patch, is_folded) {
+            parts.extend(self.halve(half, is_folded));
+        }
+    }
+
+    fn is_folded(&self, patch: Range<usize>, rest_radius: f32) -> bool {
+        let [low, high] = self.corners(patch);
+        rest_radius > FOLDED * low.distance(high) / 2.0
+    }
+
+    /// The corners of a box around a patch.
+    fn corners(&self, patch: Range<usize>) -> [Vec3; 2] {
+        let places = self.order[patch].iter().map(|&particle| self.rest[particle as usize]);
+        places.fold([Vec3::MAX, Vec3::MIN], |[low, high], place| [low.min(place), high.max(place)])
+    }
+
+    /// Halves a patch: one that is not folded along its longest extent, any other by which of two ends is nearer along the
+    /// surface, so that no half has two sides of a fold.
+    fn halve(&mut self, patch: Range<usize>, is_folded: bool) -> impl Iterator<Item = Range<usize>> + use<> {
+        let half = patch.len().div_ceil(2);
+        if half < patch.len() {
+            if is_folded {
+                self.sort_by_ends(patch.clone());
+            } else {
+                let [low, high] = self.corners(patch.clone());
+                let axis = (high - low).max_position();
+                for &particle in &self.order[patch.clone()] {
+                    self.keys[particle as usize] = self.rest[particle as usize][axis];
                 }
             }
+            let keys = &self.keys;
+            // Ties by index, so that the tree is the same everywhere.
+            self.order[patch.clone()].select_nth_unstable_by(half, |a, b| {
+                keys[*a as usize].total_cmp(&keys[*b as usize]).then(a.cmp(b))
+            });
         }
-        f32::INFINITY
+        let parts = [
+            patch.start..patch.start + half,
+            patch.start + half..patch.end,
+        ];
+        parts.into_iter().filter(|part| !part.is_empty())
+    }
+
+    /// Keys that tell which of two ends of a patch is nearer; pieces that no path joins are told apart by them, too.
+    fn sort_by_ends(&mut self, patch: Range<usize>) {
+        let members = &self.order[patch];
+        let one = self.paths.distances(members[0], members, &mut self.distances);
+        let other = self.paths.distances(one, members, &mut self.distances);
+        for (&particle, &distance) in members.iter().zip(&self.distances) {
+            self.keys[particle as usize] = distance as f32;
+        }
+        self.paths.distances(other, members, &mut self.distances);
+        for (&particle, &distance) in members.iter().zip(&self.distances) {
+            let key = &mut self.keys[particle as usize];
+            // Out of reach of both is neither's.
+            let nearer = *key - distance as f32;
+            *key = if nearer.is_nan() { 0.0 } else { nearer };
+        }
     }
 }

@@ -10,11 +10,11 @@ use crate::cloth::{Cloth, ClothMaterial, SpringKind, Springs};
 fn grid(columns: u32, rows: u32) -> ClothGrid {
     Cloth::new(columns, rows, 0.5)
         .grid(Vec3::ONE)
-        .expect("a sound grid")
+        .expect("a valid grid")
 }
 
 #[test]
-fn every_grid_size_gives_a_sound_tree() {
+fn every_grid_size_gives_a_valid_tree() {
     let sizes = (2..20).flat_map(|columns| (2..20).map(move |rows| (columns, rows)));
     for (columns, rows) in sizes.chain([
         (33, 2),
@@ -77,7 +77,7 @@ fn a_networks_radii_are_shortest_ways() {
             .cells()
             .map(|(row, column)| grid.rest_position(row, column))
             .collect();
-        let tree = QuadTree::of_network(&rest, &springs).expect("sound springs");
+        let tree = QuadTree::of_network(&rest, &springs).expect("valid springs");
         assert_eq!(tree.validate(rest.len()), Ok(()));
         // Floyd and Warshall.
         let count = rest.len();
@@ -128,7 +128,7 @@ fn a_network_in_pieces_is_bounded_piece_by_piece() {
             compliance: 0.0,
         })
         .into();
-    let tree = QuadTree::of_network(&rest, &springs).expect("sound springs");
+    let tree = QuadTree::of_network(&rest, &springs).expect("valid springs");
     assert_eq!(tree.validate(7), Ok(()));
     assert_eq!(tree.node(0).rest_radius, f32::INFINITY);
     let leaves = tree.levels().last().expect("leaves").clone();
@@ -140,7 +140,7 @@ fn a_network_in_pieces_is_bounded_piece_by_piece() {
 }
 
 #[test]
-fn a_network_that_is_not_sound_is_refused() {
+fn a_network_that_is_not_valid_is_refused() {
     let spring = |ends, rest_length| Spring {
         kind: SpringKind::Structural,
         ends,
@@ -194,10 +194,10 @@ fn validate_finds_what_is_broken() {
 fn a_network_is_not_of_particles_in_a_grid() {
     let grid = Cloth::new(12, 3, 0.1)
         .grid(Vec3::ONE)
-        .expect("a sound grid");
+        .expect("a valid grid");
     let in_grid = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("particles");
     let rest: Vec<Vec3> = in_grid.positions().collect();
     let in_row = ClothParticles::new(&rest, &vec![1.0; rest.len()]).expect("particles");
     let tree = QuadTree::of_network(&rest, &[]).expect("a tree");
-    assert!(tree.fits(&in_row) && !tree.fits(&in_grid));
+    assert!(tree.matches(&in_row) && !tree.matches(&in_grid));
 }

@@ -6,7 +6,7 @@ use bevy::math::{
 };
 
 use super::{
-    Lane, NodeVolume, Volume,
+    bounding::{Lane, Volume},
     slabs::{self, Slab},
 };
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
 };
 
 impl Volume for Aabb3d {
-    /// Least and greatest coordinates.
+    /// Minimum and maximum coordinates.
     type Lanes = [[Lane; 3]; 2];
 
     const UNSET: Self::Lanes = [[[0.0; LANES]; 3]; 2];
@@ -75,8 +75,8 @@ impl Volume for Aabb3d {
         self.contains(other)
     }
 
-    fn drawn(&self, particle_radius: f32) -> NodeVolume {
-        NodeVolume::Aabb(self.grow(Vec3A::splat(particle_radius)))
+    fn inflated(&self, radius: f32) -> Self {
+        self.grow(Vec3A::splat(radius))
     }
 
     #[inline(always)]

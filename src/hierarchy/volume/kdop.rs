@@ -3,8 +3,8 @@
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
 
 use super::{
-    Lane, NodeVolume, Volume,
     aabb::{least, most, unite_slab},
+    bounding::{Lane, Volume},
     slabs::{self, Slab},
 };
 use crate::{
@@ -48,7 +48,7 @@ impl<const N: usize> KDop<N> {
         AXES[if N == 9 && at >= 3 { at + 4 } else { at }]
     }
 
-    /// From where to where it reaches along each axis: the least and greatest products with it (m).
+    /// From where to where it reaches along each axis: the minimum and maximum products with it (m).
     pub fn slabs(&self) -> impl Iterator<Item = (Vec3, f32, f32)> + '_ {
         (0..N).map(|at| (Self::axis(at).into(), self.low[at], self.high[at]))
     }
@@ -108,7 +108,7 @@ fn cut(corners: &[Vec3], normal: Vec3, distance: f32) -> Vec<Vec3> {
 }
 
 impl<const N: usize> Volume for KDop<N> {
-    /// Least and greatest products.
+    /// Minimum and maximum products.
     type Lanes = [[Lane; N]; 2];
 
     const UNSET: Self::Lanes = [[[0.0; LANES]; N]; 2];
@@ -174,23 +174,11 @@ impl<const N: usize> Volume for KDop<N> {
         (0..N).all(|at| self.low[at] <= other.low[at] && other.high[at] <= self.high[at])
     }
 
-    fn drawn(&self, particle_radius: f32) -> NodeVolume {
-        let reach = |at: usize| particle_radius * Vec3::from(Self::axis(at)).length();
-        let low = |at: usize| self.low[at] - reach(at);
-        let high = |at: usize| self.high[at] + reach(at);
-        match N {
-            7 => NodeVolume::KDop14(KDop {
-                low: std::array::from_fn(low),
-                high: std::array::from_fn(high),
-            }),
-            9 => NodeVolume::KDop18(KDop {
-                low: std::array::from_fn(low),
-                high: std::array::from_fn(high),
-            }),
-            _ => NodeVolume::KDop26(KDop {
-                low: std::array::from_fn(low),
-                high: std::array::from_fn(high),
-            }),
+    fn inflated(&self, radius: f32) -> Self {
+        let reach = |at: usize| radius * Vec3::from(Self::axis(at)).length();
+        Self {
+            low: std::array::from_fn(|at| self.low[at] - reach(at)),
+            high: std::array::from_fn(|at| self.high[at] + reach(at)),
         }
     }
 

@@ -3,7 +3,7 @@
 use bevy::math::{DVec3, Mat3, Vec3};
 
 use super::{
-    NodeVolume, Volume,
+    bounding::Volume,
     slabs::{self, Slab},
 };
 use crate::{
@@ -181,11 +181,11 @@ impl Volume for Obb {
             })
     }
 
-    fn drawn(&self, particle_radius: f32) -> NodeVolume {
-        NodeVolume::Obb(Self {
-            half_size: self.half_size + particle_radius,
+    fn inflated(&self, radius: f32) -> Self {
+        Self {
+            half_size: self.half_size + radius,
             ..*self
-        })
+        }
     }
 
     fn of_particles(children: [&View; 4], into: &mut Self::Lanes) {

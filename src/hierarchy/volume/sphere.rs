@@ -2,7 +2,10 @@
 
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::BoundingSphere, primitives::Sphere};
 
-use super::{Lane, NodeVolume, Volume, aabb::most};
+use super::{
+    aabb::most,
+    bounding::{Lane, Volume},
+};
 use crate::{
     cloth::{LANES, View, X, Y, Z},
     hierarchy::{Probe, probe::ROUNDING},
@@ -49,8 +52,8 @@ impl Volume for BoundingSphere {
         )
     }
 
-    fn drawn(&self, particle_radius: f32) -> NodeVolume {
-        NodeVolume::Sphere(Self::new(self.center, self.radius() + particle_radius))
+    fn inflated(&self, radius: f32) -> Self {
+        Self::new(self.center, self.radius() + radius)
     }
 
     #[inline(always)]

@@ -1,14 +1,16 @@
 //! Keeps a mesh on the particles.
 
 mod placing;
-mod surface;
+mod write;
+
+use std::sync::Arc;
 
 use bevy::{
     app::{
         App, FixedFirst, FixedLast, FixedPostUpdate, FixedPreUpdate, FixedUpdate, Plugin,
         PostUpdate,
     },
-    asset::{AssetEventSystems, Assets, Handle},
+    asset::{AssetEventSystems, AssetId, Assets, Handle},
     camera::visibility::{InheritedVisibility, VisibilitySystems},
     ecs::{
         change_detection::{DetectChanges, Ref, Tick},
@@ -17,7 +19,7 @@ use bevy::{
         intern::Interned,
         lifecycle::Remove,
         observer::On,
-        query::{QueryData, With},
+        query::QueryData,
         reflect::ReflectComponent,
         schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
         system::{Commands, Query, Res, ResMut},
@@ -29,13 +31,13 @@ use bevy::{
     transform::{TransformSystems, components::GlobalTransform},
 };
 
-use super::{ClothFrame, ClothSystems, ClothTopology, components::ClothTick};
-use crate::cloth::{Cloth, ClothGrid, ClothParticles};
+use super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothSystems};
+use crate::cloth::{Cloth, ClothParticles, ClothShape, Surface};
 use placing::{Carriers, Drawn};
-use surface::{flat_mesh, write_mesh};
+use write::{Tangents, copy_of, mesh_of, write_mesh};
 
 /// On a cloth whose [`Mesh3d`] follows its particles, with UVs, normals and tangents; it replaces one that the entity
-/// had. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
+/// had. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
 /// both sides.
 ///
 /// Pinned and attached particles are drawn where the cloth's entity and their targets are drawn. Interpolate what moves in
@@ -47,8 +49,14 @@ use surface::{flat_mesh, write_mesh};
 pub struct ClothMesh {
     #[reflect(ignore)]
     handle: Handle<Mesh>,
+    /// The asset that the cloth was made from.
     #[reflect(ignore)]
-    grid: ClothGrid,
+    source: Option<Handle<Mesh>>,
+    /// What it is a mesh of.
+    #[reflect(ignore)]
+    surface: Arc<Surface>,
+    #[reflect(ignore)]
+    tangents: Tangents,
     /// Positions as the last tick began, in the cloth's frame.
     #[reflect(ignore)]
     previous: Vec<Vec3>,
@@ -69,6 +77,18 @@ pub struct ClothMesh {
     /// What is drawn of a cloth that sleeps: when its particles were written, and where its entity is.
     #[reflect(ignore)]
     settled: Option<(Tick, GlobalTransform)>,
+}
+
+impl ClothMesh {
+    /// The mesh that is drawn.
+    pub fn id(&self) -> AssetId<Mesh> {
+        self.handle.id()
+    }
+
+    /// The asset that the cloth was made from, if it was.
+    pub fn source(&self) -> Option<&Handle<Mesh>> {
+        self.source.as_ref()
+    }
 }
 
 /// Gives each cloth a mesh with UVs, normals and tangents that follows its particles, updated once a rendered frame and
@@ -132,60 +152,83 @@ impl Plugin for ClothMeshPlugin {
 }
 
 fn remember_positions(
-    mut cloths: Query<(&ClothParticles, &ClothFrame, &ClothTick, &mut ClothMesh)>,
+    mut cloths: Query<(
+        &ClothParticles,
+        &ClothFrame,
+        &ClothState,
+        &ClothScratch,
+        &mut ClothMesh,
+    )>,
 ) {
-    for (particles, frame, tick, mut mesh) in &mut cloths {
-        let rests = tick.rest.is_asleep();
+    for (particles, frame, state, scratch, mut mesh) in &mut cloths {
+        let rests = state.rest.is_asleep();
         if !(rests && mesh.rested) {
             mesh.previous.clear();
             mesh.previous.extend(particles.positions());
-            mesh.carriers.follow(*frame, tick);
+            mesh.carriers.follow(*frame, state, scratch);
         }
         mesh.rested = rests;
     }
 }
 
 fn add_meshes(
-    cloths: Query<(Entity, &ClothTopology, Option<&ClothMesh>)>,
+    cloths: Query<(Entity, &Cloth, &ClothBuilt, Option<&Mesh3d>, Option<&ClothMesh>)>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, topology, mesh) in &cloths {
-        let is_right =
-            |mesh: &ClothMesh| mesh.grid == topology.grid && meshes.contains(&mesh.handle);
-        if topology.grid.is_empty() || mesh.is_some_and(is_right) {
+    for (entity, cloth, built, mesh, drawn) in &cloths {
+        let surface = built.surface();
+        let is_right = |drawn: &ClothMesh| {
+            Arc::ptr_eq(&drawn.surface, surface) && meshes.contains(&drawn.handle)
+        };
+        if surface.is_empty() || drawn.is_some_and(is_right) {
             continue;
         }
-        let handle = meshes.add(flat_mesh(&topology.grid));
-        let mesh = ClothMesh {
+        // What the entity drew before the plugin's own mesh.
+        let known = drawn.and_then(|drawn| drawn.source.clone());
+        let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
+        let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
+        let source = other.map(|mesh| mesh.0.clone()).or(known).filter(|_| is_asset);
+        let copy = match &source {
+            Some(source) => meshes.get(source).map(copy_of),
+            None => Some(mesh_of(surface)),
+        };
+        // What the cloth was made from may have gone meanwhile.
+        let Some(copy) = copy.filter(|copy| copy.count_vertices() == surface.vertices()) else {
+            continue;
+        };
+        let tangents = Tangents::of(&copy);
+        let handle = meshes.add(copy);
+        let drawn = ClothMesh {
             handle: handle.clone(),
-            grid: topology.grid,
+            source,
+            surface: surface.clone(),
+            tangents,
             ..Default::default()
         };
-        commands.entity(entity).try_insert((Mesh3d(handle), mesh));
+        commands.entity(entity).try_insert((Mesh3d(handle), drawn));
     }
 }
 
-/// What is no cloth any more is not drawn as one.
-fn remove_mesh(
-    removed: On<Remove, Cloth>,
-    meshes: Query<(), With<ClothMesh>>,
-    mut commands: Commands,
-) {
-    if meshes.contains(removed.entity) {
-        commands
-            .entity(removed.entity)
-            .try_remove::<(ClothMesh, Mesh3d)>();
+/// What is no cloth any more is not drawn as one, but as what it was made from, if it was.
+fn remove_mesh(removed: On<Remove, Cloth>, meshes: Query<&ClothMesh>, mut commands: Commands) {
+    if let Ok(mesh) = meshes.get(removed.entity) {
+        let mut entity = commands.entity(removed.entity);
+        match &mesh.source {
+            Some(source) => entity.try_insert(Mesh3d(source.clone())),
+            None => entity.try_remove::<Mesh3d>(),
+        };
+        entity.try_remove::<ClothMesh>();
     }
 }
 
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct Drawing {
-    topology: &'static ClothTopology,
+    built: &'static ClothBuilt,
     particles: Ref<'static, ClothParticles>,
     frame: &'static ClothFrame,
-    tick: &'static ClothTick,
+    state: &'static ClothState,
     transform: Option<&'static GlobalTransform>,
     visibility: Option<&'static InheritedVisibility>,
     mesh: &'static mut ClothMesh,
@@ -215,7 +258,7 @@ impl DrawingItem<'_, '_> {
         meshes: &mut Assets<Mesh>,
         fraction: f32,
     ) {
-        if !self.tick.sound || !self.topology.fits(&self.particles) {
+        if !self.state.is_valid || !self.built.matches(&self.particles) {
             return;
         }
         // What the game hides no camera sees. What merely no camera looks at is kept up to date: whether one does is
@@ -233,17 +276,18 @@ impl DrawingItem<'_, '_> {
             targets,
             drawn,
             normals,
+            tangents,
             rested,
             settled,
             ..
         } = &mut *self.mesh;
         // Those of the tick: what has been attached since has yet to be taken over.
-        let drawn_at = self.tick.attachments.iter();
-        let drawn_at = drawn_at.map_while(|each| transforms.get(each.target).ok());
+        let drawn_at = self.state.targets.iter();
+        let drawn_at = drawn_at.map_while(|target| transforms.get(*target).ok());
         targets.clear();
         targets.extend(drawn_at.map(GlobalTransform::affine));
         // What sleeps is drawn once.
-        let state = (self.tick.rest.is_asleep() && *rested && !carriers.differ_from(targets))
+        let state = (self.state.rest.is_asleep() && *rested && !carriers.differ_from(targets))
             .then_some((self.particles.last_changed(), entity));
         if state.is_some() && *settled == state {
             return;
@@ -251,20 +295,21 @@ impl DrawingItem<'_, '_> {
         let Some(mut mesh) = meshes.get_mut(&*handle) else {
             return;
         };
-        if mesh.count_vertices() != self.particles.len() {
+        let surface = self.built.surface();
+        if mesh.count_vertices() != surface.vertices() {
             return;
         }
         interpolate(drawn, previous, &self.particles, fraction);
         let place = Drawn {
-            tick: self.tick,
-            grid: &self.topology.grid,
+            built: self.built,
+            state: self.state,
             particles: &self.particles,
             entity,
             targets,
             fraction,
         };
         place.place(carriers, drawn);
-        write_mesh(&mut mesh, &self.topology.grid, drawn, normals);
+        write_mesh(&mut mesh, surface, drawn, normals, tangents);
         *settled = state;
     }
 }

@@ -12,11 +12,9 @@ use bevy::{
 };
 
 use super::super::{
-    ClothFrame,
-    attach::{Attached, rigid},
-    components::ClothTick,
+    ClothBuilt, ClothFrame, ClothScratch, ClothState, attachments::Attached, frame::rigid,
 };
-use crate::cloth::{ClothGrid, ClothParticles};
+use crate::cloth::ClothParticles;
 
 /// Where a cloth's frame and its targets were as a tick ended.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -36,16 +34,16 @@ pub(super) struct Carriers {
 
 impl Carriers {
     /// Takes over a tick's.
-    pub fn follow(&mut self, frame: ClothFrame, tick: &ClothTick) {
+    pub fn follow(&mut self, frame: ClothFrame, state: &ClothState, scratch: &ClothScratch) {
         std::mem::swap(&mut self.before, &mut self.now);
         self.now.frame = frame;
         self.now.targets.clear();
-        let entities = tick.attachments.iter().map(|each| each.target);
+        let entities = state.targets.iter().copied();
         self.now
             .targets
-            .extend(entities.zip(tick.targets.iter().copied()));
+            .extend(entities.zip(scratch.targets.iter().copied()));
         // What jumps, or begins to be carried, does not come from anywhere.
-        if tick.teleports || !self.is_known {
+        if scratch.teleports || !self.is_known {
             self.before.clone_from(&self.now);
         }
         self.is_known = true;
@@ -79,25 +77,29 @@ struct Weights {
 
 impl Weights {
     /// Makes them anew if the pins have changed.
-    fn follow(&mut self, grid: &ClothGrid, particles: &ClothParticles, tick: &ClothTick) {
-        if self.made_for == Some(tick.pins_version) {
+    fn follow(&mut self, built: &ClothBuilt, particles: &ClothParticles, state: &ClothState) {
+        if self.made_for == Some(built.pins_version) {
             return;
         }
-        self.made_for = Some(tick.pins_version);
-        let targets = tick.attachments.len();
+        self.made_for = Some(built.pins_version);
+        let targets = state.attachments.len();
         self.carriers = targets + 1;
         let mut carrier_of = vec![None; particles.len()];
         for (carrier, inverse_mass) in carrier_of.iter_mut().zip(particles.inverse_masses()) {
             *carrier = (inverse_mass == 0.0).then_some(targets);
         }
-        for attached in &tick.attached {
+        for attached in &state.attached {
             carrier_of[attached.particle as usize] = Some(attached.attachment);
         }
         self.own.clear();
         let own = (0..particles.len()).filter(|&index| carrier_of[index] == Some(targets));
         self.own.extend(own.map(|index| index as u32));
         let distances: Vec<Vec<f32>> = (0..self.carriers)
-            .map(|carrier| distances(grid, |index| carrier_of[index] == Some(carrier)))
+            .map(|carrier| {
+                let sources = (0..carrier_of.len()).filter(|&index| carrier_of[index] == Some(carrier));
+                let found = built.surface().graph().distances(sources.map(|index| index as u32));
+                found.into_iter().map(|(distance, _)| distance).collect()
+            })
             .collect();
         let nearest = |index: usize| {
             let of_carriers = distances.iter().map(|distance| distance[index]);
@@ -130,50 +132,10 @@ impl Weights {
     }
 }
 
-/// How far it is at rest from each particle to the nearest that `is_source`, along rows, columns and diagonals (m);
-/// infinite without any.
-fn distances(grid: &ClothGrid, is_source: impl Fn(usize) -> bool) -> Vec<f32> {
-    let source = |index| if is_source(index) { 0.0 } else { f32::INFINITY };
-    let mut distance: Vec<f32> = (0..grid.len()).map(source).collect();
-    let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
-    let spacing = grid.spacing();
-    // Once down with the neighbours before, once up with those after (Rosenfeld and Pfaltz 1966).
-    for is_back in [false, true] {
-        for step in 0..grid.len() {
-            let index = if is_back { grid.len() - 1 - step } else { step };
-            let (row, column) = (index / columns, index % columns);
-            let (left, right) = (column > 0, column + 1 < columns);
-            let other_row = if is_back { row + 1 < rows } else { row > 0 };
-            let beside = if is_back { right } else { left };
-            let at = |down: isize, across: isize| {
-                let offset = down * columns as isize + across;
-                index.wrapping_add_signed(if is_back { -offset } else { offset })
-            };
-            // Mirrored on the way back.
-            let (diagonal, other) = if is_back {
-                (right, left)
-            } else {
-                (left, right)
-            };
-            for (exists, from, way) in [
-                (beside, at(0, -1), spacing.x),
-                (other_row, at(-1, 0), spacing.y),
-                (other_row && diagonal, at(-1, -1), spacing.length()),
-                (other_row && other, at(-1, 1), spacing.length()),
-            ] {
-                if exists {
-                    distance[index] = distance[index].min(distance[from] + way);
-                }
-            }
-        }
-    }
-    distance
-}
-
 /// How a cloth is drawn in a frame.
 pub(super) struct Drawn<'a> {
-    pub tick: &'a ClothTick,
-    pub grid: &'a ClothGrid,
+    pub built: &'a ClothBuilt,
+    pub state: &'a ClothState,
     pub particles: &'a ClothParticles,
     /// Where its entity is drawn.
     pub entity: GlobalTransform,
@@ -189,13 +151,11 @@ impl Drawn<'_> {
     pub fn place(&self, carriers: &mut Carriers, drawn: &mut [Vec3]) {
         let frame = carriers.now.frame;
         let mut is_corrected = false;
-        if self.tick.pinned > 0 {
-            for index in 0..=self.tick.attachments.len() {
+        if self.built.pinned > 0 {
+            for index in 0..=self.state.attachments.len() {
                 if let Some(correction) = self.correction(carriers, index) {
                     if !is_corrected {
-                        carriers
-                            .weights
-                            .follow(self.grid, self.particles, self.tick);
+                        carriers.weights.follow(self.built, self.particles, self.state);
                         is_corrected = true;
                     }
                     // In the cloth's frame, one carrier after the other: each moves its own part.
@@ -229,7 +189,7 @@ impl Drawn<'_> {
     /// How far a carrier is drawn from its interpolation, where that is anything.
     fn correction(&self, carriers: &Carriers, index: usize) -> Option<Isometry3d> {
         let Carriers { before, now, .. } = carriers;
-        if index == self.tick.attachments.len() {
+        if index == self.state.attachments.len() {
             let drawn = self.entity.affine();
             let differs = before.frame != now.frame || drawn != now.frame.affine();
             let (was, is) = (before.frame.isometry(), now.frame.isometry());
@@ -261,41 +221,13 @@ impl Drawn<'_> {
             particle,
             attachment,
             offset,
-        } in &self.tick.attached
+        } in &self.state.attached
         {
             if let (Some(target), Some(place)) = (
                 self.targets.get(*attachment),
                 drawn.get_mut(*particle as usize),
             ) {
                 *place = from_world.transform_point3(target.transform_point3(*offset));
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cloth::Cloth;
-
-    /// Along rows, columns and diagonals, from wherever the sources are.
-    #[test]
-    fn distances_are_those_of_the_nearest_source() {
-        let grid = Cloth::new(9, 7, 0.1).grid(Vec3::ONE).expect("a sound grid");
-        for sources in [&[0][..], &[62], &[31], &[4, 40, 58]] {
-            let found = distances(&grid, |index| sources.contains(&index));
-            for (index, found) in found.into_iter().enumerate() {
-                let way = |source: usize| {
-                    let (down, across) = (
-                        (source / 9).abs_diff(index / 9),
-                        (source % 9).abs_diff(index % 9),
-                    );
-                    let diagonal = down.min(across) as f32;
-                    0.1 * ((down.max(across) as f32 - diagonal) + diagonal * 2.0_f32.sqrt())
-                };
-                let expected = sources.iter().map(|&source| way(source));
-                let expected = expected.fold(f32::INFINITY, f32::min);
-                assert!((found - expected).abs() < 1.0e-5, "{sources:?} {index}");
             }
         }
     }

@@ -7,7 +7,7 @@ use bevy::{
 use bevy_egui::egui::{RichText, Ui};
 
 use super::{
-    PanelClothItem,
+    cloth::PanelClothItem,
     row::{choose, line, slide},
 };
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
     contact::NarrowPhase,
     hierarchy::{SearchMethod, SearchReason},
     plugin::{ClothDiagnosticsPlugin, ClothStats, ShowClothGizmos},
-    solver::{ClothSettings, Precision},
+    solver::{ClothSettings, Substepping},
 };
 
 /// Means of the last second or so, of all cloths together (ms).
@@ -73,11 +73,11 @@ pub(super) fn show(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Comma
 
 fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
     let stats = cloth.stats;
-    let nodes = cloth.topology.tree().len();
+    let nodes = cloth.built.tree().len();
     for (name, figure, tip) in [
         (
             "particles",
-            format!("{}", cloth.topology.grid().len()),
+            format!("{}", cloth.built.surface().len()),
             "Particles of the cloth",
         ),
         (
@@ -129,7 +129,7 @@ fn search_text(stats: &ClothStats) -> String {
 }
 
 fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
-    let tree = cloth.topology.tree();
+    let tree = cloth.built.tree();
     let deepest = tree.levels().len().saturating_sub(1);
     let mut shown = cloth
         .show
@@ -199,31 +199,31 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
 }
 
 fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
-    let precision = &mut settings.precision;
-    let fixed = matches!(precision, Precision::Substeps(_));
+    let substepping = &mut settings.substepping;
+    let fixed = matches!(substepping, Substepping::Fixed(_));
     ui.horizontal(|ui| {
         let is_fixed = ui.radio(fixed, "fixed sub-steps").on_hover_text(
             "The same number in each tick. Recommended: a cloth that comes to rest stays there, and each tick costs the same",
         );
         if is_fixed.clicked() && !fixed {
-            *precision = Precision::default();
+            *substepping = Substepping::default();
         }
         let is_tolerance = ui.radio(!fixed, "tolerance").on_hover_text(
             "As many sub-steps as keep the stretch below a limit. Their number changes from tick to tick, and that alone \
              can keep a resting cloth moving",
         );
         if is_tolerance.clicked() && fixed {
-            *precision = ClothSettings::tolerance(0.01).precision;
+            *substepping = ClothSettings::tolerance(0.01).substepping;
         }
     });
-    match precision {
-        Precision::Substeps(substeps) => {
+    match substepping {
+        Substepping::Fixed(substeps) => {
             let tip = "Sub-steps of each fixed tick, 1 to 80: more hold the threads' lengths better, and each costs the same time";
             slide(ui, "sub-steps", tip, substeps, 1..=80, |slider| slider);
         }
-        Precision::Tolerance {
+        Substepping::Adaptive {
             stretch,
-            most_substeps,
+            max_substeps,
         } => {
             let mut percent = 100.0 * *stretch;
             let tip = "The largest stretch that is allowed (% of a thread's length), 0.1 to 20";
@@ -232,8 +232,8 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
             }) {
                 *stretch = percent / 100.0;
             }
-            let tip = "The most sub-steps that a tick may take, 1 to 400";
-            slide(ui, "at most", tip, most_substeps, 1..=400, |slider| slider);
+            let tip = "The maximum of sub-steps that a tick may take, 1 to 400";
+            slide(ui, "at most", tip, max_substeps, 1..=400, |slider| slider);
         }
     }
     ui.checkbox(&mut settings.tethers, "tethers").on_hover_text(

@@ -1,5 +1,6 @@
 //! An egui panel at the window's left edge: what fabric is like on top, how it is simulated folded away below.
 
+mod cloth;
 mod debugging;
 mod quality;
 mod row;
@@ -16,7 +17,6 @@ use bevy::{
         entity::Entity,
         error::Result,
         name::Name,
-        query::QueryData,
         reflect::{ReflectComponent, ReflectResource},
         resource::Resource,
         system::{Commands, Query, Res, ResMut, SystemParam},
@@ -31,14 +31,13 @@ use bevy_egui::{
 };
 
 use self::{
+    cloth::PanelCloth,
     debugging::Times,
     quality::Quality,
     row::{choose, line, slide},
 };
-use super::{ClothGravity, ClothSearch, ClothStats, ClothTopology, ShowClothGizmos};
-use crate::{
-    cloth::ClothMaterial, contact::NarrowPhase, hierarchy::SearchMethod, solver::ClothSettings,
-};
+use super::ClothGravity;
+use crate::cloth::ClothMaterial;
 
 /// The panel at the left edge of the window, as high as it and always [`WIDTH`](Self::WIDTH) wide.
 ///
@@ -123,34 +122,6 @@ fn draw_panel(mut contexts: EguiContexts, mut shown: Shown) -> Result {
         shown.draw(contexts.ctx_mut()?);
     }
     Ok(())
-}
-
-#[derive(QueryData)]
-#[query_data(mutable)]
-struct PanelCloth {
-    entity: Entity,
-    name: Option<&'static Name>,
-    settings: &'static mut ClothSettings,
-    material: &'static mut ClothMaterial,
-    search_method: &'static mut SearchMethod,
-    narrow_phase: &'static mut NarrowPhase,
-    show: Option<&'static mut ShowClothGizmos>,
-    topology: &'static ClothTopology,
-    search: &'static ClothSearch,
-    stats: &'static ClothStats,
-}
-
-/// Letters of a cloth's name that there is room for.
-const LONGEST_NAME: usize = 36;
-
-impl PanelClothItem<'_, '_> {
-    fn name(&self) -> String {
-        let name = self
-            .name
-            .map_or_else(|| format!("cloth {}", self.entity), ToString::to_string);
-        // A header is not cut off by itself.
-        name.chars().take(LONGEST_NAME).collect()
-    }
 }
 
 /// All that the panel shows and sets.

@@ -16,7 +16,7 @@ pub(super) enum Quality {
 const STRETCH: Logarithmic = Logarithmic([1.0e-6, 1.0e-2]);
 const BEND: Logarithmic = Logarithmic([1.0e1, 1.0e-4]);
 const DENSITY: Logarithmic = Logarithmic([0.02, 5.0]);
-/// The most damping D that the scale has.
+/// The maximum damping D of the scale.
 const DAMPING: f32 = 0.2;
 /// Shear compliance in parts of bend compliance, where a material has none of its own that is finite.
 const SHEAR_OF_BEND: f32 = 0.01;

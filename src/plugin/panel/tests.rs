@@ -6,7 +6,11 @@ use bevy::{
 };
 
 use super::*;
-use crate::{cloth::Cloth, plugin::DrapePlugins};
+use crate::{
+    cloth::Cloth,
+    plugin::{ClothStats, DrapePlugins, ShowClothGizmos},
+    solver::ClothSettings,
+};
 
 fn app() -> App {
     let mut app = App::new();

@@ -5,7 +5,9 @@
 //! no collisions, no threads, no culling. Every method is generic over the
 //! precision, so that a converged `f64` run can serve as the reference.
 
+mod error;
 mod hooke;
+mod method;
 mod position_based;
 mod projective;
 mod scenes;
@@ -14,116 +16,14 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use faer::linalg::cholesky::llt::factor::LltError;
-use faer::sparse::FaerError;
+pub use error::MethodError;
 use hooke::Hooke;
+pub use method::Method;
 use position_based::{PositionBased, SmallSteps};
 use projective::Projective;
 pub use scenes::{GRAVITY, Scene};
 pub use stability::largest_frequency;
 pub use state::{MassSpring, Real};
-
-/// A time-stepping method for a spring network.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// Explicit forces of Hooke's law with Verlet integration: the springs of
-    /// Provot 1995, "Deformation Constraints in a Mass-Spring Model to Describe
-    /// Rigid Cloth Behavior", without the constraints. Stable for steps below
-    /// 2 / [`largest_frequency`].
-    Hooke,
-    /// XPBD: Gauss-Seidel sweeps with stored multipliers over a whole step
-    /// (Macklin et al. 2016, "XPBD: Position-Based Simulation of Compliant
-    /// Constrained Dynamics").
-    PositionBased {
-        /// Sweeps over all springs in a step, at least 1.
-        iterations: u32,
-    },
-    /// XPBD with one sweep in each of many sub-steps (Macklin et al. 2019,
-    /// "Small Steps in Physics Simulation").
-    SmallSteps {
-        /// Sub-steps that a step is cut into, at least 1.
-        substeps: u32,
-    },
-    /// Implicit Euler by local and global solves with one factorization
-    /// (Liu et al. 2013, "Fast Simulation of Mass-Spring Systems"; the mass-spring
-    /// case of projective dynamics, Bouaziz et al. 2014).
-    ProjectiveDynamics {
-        /// Pairs of a local and a global solve in a step, at least 1.
-        iterations: u32,
-    },
-}
-
-/// Why a spring network or a stepper cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum MethodError {
-    /// Positions and inverse masses differ in number.
-    #[error("{positions} positions but {inverse_masses} inverse masses")]
-    Counts {
-        /// Number of positions.
-        positions: usize,
-        /// Number of inverse masses.
-        inverse_masses: usize,
-    },
-    /// An inverse mass is negative or not finite.
-    #[error("particle {particle} has the inverse mass {inverse_mass} 1/kg")]
-    InverseMass {
-        /// Index of the particle.
-        particle: usize,
-        /// Its inverse mass, 1/kg.
-        inverse_mass: f32,
-    },
-    /// A spring does not join two different particles of the network.
-    #[error("spring {spring} joins particles {ends:?} of {particles}")]
-    Ends {
-        /// Index of the spring.
-        spring: usize,
-        /// The ends it names.
-        ends: [u32; 2],
-        /// Number of particles.
-        particles: usize,
-    },
-    /// A rest length or compliance is negative or not finite.
-    #[error("spring {spring} has the rest length {rest_length} m and compliance {compliance} m/N")]
-    Spring {
-        /// Index of the spring.
-        spring: usize,
-        /// Its rest length, m.
-        rest_length: f32,
-        /// Its compliance, m/N.
-        compliance: f32,
-    },
-    /// The method needs a stiffness, the reciprocal of the compliance.
-    #[error(
-        "{method:?} needs a finite stiffness, spring {spring} has the compliance {compliance} m/N"
-    )]
-    RigidSpring {
-        /// The method that was asked for.
-        method: Method,
-        /// Index of the spring.
-        spring: usize,
-        /// Its compliance, m/N.
-        compliance: f32,
-    },
-    /// The step is not a positive, finite time.
-    #[error("a step of {seconds} s cannot be taken")]
-    Step {
-        /// The step that was asked for, s.
-        seconds: f64,
-    },
-    /// The number of iterations or sub-steps is 0.
-    #[error("{method:?} would do nothing in a step")]
-    NoIterations {
-        /// The method that was asked for.
-        method: Method,
-    },
-    /// The system matrix of projective dynamics is not positive definite as
-    /// rounded: its entries differ by more than the precision holds.
-    #[error("the system matrix has no Cholesky factor")]
-    NotPositiveDefinite(#[from] LltError),
-    /// The system matrix of projective dynamics could not be stored.
-    #[error("the system matrix could not be stored")]
-    Matrix(#[from] FaerError),
-}
 
 /// A method set up for one network and one length of step.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! Implicit Euler by local and global solves (Liu et al. 2013).
 
-use super::MethodError;
+use super::error::MethodError;
 use super::state::{MassSpring, Real, add, along, ends, scale, sub};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;

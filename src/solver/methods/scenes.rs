@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::{MassSpring, MethodError, Real};
 use crate::{
-    cloth::{Cloth, ClothError, ClothGrid, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothError, ClothGrid, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Solver, Tethers, TickStep},
 };
 
@@ -18,6 +18,8 @@ pub struct Scene {
     pub grid: ClothGrid,
     /// What it is made of.
     pub material: ClothMaterial,
+    /// The surface of the grid.
+    pub surface: Surface,
     /// Where they begin; some pinned.
     pub particles: ClothParticles,
     /// The springs between them.
@@ -33,7 +35,7 @@ impl Scene {
     /// structural and shear springs and no bending, losing 1 % of its velocity a second, at 60 ticks a second.
     ///
     /// # Errors
-    /// A cloth that can't be woven.
+    /// A cloth that can't be built.
     pub fn hung_by_corners(side: u32, width: f32) -> Result<Self, ClothError> {
         let material = ClothMaterial {
             areal_density: 0.15,
@@ -50,12 +52,12 @@ impl Scene {
         Ok(scene)
     }
 
-    /// A square cloth of `side`² particles, `width` m wide: hung by its top row and let go `angle` rad from the
+    /// A square cloth of `side`² particles, `width` m wide: hung by its top row and released `angle` rad from the
     /// vertical, with structural and shear springs of `compliance` (m/N) and no bending, undamped, at 60 ticks a
     /// second.
     ///
     /// # Errors
-    /// A cloth that can't be woven.
+    /// A cloth that can't be built.
     pub fn swinging(
         side: u32,
         width: f32,
@@ -86,7 +88,8 @@ impl Scene {
     ) -> Result<Self, ClothError> {
         let spacing = width / side.saturating_sub(1).max(1) as f32;
         let grid = Cloth::new(side, side, spacing).grid(Vec3::ONE)?;
-        let mut particles = ClothParticles::at_rest(&grid, &material)?;
+        let surface = Surface::of_grid(&grid);
+        let mut particles = ClothParticles::at_rest(&surface, &material)?;
         for (row, column) in grid.cells() {
             let rest = grid.rest_position(row, column);
             let position = Vec3::X * rest.x + place(-rest.y);
@@ -95,6 +98,7 @@ impl Scene {
         Ok(Self {
             springs: Springs::of_grid(&grid, &material),
             grid,
+            surface,
             material,
             particles,
             acceleration: GRAVITY,
@@ -107,7 +111,7 @@ impl Scene {
         let mut solver = Solver::new(&self.springs, &self.particles);
         if with_tethers {
             solver.set_tethers(Tethers::new(
-                &self.grid,
+                &self.surface,
                 &self.material,
                 &self.particles,
                 self.acceleration.length(),
@@ -116,7 +120,7 @@ impl Scene {
         solver
     }
 
-    /// A tick of it in so many sub-steps.
+    /// A tick of it in this many sub-steps.
     pub fn step(&self, substeps: u32) -> TickStep {
         TickStep {
             seconds: self.seconds,

@@ -1,6 +1,6 @@
 //! The state that all methods step, and the arithmetic that they share.
 
-use super::MethodError;
+use super::error::MethodError;
 use crate::cloth::{Spring, SpringKind};
 use bevy::math::Vec3;
 use faer::traits::RealField;
@@ -114,7 +114,7 @@ impl<R: Real> MassSpring<R> {
     }
 
     /// Largest (length - rest length) / rest length over the structural
-    /// springs, at least 0; NaN when one of their ends is not a number.
+    /// springs, at least 0; NaN when one of their ends is NaN.
     #[must_use]
     pub fn largest_stretch(&self) -> f64 {
         let mut largest = 0.0;

@@ -38,9 +38,11 @@ fn advance(particles: &mut ClothParticles, springs: &Springs, step: TickStep, pi
 }
 
 fn cloth(material: &ClothMaterial, pins: &Pins) -> (ClothParticles, Springs) {
-    let grid = Cloth::new(6, 5, 0.1).grid(Vec3::ONE).expect("a sound grid");
-    let mut particles = ClothParticles::at_rest(&grid, material).expect("a sound material");
-    particles.weigh(&grid, material, pins).expect("sound pins");
+    let grid = Cloth::new(6, 5, 0.1).grid(Vec3::ONE).expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&grid, material).expect("a valid material");
+    particles
+        .assign_masses(&grid, material, pins)
+        .expect("valid pins");
     (particles, Springs::of_grid(&grid, material))
 }
 

@@ -1,7 +1,7 @@
 //! A fixed number of sub-steps, or as few as hold a tolerance.
 
 use bevy::math::Vec3;
-use bevy_drape::solver::{Control, Precision, Stretch, methods::Scene};
+use bevy_drape::solver::{Control, Stretch, Substepping, methods::Scene};
 
 use super::{Row, STRETCH};
 use crate::{experiment::Run, measure::seconds};
@@ -23,7 +23,7 @@ const FIXED: [(&str, u32); 4] = [
 ];
 
 /// More than any tick should need.
-const MOST: u32 = 400;
+const MAX: u32 = 400;
 
 /// Ticks of the scene: it falls, swings out, hangs calm, and a gust comes.
 const TICKS: u32 = 480;
@@ -32,25 +32,25 @@ const GUST: std::ops::Range<u32> = 360..375;
 pub fn measure(run: &mut Run) -> Vec<Row> {
     let turns = run.either(2, 15);
     run.set("precision", format!("32² rigid threads, 2 m wide, fall from the horizontal by two corners, damping 0.05, and after 6 s a gust of 3 g for a quarter second; the mean of 8 s at 60 ticks a second, {turns} turns"));
-    let fixed = FIXED.map(|(name, substeps)| (name, Precision::Substeps(substeps)));
+    let fixed = FIXED.map(|(name, substeps)| (name, Substepping::Fixed(substeps)));
     let held = TOLERANCES.map(|(name, stretch)| {
-        let most_substeps = MOST;
+        let max_substeps = MAX;
         (
             name,
-            Precision::Tolerance {
+            Substepping::Adaptive {
                 stretch,
-                most_substeps,
+                max_substeps,
             },
         )
     });
     let mut choices: Vec<_> = fixed
         .into_iter()
         .chain(held)
-        .map(|(name, precision)| (name, precision, Vec::new(), 0.0))
+        .map(|(name, substepping)| (name, substepping, Vec::new(), 0.0))
         .collect();
     for _ in 0..turns {
-        for (_, precision, ms, largest) in &mut choices {
-            let (seconds, stretch) = play(*precision);
+        for (_, substepping, ms, largest) in &mut choices {
+            let (seconds, stretch) = play(*substepping);
             ms.push(1.0e3 * seconds / f64::from(TICKS));
             *largest = stretch;
         }
@@ -62,8 +62,8 @@ pub fn measure(run: &mut Run) -> Vec<Row> {
 }
 
 /// Time of the whole scene (s), and the largest stretch that any tick ended with.
-fn play(precision: Precision) -> (f64, f32) {
-    let mut scene = Scene::hung_by_corners(32, 2.0).expect("a sound scene");
+fn play(substepping: Substepping) -> (f64, f32) {
+    let mut scene = Scene::hung_by_corners(32, 2.0).expect("a valid scene");
     scene.material.damping = 0.05;
     let mut solver = scene.solver(true);
     let mut particles = scene.particles.clone();
@@ -72,8 +72,8 @@ fn play(precision: Precision) -> (f64, f32) {
     let mut largest = 0.0_f32;
     let time = seconds(|| {
         for tick in 0..TICKS {
-            let mut substeps = control.substeps(precision);
-            if matches!(precision, Precision::Tolerance { .. }) {
+            let mut substeps = control.substeps(substepping);
+            if matches!(substepping, Substepping::Adaptive { .. }) {
                 before.clone_from(&particles);
             }
             let stretch: Stretch = loop {
@@ -82,7 +82,7 @@ fn play(precision: Precision) -> (f64, f32) {
                     step.acceleration += Vec3::new(0.5, 0.0, 1.0).normalize() * 3.0 * 9.81;
                 }
                 let stretch = solver.advance(&mut particles, step, &[], |_, _| false);
-                match control.observe(precision, stretch) {
+                match control.observe(substepping, stretch) {
                     Some(more) => {
                         substeps = more;
                         particles.clone_from(&before);

@@ -67,9 +67,9 @@ fn a_tolerance_holds_while_a_ball_passes() {
 fn a_tolerance_out_of_reach_stops_at_the_cap() {
     let mut app = app();
     let settings = ClothSettings {
-        precision: Precision::Tolerance {
+        substepping: Substepping::Adaptive {
             stretch: 0.001,
-            most_substeps: 30,
+            max_substeps: 30,
         },
         ..default()
     };
@@ -86,11 +86,11 @@ fn a_tolerance_out_of_reach_stops_at_the_cap() {
 /// number, to the last bit.
 #[test]
 fn a_repeated_tick_leaves_no_trace() {
-    let run = |precision: Precision, total: u32| {
+    let run = |substepping: Substepping, total: u32| {
         let mut app = app();
         let cloth = (Cloth::default(), Pins::new([Pin::Corner(Corner::TopLeft)]));
         let settings = ClothSettings {
-            precision: Precision::Substeps(30),
+            substepping: Substepping::Fixed(30),
             ..default()
         };
         let cloth = app.world_mut().spawn((cloth, settings)).id();
@@ -99,18 +99,20 @@ fn a_repeated_tick_leaves_no_trace() {
             Transform::from_xyz(0.4, -0.9, 0.1),
         ));
         tick(&mut app, 40);
-        change::<ClothSettings>(&mut app, cloth, |settings| settings.precision = precision);
+        change::<ClothSettings>(&mut app, cloth, |settings| {
+            settings.substepping = substepping
+        });
         tick(&mut app, 1);
         let stats = app.world().get::<ClothStats>(cloth).expect("figures");
         assert_eq!(stats.substeps, total);
         (particles(&app, cloth).clone(), stats.contacts)
     };
     // It begins with the thirty of the tick before.
-    let tolerance = Precision::Tolerance {
+    let tolerance = Substepping::Adaptive {
         stretch: 1.0e-9,
-        most_substeps: 40,
+        max_substeps: 40,
     };
-    assert!(run(tolerance, 30 + 40) == run(Precision::Substeps(40), 40));
+    assert!(run(tolerance, 30 + 40) == run(Substepping::Fixed(40), 40));
 }
 
 /// Many cloths, some of them large: solved together they are what each is alone, to the last bit.

@@ -5,7 +5,7 @@ use bevy::reflect::Reflect;
 use super::Stretch;
 
 /// More would be a slip of the finger, and would hang the game.
-pub(super) const MOST_SUBSTEPS: u32 = 10_000;
+pub(super) const MAX_SUBSTEPS: u32 = 10_000;
 
 /// Parts of the tolerance: below the first the sub-steps become fewer, above the last more, and the one between is
 /// aimed at then. What is left is for what can't be foreseen, and in the band between nothing changes.
@@ -23,23 +23,23 @@ const FEWEST: f32 = 4.0;
 /// How exactly a cloth is simulated. Cost grows in proportion to the sub-steps, and stretch shrinks about with
 /// their square: a sub-step's sweep is as stiff as mass/Δt².
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
-pub enum Precision {
-    /// So many sub-steps a tick, from 1 to 10,000.
-    Substeps(u32),
+pub enum Substepping {
+    /// This many sub-steps a tick, from 1 to 10,000.
+    Fixed(u32),
     /// As few as keep the largest stretch of a structural spring within a tolerance. A tick that ends beyond it is
     /// done again with more, before anyone sees it.
-    Tolerance {
+    Adaptive {
         /// Largest length over rest length, − 1, that is allowed: 0.01 is one per cent. Positive.
         stretch: f32,
-        /// No tick has more than so many, from 1 to 10,000; where they don't suffice, that is logged:
+        /// A tick has at most this many, from 1 to 10,000; where they don't suffice, that is logged:
         /// [`ClothLimit::Tolerance`](super::ClothLimit::Tolerance).
-        most_substeps: u32,
+        max_substeps: u32,
     },
 }
 
-impl Default for Precision {
+impl Default for Substepping {
     fn default() -> Self {
-        Self::Substeps(20)
+        Self::Fixed(20)
     }
 }
 
@@ -56,16 +56,16 @@ pub struct Control {
 
 impl Control {
     /// Sub-steps for the coming tick.
-    pub fn substeps(&mut self, precision: Precision) -> u32 {
-        match precision {
-            Precision::Substeps(substeps) => {
+    pub fn substeps(&mut self, substepping: Substepping) -> u32 {
+        match substepping {
+            Substepping::Fixed(substeps) => {
                 self.is_capped = false;
                 self.substeps = substeps as f32;
                 substeps
             }
-            Precision::Tolerance { most_substeps, .. } => {
-                let fewest = FEWEST.min(most_substeps as f32);
-                self.substeps = self.substeps.clamp(fewest, most_substeps as f32);
+            Substepping::Adaptive { max_substeps, .. } => {
+                let fewest = FEWEST.min(max_substeps as f32);
+                self.substeps = self.substeps.clamp(fewest, max_substeps as f32);
                 self.substeps.ceil() as u32
             }
         }
@@ -73,22 +73,22 @@ impl Control {
 
     /// Takes the stretch that the tick ended with. Returns with how many sub-steps to do it again, from where it
     /// began, if it has to be.
-    pub fn observe(&mut self, precision: Precision, stretch: Stretch) -> Option<u32> {
-        let Precision::Tolerance {
+    pub fn observe(&mut self, substepping: Substepping, stretch: Stretch) -> Option<u32> {
+        let Substepping::Adaptive {
             stretch: tolerance,
-            most_substeps,
-        } = precision
+            max_substeps,
+        } = substepping
         else {
             return None;
         };
-        let most = most_substeps as f32;
+        let max = max_substeps as f32;
         let found = stretch.structural;
         // Stretch shrinks with the square of the sub-steps.
         let wanted = |stretch: f32| self.substeps * (stretch / (AIM * tolerance)).sqrt();
         let fails = found > tolerance;
-        self.is_capped = fails && self.substeps >= most;
+        self.is_capped = fails && self.substeps >= max;
         if fails && !self.is_capped {
-            self.substeps = wanted(found).max(self.substeps * 1.25).min(most);
+            self.substeps = wanted(found).max(self.substeps * 1.25).min(max);
             return Some(self.substeps.ceil() as u32);
         }
         // What it grew by in this tick it may grow by in the next.
@@ -112,9 +112,9 @@ impl Control {
 mod tests {
     use super::*;
 
-    const PERCENT: Precision = Precision::Tolerance {
+    const PERCENT: Substepping = Substepping::Adaptive {
         stretch: 0.01,
-        most_substeps: 100,
+        max_substeps: 100,
     };
 
     /// Runs a cloth whose stretch is `load` ⁄ sub-steps². Returns the sub-steps of each tick, and how many were
@@ -190,12 +190,12 @@ mod tests {
     #[test]
     fn a_fixed_number_is_taken_as_it_is() {
         let mut control = Control::default();
-        assert_eq!(control.substeps(Precision::Substeps(7)), 7);
+        assert_eq!(control.substeps(Substepping::Fixed(7)), 7);
         let stretched = Stretch {
             structural: 9.0,
             bound: 9.0,
         };
-        assert_eq!(control.observe(Precision::Substeps(7), stretched), None);
-        assert_eq!(control.substeps(Precision::Substeps(7)), 7);
+        assert_eq!(control.observe(Substepping::Fixed(7), stretched), None);
+        assert_eq!(control.substeps(Substepping::Fixed(7)), 7);
     }
 }

@@ -2,32 +2,29 @@
 
 use bevy::math::Vec3;
 
-pub(super) use super::corners::Course;
+pub(super) use super::corners::SubstepMotion;
 use super::{
-    corners::{Corners, Touching, triangles_of},
+    corners::{Corners, Touching},
     particle::Found,
     response::{Contact, Push},
-    touch::Candidate,
+    touch::{Candidate, Fans},
     triangle::{area_within, at},
 };
 use crate::cloth::ClothParticles;
 
-/// How many triangles a particle may be a corner of, and be pushed by.
-const MOST_TRIANGLES: f32 = 6.0;
-
 /// How many times as far as a triangle's point one of its corners is pushed at most. Corners that are all free, with the
 /// masses of a grid, up to four times each other's, go no more than 2.0 times as far.
-const MOST_SHARE: f32 = 2.0;
+const MAX_SHARE: f32 = 2.0;
 
 /// How often all triangles are gone through at most, while any is hit on a fast way: one that was passed by may have been
 /// moved into the way by another's corners.
-const MOST_PASSES: u32 = 4;
+const MAX_PASSES: u32 = 4;
 
 /// What to go on with.
 #[derive(Debug, Default, Clone, Copy)]
-pub(super) struct Cursor {
+pub(super) struct ResumePoint {
     pass: u32,
-    /// A cell's first particle, and which of its triangles.
+    /// A particle, and which of the triangles that it stands for.
     at: (u32, usize),
     /// Whether one was hit on a fast way in this pass.
     is_swept: bool,
@@ -41,36 +38,29 @@ pub(super) struct Cursor {
 pub(super) fn push_triangles(
     particles: &mut ClothParticles,
     candidates: &mut [Candidate],
-    course: &Course,
-    from: Cursor,
+    fans: &Fans,
+    motion: &SubstepMotion,
+    from: ResumePoint,
     room: f32,
-) -> (Found, Option<Cursor>) {
-    let reach = course.reach;
-    let layout = particles.layout();
+) -> (Found, Option<ResumePoint>) {
+    let reach = motion.reach;
     let mut found = Found::default();
     // The farthest that one triangle has pushed in this pass (m).
     let mut passed = 0.0_f32;
-    let mut cursor = from;
-    while cursor.pass < MOST_PASSES {
+    let mut resume = from;
+    while resume.pass < MAX_PASSES {
         for candidate in candidates.iter_mut() {
-            let Some(beside) = candidate.beside else {
-                continue;
-            };
-            if course.is_beyond(
-                particles.blocks(),
-                layout.strip as usize,
-                candidate.slot,
-                beside,
-            ) {
+            let faces = fans.faces(candidate.faces);
+            let corners = fans.corners(candidate.corners);
+            if faces.is_empty() || motion.is_beyond(particles.blocks(), candidate.slot, corners) {
                 continue;
             }
-            let triangles = triangles_of(layout, candidate.slot, beside);
-            for (which, slots) in triangles.into_iter().enumerate() {
-                if (candidate.particle, which) < cursor.at {
+            for (which, &slots) in faces.iter().enumerate() {
+                if (candidate.particle, which) < resume.at {
                     continue;
                 }
                 let corners = Corners::of(particles, slots);
-                let Some((touch, depth)) = course.touch(&corners) else {
+                let Some((touch, depth)) = motion.touch(&corners) else {
                     continue;
                 };
                 candidate.depth = candidate.depth.max(depth.min(reach));
@@ -78,37 +68,37 @@ pub(super) fn push_triangles(
                     continue;
                 }
                 let pushed = if touch.is_swept {
-                    push_corners(particles, &corners, &touch, course)
+                    push_corners(particles, &corners, &touch, motion)
                 } else {
-                    push_point(particles, &corners, &touch, depth, course)
+                    push_point(particles, &corners, &touch, depth, motion)
                 };
                 if pushed == 0.0 {
                     continue;
                 }
-                cursor.is_swept |= touch.is_swept;
+                resume.is_swept |= touch.is_swept;
                 passed = passed.max(pushed);
                 let depth = depth.min(reach);
                 found.deepest = found.deepest.max(depth);
-                if cursor.pass == 0 {
+                if resume.pass == 0 {
                     let (area, volume) = cap(corners.positions, touch.centre, reach);
                     found.area += area;
                     found.volume += volume;
                 }
-                if found.farthest_push + passed * MOST_TRIANGLES > room {
-                    found.farthest_push += passed * MOST_TRIANGLES;
-                    cursor.at = (candidate.particle, which + 1);
-                    return (found, Some(cursor));
+                if found.farthest_push + passed * fans.max_faces > room {
+                    found.farthest_push += passed * fans.max_faces;
+                    resume.at = (candidate.particle, which + 1);
+                    return (found, Some(resume));
                 }
             }
         }
-        found.farthest_push += passed * MOST_TRIANGLES;
+        found.farthest_push += passed * fans.max_faces;
         passed = 0.0;
-        if !cursor.is_swept {
+        if !resume.is_swept {
             break;
         }
-        cursor = Cursor {
-            pass: cursor.pass + 1,
-            ..Cursor::default()
+        resume = ResumePoint {
+            pass: resume.pass + 1,
+            ..ResumePoint::default()
         };
     }
     (found, None)
@@ -123,29 +113,29 @@ fn push_point(
         weights, normal, ..
     }: &Touching,
     depth: f32,
-    &Course {
+    &SubstepMotion {
         collider,
-        terms,
+        settings,
         substep,
         ..
-    }: &Course,
+    }: &SubstepMotion,
 ) -> f32 {
     let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
     let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
     // One that hardly has a part, beside pins, can't make up for them: it would be thrown away.
-    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MOST_SHARE);
+    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
     if mobility == 0.0 {
         return 0.0;
     }
-    let point = at(corners.positions, weights) + normal * (depth - terms.particle_radius);
-    let origin = Vec3::from(collider.pose(substep.end()).translation);
+    let point = at(corners.positions, weights) + normal * (depth - settings.particle_radius);
+    let origin = Vec3::from(collider.pose_at(substep.end()).translation);
     let surface = collider.surface_motion(substep, origin, point);
     let push = Contact {
         normal,
         depth,
         relative: at(corners.displacements, weights) - surface,
     }
-    .push(terms.friction);
+    .push(settings.friction);
     let mut farthest = 0.0_f32;
     for (corner, part) in parts.into_iter().enumerate() {
         let share = part / mobility;
@@ -167,15 +157,15 @@ fn push_corners(
     particles: &mut ClothParticles,
     corners: &Corners,
     &Touching { normal, centre, .. }: &Touching,
-    &Course {
+    &SubstepMotion {
         collider,
-        terms,
+        settings,
         substep,
         reach,
         ..
-    }: &Course,
+    }: &SubstepMotion,
 ) -> f32 {
-    let origin = Vec3::from(collider.pose(substep.end()).translation);
+    let origin = Vec3::from(collider.pose_at(substep.end()).translation);
     let mut farthest = 0.0_f32;
     for corner in 0..3 {
         let position = corners.positions[corner];
@@ -183,14 +173,14 @@ fn push_corners(
         if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
             continue;
         }
-        let point = position + normal * (depth - terms.particle_radius);
+        let point = position + normal * (depth - settings.particle_radius);
         let surface = collider.surface_motion(substep, origin, point);
         let push = Contact {
             normal,
             depth,
             relative: corners.displacements[corner] - surface,
         }
-        .push(terms.friction);
+        .push(settings.friction);
         farthest = farthest.max(corners.push(corner, particles, push));
     }
     farthest

@@ -4,10 +4,11 @@
 //! row only when the stage before is done with it and its neighbours; but the rows stay in the first cache.
 
 use super::{
+    Stretch,
     bands::pool,
     kernel::{Kernels, Longest},
     run::Run,
-    tether::{Anchors, Tethers},
+    sweep::{Motion, Sweep, Swept},
 };
 use crate::cloth::{Block, ClothGrid, Compliances, Lanes, Layout};
 
@@ -142,33 +143,6 @@ pub(super) struct GridSweep {
     substep: f32,
 }
 
-/// What is the same for all rows of a sub-step.
-#[derive(Clone, Copy)]
-pub(super) struct Motion<'a> {
-    pub kernels: &'a Kernels,
-    pub kept: f32,
-    pub acceleration_dt2: [f32; 3],
-    pub tethers: &'a Tethers,
-    pub anchors: &'a Anchors,
-    /// Whether lengths are measured, too.
-    pub measures: bool,
-}
-
-impl Longest {
-    fn merge(&mut self, other: &Self) {
-        for (a, b) in [
-            (&mut self.moved, &other.moved),
-            (&mut self.across, &other.across),
-            (&mut self.down, &other.down),
-            (&mut self.diagonal, &other.diagonal),
-        ] {
-            for (a, b) in a.iter_mut().zip(b) {
-                *a = a.max(*b);
-            }
-        }
-    }
-}
-
 impl GridSweep {
     pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
         let layout = Layout::new(grid.columns(), grid.rows());
@@ -197,8 +171,25 @@ impl GridSweep {
         }
     }
 
+    /// How many bands there are at most where some are wanted.
+    fn bands(&self, wanted: usize) -> usize {
+        let rows = self.layout.rows as usize;
+        wanted.min(rows / MIN_ROWS).min(MAX_BANDS)
+    }
+
+    /// The largest length over rest length of structural springs, and of structural and shear springs.
+    fn stretch(&self, longest: &Longest) -> Stretch {
+        let ratio = |lanes: &Lanes, run: &Run| {
+            (lanes.iter().copied().fold(0.0, f32::max) / run.rest_square).sqrt()
+        };
+        let structural =
+            ratio(&longest.across, &self.across[0]).max(ratio(&longest.down, &self.down));
+        let bound = structural.max(ratio(&longest.diagonal, &self.diagonal));
+        Stretch::of_ratios(structural, bound)
+    }
+
     /// Takes over the length of a sub-step (s).
-    pub fn soften(&mut self, substep: f32) {
+    fn soften(&mut self, substep: f32) {
         if self.substep == substep {
             return;
         }
@@ -211,25 +202,19 @@ impl GridSweep {
         }
     }
 
-    /// How many bands there are where so many are wanted.
-    pub fn bands(&self, wanted: usize) -> usize {
-        let rows = self.layout.rows as usize;
-        wanted.min(rows / LEAST_ROWS).min(MOST_BANDS)
-    }
-
     /// One sub-step. With several `bands` of rows, each is done by a task of its own as far as it can be alone,
     /// then what is left between them: the same operations on each particle in the same order.
-    pub fn substep(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Longest {
+    fn sweep(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Longest {
         let rows = self.layout.rows as usize;
         let mut longest = Longest::default();
         let bands = self.bands(bands);
         if bands <= 1 {
-            self.wave(blocks, 0, &Span::whole(rows), motion, &mut longest);
+            self.run_pipeline(blocks, 0, &Span::whole(rows), motion, &mut longest);
             return longest;
         }
         let border = |band: usize| rows * band / bands;
         let span = |band: usize| Span::inside(&self.stages, border(band), border(band + 1), rows);
-        let mut found = [longest; MOST_BANDS];
+        let mut found = [longest; MAX_BANDS];
         pool().scope(|scope| {
             let mut rest = &mut *blocks;
             for (band, found) in found.iter_mut().enumerate().take(bands) {
@@ -237,7 +222,7 @@ impl GridSweep {
                 let count = border(band + 1) - first;
                 let (own, others) = rest.split_at_mut(count * self.layout.strip as usize);
                 rest = others;
-                let mut run = move || self.wave(own, first, &span(band), motion, found);
+                let mut run = move || self.run_pipeline(own, first, &span(band), motion, found);
                 if band + 1 < bands {
                     scope.spawn(async move { run() });
                 } else {
@@ -248,23 +233,10 @@ impl GridSweep {
         });
         for band in 1..bands {
             let left = Span::between(&span(band - 1), &span(band));
-            self.wave(blocks, 0, &left, motion, &mut longest);
+            self.run_pipeline(blocks, 0, &left, motion, &mut longest);
         }
         for found in &found[..bands] {
             longest.merge(found);
-        }
-        longest
-    }
-
-    /// Measures all springs.
-    pub fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Longest {
-        let mut longest = Longest::default();
-        let strip = self.layout.strip as usize;
-        for (row, upper) in blocks.chunks_exact(strip).enumerate() {
-            (kernels.measure_within)(upper, &self.across[0], &mut longest);
-            if let Some(lower) = blocks.get((row + 1) * strip..(row + 2) * strip) {
-                self.measure_between(upper, lower, kernels, &mut longest);
-            }
         }
         longest
     }
@@ -283,21 +255,8 @@ impl GridSweep {
         }
     }
 
-    /// The largest length over rest length of structural springs, and of structural and shear springs.
-    pub fn ratios(&self, longest: &Longest) -> (f32, f32) {
-        let ratio = |lanes: &Lanes, run: &Run| {
-            (lanes.iter().copied().fold(0.0, f32::max) / run.rest_square).sqrt()
-        };
-        let structural =
-            ratio(&longest.across, &self.across[0]).max(ratio(&longest.down, &self.down));
-        (
-            structural,
-            structural.max(ratio(&longest.diagonal, &self.diagonal)),
-        )
-    }
-
     /// All stages from row to row as `span` says. `blocks` begin with those of row `first`.
-    fn wave(
+    fn run_pipeline(
         &self,
         blocks: &mut [Block],
         first: usize,
@@ -391,8 +350,42 @@ impl GridSweep {
     }
 }
 
+impl Sweep for GridSweep {
+    fn set_substep(&mut self, substep: f32) {
+        self.soften(substep);
+    }
+
+    fn bands(&self, wanted: usize) -> usize {
+        self.bands(wanted)
+    }
+
+    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
+        let longest = self.sweep(blocks, motion, bands);
+        Swept {
+            moved: longest.moved,
+            stretch: motion.measures.then(|| self.stretch(&longest)),
+        }
+    }
+
+    fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {
+        let mut longest = Longest::default();
+        let strip = self.layout.strip as usize;
+        for (row, upper) in blocks.chunks_exact(strip).enumerate() {
+            (kernels.measure_within)(upper, &self.across[0], &mut longest);
+            if let Some(lower) = blocks.get((row + 1) * strip..(row + 2) * strip) {
+                self.measure_between(upper, lower, kernels, &mut longest);
+            }
+        }
+        self.stretch(&longest)
+    }
+
+    fn boxed(&self) -> Box<dyn Sweep> {
+        Box::new(self.clone())
+    }
+}
+
 /// Fewer rows a band than this, and what is left between two bands would be more than they hold.
-const LEAST_ROWS: usize = 32;
+const MIN_ROWS: usize = 32;
 
 /// More bands than this find no work worth a task.
-const MOST_BANDS: usize = 16;
+const MAX_BANDS: usize = 16;

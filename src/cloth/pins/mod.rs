@@ -1,0 +1,132 @@
+//! Which particles hold still.
+
+mod names;
+mod pin;
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::{ClothError, Surface};
+
+pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
+
+/// Which particles are pinned: they move with the entity's transform and with nothing else. The top row of a grid, and
+/// nothing of a mesh, unless said otherwise. May change at any time.
+///
+/// ```
+/// use bevy::math::Vec3;
+/// use bevy_drape::prelude::*;
+///
+/// let flag = Pins::new([Pin::Column(0)]);
+/// let sheet = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]);
+/// let curtain = Pins::filter(|row, column| row == 0 && column % 3 == 0);
+/// let scarf = Pins::none();
+/// // Of a mesh: what an artist painted red, what is within 5 cm of a ring, all above the waist.
+/// let painted = Pins::new([Pin::color(0, 0.5)]);
+/// let ring = Pins::new([Pin::Near { point: Vec3::new(0.0, 2.0, 0.0), radius: 0.05 }]);
+/// let skirt = Pins::new([Pin::at_rest(|place| place.y > 1.0)]);
+/// # let _ = (flag, sheet, curtain, scarf, painted, ring, skirt);
+/// ```
+#[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct Pins(Vec<Pin>);
+
+impl Default for Pins {
+    fn default() -> Self {
+        Self::new([Pin::Top])
+    }
+}
+
+impl Pins {
+    /// All of `pins` together.
+    pub fn new(pins: impl IntoIterator<Item = Pin>) -> Self {
+        Self(pins.into_iter().collect())
+    }
+
+    /// Nothing is pinned: the cloth falls.
+    pub const fn none() -> Self {
+        Self(Vec::new())
+    }
+
+    /// The top row, as in the paper's scene.
+    pub fn top_row() -> Self {
+        Self::new([Pin::Row(0)])
+    }
+
+    /// Every particle whose (row, column) `holds`.
+    pub fn filter(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
+        Self::new([Pin::filter(holds)])
+    }
+
+    /// Whether each pin names particles of `surface`.
+    ///
+    /// # Errors
+    /// As [`Pin::validate`] has them, for the first that does not.
+    pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
+        self.0.iter().try_for_each(|pin| pin.validate(surface))
+    }
+
+    /// Calls `pinned` with the index of each pinned particle of `surface`, some perhaps twice. The pins must be
+    /// valid for it.
+    pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
+        self.0
+            .iter()
+            .for_each(|pin| pin.for_each(surface, &mut pinned));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::Cloth;
+    use bevy::math::Vec3;
+
+    fn pinned(pins: &Pins) -> Vec<usize> {
+        let surface = Cloth::new(4, 3, 0.5).surface(Vec3::ONE).expect("a valid grid");
+        let mut indices = Vec::new();
+        pins.for_each(&surface, |index| indices.push(index));
+        indices
+    }
+
+    #[test]
+    fn each_way_of_naming_pins_the_right_particles() {
+        assert_eq!(pinned(&Pins::default()), [0, 1, 2, 3]);
+        assert_eq!(pinned(&Pins::none()), []);
+        assert_eq!(pinned(&Pins::new([Pin::Index(6), Pin::Cell(2, 1)])), [6, 9]);
+        assert_eq!(pinned(&Pins::new([Pin::Column(3)])), [3, 7, 11]);
+        let corners = [
+            Corner::TopLeft,
+            Corner::TopRight,
+            Corner::BottomLeft,
+            Corner::BottomRight,
+        ];
+        assert_eq!(pinned(&Pins::new(corners.map(Pin::Corner))), [0, 3, 8, 11]);
+        assert_eq!(
+            pinned(&Pins::filter(|row, column| row == column)),
+            [0, 5, 10]
+        );
+    }
+
+    #[test]
+    fn a_pin_outside_is_named() {
+        let surface = Cloth::new(4, 3, 0.5).surface(Vec3::ONE).expect("a valid grid");
+        for pin in [
+            Pin::Index(12),
+            Pin::Cell(0, 4),
+            Pin::Cell(3, 0),
+            Pin::Row(3),
+            Pin::Column(4),
+        ] {
+            let error = Pins::new([Pin::Row(0), pin.clone()]).validate(&surface);
+            assert_eq!(
+                error,
+                Err(ClothError::PinOutOfRange {
+                    pin,
+                    cloth: "4 columns × 3 rows".into()
+                })
+            );
+        }
+    }
+}

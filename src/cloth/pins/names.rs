@@ -1,0 +1,111 @@
+//! What each way of naming particles means on a surface.
+
+use super::{Corner, Pin};
+use crate::cloth::{ClothError, ClothGrid, Surface};
+
+impl Pin {
+    /// Whether it names particles of `surface`.
+    ///
+    /// # Errors
+    /// [`ClothError::PinOutOfRange`], [`PinNeedsGrid`](ClothError::PinNeedsGrid),
+    /// [`NoSuchAttribute`](ClothError::NoSuchAttribute), or [`PinFindsNothing`](ClothError::PinFindsNothing) if what an
+    /// artist was to mark is not there. A predicate may hold for none.
+    pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
+        let pin = || self.clone();
+        let is_inside = match (self, surface.as_grid()) {
+            (Self::Index(index), _) => *index < surface.len(),
+            (Self::Vertex(vertex), _) => surface.particle_of_vertex(*vertex).is_some(),
+            (Self::Top | Self::AtRest(_), _) => true,
+            (Self::Near { .. }, _) => return self.finds_something(surface),
+            (Self::Attribute { name, channel, .. }, _) => {
+                let attributes = surface.attributes();
+                if *channel < 4 && attributes.iter().any(|each| each.name() == name) {
+                    return self.finds_something(surface);
+                }
+                let names: Vec<&str> = attributes.iter().map(|each| each.name()).collect();
+                let none = "none".to_string();
+                return Err(ClothError::NoSuchAttribute {
+                    pin: pin(),
+                    attributes: if names.is_empty() { none } else { names.join(", ") },
+                });
+            }
+            (_, None) => return Err(ClothError::PinNeedsGrid { pin: pin() }),
+            (Self::Cell(row, column), Some(grid)) => *row < grid.rows() && *column < grid.columns(),
+            (Self::Row(row), Some(grid)) => *row < grid.rows(),
+            (Self::Column(column), Some(grid)) => *column < grid.columns(),
+            (Self::Corner(_) | Self::Where(_), Some(_)) => true,
+        };
+        if is_inside {
+            return Ok(());
+        }
+        Err(ClothError::PinOutOfRange {
+            pin: pin(),
+            cloth: surface.to_string(),
+        })
+    }
+
+    fn finds_something(&self, surface: &Surface) -> Result<(), ClothError> {
+        let mut found = false;
+        self.for_each(surface, |_| found = true);
+        if found {
+            return Ok(());
+        }
+        Err(ClothError::PinFindsNothing { pin: self.clone() })
+    }
+
+    /// Calls `pinned` with the index of each particle of `surface` that it names, if it is valid for it.
+    pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
+        let places = || surface.rest_positions().iter().map(|place| *place / surface.scale());
+        match self {
+            Self::Index(index) => pinned(*index),
+            Self::Vertex(vertex) => surface.particle_of_vertex(*vertex).into_iter().for_each(pinned),
+            Self::Near { point, radius } => {
+                // To a rounding of where they are.
+                let near = |place: bevy::math::Vec3| place.distance(*point) <= radius + 1.0e-6 * place.length();
+                let found = places().enumerate().filter(|(_, place)| near(*place));
+                found.for_each(|(index, _)| pinned(index));
+            }
+            Self::AtRest(predicate) => {
+                let found = places().enumerate().filter(|(_, place)| predicate.holds(*place));
+                found.for_each(|(index, _)| pinned(index));
+            }
+            Self::Attribute {
+                name,
+                channel,
+                above,
+            } => {
+                let attribute = surface.attributes().iter().find(|each| each.name() == name);
+                let values = attribute.map_or(&[][..], |attribute| attribute.values());
+                let is_above = |value: &[f32; 4]| value.get(*channel).is_some_and(|value| value > above);
+                let found = values.iter().enumerate().filter(|(_, value)| is_above(value));
+                found.for_each(|(index, _)| pinned(index));
+            }
+            _ => {
+                if let Some(grid) = surface.as_grid() {
+                    self.for_each_cell(grid, |row, column| pinned(grid.index(row, column) as usize));
+                }
+            }
+        }
+    }
+
+    /// Those that are named by rows and columns.
+    fn for_each_cell(&self, grid: &ClothGrid, mut cell: impl FnMut(u32, u32)) {
+        let (rows, columns) = (grid.rows(), grid.columns());
+        let (last_row, last_column) = (rows - 1, columns - 1);
+        match self {
+            Self::Cell(row, column) => cell(*row, *column),
+            Self::Row(row) => (0..columns).for_each(|column| cell(*row, column)),
+            Self::Top => (0..columns).for_each(|column| cell(0, column)),
+            Self::Column(column) => (0..rows).for_each(|row| cell(row, *column)),
+            Self::Corner(Corner::TopLeft) => cell(0, 0),
+            Self::Corner(Corner::TopRight) => cell(0, last_column),
+            Self::Corner(Corner::BottomLeft) => cell(last_row, 0),
+            Self::Corner(Corner::BottomRight) => cell(last_row, last_column),
+            Self::Where(predicate) => grid
+                .cells()
+                .filter(|&(row, column)| predicate.holds(row, column))
+                .for_each(|(row, column)| cell(row, column)),
+            Self::Index(_) | Self::Vertex(_) | Self::Near { .. } | Self::AtRest(_) | Self::Attribute { .. } => {}
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! A spring.
+
+use bevy::reflect::Reflect;
+
+/// What a spring resists.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SpringKind {
+    /// Stretch: neighbours in a row or column.
+    Structural,
+    /// Shear: neighbours along a diagonal.
+    Shear,
+    /// Bending: every second particle of a row or column.
+    Bend,
+}
+
+/// A spring between two particles.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// What it resists.
+    pub kind: SpringKind,
+    /// Indices of its two particles.
+    pub ends: [u32; 2],
+    /// Length without a force (m), positive.
+    pub rest_length: f32,
+    /// How far a newton stretches it (m/N); 0 is rigid.
+    pub compliance: f32,
+}

@@ -1,0 +1,115 @@
+//! Triangles from Bevy's mesh assets.
+
+use bevy::{
+    math::{Vec2, Vec3},
+    mesh::{Indices, Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues},
+};
+
+use super::{TriangleMesh, VertexAttribute};
+use crate::cloth::ClothError;
+
+/// Attributes that a surface has in other ways, or that mean nothing to it.
+const OTHERS: [MeshVertexAttribute; 7] = [
+    Mesh::ATTRIBUTE_POSITION,
+    Mesh::ATTRIBUTE_NORMAL,
+    Mesh::ATTRIBUTE_TANGENT,
+    Mesh::ATTRIBUTE_UV_0,
+    Mesh::ATTRIBUTE_UV_1,
+    Mesh::ATTRIBUTE_JOINT_INDEX,
+    Mesh::ATTRIBUTE_JOINT_WEIGHT,
+];
+
+impl TriangleMesh {
+    /// The triangles of an asset: of a list or a strip, with indices of either width or without any.
+    ///
+    /// # Errors
+    /// [`ClothError::MeshNotReadable`] of a mesh that is in the render world only; [`ClothError::MeshTopology`] of lines or
+    /// points; [`ClothError::MeshWithoutPositions`]; [`ClothError::MeshIndexCount`] if indices are left over.
+    pub fn of_asset(mesh: &Mesh) -> Result<Self, ClothError> {
+        let read = |attribute: MeshVertexAttribute| match mesh.try_attribute_option(attribute) {
+            Ok(values) => Ok(values),
+            Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),
+            Err(_) => Ok(None),
+        };
+        let Some(VertexAttributeValues::Float32x3(positions)) = read(Mesh::ATTRIBUTE_POSITION)? else {
+            return Err(ClothError::MeshWithoutPositions);
+        };
+        let triangles = triangles(mesh, positions.len())?;
+        let vectors = |values: Option<&VertexAttributeValues>| match values {
+            Some(VertexAttributeValues::Float32x3(values)) => values.iter().copied().map(Vec3::from).collect(),
+            _ => Vec::new(),
+        };
+        let uvs = match read(Mesh::ATTRIBUTE_UV_0)? {
+            Some(VertexAttributeValues::Float32x2(values)) => values.iter().copied().map(Vec2::from).collect(),
+            _ => Vec::new(),
+        };
+        let attributes = mesh.attributes().filter_map(|(attribute, values)| {
+            let is_other = OTHERS.iter().any(|other| other.id == attribute.id);
+            let values = numbers(values).filter(|_| !is_other)?;
+            Some(VertexAttribute::new(attribute.name, values))
+        });
+        Ok(Self {
+            positions: positions.iter().copied().map(Vec3::from).collect(),
+            triangles,
+            normals: vectors(read(Mesh::ATTRIBUTE_NORMAL)?),
+            uvs,
+            attributes: attributes.collect(),
+        })
+    }
+}
+
+/// The triangles of a mesh, by its vertices.
+fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> {
+    let indices = match mesh.try_indices_option() {
+        Ok(indices) => indices,
+        Err(MeshAccessError::NotFound) => None,
+        Err(_) => return Err(ClothError::MeshNotReadable),
+    };
+    let indices: Vec<u32> = match indices {
+        Some(Indices::U16(indices)) => indices.iter().map(|index| u32::from(*index)).collect(),
+        Some(Indices::U32(indices)) => indices.clone(),
+        None => (0..vertices as u32).collect(),
+    };
+    match mesh.primitive_topology() {
+        PrimitiveTopology::TriangleList => {
+            let (triangles, left) = indices.as_chunks::<3>();
+            if left.is_empty() {
+                Ok(triangles.to_vec())
+            } else {
+                Err(ClothError::MeshIndexCount {
+                    indices: indices.len(),
+                })
+            }
+        }
+        PrimitiveTopology::TriangleStrip => {
+            let triangles = indices.array_windows::<3>().enumerate();
+            // Every second one runs the other way round.
+            let turned = |(index, &[a, b, c]): (usize, &[u32; 3])| if index % 2 == 0 { [a, b, c] } else { [b, a, c] };
+            Ok(triangles.map(turned).collect())
+        }
+        topology => Err(ClothError::MeshTopology {
+            topology: format!("{topology:?}"),
+        }),
+    }
+}
+
+/// Up to four numbers for each vertex, if they are numbers of a kind that artists paint.
+fn numbers(values: &VertexAttributeValues) -> Option<Vec<[f32; 4]>> {
+    fn filled<const N: usize>(values: &[[f32; N]]) -> Vec<[f32; 4]> {
+        let fill = |value: &[f32; N]| std::array::from_fn(|at| value.get(at).copied().unwrap_or(0.0));
+        values.iter().map(fill).collect()
+    }
+    Some(match values {
+        VertexAttributeValues::Float32(values) => values.iter().map(|value| [*value, 0.0, 0.0, 0.0]).collect(),
+        VertexAttributeValues::Float32x2(values) => filled(values),
+        VertexAttributeValues::Float32x3(values) => filled(values),
+        VertexAttributeValues::Float32x4(values) => filled(values),
+        VertexAttributeValues::Unorm8x4(values) => {
+            values.iter().map(|value| value.map(|channel| f32::from(channel) / 255.0)).collect()
+        }
+        VertexAttributeValues::Unorm16x4(values) => {
+            values.iter().map(|value| value.map(|channel| f32::from(channel) / 65535.0)).collect()
+        }
+        _ => return None,
+    })
+}

@@ -1,0 +1,271 @@
+//! A surface made from triangles: vertices in the same place become one particle.
+
+use std::sync::OnceLock;
+
+use bevy::{math::Vec3, platform::collections::HashMap};
+
+use super::{
+    Extent, Faces, Graph, Spacing, Surface, TriangleMesh, VertexAttribute,
+    calibration::calibrate,
+    orientation::orient,
+    springs::{face_area, links, sides},
+    weld::same_places,
+};
+use crate::cloth::{ClothError, SpringKind};
+
+/// The most particles that a cloth from a mesh may have: more could not move in real time.
+pub const MAX_MESH_PARTICLES: usize = 1 << 18;
+
+/// Stands for a vertex that is no particle.
+const NO_PARTICLE: u32 = u32::MAX;
+
+/// A particle with less than this part of the mean area stands for none.
+const NEGLIGIBLE: f32 = 1.0e-6;
+
+impl Surface {
+    /// The surface of a mesh under a transform's `scale`. Vertices no farther apart than `weld` (m, before the scale) are
+    /// one particle.
+    ///
+    /// Left out are triangles without an area, all but the first between the same three particles, and vertices of no other
+    /// triangle. Several pieces are one cloth; an edge may have any number of faces.
+    ///
+    /// # Errors
+    /// What is wrong, with the vertex or triangle at fault.
+    pub fn of_mesh(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<Self, ClothError> {
+        check(mesh, weld, scale)?;
+        let places: Vec<Vec3> = mesh.positions.iter().map(|place| *place * scale).collect();
+        let mut welded = Welded::new(mesh, weld, &places);
+        welded.drop_what_is_nothing(mesh.triangles.len())?;
+        welded.arrange();
+        if welded.rest.len() > MAX_MESH_PARTICLES {
+            return Err(ClothError::MeshTooLarge {
+                particles: welded.rest.len(),
+            });
+        }
+        Ok(welded.surface(mesh, scale))
+    }
+}
+
+fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> {
+    let range = "zero or more, and finite";
+    ClothError::check(weld, |w| w >= 0.0 && w.is_finite(), "weld distance (m)", range)?;
+    let vertices = mesh.positions.len();
+    // A few vertices a particle are usual; what is far beyond is not even welded.
+    if vertices > 8 * MAX_MESH_PARTICLES {
+        return Err(ClothError::MeshTooLarge { particles: vertices });
+    }
+    // So that squares of lengths, and their products with masses, stay well inside of `f32`.
+    let is_measurable = |place: &Vec3| (*place * scale).abs().max_element() < 1.0e12;
+    if let Some(vertex) = mesh.positions.iter().position(|place| !is_measurable(place)) {
+        return Err(ClothError::VertexNotFinite {
+            vertex,
+            position: mesh.positions[vertex],
+        });
+    }
+    let is_beyond = |triangle: &[u32; 3]| triangle.iter().any(|corner| *corner as usize >= vertices);
+    if let Some(triangle) = mesh.triangles.iter().position(is_beyond) {
+        return Err(ClothError::TriangleOutOfRange {
+            triangle,
+            corners: mesh.triangles[triangle],
+            vertices,
+        });
+    }
+    Ok(())
+}
+
+/// Vertices in the same place as one particle, on the way to a surface.
+struct Welded {
+    rest: Vec<Vec3>,
+    /// The particle of each vertex.
+    particle_of: Vec<u32>,
+    faces: Vec<[u32; 3]>,
+    /// The sum of the vertices' normals at each particle; empty without any.
+    normals: Vec<Vec3>,
+}
+
+impl Welded {
+    fn new(mesh: &TriangleMesh, weld: f32, places: &[Vec3]) -> Self {
+        let (first, particle_of) = same_places(&mesh.positions, weld);
+        let rest: Vec<Vec3> = first.iter().map(|&vertex| places[vertex as usize]).collect();
+        let mut normals = Vec::new();
+        if mesh.normals.len() == mesh.positions.len() {
+            normals.resize(rest.len(), Vec3::ZERO);
+            for (normal, &particle) in mesh.normals.iter().zip(&particle_of) {
+                normals[particle as usize] += *normal;
+            }
+        }
+        let corners = |triangle: &[u32; 3]| triangle.map(|corner| particle_of[corner as usize]);
+        let mut faces: Vec<[u32; 3]> = mesh.triangles.iter().map(corners).collect();
+        faces.retain(|[a, b, c]| a != b && b != c && c != a);
+        let mut seen = HashMap::<[u32; 3], ()>::default();
+        seen.reserve(faces.len());
+        faces.retain(|face| {
+            let mut sorted = *face;
+            sorted.sort_unstable();
+            seen.insert(sorted, ()).is_none()
+        });
+        Self {
+            rest,
+            particle_of,
+            faces,
+            normals,
+        }
+    }
+
+    /// Takes out particles that stand for no area, with their faces.
+    fn drop_what_is_nothing(&mut self, triangles: usize) -> Result<(), ClothError> {
+        let (areas, total) = self.areas();
+        let mean = total / areas.iter().filter(|area| **area > 0.0).count().max(1) as f32;
+        let is_something = |particle: u32| areas[particle as usize] > NEGLIGIBLE * mean;
+        self.faces.retain(|face| face.iter().all(|corner| is_something(*corner)));
+        // What is measured in a cloth has to be more than rounding.
+        if self.faces.is_empty() || mean < 1.0e-18 {
+            return Err(ClothError::MeshWithoutArea { triangles });
+        }
+        Ok(())
+    }
+
+    /// The area that each particle stands for, a third of each of its faces, and their sum (m²).
+    fn areas(&self) -> (Vec<f32>, f32) {
+        let mut areas = vec![0.0; self.rest.len()];
+        let mut total = 0.0_f64;
+        for face in &self.faces {
+            let area = face_area(*face, &self.rest);
+            total += f64::from(area);
+            for corner in face {
+                areas[*corner as usize] += area / 3.0;
+            }
+        }
+        (areas, total as f32)
+    }
+
+    /// Numbers the particles that are corners of a face so that neighbours are near each other in memory.
+    fn arrange(&mut self) {
+        let mut edges: Vec<[u32; 2]> = self.faces.iter().flat_map(|face| sides(*face)).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let graph = Graph::new(self.rest.len(), edges.iter().map(|edge| (*edge, 1.0)));
+        let order: Vec<u32> = graph
+            .order()
+            .into_iter()
+            .filter(|particle| !graph.of(*particle).is_empty())
+            .collect();
+        let mut number = vec![NO_PARTICLE; self.rest.len()];
+        for (index, &particle) in order.iter().enumerate() {
+            number[particle as usize] = index as u32;
+        }
+        self.rest = order.iter().map(|&old| self.rest[old as usize]).collect();
+        if !self.normals.is_empty() {
+            self.normals = order.iter().map(|&old| self.normals[old as usize]).collect();
+        }
+        for face in &mut self.faces {
+            *face = face.map(|corner| number[corner as usize]);
+        }
+        for particle in &mut self.particle_of {
+            *particle = number[*particle as usize];
+        }
+    }
+
+    fn surface(mut self, mesh: &TriangleMesh, scale: Vec3) -> Surface {
+        // As in the asset, whatever the scale mirrors.
+        let unscaled: Vec<Vec3> = self.rest.iter().map(|place| *place / scale).collect();
+        orient(&mut self.faces, &unscaled, &self.normals);
+        let (areas, area) = self.areas();
+        let particles = self.rest.len();
+        let faces = Faces::by_first_corner(self.faces, particles);
+        let normals = normals(faces.all(), &self.rest);
+        let mut links = links(faces.all(), &self.rest);
+        let is_border = borders(faces.all(), particles);
+        calibrate(&mut links, &self.rest, &normals, &is_border);
+        let mut lengths: Vec<f32> = links
+            .iter()
+            .filter(|link| link.kind == SpringKind::Structural)
+            .map(|link| link.rest_length)
+            .collect();
+        lengths.sort_unstable_by(f32::total_cmp);
+        let spacing = Spacing {
+            shortest: lengths[0],
+            typical: lengths[lengths.len() / 2],
+            longest: lengths[lengths.len() - 1],
+        };
+        let [low, high] = self.rest.iter().fold([Vec3::MAX, Vec3::MIN], |[low, high], place| {
+            [low.min(*place), high.max(*place)]
+        });
+        let diagonal = low.distance(high);
+        let has_uvs = mesh.uvs.len() == self.particle_of.len();
+        let uvs = if has_uvs { merged(&mesh.uvs, &self.particle_of, particles, |first, _| first) } else { Vec::new() };
+        let larger = |first: [f32; 4], other: [f32; 4]| std::array::from_fn(|at| first[at].max(other[at]));
+        let attributes = mesh
+            .attributes
+            .iter()
+            .filter(|attribute| attribute.values().len() == self.particle_of.len())
+            .map(|attribute| {
+                let values = merged(attribute.values(), &self.particle_of, particles, larger);
+                VertexAttribute::new(attribute.name(), values)
+            })
+            .collect();
+        Surface {
+            normals,
+            rest: self.rest,
+            areas,
+            particle_of_vertex: Some(self.particle_of),
+            attributes,
+            links,
+            scale,
+            spacing,
+            extent: Extent {
+                diagonal,
+                area,
+                particles_across: (area / diagonal / spacing.typical).max(1.0) as usize,
+                face_reach: spacing.longest,
+                longest_spring: spacing.longest,
+                max_faces: max_faces(faces.all(), particles),
+            },
+            grid: None,
+            uvs: OnceLock::from(uvs),
+            faces: OnceLock::from(faces),
+            graph: OnceLock::new(),
+            flat: OnceLock::new(),
+        }
+    }
+}
+
+/// What each particle has of its vertices' values.
+fn merged<T: Copy + Default>(values: &[T], particle_of: &[u32], particles: usize, merge: impl Fn(T, T) -> T) -> Vec<T> {
+    let mut of_particle = vec![None; particles];
+    for (value, &particle) in values.iter().zip(particle_of) {
+        if let Some(known) = of_particle.get_mut(particle as usize) {
+            *known = Some(known.map_or(*value, |known| merge(known, *value)));
+        }
+    }
+    of_particle.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// Each particle's normal, of length 1: of its faces, by their areas.
+fn normals(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; rest.len()];
+    for face in faces {
+        let [a, b, c] = face.map(|corner| rest[corner as usize]);
+        let normal = (b - a).cross(c - a);
+        face.iter().for_each(|corner| normals[*corner as usize] += normal);
+    }
+    normals.into_iter().map(|normal| normal.normalize_or(Vec3::Y)).collect()
+}
+
+/// Which particles are at an edge that does not have two faces.
+fn borders(faces: &[[u32; 3]], particles: usize) -> Vec<bool> {
+    let mut edges: Vec<[u32; 2]> = faces.iter().flat_map(|face| sides(*face)).collect();
+    edges.sort_unstable();
+    let mut is_border = vec![false; particles];
+    for faces in edges.chunk_by(|a, b| a == b).filter(|faces| faces.len() != 2) {
+        faces[0].iter().for_each(|end| is_border[*end as usize] = true);
+    }
+    is_border
+}
+
+/// How many faces meet in one particle at most.
+fn max_faces(faces: &[[u32; 3]], particles: usize) -> usize {
+    let mut counts = vec![0; particles];
+    faces.iter().flatten().for_each(|corner| counts[*corner as usize] += 1);
+    counts.into_iter().max().unwrap_or(0)
+}

@@ -1,0 +1,187 @@
+//! What is next to what on a surface.
+
+use std::{cmp::Reverse, collections::BinaryHeap};
+
+/// Neighbours of each particle, ascending, and how far away they are at rest (m).
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(crate) struct Graph {
+    /// Where each particle's begin; one more than there are particles.
+    first: Vec<u32>,
+    neighbours: Vec<(u32, f32)>,
+}
+
+impl Graph {
+    /// Of edges between two particles, with their lengths (m); each once.
+    pub fn new(particles: usize, edges: impl Iterator<Item = ([u32; 2], f32)> + Clone) -> Self {
+        let mut first = vec![0; particles + 1];
+        for end in edges.clone().flat_map(|(ends, _)| ends) {
+            first[end as usize + 1] += 1;
+        }
+        for particle in 0..particles {
+            first[particle + 1] += first[particle];
+        }
+        let mut next = first.clone();
+        let mut neighbours = vec![(0, 0.0); first[particles] as usize];
+        for ([a, b], length) in edges {
+            for (from, to) in [(a, b), (b, a)] {
+                let place = &mut next[from as usize];
+                neighbours[*place as usize] = (to, length);
+                *place += 1;
+            }
+        }
+        for ends in first.windows(2) {
+            neighbours[ends[0] as usize..ends[1] as usize].sort_by_key(|near| near.0);
+        }
+        Self { first, neighbours }
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.first.len().saturating_sub(1)
+    }
+
+    /// The neighbours of a particle, and how far away each is (m).
+    #[inline]
+    pub fn of(&self, particle: u32) -> &[(u32, f32)] {
+        let particle = particle as usize;
+        &self.neighbours[self.first[particle] as usize..self.first[particle + 1] as usize]
+    }
+
+    /// How far it is along edges from each particle to the nearest source (m), infinite where no path leads; and which
+    /// source that is, by its place among them (Dijkstra 1959).
+    pub fn distances(&self, sources: impl Iterator<Item = u32>) -> Vec<(f32, u32)> {
+        let mut found = vec![(f32::INFINITY, u32::MAX); self.len()];
+        let mut heap = BinaryHeap::new();
+        for (place, source) in sources.enumerate() {
+            found[source as usize] = (0.0, place as u32);
+            heap.push(Reverse((0, source)));
+        }
+        // Bits of floats that are not negative are in the order of the floats.
+        while let Some(Reverse((bits, particle))) = heap.pop() {
+            let (distance, source) = found[particle as usize];
+            if f32::from_bits(bits) > distance {
+                continue;
+            }
+            for &(neighbour, length) in self.of(particle) {
+                let farther = distance + length;
+                if farther < found[neighbour as usize].0 {
+                    found[neighbour as usize] = (farther, source);
+                    heap.push(Reverse((farther.to_bits(), neighbour)));
+                }
+            }
+        }
+        found
+    }
+
+    /// An order in which neighbours are near each other in memory: breadth first, from a particle that is far from the
+    /// others of its piece, those with few neighbours first (Cuthill and McKee 1969).
+    pub fn order(&self) -> Vec<u32> {
+        let mut order: Vec<u32> = Vec::with_capacity(self.len());
+        let mut is_placed = vec![false; self.len()];
+        let mut last_seen = vec![u32::MAX; self.len()];
+        let mut queue = Vec::new();
+        for start in 0..self.len() as u32 {
+            if is_placed[start as usize] {
+                continue;
+            }
+            // What is reached last from anywhere is far from the others.
+            queue.clear();
+            queue.push(start);
+            last_seen[start as usize] = start;
+            let mut next = 0;
+            while let Some(&particle) = queue.get(next) {
+                next += 1;
+                for &(neighbour, _) in self.of(particle) {
+                    if last_seen[neighbour as usize] != start {
+                        last_seen[neighbour as usize] = start;
+                        queue.push(neighbour);
+                    }
+                }
+            }
+            let far = queue.last().copied().unwrap_or(start);
+            let mut next = order.len();
+            order.push(far);
+            is_placed[far as usize] = true;
+            while let Some(&particle) = order.get(next) {
+                next += 1;
+                let begin = order.len();
+                for &(neighbour, _) in self.of(particle) {
+                    if !std::mem::replace(&mut is_placed[neighbour as usize], true) {
+                        order.push(neighbour);
+                    }
+                }
+                order[begin..].sort_by_key(|neighbour| self.of(*neighbour).len());
+            }
+        }
+        order
+    }
+
+    /// Bytes that it takes.
+    pub fn memory(&self) -> usize {
+        size_of_val(&self.first[..]) + size_of_val(&self.neighbours[..])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nine columns and seven rows, 0.1 m apart, with both diagonals.
+    fn grid() -> Graph {
+        let edges: Vec<([u32; 2], f32)> = (0..63_u32)
+            .flat_map(|at| {
+                let (row, column) = (at / 9, at % 9);
+                let steps = [(0, 1), (1, 0), (1, 1), (1, -1)].into_iter();
+                steps.filter_map(move |(down, across): (u32, i32)| {
+                    let (row, beside) = (row + down, column.checked_add_signed(across)?);
+                    let length = 0.1 * ((down as f32).powi(2) + (across as f32).powi(2)).sqrt();
+                    (row < 7 && beside < 9).then_some(([at, row * 9 + beside], length))
+                })
+            })
+            .collect();
+        Graph::new(63, edges.into_iter())
+    }
+
+    /// Along rows, columns and diagonals, from wherever the sources are.
+    #[test]
+    fn distances_are_those_of_the_nearest_source() {
+        for sources in [&[0_u32][..], &[62], &[31], &[4, 40, 58]] {
+            let found = grid().distances(sources.iter().copied());
+            for (index, (found, source)) in found.into_iter().enumerate() {
+                let path = |source: u32| {
+                    let source = source as usize;
+                    let (down, across) = (
+                        (source / 9).abs_diff(index / 9),
+                        (source % 9).abs_diff(index % 9),
+                    );
+                    let diagonal = down.min(across) as f32;
+                    0.1 * ((down.max(across) as f32 - diagonal) + diagonal * 2.0_f32.sqrt())
+                };
+                let expected = sources.iter().map(|&source| path(source));
+                let expected = expected.fold(f32::INFINITY, f32::min);
+                assert!((found - expected).abs() < 1.0e-5, "{sources:?} {index}");
+                assert!((path(sources[source as usize]) - expected).abs() < 1.0e-5);
+            }
+        }
+        let alone = Graph::new(2, [].into_iter());
+        assert_eq!(alone.distances([1].into_iter()), [(f32::INFINITY, u32::MAX), (0.0, 0)]);
+    }
+
+    /// Each particle once; neighbours are no farther apart than a column is long, a piece after the other.
+    #[test]
+    fn neighbours_are_near_each_other_in_the_order() {
+        let graph = grid();
+        let order = graph.order();
+        let mut place = vec![usize::MAX; 63];
+        for (index, &particle) in order.iter().enumerate() {
+            assert_eq!(place[particle as usize], usize::MAX);
+            place[particle as usize] = index;
+        }
+        let apart = |particle: u32| {
+            let neighbours = graph.of(particle).iter();
+            neighbours.map(move |near| (particle, near.0))
+        };
+        let widest = (0..63).flat_map(apart).map(|(a, b)| place[a as usize].abs_diff(place[b as usize]));
+        assert!(widest.max() <= Some(18), "two rows or columns, at most");
+    }
+}

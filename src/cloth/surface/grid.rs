@@ -1,0 +1,46 @@
+//! What a surface that is a grid has, made when it is asked for.
+
+use bevy::math::{DVec2, Vec2};
+
+use super::{Faces, Flat, Graph};
+use crate::cloth::ClothGrid;
+
+/// From (0, 0) in particle (0, 0) to (1, 1) in the last.
+pub(super) fn uvs(grid: &ClothGrid) -> Vec<Vec2> {
+    let last = Vec2::new((grid.columns() - 1) as f32, (grid.rows() - 1) as f32);
+    let uv = |(row, column): (u32, u32)| Vec2::new(column as f32, row as f32) / last;
+    grid.cells().map(uv).collect()
+}
+
+/// Two faces a cell, for which its first particle stands.
+pub(super) fn faces(grid: &ClothGrid) -> Faces {
+    let begins_cell = |(row, column): (u32, u32)| row + 1 < grid.rows() && column + 1 < grid.columns();
+    let counts = grid.cells().map(|cell| 2 * u32::from(begins_cell(cell)));
+    Faces::new(grid.triangles().collect(), counts)
+}
+
+/// Neighbours in rows, columns and along both diagonals.
+pub(super) fn graph(grid: &ClothGrid) -> Graph {
+    let steps = [(0, 1), (1, -1), (1, 0), (1, 1)];
+    let edges: Vec<([u32; 2], f32)> = grid.cells().flat_map(move |(row, column)| {
+        steps.into_iter().filter_map(move |(down, across)| {
+            let (below, beside) = (row + down, column.checked_add_signed(across)?);
+            let exists = below < grid.rows() && beside < grid.columns();
+            exists.then(|| {
+                let ends = [grid.index(row, column), grid.index(below, beside)];
+                (ends, grid.step_length((down, across)))
+            })
+        })
+    }).collect();
+    Graph::new(grid.len(), edges.into_iter())
+}
+
+/// Along its columns and rows, from particle (0, 0).
+pub(super) fn flat(grid: &ClothGrid) -> Flat {
+    let spacing = grid.spacing().as_dvec2();
+    let place = |(row, column): (u32, u32)| DVec2::new(f64::from(column), f64::from(row)) * spacing;
+    Flat {
+        places: grid.cells().map(place).collect(),
+        has_threads: true,
+    }
+}

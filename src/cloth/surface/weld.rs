@@ -1,0 +1,48 @@
+//! Which vertices are in the same place.
+
+use bevy::{math::Vec3, platform::collections::HashMap};
+
+/// The first vertex of each place, and the place of each vertex: the first that is no farther than `weld`.
+pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>) {
+    // Cells are so large that most vertices need only their own.
+    let size = 8.0 * weld;
+    let cell = |place: Vec3| -> [u32; 3] {
+        if weld > 0.0 {
+            // Far from the origin neighbouring cells may be one number: more to compare with, and nothing missed.
+            (place / size).floor().to_array().map(f32::to_bits)
+        } else {
+            // −0 is 0.
+            (place + Vec3::ZERO).to_array().map(f32::to_bits)
+        }
+    };
+    let mut cells: HashMap<[u32; 3], Vec<u32>> = HashMap::default();
+    let mut first: Vec<u32> = Vec::new();
+    let mut place_of = Vec::with_capacity(positions.len());
+    for (vertex, &position) in positions.iter().enumerate() {
+        let is_same = |place: &&u32| {
+            let other = positions[first[**place as usize] as usize];
+            other == position || other.distance_squared(position) <= weld * weld
+        };
+        let mut found = None;
+        let (low, high) = (position - weld, position + weld);
+        let ends = [low, high];
+        for corner in 0..8 {
+            let near = Vec3::new(ends[corner & 1].x, ends[(corner >> 1) & 1].y, ends[corner >> 2].z);
+            let known = cells.get(&cell(near)).and_then(|known| known.iter().find(is_same));
+            if let Some(known) = known {
+                // Of several the earliest, so that the order of cells does not matter.
+                found = Some(found.map_or(*known, |found: u32| found.min(*known)));
+            }
+            if corner == 0 && cell(low) == cell(high) {
+                break;
+            }
+        }
+        place_of.push(found.unwrap_or_else(|| {
+            let place = first.len() as u32;
+            first.push(vertex as u32);
+            cells.entry(cell(position)).or_default().push(place);
+            place
+        }));
+    }
+    (first, place_of)
+}

@@ -1,0 +1,210 @@
+//! The tree of a grid: how rows and columns are halved on each level. Nothing is stored a node.
+
+use std::ops::Range;
+
+use bevy::math::Vec2;
+
+use crate::cloth::{ClothGrid, Layout};
+
+/// Some rows, or some columns, of one level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The first, and one past the last.
+    pub span: Range<u32>,
+    /// Where the part would end if the cloth had as many columns as its blocks have room for.
+    pub full_end: u32,
+    /// The one in the middle: never nearer to the end than to the start.
+    pub middle: u32,
+    /// From the middle to the end.
+    pub half: u32,
+    /// 1 if `half` is less than the largest of the level, else 0.
+    pub is_short: u8,
+    /// The parts that it is halved into, on the next level; none on the last.
+    pub children: Range<u32>,
+    /// Of rows, the middle's first block; of columns, the middle's block in its row.
+    pub block: u32,
+    /// Of columns, the middle's lane.
+    pub lane: u32,
+    /// Of columns, the part's place in its strip, where a strip holds several.
+    pub in_strip: u32,
+}
+
+/// How rows and columns are halved on one level. A node is one part of either.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    pub rows: Vec<Part>,
+    pub columns: Vec<Part>,
+    /// Index of its first node.
+    pub first: u32,
+    /// Length of the shortest way along the springs at rest from the middle of a node to its farthest corner (m), by
+    /// whether its rows and its columns are short.
+    pub rest_radius: [[f32; 2]; 2],
+    /// Parts in a strip of columns, the unit in which eight lanes are worked on; 0 where a part has several strips.
+    pub parts_in_strip: u32,
+}
+
+impl Level {
+    pub fn index(&self, row: u32, column: u32) -> u32 {
+        self.first + row * self.columns.len() as u32 + column
+    }
+
+    /// Of a node, for which way the springs lead at rest, no less than it is (m).
+    #[inline(always)]
+    pub fn rest_radius(&self, rows: &Part, columns: &Part) -> f32 {
+        self.rest_radius[usize::from(rows.is_short & 1)][usize::from(columns.is_short & 1)]
+    }
+}
+
+/// A tree over a grid of any size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GridTree {
+    pub levels: Vec<Level>,
+    pub ranges: Vec<Range<u32>>,
+    pub layout: Layout,
+    spacing: Vec2,
+}
+
+impl GridTree {
+    pub fn new(grid: &ClothGrid, diagonals: bool) -> Self {
+        let layout = Layout::new(grid.columns(), grid.rows());
+        let strip = layout.strip;
+        let strips = layout.columns.div_ceil(strip);
+        let rows = halved(layout.rows, layout.rows, 1);
+        let full = if strips > 1 {
+            strips * strip
+        } else {
+            layout.columns
+        };
+        let columns = halved(full, layout.columns, strip);
+        let depth = rows.len().max(columns.len());
+        let mut levels: Vec<Level> = Vec::with_capacity(depth);
+        for level in 0..depth {
+            let first = levels.last().map_or(0, |above| {
+                above.first + (above.rows.len() * above.columns.len()) as u32
+            });
+            let at = |halved: &[Vec<Part>]| {
+                let last = halved.len() - 1;
+                let mut parts = halved[level.min(last)].clone();
+                for (index, part) in parts.iter_mut().enumerate() {
+                    let index = index as u32;
+                    if level + 1 == depth {
+                        part.children = 0..0;
+                    } else if level >= last {
+                        part.children = index..index + 1;
+                    }
+                }
+                parts
+            };
+            let (mut rows, mut columns) = (at(&rows), at(&columns));
+            for part in &mut rows {
+                part.block = part.middle * strip;
+            }
+            let width = columns[0].full_end;
+            let parts_in_strip = if width > strip {
+                0
+            } else {
+                columns
+                    .iter()
+                    .take_while(|part| part.span.start < strip)
+                    .count() as u32
+            };
+            for (index, part) in columns.iter_mut().enumerate() {
+                (part.block, part.lane) = (part.middle % strip, part.middle / strip);
+                part.in_strip = (index as u32).checked_rem(parts_in_strip).unwrap_or(0);
+            }
+            let [down, across] = [&mut rows, &mut columns].map(|parts| shorten(parts));
+            let rest_radius = down.map(|down| {
+                across.map(|across| rest_distance(grid.spacing(), across, down, diagonals))
+            });
+            levels.push(Level {
+                rows,
+                columns,
+                first,
+                rest_radius,
+                parts_in_strip,
+            });
+        }
+        let nodes = |level: &Level| level.first..level.index(level.rows.len() as u32, 0);
+        Self {
+            ranges: levels.iter().map(nodes).collect(),
+            levels,
+            layout,
+            spacing: grid.spacing(),
+        }
+    }
+
+    /// The larger distance between neighbours (m).
+    pub fn longest_spacing(&self) -> f32 {
+        self.spacing.max_element()
+    }
+
+    /// The parts that a node of `level` is made of.
+    pub fn parts(&self, level: usize, node: u32) -> (u32, u32) {
+        let level = &self.levels[level];
+        let columns = level.columns.len() as u32;
+        (
+            (node - level.first) / columns,
+            (node - level.first) % columns,
+        )
+    }
+}
+
+/// `full` rows or columns halved level by level, of which only the first `count` are there. Units are parted from each
+/// other before they are halved, and all units alike: so that eight lanes hold eight nodes of one level.
+fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
+    let part = |full: Range<u32>| {
+        let span = full.start..full.end.min(count);
+        let middle = span.start + (span.end - span.start - 1) / 2;
+        Part {
+            half: span.end - 1 - middle,
+            is_short: 0,
+            span,
+            full_end: full.end,
+            middle,
+            children: 0..0,
+            block: 0,
+            lane: 0,
+            in_strip: 0,
+        }
+    };
+    let mut levels = vec![vec![part(0..full)]];
+    loop {
+        let above = levels.last_mut().expect("the whole");
+        // The first is the largest.
+        let largest = above[0].full_end;
+        if largest == 1 {
+            return levels;
+        }
+        let unit = if largest > unit { unit } else { 1 };
+        let mut below = Vec::new();
+        for parent in above.iter_mut() {
+            let first = below.len() as u32;
+            let (start, end) = (parent.span.start, parent.full_end);
+            let half = start + (end - start).div_ceil(unit).div_ceil(2) * unit;
+            let halves = [start..half.min(end), half.min(end)..end];
+            let there = halves
+                .into_iter()
+                .filter(|half| half.start < count && !half.is_empty());
+            below.extend(there.map(part));
+            parent.children = first..below.len() as u32;
+        }
+        levels.push(below);
+    }
+}
+
+/// Marks the short ones, and says how far the others reach and these.
+fn shorten(parts: &mut [Part]) -> [u32; 2] {
+    let longest = parts.iter().map(|part| part.half).max().unwrap_or(0);
+    for part in parts {
+        part.is_short = u8::from(part.half < longest);
+    }
+    [longest, longest.saturating_sub(1)]
+}
+
+/// Length of the shortest way along the springs at rest between two particles that number of columns and rows apart
+/// (m).
+fn rest_distance(spacing: Vec2, across: u32, down: u32, diagonals: bool) -> f32 {
+    let diagonal = if diagonals { across.min(down) } else { 0 };
+    let (across, down) = (across - diagonal, down - diagonal);
+    diagonal as f32 * spacing.length() + across as f32 * spacing.x + down as f32 * spacing.y
+}

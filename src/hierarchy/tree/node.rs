@@ -1,0 +1,29 @@
+//! A node of a tree.
+
+use bevy::reflect::Reflect;
+
+/// A node of a [`QuadTree`](super::QuadTree): a patch of the cloth.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Its level, 0 for the root.
+    pub level: usize,
+    /// Index of the patch's middle particle; of a leaf, its only one.
+    pub middle: u32,
+    /// Largest distance at rest, along the springs, from the middle particle to one of the patch (m). Infinite
+    /// where no way along the springs leads there.
+    pub rest_radius: f32,
+    pub(super) children: [u32; 4],
+    pub(super) child_count: u8,
+}
+
+impl Node {
+    /// Whether the node holds one particle.
+    pub fn is_leaf(&self) -> bool {
+        self.child_count == 0
+    }
+
+    /// Indices of its one to four children; none of a leaf.
+    pub fn children(&self) -> &[u32] {
+        &self.children[..usize::from(self.child_count)]
+    }
+}

@@ -1,0 +1,190 @@
+//! Builds what does not exist yet or was made from other components than those present.
+
+use bevy::{
+    ecs::change_detection::{Mut, Tick},
+    math::Vec3,
+};
+
+use super::{
+    ClothAttachment, ClothBuilt, ClothState,
+    built::BuiltFrom,
+    shared::{Recipe, SharedParts, compliances},
+    source::{Source, Sources},
+};
+use crate::{
+    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, Surface},
+    solver::Solver,
+};
+
+/// What the game says that a cloth is. In place of components that it took away the defaults count, and no pins.
+pub(super) struct Wanted<'a> {
+    pub cloth: &'a Cloth,
+    /// When the cloth was last changed.
+    pub changed: Tick,
+    /// Its mesh, if it is made from one.
+    pub source: Option<Source>,
+    pub material: &'a ClothMaterial,
+    pub pins: &'a Pins,
+    pub attachments: &'a [ClothAttachment],
+    pub scale: Vec3,
+}
+
+/// Builds a new cloth, or follows changes of an old one. Returns whether it had been built before. Changes nothing on an
+/// error.
+pub(super) fn build(
+    wanted: &Wanted,
+    sources: &Sources,
+    parts: &mut SharedParts,
+    particles: &mut Mut<ClothParticles>,
+    built: &mut ClothBuilt,
+    state: &mut ClothState,
+) -> Result<bool, ClothError> {
+    let was_built = is_built(wanted, built) && !particles.is_empty();
+    if was_built {
+        follow_changes(wanted, parts, particles, built, state)?;
+    } else {
+        build_new(wanted, sources, parts, particles, built, state)?;
+        state.rest.disturb();
+    }
+    Ok(was_built)
+}
+
+/// Whether what was built is that cloth, whatever its pins and material.
+fn is_built(wanted: &Wanted, built: &mut ClothBuilt) -> bool {
+    let (Some(from), Some(recipe)) = (&mut built.from, &built.shared.recipe) else {
+        return false;
+    };
+    if recipe.source != wanted.source {
+        return false;
+    }
+    // A mesh of the game's is long to compare with.
+    if from.changed != wanted.changed {
+        let is_same = from.unevenness == wanted.cloth.unevenness && recipe.shape == wanted.cloth.shape;
+        if !is_same {
+            return false;
+        }
+        from.changed = wanted.changed;
+    }
+    true
+}
+
+fn build_new(
+    wanted: &Wanted,
+    sources: &Sources,
+    parts: &mut SharedParts,
+    particles: &mut ClothParticles,
+    built: &mut ClothBuilt,
+    state: &mut ClothState,
+) -> Result<(), ClothError> {
+    let Wanted {
+        cloth,
+        material,
+        pins,
+        ..
+    } = *wanted;
+    cloth.validate()?;
+    material.validate()?;
+    let recipe = Recipe {
+        shape: cloth.shape.clone(),
+        scale: wanted.scale,
+        source: wanted.source,
+    };
+    let make = || sources.surface(cloth, wanted.source.as_ref(), wanted.scale);
+    let shared = parts.get(&recipe, material, make)?;
+    let surface = &shared.surface;
+    pins.validate(surface)?;
+    // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
+    // not.
+    let mut new = if built.from.is_some() || particles.is_empty() {
+        at_rest(wanted, surface)?
+    } else {
+        check_count(particles, surface)?;
+        particles.clone()
+    };
+    pins.for_each(surface, |index| new.pin(index));
+    built.solver = Solver::new(&shared.springs, &new);
+    built.forget_tethers();
+    state.detach();
+    *particles = new;
+    built.shared = shared;
+    built.from = Some(BuiltFrom {
+        unevenness: cloth.unevenness,
+        changed: wanted.changed,
+        material: *material,
+        pins: pins.clone(),
+    });
+    Ok(())
+}
+
+/// The particles of a new cloth.
+fn at_rest(wanted: &Wanted, surface: &Surface) -> Result<ClothParticles, ClothError> {
+    let mut particles = ClothParticles::at_rest(surface, wanted.material)?;
+    particles.assign_masses(surface, wanted.material, wanted.pins)?;
+    // What is attached will be pinned where it is.
+    let mut is_held = vec![false; surface.len()];
+    for attachment in wanted.attachments {
+        if attachment.pin.validate(surface).is_ok() {
+            attachment.pin.for_each(surface, |index| is_held[index] = true);
+        }
+    }
+    particles.make_uneven(surface, wanted.cloth.unevenness, |index| is_held[index]);
+    Ok(particles)
+}
+
+/// Takes over another material or other pins: masses, springs and tree only where they change, so that a
+/// mass that the game has set outlasts a change of damping.
+fn follow_changes(
+    wanted: &Wanted,
+    parts: &mut SharedParts,
+    particles: &mut Mut<ClothParticles>,
+    built: &mut ClothBuilt,
+    state: &mut ClothState,
+) -> Result<(), ClothError> {
+    let Wanted { material, pins, .. } = *wanted;
+    check_count(particles, built.surface())?;
+    let Some(from) = &mut built.from else {
+        return Ok(());
+    };
+    let (was, were_pinned) = (&from.material, &from.pins);
+    let are_others_pinned = were_pinned != pins;
+    if was == material && !are_others_pinned {
+        return Ok(());
+    }
+    material.validate()?;
+    if was.areal_density != material.areal_density || are_others_pinned {
+        particles.assign_masses(&built.shared.surface, material, pins)?;
+        // They are pinned anew with the offsets that they have.
+        for attached in &state.attached {
+            particles.pin(attached.particle as usize);
+        }
+    }
+    let tethered_by =
+        |of: &ClothMaterial| [of.areal_density, of.stretch_compliance, of.shear_compliance];
+    let gives_otherwise = tethered_by(was) != tethered_by(material);
+    let is_sprung_otherwise = compliances(was) != compliances(material);
+    (from.material, from.pins) = (*material, pins.clone());
+    if are_others_pinned || gives_otherwise {
+        built.forget_tethers();
+    }
+    if is_sprung_otherwise {
+        built.shared = parts.with_material(&built.shared, material);
+        let tethers = built.solver.take_tethers();
+        built.solver = Solver::new(&built.shared.springs, particles);
+        built.solver.set_tethers(tethers);
+        // The stretch that bounds rely on is measured over other springs now.
+        state.written = None;
+    }
+    state.rest.disturb();
+    Ok(())
+}
+
+/// Whether the particles are as many as the surface has, laid out alike.
+fn check_count(particles: &ClothParticles, surface: &Surface) -> Result<(), ClothError> {
+    if particles.matches(surface) {
+        return Ok(());
+    }
+    Err(ClothError::ParticleCount {
+        expected: surface.len(),
+        found: particles.len(),
+    })
+}

@@ -1,0 +1,145 @@
+//! What follows from a cloth's components.
+
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{change_detection::Tick, component::Component, reflect::ReflectComponent},
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::shared::Shared;
+use crate::{
+    cloth::{ClothMaterial, ClothParticles, Pins, Springs, Surface},
+    hierarchy::QuadTree,
+    solver::{Solver, Tethers, material_stretch},
+};
+
+/// What a cloth's surface, springs, tree and solver are. Made from its other components, and made anew where they change.
+/// Empty until the first tick. Reflected as nothing.
+#[derive(Component, Reflect, Debug, Default)]
+#[reflect(Component, Default, Debug)]
+pub struct ClothBuilt {
+    /// What cloths made alike have in common.
+    #[reflect(ignore)]
+    pub(super) shared: Arc<Shared>,
+    /// What all this was made from.
+    #[reflect(ignore)]
+    pub(super) from: Option<BuiltFrom>,
+    #[reflect(ignore)]
+    pub(super) solver: Solver,
+    /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
+    #[reflect(ignore)]
+    tethered: Option<(bool, f32)>,
+    /// The stretch that its material gives by itself.
+    #[reflect(ignore)]
+    pub(super) material_stretch: f32,
+    /// Masses of its lightest and heaviest free particle (kg).
+    #[reflect(ignore)]
+    pub(super) masses: [f32; 2],
+    /// How many particles are pinned, and a number that is new whenever others are.
+    #[reflect(ignore)]
+    pub(super) pinned: usize,
+    #[reflect(ignore)]
+    pub(super) pins_version: u32,
+}
+
+/// What a cloth was built from, besides the recipe of its surface.
+#[derive(Debug, Clone)]
+pub(super) struct BuiltFrom {
+    pub unevenness: f32,
+    /// When the `Cloth` was last changed.
+    pub changed: Tick,
+    pub material: ClothMaterial,
+    pub pins: Pins,
+}
+
+impl ClothBuilt {
+    /// The surface, scaled.
+    pub fn surface(&self) -> &Arc<Surface> {
+        &self.shared.surface
+    }
+
+    /// The springs, colour by colour.
+    pub fn springs(&self) -> &Springs {
+        &self.shared.springs
+    }
+
+    /// The quad-tree.
+    pub fn tree(&self) -> &QuadTree {
+        &self.shared.tree
+    }
+
+    /// Whether all this is of `particles`: not before the first tick, nor once a game has emptied the particles, until the
+    /// next.
+    pub(super) fn matches(&self, particles: &ClothParticles) -> bool {
+        !particles.is_empty() && particles.matches(self.surface())
+    }
+
+    /// Gives particles the masses that material and pins give them.
+    pub(super) fn give_masses(&self, of: impl Iterator<Item = usize> + Clone, particles: &mut ClothParticles) {
+        let Some(BuiltFrom { material, pins, .. }) = &self.from else {
+            return;
+        };
+        for index in of.clone() {
+            particles.assign_mass(index, self.surface(), material);
+        }
+        let given: std::collections::HashSet<usize> = of.collect();
+        if !given.is_empty() {
+            pins.for_each(self.surface(), |index| {
+                if given.contains(&index) {
+                    particles.pin(index);
+                }
+            });
+        }
+    }
+
+    /// Gives pinned particles the masses that the material gives them.
+    pub(super) fn release_pins(&self, particles: &mut ClothParticles) {
+        let Some(BuiltFrom { material, .. }) = &self.from else {
+            return;
+        };
+        if !self.matches(particles) {
+            return;
+        }
+        for index in 0..particles.len() {
+            if particles.inverse_mass(index) == Some(0.0) {
+                particles.assign_mass(index, self.surface(), material);
+            }
+        }
+    }
+
+    /// Has tethers be made anew: other particles are pinned, or the material gives in another way.
+    pub(super) fn forget_tethers(&mut self) {
+        self.tethered = None;
+    }
+
+    /// Makes tethers anew if what they were made for has changed: the pins, the material, or what pulls at them; and
+    /// what follows from the same.
+    pub(super) fn tether(
+        &mut self,
+        wanted: bool,
+        material: &ClothMaterial,
+        particles: &ClothParticles,
+        acceleration: f32,
+    ) {
+        if self.tethered.is_none() {
+            self.pinned = particles.inverse_masses().filter(|w| *w == 0.0).count();
+            self.masses = particles.free_masses();
+            self.pins_version = self.pins_version.wrapping_add(1);
+        }
+        let surface = &self.shared.surface;
+        self.material_stretch = material_stretch(surface, material, self.pinned, acceleration);
+        let acceleration = Tethers::made_for(acceleration);
+        let made_for = Some((wanted, acceleration));
+        if self.tethered == made_for {
+            return;
+        }
+        self.tethered = made_for;
+        let tethers = if wanted {
+            Tethers::new(surface, material, particles, acceleration)
+        } else {
+            Tethers::default()
+        };
+        self.solver.set_tethers(tethers);
+    }
+}

@@ -1,0 +1,56 @@
+//! How far a cloth is beyond a limit, and for how long.
+
+use crate::solver::ClothLimit;
+
+/// As many ticks in a row make a report: a blow may stretch a cloth for an instant, which does no harm.
+const TICKS: u32 = 8;
+
+/// What is this many times as large as when it was reported is reported again.
+const WORSE: f32 = 10.0;
+
+/// How far a cloth is beyond a limit.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Excess {
+    /// For how many ticks in a row.
+    ticks: u32,
+    /// The quantity that was reported, 0 before that.
+    reported: f32,
+}
+
+impl Excess {
+    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether it is to be reported.
+    pub fn observe(&mut self, limit: ClothLimit, quantity: Option<f32>) -> bool {
+        let Some(quantity) = quantity else {
+            self.ticks = 0;
+            return false;
+        };
+        self.ticks = self.ticks.saturating_add(1);
+        // What passes through does so at once.
+        let lasts = self.ticks >= TICKS || limit == ClothLimit::SmallFastCollider;
+        let is_news = self.reported == 0.0 || quantity >= WORSE * self.reported;
+        if lasts && is_news {
+            self.reported = quantity;
+        }
+        lasts && is_news
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMIT: ClothLimit = ClothLimit::Stretch;
+
+    #[test]
+    fn is_reported_after_eight_ticks_and_again_when_ten_times_worse() {
+        let mut excess = Excess::default();
+        let mut observe = |quantity| excess.observe(LIMIT, quantity);
+        assert!((1..TICKS).all(|_| !observe(Some(0.2))));
+        assert!(observe(Some(0.2)));
+        assert!(!observe(Some(1.9)));
+        assert!(!observe(None));
+        assert!((1..TICKS).all(|_| !observe(Some(2.1))), "an instant again");
+        assert!(observe(Some(2.1)));
+        assert!(!observe(Some(2.2)));
+    }
+}

@@ -1,0 +1,19 @@
+//! What pulls at every cloth.
+
+use bevy::{
+    ecs::{reflect::ReflectResource, resource::Resource},
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+/// Acceleration of every cloth (m/s²), in the world; [`ClothSettings::gravity`] overrides it for one.
+#[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Resource, Default, Debug, Clone, PartialEq)]
+pub struct ClothGravity(pub Vec3);
+
+impl Default for ClothGravity {
+    /// 9.81 m/s² downwards.
+    fn default() -> Self {
+        Self(Vec3::new(0.0, -9.81, 0.0))
+    }
+}

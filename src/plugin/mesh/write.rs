@@ -1,0 +1,148 @@
+//! The drawn mesh: vertices, normals and tangents that follow the particles of a surface.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    math::{Vec2, Vec3},
+    mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
+};
+
+use crate::cloth::{Surface, TriangleMesh};
+
+/// A mesh of a surface at rest: its particles are the vertices, with texture coordinates and tangents where it has them.
+pub(super) fn mesh_of(surface: &Surface) -> Mesh {
+    let positions: Vec<_> = surface.rest_positions().iter().map(Vec3::to_array).collect();
+    let normals: Vec<_> = (0..surface.len()).map(|particle| surface.normal_of(particle).to_array()).collect();
+    let indices = surface.triangles().iter().flatten().copied().collect();
+    let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+        .with_inserted_indices(Indices::U32(indices));
+    if !surface.uvs().is_empty() {
+        let uvs: Vec<_> = surface.uvs().iter().map(Vec2::to_array).collect();
+        let tangents = vec![[1.0, 0.0, 0.0, 1.0]; surface.len()];
+        mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, uvs);
+        mesh.insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
+    }
+    mesh
+}
+
+/// A copy of an asset for one cloth: it is read and written, and lit.
+pub(super) fn copy_of(asset: &Mesh) -> Mesh {
+    let mut mesh = asset.clone();
+    mesh.asset_usage = RenderAssetUsages::default();
+    if !mesh.contains_attribute(Mesh::ATTRIBUTE_NORMAL) {
+        let normals = vec![Vec3::Y.to_array(); mesh.count_vertices()];
+        mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
+    }
+    mesh
+}
+
+/// How the tangents of a mesh follow its vertices: by the texture coordinates of its triangles.
+#[derive(Debug, Default)]
+pub(super) struct Tangents {
+    triangles: Vec<[u32; 3]>,
+    /// How much of both edges from a triangle's first corner there is in the way in which u grows.
+    parts: Vec<[f32; 2]>,
+    /// The sum of its triangles' at each vertex.
+    sums: Vec<Vec3>,
+}
+
+impl Tangents {
+    /// Those of a mesh that has tangents and texture coordinates; of any other none.
+    pub fn of(mesh: &Mesh) -> Self {
+        let Ok(TriangleMesh { triangles, uvs, .. }) = TriangleMesh::of_asset(mesh) else {
+            return Self::default();
+        };
+        let exists = |triangle: &[u32; 3]| triangle.iter().all(|corner| (*corner as usize) < uvs.len());
+        if !mesh.contains_attribute(Mesh::ATTRIBUTE_TANGENT) || !triangles.iter().all(exists) {
+            return Self::default();
+        }
+        let parts = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|corner| uvs[corner as usize]);
+            let (ab, ac) = (b - a, c - a);
+            // The larger a triangle is in the texture, the more it says; mirrored ones say it the other way round.
+            let side = ab.perp_dot(ac).signum();
+            [ac.y * side, -ab.y * side]
+        };
+        Self {
+            parts: triangles.iter().map(parts).collect(),
+            sums: vec![Vec3::ZERO; uvs.len()],
+            triangles,
+        }
+    }
+
+    fn write(&mut self, mesh: &mut Mesh) {
+        let Self {
+            triangles,
+            parts,
+            sums,
+        } = self;
+        if let Ok(VertexAttributeValues::Float32x3(places)) = mesh.try_attribute(Mesh::ATTRIBUTE_POSITION)
+            && places.len() == sums.len()
+        {
+            sums.fill(Vec3::ZERO);
+            for (triangle, parts) in triangles.iter().zip(parts) {
+                let [a, b, c] = triangle.map(|corner| Vec3::from(places[corner as usize]));
+                let along = (b - a) * parts[0] + (c - a) * parts[1];
+                triangle.iter().for_each(|corner| sums[*corner as usize] += along);
+            }
+        }
+        let mut normals: Option<&mut [[f32; 3]]> = None;
+        let mut tangents: Option<&mut [[f32; 4]]> = None;
+        for (attribute, values) in mesh.attributes_mut() {
+            match values {
+                VertexAttributeValues::Float32x3(values) if attribute.id == Mesh::ATTRIBUTE_NORMAL.id => {
+                    normals = Some(values);
+                }
+                VertexAttributeValues::Float32x4(values) if attribute.id == Mesh::ATTRIBUTE_TANGENT.id => {
+                    tangents = Some(values);
+                }
+                _ => {}
+            }
+        }
+        let (Some(normals), Some(tangents)) = (normals, tangents) else {
+            return;
+        };
+        for ((tangent, normal), along) in tangents.iter_mut().zip(normals).zip(sums) {
+            let normal = Vec3::from(*normal);
+            let across = along.reject_from_normalized(normal);
+            let direction = across.normalize_or(normal.any_orthonormal_vector());
+            // Which way the second direction of a texture goes does not change.
+            [tangent[0], tangent[1], tangent[2]] = direction.to_array();
+        }
+    }
+}
+
+/// Writes where the particles are drawn into a mesh, with normals and, if it has them, tangents. Vertices that are no
+/// particle's stay where they are.
+pub(super) fn write_mesh(
+    mesh: &mut Mesh,
+    surface: &Surface,
+    drawn: &[Vec3],
+    normals: &mut Vec<Vec3>,
+    tangents: &mut Tangents,
+) {
+    normals.clear();
+    normals.resize(drawn.len(), Vec3::ZERO);
+    for face in surface.triangles() {
+        let [a, b, c] = face.map(|corner| drawn[corner as usize]);
+        // Of twice its area: the larger a face is, the more it says.
+        let normal = (b - a).cross(c - a);
+        face.iter().for_each(|corner| normals[*corner as usize] += normal);
+    }
+    for (particle, normal) in normals.iter_mut().enumerate() {
+        *normal = normal.normalize_or(surface.normal_of(particle));
+    }
+    for (attribute, of_particles) in [(Mesh::ATTRIBUTE_POSITION, drawn), (Mesh::ATTRIBUTE_NORMAL, normals)] {
+        if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
+            for (vertex, value) in values.iter_mut().enumerate() {
+                if let Some(particle) = surface.particle_of_vertex(vertex) {
+                    *value = of_particles[particle].to_array();
+                }
+            }
+        }
+    }
+    if !tangents.triangles.is_empty() {
+        tangents.write(mesh);
+    }
+}

@@ -1,0 +1,48 @@
+//! What one tick's systems hand on to the next, and memory that a tick works in.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::{Entity, EntityHashSet},
+    },
+    math::Affine3A,
+};
+
+use crate::{
+    cloth::ClothParticles,
+    contact::{ContactSettings, Detection, MovingCollider},
+    hierarchy::{NodeBounds, SearchMethod, TopDownQuery},
+    solver::{LimitInputs, PinMotion, Substepping, TickStep},
+};
+
+/// What is of one tick. Kept so that a tick does not allocate; it may be dropped between two ticks
+/// (`*scratch = ClothScratch::default()`) without any change of what follows.
+#[derive(Component, Debug, Default)]
+pub struct ClothScratch {
+    /// `None` for a cloth that was not prepared: nothing else of the tick happens to it then.
+    pub(super) step: Option<TickStep>,
+    pub(super) substepping: Substepping,
+    /// What was asked for.
+    pub(super) search: SearchMethod,
+    /// What the cloth is tested with.
+    pub(super) contact_settings: ContactSettings,
+    /// Pinned particles that the frame or a target carries along.
+    pub(super) pins: Vec<PinMotion>,
+    /// Where the attachments' targets are, in their order.
+    pub(super) targets: Vec<Affine3A>,
+    /// Whether the cloth jumps.
+    pub(super) teleports: bool,
+    /// How far a particle may get by itself (m).
+    pub(super) reach: f32,
+    /// Colliders near the cloth, in its frame. What `detection` calls them by is their place here.
+    pub(super) near: Vec<(Entity, MovingCollider)>,
+    /// Their entities, while others are looked for.
+    pub(super) near_set: EntityHashSet,
+    pub(super) detection: Detection,
+    /// What a cloth that sleeps is searched with.
+    pub(super) sleep_query: (NodeBounds, TopDownQuery),
+    /// The particles as the tick began, for one that is done again.
+    pub(super) backup: ClothParticles,
+    /// What the tick that was just done asked of the cloth.
+    pub(super) limit_inputs: Option<LimitInputs>,
+}

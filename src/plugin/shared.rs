@@ -1,0 +1,96 @@
+//! What cloths made alike share.
+
+use std::sync::{Arc, Weak};
+
+use bevy::{ecs::resource::Resource, math::Vec3};
+
+use super::source::Source;
+use crate::{
+    cloth::{ClothError, ClothMaterial, ClothShape, SpringKind, Springs, Surface},
+    hierarchy::QuadTree,
+};
+
+/// A surface with its springs and tree.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    pub recipe: Option<Recipe>,
+    /// Of stretch, shear and bend (m/N).
+    compliances: [f32; 3],
+    pub surface: Arc<Surface>,
+    pub springs: Springs,
+    pub tree: QuadTree,
+}
+
+/// What a surface is made from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Recipe {
+    pub shape: ClothShape,
+    pub scale: Vec3,
+    /// The mesh, of one that is made from an asset.
+    pub source: Option<Source>,
+}
+
+/// All that is in use.
+#[derive(Resource, Debug, Default)]
+pub(super) struct SharedParts {
+    known: Vec<Weak<Shared>>,
+}
+
+impl SharedParts {
+    /// What a cloth of this recipe and material has in common with others: theirs, if there are any.
+    ///
+    /// # Errors
+    /// What `make` finds wrong with the surface.
+    pub fn get(
+        &mut self,
+        recipe: &Recipe,
+        material: &ClothMaterial,
+        make: impl FnOnce() -> Result<Surface, ClothError>,
+    ) -> Result<Arc<Shared>, ClothError> {
+        let compliances = compliances(material);
+        let mut surface = None;
+        for known in self.known.iter().filter_map(Weak::upgrade) {
+            if known.recipe.as_ref() == Some(recipe) {
+                if known.compliances == compliances {
+                    return Ok(known);
+                }
+                surface = Some(known.surface.clone());
+            }
+        }
+        let surface = match surface {
+            Some(surface) => surface,
+            None => Arc::new(make()?),
+        };
+        let springs = Springs::of_surface(&surface, material);
+        let tree = QuadTree::of_surface(&surface, springs.has(SpringKind::Shear));
+        let shared = Arc::new(Shared {
+            recipe: Some(recipe.clone()),
+            compliances,
+            surface,
+            springs,
+            tree,
+        });
+        self.known.retain(|known| known.strong_count() > 0);
+        self.known.push(Arc::downgrade(&shared));
+        Ok(shared)
+    }
+
+    /// The same of a cloth whose material has become another.
+    pub fn with_material(&mut self, shared: &Arc<Shared>, material: &ClothMaterial) -> Arc<Shared> {
+        let Some(recipe) = &shared.recipe else {
+            return shared.clone();
+        };
+        // A surface of that recipe is there: it has nothing to be refused for.
+        let other = self.get(recipe, material, || Ok((*shared.surface).clone()));
+        other.unwrap_or_else(|_| shared.clone())
+    }
+}
+
+/// Those of a material's springs (m/N).
+pub(super) fn compliances(material: &ClothMaterial) -> [f32; 3] {
+    [
+        material.stretch_compliance,
+        material.shear_compliance,
+        material.bend_compliance,
+    ]
+}

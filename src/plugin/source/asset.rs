@@ -1,0 +1,116 @@
+//! The meshes of cloths that are made from assets.
+
+use bevy::{
+    asset::{AssetEvent, AssetId, AssetServer, Assets, LoadState},
+    ecs::{
+        entity::Entity,
+        message::MessageReader,
+        resource::Resource,
+        system::{Query, Res, ResMut, SystemParam},
+    },
+    math::Vec3,
+    mesh::{Mesh, Mesh3d},
+    platform::collections::{HashMap, HashSet},
+};
+
+use super::super::ClothMesh;
+use crate::cloth::{Cloth, ClothError, ClothShape, Surface, TriangleMesh};
+
+/// Which mesh, and how often it had been changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Source {
+    mesh: AssetId<Mesh>,
+    version: u32,
+}
+
+/// How often meshes have been changed since they were loaded; those that never were are not in it.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
+
+/// Takes over which meshes a game has changed: cloths that are made from them are built anew.
+pub(crate) fn note_changed_meshes(
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut changed: ResMut<ChangedMeshes>,
+    drawn: Query<&ClothMesh>,
+) {
+    // The plugin's own are changed in every frame.
+    let own: HashSet<AssetId<Mesh>> = drawn.iter().map(ClothMesh::id).collect();
+    for event in events.read() {
+        match event {
+            AssetEvent::Modified { id } if !own.contains(id) => {
+                *changed.0.entry(*id).or_default() += 1;
+            }
+            AssetEvent::Unused { id } | AssetEvent::Removed { id } => {
+                changed.0.remove(id);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The assets, if the app has any.
+#[derive(SystemParam)]
+pub(crate) struct Sources<'w, 's> {
+    cloths: Query<'w, 's, (Option<&'static Mesh3d>, Option<&'static ClothMesh>)>,
+    meshes: Option<Res<'w, Assets<Mesh>>>,
+    server: Option<Res<'w, AssetServer>>,
+    changed: Option<Res<'w, ChangedMeshes>>,
+}
+
+impl Sources<'_, '_> {
+    /// The mesh that a cloth is made from, once it has been loaded; `None` for a cloth that is not made from an asset. `known`
+    /// is the one that it was made from.
+    ///
+    /// # Errors
+    /// [`ClothError::MeshLoading`] while it is being loaded, [`MeshNotLoaded`](ClothError::MeshNotLoaded) if nobody does
+    /// so, [`MeshFailed`](ClothError::MeshFailed).
+    pub fn find(
+        &self,
+        entity: Entity,
+        cloth: &Cloth,
+        known: Option<Source>,
+    ) -> Result<Option<Source>, ClothError> {
+        let ClothShape::Mesh { .. } = cloth.shape else {
+            return Ok(None);
+        };
+        let (mesh, drawn) = self.cloths.get(entity).unwrap_or_default();
+        let handle = match (mesh, drawn) {
+            (Some(mesh), Some(drawn)) if drawn.id() == mesh.0.id() => drawn.source(),
+            (Some(mesh), _) => Some(&mesh.0),
+            (None, drawn) => drawn.and_then(ClothMesh::source),
+        };
+        let handle = handle.ok_or(ClothError::MeshNotLoaded)?;
+        let id = handle.id();
+        if self.meshes.as_ref().is_some_and(|meshes| meshes.contains(id)) {
+            let version = self.changed.as_ref().and_then(|changed| changed.0.get(&id));
+            return Ok(Some(Source {
+                mesh: id,
+                version: version.copied().unwrap_or(0),
+            }));
+        }
+        // A cloth outlasts the asset that it was made from.
+        if known.is_some_and(|known| known.mesh == id) {
+            return Ok(known);
+        }
+        match self.server.as_ref().and_then(|server| server.get_load_state(id)) {
+            Some(LoadState::Failed(error)) => Err(ClothError::MeshFailed {
+                reason: error.to_string(),
+            }),
+            Some(LoadState::Loading | LoadState::Loaded) => Err(ClothError::MeshLoading),
+            Some(LoadState::NotLoaded) | None => Err(ClothError::MeshNotLoaded),
+        }
+    }
+
+    /// The surface of a cloth.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn surface(&self, cloth: &Cloth, source: Option<&Source>, scale: Vec3) -> Result<Surface, ClothError> {
+        let (ClothShape::Mesh { weld }, Some(source)) = (&cloth.shape, source) else {
+            return cloth.surface(scale);
+        };
+        let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(source.mesh));
+        let mesh = TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)?;
+        Surface::of_mesh(&mesh, *weld, scale)
+    }
+}

@@ -1,0 +1,32 @@
+//! Without Bevy's meshes nothing is made from an asset.
+
+use std::marker::PhantomData;
+
+use bevy::{
+    ecs::{entity::Entity, system::SystemParam},
+    math::Vec3,
+};
+
+use crate::cloth::{Cloth, ClothError, Surface};
+
+/// There is none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Source {}
+
+/// No assets.
+#[derive(SystemParam)]
+pub(crate) struct Sources<'w> {
+    none: PhantomData<&'w ()>,
+}
+
+impl Sources<'_> {
+    /// No cloth has one.
+    pub fn find(&self, _: Entity, _: &Cloth, _: Option<Source>) -> Result<Option<Source>, ClothError> {
+        Ok(None)
+    }
+
+    /// The surface of a cloth.
+    pub fn surface(&self, cloth: &Cloth, _: Option<&Source>, scale: Vec3) -> Result<Surface, ClothError> {
+        cloth.surface(scale)
+    }
+}

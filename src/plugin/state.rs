@@ -1,0 +1,54 @@
+//! All that a cloth's next tick depends on, besides its public components.
+
+use bevy::{
+    ecs::{change_detection::Tick, component::Component, entity::Entity},
+    math::{Isometry3d, Vec3},
+};
+
+use super::{ClothAttachment, attachments::Attached, excess::Excess};
+use crate::{
+    contact::{MovingCollider, NarrowPhase},
+    hierarchy::SearchMethod,
+    solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
+};
+
+/// What a cloth remembers from tick to tick, besides its [`ClothParticles`](crate::cloth::ClothParticles) and its
+/// [`ClothFrame`](super::ClothFrame). The next tick depends on this, on those, and on what the game says in other
+/// components; on nothing else.
+#[derive(Component, Debug, Default, Clone)]
+pub struct ClothState {
+    /// Whether the last preparation found nothing wrong: what is not valid is neither moved nor drawn.
+    pub(super) is_valid: bool,
+    /// Of the coming tick's sub-steps.
+    pub(super) control: Control,
+    pub(super) rest: Rest,
+    /// As of the positions present: what `RestShape` relies on.
+    pub(super) stretch: Stretch,
+    /// Speed of the fastest particle as the tick begins (m/s).
+    pub(super) largest_speed: f32,
+    /// When the plugin last wrote the particles: whoever wrote them since was the game.
+    pub(super) written: Option<Tick>,
+    /// What disturbs a cloth at rest when it changes, besides what it is built from.
+    pub(super) known: Option<(ClothSettings, SearchMethod, NarrowPhase, Vec3)>,
+    /// What `attached` was made from, and the entities that it names.
+    pub(super) attachments: Vec<ClothAttachment>,
+    pub(super) targets: Vec<Entity>,
+    pub(super) attached: Vec<Attached>,
+    /// Where the first attachment's target was.
+    pub(super) first_target: Option<Isometry3d>,
+    /// The colliders that it touched as it fell asleep, each where it was then.
+    pub(super) rests_on: Vec<(Entity, MovingCollider)>,
+    /// Whether particles moved farther in the last tick than was expected.
+    pub(super) was_outrun: bool,
+    /// How far it is beyond each limit.
+    pub(super) excess: [Excess; ClothLimit::ALL.len()],
+}
+
+impl ClothState {
+    /// Forgets what it was attached to: the particles are others.
+    pub(super) fn detach(&mut self) {
+        self.attached.clear();
+        self.attachments.clear();
+        self.first_target = None;
+    }
+}

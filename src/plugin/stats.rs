@@ -1,0 +1,47 @@
+//! Figures of a cloth's last tick.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use crate::{
+    hierarchy::{SearchMethod, SearchReason},
+    solver::{ClothLimit, Stretch},
+};
+
+/// Figures of a cloth's last tick.
+#[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct ClothStats {
+    /// Time of all sub-steps, the stretch measured in the last of them (ms): the solver's call.
+    pub integrate_ms: f64,
+    /// Time to bring the bounding volumes up to date (ms).
+    pub rebuild_ms: f64,
+    /// Time of the search (ms).
+    pub query_ms: f64,
+    /// How the cloth was searched: never `Auto`, unless nothing was.
+    pub search: SearchMethod,
+    /// Why so.
+    pub reason: SearchReason,
+    /// Colliders that came near the cloth.
+    pub colliders_near: usize,
+    /// Those of them that were tested against triangles.
+    pub by_triangles: usize,
+    /// Nodes of the tree that were looked at.
+    pub nodes_visited: usize,
+    /// Particles that were tested: leaves among the nodes, or all by a scan.
+    pub leaf_tests: usize,
+    /// How often particles moved farther within the tick than was expected, and all were searched again.
+    pub requeries: u32,
+    /// Particles that were pushed out of a collider, once for each; cells where it is tested against triangles.
+    pub contacts: usize,
+    /// The largest stretch, at the end of the tick.
+    pub stretch: Stretch,
+    /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps.
+    pub substeps: u32,
+    /// Whether the cloth sleeps.
+    pub is_asleep: bool,
+    /// The first limit beyond which it is not simulated well, if it was beyond one as its last tick ended.
+    pub exceeded: Option<ClothLimit>,
+}

@@ -1,0 +1,61 @@
+//! What a tick and a sub-step are.
+
+use bevy::math::Vec3;
+
+/// The time step for which the paper's damping D is given (s).
+pub(super) const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
+
+/// What moves a cloth in a tick, besides its springs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TickStep {
+    /// Length of the tick (s).
+    pub seconds: f32,
+    /// Sub-steps in it, at least 1.
+    pub substeps: u32,
+    /// Acceleration in the cloth's frame (m/s²).
+    pub acceleration: Vec3,
+    /// The paper's D: the part of its velocity that the cloth loses in 1/60 s.
+    pub damping: f32,
+}
+
+impl Default for TickStep {
+    /// 20 sub-steps of Bevy's 64 Hz, no acceleration, no damping.
+    fn default() -> Self {
+        Self {
+            seconds: 1.0 / 64.0,
+            substeps: 20,
+            acceleration: Vec3::ZERO,
+            damping: 0.0,
+        }
+    }
+}
+
+/// One sub-step of a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SubStep {
+    /// Which one, from 0.
+    pub index: u32,
+    /// How many there are.
+    pub count: u32,
+    /// How far the particle that moved farthest in it has moved (m).
+    pub farthest_move: f32,
+}
+
+impl SubStep {
+    /// The part of the tick that has passed when this sub-step ends, up to 1.
+    pub fn end(&self) -> f32 {
+        (self.index + 1) as f32 / self.count as f32
+    }
+}
+
+/// A pinned particle that its cloth's frame, or whatever it is pinned to, carries along in a tick. One of a particle that
+/// does not exist moves nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PinMotion {
+    /// Index of the particle.
+    pub particle: u32,
+    /// Where it is as the tick begins (m).
+    pub from: Vec3,
+    /// Where it is as the tick ends (m).
+    pub to: Vec3,
+}
