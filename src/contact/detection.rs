@@ -54,9 +54,13 @@ pub struct Detection {
 }
 
 impl Detection {
-    /// Begins a tick in which no particle is expected to move farther than `margin` (m). `expects` says whether one may all the
+    /// Begins a tick of a surface's particles, none of which is expected to move farther than `margin` (m). `expects` says whether one may all the
     /// same, as in the tick before: all are remembered then, to measure how far.
-    pub fn begin(&mut self, margin: f32, expects: bool) {
+    pub fn begin(&mut self, surface: &Arc<Surface>, margin: f32, expects: bool) {
+        if !Arc::ptr_eq(&self.surface, surface) {
+            self.surface = surface.clone();
+            self.fans.max_faces = surface.max_faces() as f32;
+        }
         self.touches.clear();
         self.candidates.clear();
         self.fans.clear();
@@ -107,12 +111,7 @@ impl Detection {
         narrow_phase: NarrowPhase,
         found: &[u32],
         particles: &ClothParticles,
-        surface: &Arc<Surface>,
     ) {
-        if !Arc::ptr_eq(&self.surface, surface) {
-            self.surface = surface.clone();
-            self.fans.max_faces = surface.max_faces() as f32;
-        }
         if self.expects && !self.has_origin {
             self.remember(particles);
         }

@@ -55,7 +55,8 @@ pub(super) fn update_bounds(
     let mut is_stale = bounds.is_searched || bounds.is_stale;
     if !is_asleep {
         scratch.near.clear();
-        scratch.detection.begin(scratch.reach, state.was_outrun);
+        let expects = state.was_outrun;
+        scratch.detection.begin(built.surface(), scratch.reach, expects);
         state.rests_on.clear();
         if is_stale {
             search.query.clear();

@@ -11,10 +11,7 @@ use super::{
     shared::{Recipe, SharedParts, compliances},
     source::{Source, Sources},
 };
-use crate::{
-    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, Surface},
-    solver::Solver,
-};
+use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, Surface};
 
 /// What the game says that a cloth is. In place of components that it took away the defaults count, and no pins.
 pub(super) struct Wanted<'a> {
@@ -102,7 +99,7 @@ fn build_new(
         particles.clone()
     };
     pins.for_each(surface, |index| new.pin(index));
-    built.solver = Solver::new(&shared.springs, &new);
+    built.solver = shared.solver.clone();
     built.forget_tethers();
     state.detach();
     *particles = new;
@@ -169,7 +166,7 @@ fn follow_changes(
     if is_sprung_otherwise {
         built.shared = parts.with_material(&built.shared, material);
         let tethers = built.solver.take_tethers();
-        built.solver = Solver::new(&built.shared.springs, particles);
+        built.solver = built.shared.solver.clone();
         built.solver.set_tethers(tethers);
         // The stretch that bounds rely on is measured over other springs now.
         state.written = None;

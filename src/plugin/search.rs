@@ -106,7 +106,8 @@ impl SearchingItem<'_, '_> {
             }
             dragged = farthest;
         }
-        detection.begin(*reach + dragged, self.state.was_outrun);
+        let expects = self.state.was_outrun;
+        detection.begin(self.built.surface(), *reach + dragged, expects);
         let near = near.len();
         self.stats.colliders_near = near;
         if near == 0 {
@@ -205,7 +206,7 @@ impl SearchingItem<'_, '_> {
             is_dragged |= !found.is_empty() && collider.max_surface_travel(1.0) > 0.0;
             let found = &query.candidates()[found];
             scratch.detection
-                .add(id, collider, narrow_phase, found, self.particles, surface);
+                .add(id, collider, narrow_phase, found, self.particles);
         }
         if is_dragged {
             self.state.rest.disturb();

@@ -8,6 +8,7 @@ use super::source::Source;
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothShape, SpringKind, Springs, Surface},
     hierarchy::QuadTree,
+    solver::Solver,
 };
 
 /// A surface with its springs and tree.
@@ -19,6 +20,8 @@ pub(super) struct Shared {
     pub surface: Arc<Surface>,
     pub springs: Springs,
     pub tree: QuadTree,
+    /// One that has moved nothing yet, for each cloth to begin with.
+    pub solver: Solver,
 }
 
 /// What a surface is made from.
@@ -66,6 +69,7 @@ impl SharedParts {
         let shared = Arc::new(Shared {
             recipe: Some(recipe.clone()),
             compliances,
+            solver: Solver::of_surface(&surface, &springs),
             surface,
             springs,
             tree,

@@ -11,7 +11,10 @@
 
 use multiversion::{inherit_target, multiversion};
 
-use super::run::Run;
+use super::{
+    packet::{Packet, Row, relax_packets},
+    run::Run,
+};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
 
 /// Moves the ends of eight springs towards their rest lengths, in inverse proportion to their masses: the XPBD
@@ -42,17 +45,6 @@ fn relax(a: &mut View, b: &mut View, rest_square: impl Fn(usize) -> f32, softnes
         b[DY + l] -= share_b * y;
         b[DZ + l] -= share_b * z;
     }
-}
-
-/// Moves the ends of the eight springs between two blocks.
-#[inline(always)]
-fn springs(a: &mut Block, b: &mut Block, rest_square: &Lanes, softness: &Lanes) {
-    relax(
-        a.view_mut(),
-        b.view_mut(),
-        |lane| rest_square[lane],
-        softness,
-    );
 }
 
 /// The paper's equation (2), `x' = x + (x − x_prev)(1 − D) + a Δt²`, but for adding the displacement to the
@@ -337,7 +329,7 @@ macro_rules! kernels {
 kernels! {
     integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]),
     commit(row: &mut [Block], farthest: &mut Lanes),
-    springs(a: &mut Block, b: &mut Block, rest_square: &Lanes, softness: &Lanes),
+    relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),
     bend_across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),

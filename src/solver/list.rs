@@ -1,9 +1,4 @@
 //! One sub-step over springs that lie anywhere, as those of a mesh.
-//!
-//! Eight springs of a colour have their sixteen ends in as many places, so that gathering them costs more than solving
-//! them. For the sweep each particle is copied to a row of its own, half a cache line: place and inverse mass, and
-//! displacement. A spring then is four loads and two stores of four numbers, one division, and no root. Springs of a colour
-//! share no particle, so that a core works on several at a time.
 
 use std::sync::Arc;
 
@@ -12,57 +7,90 @@ use bevy::math::Vec4;
 use super::{
     Stretch,
     kernel::Kernels,
-    run::MIN_SOFTNESS,
+    packet::{Packet, Row, SPRINGS},
     sweep::{Motion, Sweep, Swept},
 };
-use crate::cloth::{Block, LANES, Layout, Spring, SpringKind, SpringList};
-
-/// A particle during a sweep.
-#[derive(Debug, Default, Clone, Copy)]
-#[repr(C, align(32))]
-struct Row {
-    /// Position (m), and inverse mass (1/kg).
-    place: Vec4,
-    /// Displacement (m), and 0.
-    moved: Vec4,
-}
+use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringList, W, X, Y, Z};
 
 /// A list of springs as the sub-steps want them.
 #[derive(Debug, Default, Clone)]
 pub(super) struct ListSweep {
     springs: Arc<SpringList>,
+    packets: Arc<[Packet]>,
     layout: Layout,
     /// 1/Δt² (1/s²).
     inverse_dt2: f32,
-    /// The particles, in the order of their indices. Of one sub-step.
+    /// The particles of one sub-step, strip by strip: in the order of their indices, with what is no particle at the end of
+    /// each row of the layout.
     rows: Vec<Row>,
 }
 
 impl ListSweep {
     /// For particles that lie as `layout` says.
     pub fn new(springs: &Arc<SpringList>, layout: Layout) -> Self {
+        let row_of = |end: u32| {
+            let width = layout.strip * LANES as u32;
+            end / layout.columns * width + end % layout.columns
+        };
+        // What is no spring moves the row behind all others.
+        let none = (layout.blocks() * LANES) as u32;
+        let packet = |springs: &[Spring]| {
+            let of = |at: usize| springs.get(at);
+            let end = |at: usize, which: usize| of(at).map_or(none, |spring| row_of(spring.ends[which]));
+            let numbers = |number: &dyn Fn(&Spring) -> f32, without: f32| {
+                Vec4::from_array(std::array::from_fn(|at| of(at).map_or(without, number)))
+            };
+            Packet {
+                from: std::array::from_fn(|at| end(at, 0)),
+                to: std::array::from_fn(|at| end(at, 1)),
+                rest_square: numbers(&|spring| spring.rest_length * spring.rest_length, 1.0),
+                compliance: numbers(&|spring| spring.compliance, f32::INFINITY),
+            }
+        };
+        let colours = springs.colours.iter().map(|colour| &springs.springs[colour.clone()]);
+        let packets = colours.flat_map(|colour| colour.chunks(SPRINGS)).map(packet);
         Self {
             springs: springs.clone(),
+            packets: packets.collect(),
             layout,
             inverse_dt2: 0.0,
-            rows: vec![Row::default(); layout.len()],
+            rows: vec![Row::default(); layout.blocks() * LANES + 1],
         }
     }
 
     fn load(&mut self, blocks: &[Block]) {
-        for_each_particle(self.layout, |block, lane, index| {
-            let from = &blocks[block];
-            self.rows[index] = Row {
-                place: from.position(lane).extend(from.inverse_mass(lane)),
-                moved: from.displacement(lane).extend(0.0),
-            };
-        });
+        let strip = self.layout.strip as usize;
+        let of_rows = self.rows.chunks_exact_mut(strip * LANES);
+        for (rows, blocks) in of_rows.zip(blocks.chunks_exact(strip)) {
+            let mut each = rows.chunks_exact_mut(strip);
+            let mut strips: [&mut [Row]; LANES] = std::array::from_fn(|_| each.next().unwrap_or_default());
+            for (at, block) in blocks.iter().enumerate() {
+                let view = block.view();
+                for (lane, strip) in strips.iter_mut().enumerate() {
+                    let of = |from: usize| view[from + lane];
+                    strip[at] = Row {
+                        place: Vec4::new(of(X), of(Y), of(Z), of(W)),
+                        moved: Vec4::new(of(DX), of(DY), of(DZ), 0.0),
+                    };
+                }
+            }
+        }
     }
 
     fn store(&self, blocks: &mut [Block]) {
-        for_each_particle(self.layout, |block, lane, index| {
-            blocks[block].set_displacement(lane, self.rows[index].moved.truncate());
-        });
+        let strip = self.layout.strip as usize;
+        let of_rows = self.rows.chunks_exact(strip * LANES);
+        for (rows, blocks) in of_rows.zip(blocks.chunks_exact_mut(strip)) {
+            let mut strips = rows.chunks_exact(strip);
+            let strips: [&[Row]; LANES] = std::array::from_fn(|_| strips.next().unwrap_or_default());
+            for (at, block) in blocks.iter_mut().enumerate() {
+                let view = block.view_mut();
+                for (lane, strip) in strips.iter().enumerate() {
+                    let Row { moved, .. } = strip[at];
+                    (view[DX + lane], view[DY + lane], view[DZ + lane]) = (moved.x, moved.y, moved.z);
+                }
+            }
+        }
     }
 
     /// The largest length over rest length, given where a particle is.
@@ -93,18 +121,12 @@ impl Sweep for ListSweep {
         let kernels = motion.kernels;
         (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
         self.load(blocks);
-        for spring in &self.springs.springs {
-            relax(&mut self.rows, spring, self.inverse_dt2);
-        }
+        (kernels.relax_packets)(&mut self.rows, &self.packets, self.inverse_dt2);
         self.store(blocks);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
-        let stretch = motion.measures.then(|| {
-            self.load(blocks);
-            let place = |end: u32| self.rows[end as usize].place.truncate();
-            self.stretch(|spring| place(spring.ends[0]).distance_squared(place(spring.ends[1])))
-        });
+        let stretch = motion.measures.then(|| self.measure(blocks, kernels));
         Swept { moved, stretch }
     }
 
@@ -118,38 +140,5 @@ impl Sweep for ListSweep {
 
     fn boxed(&self) -> Box<dyn Sweep> {
         Box::new(self.clone())
-    }
-}
-
-/// Moves the ends of a spring: [`relax`](super::kernel) of one spring in place of eight.
-#[inline(always)]
-fn relax(rows: &mut [Row], spring: &Spring, inverse_dt2: f32) {
-    let [from, to] = spring.ends.map(|end| end as usize);
-    let (a, b) = (rows[from], rows[to]);
-    let way = (b.place - a.place) + (b.moved - a.moved);
-    let q = way.x * way.x + way.y * way.y + way.z * way.z;
-    let r2 = spring.rest_length * spring.rest_length;
-    let softness = spring.compliance * inverse_dt2 + MIN_SOFTNESS;
-    let weight = a.place.w + b.place.w + softness;
-    let share = (q - r2) / ((1.5 * q + 0.5 * r2) * weight);
-    // What is beside a displacement stays 0.
-    let way = way * Vec4::new(1.0, 1.0, 1.0, 0.0);
-    rows[from].moved = a.moved + way * (share * a.place.w);
-    rows[to].moved = b.moved - way * (share * b.place.w);
-}
-
-/// Calls `visit` with the block, lane and index of each particle, block by block.
-#[inline(always)]
-fn for_each_particle(layout: Layout, mut visit: impl FnMut(usize, usize, usize)) {
-    let (columns, strip) = (layout.columns as usize, layout.strip as usize);
-    for row in 0..layout.rows as usize {
-        for in_row in 0..strip {
-            for lane in 0..LANES {
-                let column = lane * strip + in_row;
-                if column < columns {
-                    visit(row * strip + in_row, lane, row * columns + column);
-                }
-            }
-        }
     }
 }

@@ -10,6 +10,7 @@ mod kernel;
 mod list;
 #[cfg(feature = "methods")]
 pub mod methods;
+mod packet;
 mod pipeline;
 mod rest;
 mod run;

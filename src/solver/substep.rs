@@ -13,7 +13,7 @@ use super::{
     sweep::{Motion, Sweep},
     tether::Anchors,
 };
-use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs};
+use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
 
 /// Moves the particles that it was made for, a tick at a time. On one thread it does not allocate.
 #[derive(Debug, Clone)]
@@ -40,7 +40,18 @@ impl Solver {
     /// # Panics
     /// If the springs are those of another grid, or between more particles than there are.
     pub fn new(springs: &Springs, particles: &ClothParticles) -> Self {
-        let layout = particles.layout();
+        Self::of_layout(springs, particles.layout())
+    }
+
+    /// Solves `springs` between the particles of a surface. Its clones share what it knows of the springs.
+    ///
+    /// # Panics
+    /// As [`new`](Self::new) does.
+    pub fn of_surface(surface: &Surface, springs: &Springs) -> Self {
+        Self::of_layout(springs, Layout::of(surface))
+    }
+
+    fn of_layout(springs: &Springs, layout: Layout) -> Self {
         let sweep: Box<dyn Sweep> = match springs.storage() {
             SpringStorage::Grid(grid, compliances) => {
                 let of_grid = Layout::new(grid.columns(), grid.rows());
@@ -49,7 +60,7 @@ impl Solver {
             }
             SpringStorage::List(list) => {
                 let mut ends = list.springs.iter().flat_map(|spring| spring.ends);
-                let exists = |end: u32| (end as usize) < particles.len();
+                let exists = |end: u32| (end as usize) < layout.len();
                 assert!(ends.all(exists), "springs between particles that exist");
                 Box::new(ListSweep::new(list, layout))
             }

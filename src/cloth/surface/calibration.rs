@@ -17,7 +17,7 @@ const PASSES: usize = 2;
 const LIMITS: [f64; 2] = [0.3, 3.0];
 
 /// How a surface gives around a particle, in its tangent plane. A direction n counts as (nx², ny², nx ny), as strain does.
-#[derive(Debug, Default, Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Star {
     /// What springs resist if all particles go along with the strain.
     affine: DMat3,
@@ -42,7 +42,7 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
     let mut corrected = areas.clone();
     for _ in 0..PASSES {
         let star = |particle: usize| {
-            let mut star = Springs::default();
+            let mut star = Springs::NONE;
             for &(other, at) in graph.of(particle as u32) {
                 let way = rest[other as usize] - rest[particle];
                 let (at, length) = (at as usize, f64::from(way.length()));
@@ -55,7 +55,7 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
             .collect();
         let compliance = |particle: usize| {
             let neighbours = graph.of(particle as u32).iter().map(|near| near.0 as usize);
-            let mut sum = Star::default();
+            let mut sum = Star::NONE;
             for other in neighbours.chain([particle]) {
                 if let Some(star) = &stars[other] {
                     sum.add(star, frames[particle].angle_to(&frames[other]));
@@ -113,7 +113,7 @@ fn strain(direction: DVec2) -> DVec3 {
 }
 
 /// All that is known of the springs around a particle.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Springs {
     affine: DMat3,
     /// What holds the particle in its place, and what pulls it out of it by strain: two rows.
@@ -123,6 +123,13 @@ struct Springs {
 }
 
 impl Springs {
+    const NONE: Self = Self {
+        affine: DMat3::ZERO,
+        holding: DMat2::ZERO,
+        pulling: [DVec3::ZERO; 2],
+        area: 0.0,
+    };
+
     /// Adds one in a direction, of a length (m), with the areas that it stands for (m²).
     fn add(&mut self, direction: DVec2, length: f64, corrected: f64, area: f64) {
         let strain = strain(direction);
@@ -150,6 +157,12 @@ impl Springs {
 }
 
 impl Star {
+    const NONE: Self = Self {
+        affine: DMat3::ZERO,
+        lost: DMat3::ZERO,
+        area: 0.0,
+    };
+
     /// Adds another, whose plane is turned by an angle of this cosine and sine.
     fn add(&mut self, other: &Self, angle: DVec2) {
         let (c, s) = (angle.x, angle.y);
@@ -207,12 +220,12 @@ mod tests {
     /// What a star gives in a direction does not depend on the axes of its plane.
     #[test]
     fn turned_stars_are_the_same() {
-        let mut springs = Springs::default();
+        let mut springs = Springs::NONE;
         for (angle, area) in [(0.1_f64, 1.0), (1.3, 1.2), (2.2, 0.7), (4.0, 1.1), (5.0, 0.9)] {
             springs.add(DVec2::from_angle(angle), 0.1, area, area);
         }
         let star = springs.relaxed().expect("enough directions");
-        let mut turned = Star::default();
+        let mut turned = Star::NONE;
         let angle = DVec2::from_angle(0.7);
         turned.add(&star, angle);
         let (compliance, other) = (star.compliance().expect("it is"), turned.compliance().expect("it is"));

@@ -2,13 +2,13 @@
 
 use std::sync::OnceLock;
 
-use bevy::{math::Vec3, platform::collections::HashMap};
+use bevy::math::Vec3;
 
 use super::{
     Extent, Faces, Graph, Spacing, Surface, TriangleMesh, VertexAttribute,
     calibration::calibrate,
     orientation::orient,
-    springs::{face_area, links, sides},
+    springs::{Side, face_area, links, sides, sides_of},
     weld::same_places,
 };
 use crate::cloth::{ClothError, SpringKind};
@@ -97,13 +97,7 @@ impl Welded {
         let corners = |triangle: &[u32; 3]| triangle.map(|corner| particle_of[corner as usize]);
         let mut faces: Vec<[u32; 3]> = mesh.triangles.iter().map(corners).collect();
         faces.retain(|[a, b, c]| a != b && b != c && c != a);
-        let mut seen = HashMap::<[u32; 3], ()>::default();
-        seen.reserve(faces.len());
-        faces.retain(|face| {
-            let mut sorted = *face;
-            sorted.sort_unstable();
-            seen.insert(sorted, ()).is_none()
-        });
+        drop_duplicates(&mut faces);
         Self {
             rest,
             particle_of,
@@ -169,13 +163,15 @@ impl Welded {
     fn surface(mut self, mesh: &TriangleMesh, scale: Vec3) -> Surface {
         // As in the asset, whatever the scale mirrors.
         let unscaled: Vec<Vec3> = self.rest.iter().map(|place| *place / scale).collect();
-        orient(&mut self.faces, &unscaled, &self.normals);
+        self.faces.sort_by_key(first_corner);
+        let sides = sides_of(&self.faces);
+        orient(&mut self.faces, &sides, &unscaled, &self.normals);
         let (areas, area) = self.areas();
         let particles = self.rest.len();
         let faces = Faces::by_first_corner(self.faces, particles);
         let normals = normals(faces.all(), &self.rest);
-        let mut links = links(faces.all(), &self.rest);
-        let is_border = borders(faces.all(), particles);
+        let mut links = links(faces.all(), &sides, &self.rest);
+        let is_border = borders(&sides, particles);
         calibrate(&mut links, &self.rest, &normals, &is_border);
         let mut lengths: Vec<f32> = links
             .iter()
@@ -253,14 +249,33 @@ fn normals(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Vec3> {
 }
 
 /// Which particles are at an edge that does not have two faces.
-fn borders(faces: &[[u32; 3]], particles: usize) -> Vec<bool> {
-    let mut edges: Vec<[u32; 2]> = faces.iter().flat_map(|face| sides(*face)).collect();
-    edges.sort_unstable();
+fn borders(sides: &[Side], particles: usize) -> Vec<bool> {
     let mut is_border = vec![false; particles];
-    for faces in edges.chunk_by(|a, b| a == b).filter(|faces| faces.len() != 2) {
-        faces[0].iter().for_each(|end| is_border[*end as usize] = true);
+    for faces in sides.chunk_by(|a, b| a.ends == b.ends).filter(|faces| faces.len() != 2) {
+        faces[0].ends.iter().for_each(|end| is_border[*end as usize] = true);
     }
     is_border
+}
+
+fn first_corner(face: &[u32; 3]) -> u32 {
+    face[0].min(face[1]).min(face[2])
+}
+
+/// Takes out all but the first of faces between the same three particles.
+fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
+    let sorted = |face: &[u32; 3]| {
+        let mut corners = *face;
+        corners.sort_unstable();
+        corners
+    };
+    let mut known: Vec<([u32; 3], usize)> = faces.iter().map(sorted).zip(0..).collect();
+    known.sort_unstable();
+    let mut is_first = vec![true; faces.len()];
+    for same in known.chunk_by(|a, b| a.0 == b.0) {
+        same[1..].iter().for_each(|(_, index)| is_first[*index] = false);
+    }
+    let mut is_first = is_first.into_iter();
+    faces.retain(|_| is_first.next().unwrap_or(false));
 }
 
 /// How many faces meet in one particle at most.

@@ -1,18 +1,30 @@
 //! Which side of each face is its front.
 
-use bevy::{math::Vec3, platform::collections::HashMap};
+use bevy::math::Vec3;
+
+use super::springs::Side;
+
+/// Stands for a side without a face beyond it, or with several.
+const NONE: u32 = u32::MAX;
 
 /// Turns faces so that neighbours across an edge of two face the same side, piece by piece; each piece then faces the side
 /// that `normals` of its corners are on, if there are any, else that of its first face. What cannot be turned so, as a
-/// Möbius strip, keeps an edge where it faces both.
-pub(super) fn orient(faces: &mut [[u32; 3]], rest: &[Vec3], normals: &[Vec3]) {
-    let mut of_edge: HashMap<[u32; 2], Vec<u32>> = HashMap::default();
-    for (index, face) in faces.iter().enumerate() {
-        for [a, b] in edges(*face) {
-            let edge = of_edge.entry([a.min(b), a.max(b)]).or_default();
-            edge.push(index as u32);
+/// Möbius strip, keeps an edge where it faces both. `sides` are those of the faces.
+pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], normals: &[Vec3]) {
+    // The face beyond the side that faces each corner.
+    let mut beyond = vec![[NONE; 3]; faces.len()];
+    for pair in sides.chunk_by(|a, b| a.ends == b.ends) {
+        // Where three faces or more meet none is the other side of another.
+        let [one, other] = pair else {
+            continue;
+        };
+        for (from, to) in [(one, other), (other, one)] {
+            let mut corners = faces[from.face as usize].iter();
+            let at = corners.position(|corner| *corner == from.opposite).unwrap_or(0);
+            beyond[from.face as usize][at] = to.face;
         }
     }
+    let ways = faces.to_vec();
     let mut is_seen = vec![false; faces.len()];
     let mut piece: Vec<usize> = Vec::new();
     for start in 0..faces.len() {
@@ -25,17 +37,19 @@ pub(super) fn orient(faces: &mut [[u32; 3]], rest: &[Vec3], normals: &[Vec3]) {
         let mut next = 0;
         while let Some(&index) = piece.get(next) {
             next += 1;
-            for [a, b] in edges(faces[index]) {
-                // Where three faces or more meet none is the other side of another.
-                let [one, other] = of_edge[&[a.min(b), a.max(b)]][..] else {
+            // `ways` still have the corners in their first order.
+            for (at, &other) in beyond[index].iter().enumerate() {
+                let Some(is_seen) = is_seen.get_mut(other as usize) else {
                     continue;
                 };
-                let other = if one as usize == index { other } else { one } as usize;
-                if std::mem::replace(&mut is_seen[other], true) {
+                if std::mem::replace(is_seen, true) {
                     continue;
                 }
+                let other = other as usize;
+                let [a, b] = [ways[index][(at + 1) % 3], ways[index][(at + 2) % 3]];
                 // Faces of one side run along their common edge in opposite directions.
-                if edges(faces[other]).contains(&[a, b]) {
+                let runs = |face: [u32; 3]| edges(face).contains(&[a, b]);
+                if runs(faces[index]) == runs(faces[other]) {
                     faces[other].swap(1, 2);
                 }
                 piece.push(other);
@@ -64,6 +78,7 @@ fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cloth::surface::springs::sides_of;
 
     fn normal(face: [u32; 3], rest: &[Vec3]) -> Vec3 {
         let [a, b, c] = face.map(|corner| rest[corner as usize]);
@@ -74,9 +89,10 @@ mod tests {
     fn all_faces_of_a_piece_face_one_side() {
         let rest = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Z, Vec3::Z];
         for mut faces in [[[0, 1, 2], [0, 2, 3]], [[0, 1, 2], [0, 3, 2]]] {
-            orient(&mut faces, &rest, &[]);
+            let sides = sides_of(&faces);
+            orient(&mut faces, &sides, &rest, &[]);
             assert!(faces.iter().all(|face| normal(*face, &rest).y < 0.0), "as the first");
-            orient(&mut faces, &rest, &[Vec3::Y; 4]);
+            orient(&mut faces, &sides, &rest, &[Vec3::Y; 4]);
             assert!(faces.iter().all(|face| normal(*face, &rest).y > 0.0), "as the normals");
         }
     }
@@ -85,7 +101,8 @@ mod tests {
     fn where_three_faces_meet_each_is_a_piece_of_its_own() {
         let rest = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, -Vec3::Y];
         let mut faces = [[0, 1, 2], [0, 1, 3], [0, 1, 4]];
-        orient(&mut faces, &rest, &[]);
+        let sides = sides_of(&faces);
+        orient(&mut faces, &sides, &rest, &[]);
         assert_eq!(faces, [[0, 1, 2], [0, 1, 3], [0, 1, 4]]);
     }
 }

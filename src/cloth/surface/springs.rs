@@ -24,18 +24,9 @@ pub(crate) struct Link {
 /// do those across. Evenly in all directions they then give as a square patch does: each has the patch's compliance times
 /// its length² over that area (Van Gelder 1998, equation 20, for a Poisson's ratio of a third, the only one that springs of
 /// all directions have).
-pub(super) fn links(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Link> {
-    // Each side of each face with the corner that faces it, sides of one edge together.
-    let mut of_edges: Vec<([u32; 2], u32, f32)> = Vec::with_capacity(3 * faces.len());
-    for face in faces {
-        let area = face_area(*face, rest);
-        let [a, b, c] = *face;
-        for (side, opposite) in sides(*face).into_iter().zip([c, a, b]) {
-            of_edges.push((side, opposite, area));
-        }
-    }
-    of_edges.sort_by_key(|(side, ..)| *side);
+pub(super) fn links(faces: &[[u32; 3]], sides: &[Side], rest: &[Vec3]) -> Vec<Link> {
     let distance = |[a, b]: [u32; 2]| rest[a as usize].distance(rest[b as usize]);
+    let area = |side: &Side| face_area(faces[side.face as usize], rest);
     let link = |kind, ends: [u32; 2], area: f32| {
         let rest_length = distance(ends);
         let square = rest_length * rest_length;
@@ -47,21 +38,47 @@ pub(super) fn links(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Link> {
         }
     };
     let (mut along, mut across) = (Vec::new(), Vec::new());
-    for sides in of_edges.chunk_by(|(a, ..), (b, ..)| a == b) {
-        let area = sides.iter().map(|(.., area)| area).sum();
-        along.push(link(SpringKind::Structural, sides[0].0, area));
-        for (index, (_, a, area)) in sides.iter().enumerate() {
-            for (_, b, other) in &sides[index + 1..] {
-                let ends = [*a.min(b), *a.max(b)];
+    for sides in sides.chunk_by(|a, b| a.ends == b.ends) {
+        along.push(link(SpringKind::Structural, sides[0].ends, sides.iter().map(area).sum()));
+        for (index, one) in sides.iter().enumerate() {
+            for other in &sides[index + 1..] {
+                let (a, b) = (one.opposite, other.opposite);
+                let ends = [a.min(b), a.max(b)];
                 // Two faces that lie on each other have nothing across.
-                if distance(ends) > SMALLEST_AREA * distance(sides[0].0) {
-                    across.push(link(SpringKind::Bend, ends, area + other));
+                if distance(ends) > SMALLEST_AREA * distance(one.ends) {
+                    across.push(link(SpringKind::Bend, ends, area(one) + area(other)));
                 }
             }
         }
     }
     across.append(&mut along);
     across
+}
+
+/// One side of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Side {
+    /// Its particles, the first one first.
+    pub ends: [u32; 2],
+    pub face: u32,
+    /// The corner that faces it.
+    pub opposite: u32,
+}
+
+/// All sides of all faces, those of one edge together.
+pub(super) fn sides_of(faces: &[[u32; 3]]) -> Vec<Side> {
+    let mut all = Vec::with_capacity(3 * faces.len());
+    for (face, &[a, b, c]) in faces.iter().enumerate() {
+        for (ends, opposite) in sides([a, b, c]).into_iter().zip([c, a, b]) {
+            all.push(Side {
+                ends,
+                face: face as u32,
+                opposite,
+            });
+        }
+    }
+    all.sort_unstable();
+    all
 }
 
 /// Both particles of each side of a face, the first one first.

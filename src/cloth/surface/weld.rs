@@ -15,12 +15,15 @@ pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
             (place + Vec3::ZERO).to_array().map(f32::to_bits)
         }
     };
-    let mut cells: HashMap<[u32; 3], Vec<u32>> = HashMap::default();
+    // The last place in each cell, and the one before it.
+    let mut cells: HashMap<[u32; 3], u32> = HashMap::default();
+    let mut before: Vec<Option<u32>> = Vec::new();
+    cells.reserve(positions.len());
     let mut first: Vec<u32> = Vec::new();
     let mut place_of = Vec::with_capacity(positions.len());
     for (vertex, &position) in positions.iter().enumerate() {
-        let is_same = |place: &&u32| {
-            let other = positions[first[**place as usize] as usize];
+        let is_same = |place: &u32| {
+            let other = positions[first[*place as usize] as usize];
             other == position || other.distance_squared(position) <= weld * weld
         };
         let mut found = None;
@@ -28,10 +31,10 @@ pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
         let ends = [low, high];
         for corner in 0..8 {
             let near = Vec3::new(ends[corner & 1].x, ends[(corner >> 1) & 1].y, ends[corner >> 2].z);
-            let known = cells.get(&cell(near)).and_then(|known| known.iter().find(is_same));
-            if let Some(known) = known {
+            let of_cell = std::iter::successors(cells.get(&cell(near)).copied(), |at| before[*at as usize]);
+            for known in of_cell.filter(is_same) {
                 // Of several the earliest, so that the order of cells does not matter.
-                found = Some(found.map_or(*known, |found: u32| found.min(*known)));
+                found = Some(found.map_or(known, |found: u32| found.min(known)));
             }
             if corner == 0 && cell(low) == cell(high) {
                 break;
@@ -40,7 +43,7 @@ pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
         place_of.push(found.unwrap_or_else(|| {
             let place = first.len() as u32;
             first.push(vertex as u32);
-            cells.entry(cell(position)).or_default().push(place);
+            before.push(cells.insert(cell(position), place));
             place
         }));
     }

@@ -16,8 +16,8 @@ use crate::{
 };
 
 /// From this many times on that its radius along the surface is its radius through space, a patch is folded: its halves are
-/// parted along the surface. A path along edges is up to a sixth longer than a straight one on a flat patch.
-const FOLDED: f32 = 1.3;
+/// parted along the surface. A path along edges is up to √2 times as long as a straight one on a flat patch.
+const FOLDED: f32 = 1.5;
 
 /// A tree over particles joined in any way.
 #[derive(Debug, Default, Clone, PartialEq)]

@@ -7,6 +7,7 @@
 
 mod error;
 mod hooke;
+pub mod meshes;
 mod method;
 mod position_based;
 mod projective;

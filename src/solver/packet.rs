@@ -1,0 +1,78 @@
+//! Springs that lie anywhere, four at a time.
+//!
+//! Their eight ends are in as many places, so that gathering them would cost more than solving them if each were seven
+//! numbers in seven places. For a sweep each particle is a row of its own, half a cache line. A spring then is four loads and
+//! two stores of four numbers; what it comes to is computed for four of them at once, with one division and no root.
+//!
+//! # The floor
+//! Some thirty instructions a spring, of which eighteen move its ends: at four to five a cycle 2 ns at 3 GHz. The rows of
+//! 5,000 particles are 160 kB: they stay in the second cache, and neighbours in the first.
+
+use bevy::math::{Mat4, Vec4};
+
+use super::run::MIN_SOFTNESS;
+
+/// Springs in a packet.
+pub(super) const SPRINGS: usize = 4;
+
+/// A particle during a sweep.
+#[derive(Debug, Default, Clone, Copy)]
+#[repr(C, align(32))]
+pub(super) struct Row {
+    /// Position (m), and inverse mass (1/kg).
+    pub place: Vec4,
+    /// Displacement (m), and 0.
+    pub moved: Vec4,
+}
+
+/// Springs of one colour: no two of them share an end, unless that is no particle's.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Packet {
+    /// The rows of both ends.
+    pub from: [u32; SPRINGS],
+    pub to: [u32; SPRINGS],
+    /// Squared length at rest (m²).
+    pub rest_square: Vec4,
+    /// m/N; infinite where there is no spring.
+    pub compliance: Vec4,
+}
+
+/// Moves the ends of all springs, one packet after the other: what [`kernel`](super::kernel) does to the springs of a grid.
+#[inline(always)]
+pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32) {
+    for packet in packets {
+        let a = packet.from.map(|end| rows[end as usize]);
+        let b = packet.to.map(|end| rows[end as usize]);
+        let ways: [Vec4; SPRINGS] = std::array::from_fn(|at| {
+            (b[at].place - a[at].place) + (b[at].moved - a[at].moved)
+        });
+        let [x, y, z] = coordinates(ways);
+        let (weight_a, weight_b) = (weights(&a), weights(&b));
+        let q = x * x + y * y + z * z;
+        let r2 = packet.rest_square;
+        let softness = packet.compliance * inverse_dt2 + MIN_SOFTNESS;
+        let weight = weight_a + weight_b + softness;
+        let share = (q - r2) / ((1.5 * q + 0.5 * r2) * weight);
+        let share_a = (share * weight_a).to_array();
+        let share_b = (share * weight_b).to_array();
+        for at in 0..SPRINGS {
+            // What is beside a displacement stays 0.
+            let way = ways[at] * Vec4::new(1.0, 1.0, 1.0, 0.0);
+            rows[packet.from[at] as usize].moved = a[at].moved + way * share_a[at];
+            rows[packet.to[at] as usize].moved = b[at].moved - way * share_b[at];
+        }
+    }
+}
+
+/// The three coordinates of four vectors.
+#[inline(always)]
+fn coordinates([a, b, c, d]: [Vec4; SPRINGS]) -> [Vec4; 3] {
+    let turned = Mat4::from_cols(a, b, c, d).transpose();
+    [turned.x_axis, turned.y_axis, turned.z_axis]
+}
+
+#[inline(always)]
+fn weights(rows: &[Row; SPRINGS]) -> Vec4 {
+    let [a, b, c, d] = rows.map(|row| row.place.w);
+    Vec4::new(a, b, c, d)
+}
