@@ -1,12 +1,12 @@
 //! A tick allocates nothing, neither its search nor its sub-steps. Alone in its program: the count is of all threads.
 
-use std::alloc::System;
+use std::{alloc::System, sync::Arc};
 
 use bevy::{
     ecs::schedule::SingleThreadedExecutor, math::Vec3, prelude::*, time::TimeUpdateStrategy,
 };
 use bevy_drape::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::{ClothAttachments, ClothGravity, DrapePlugins, Pin, Pins},
@@ -23,7 +23,8 @@ fn a_step_does_not_allocate() {
     let grid = Cloth::new(40, 40, 0.05)
         .grid(Vec3::ONE)
         .expect("a valid grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let surface = Arc::new(Surface::of_grid(&grid));
+    let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
     for column in 0..40 {
         particles
             .set_inverse_mass((0, column), 0.0)
@@ -62,7 +63,7 @@ fn a_step_does_not_allocate() {
         let mut query = TopDownQuery::default();
         let mut bounds = [const { None::<()> }; 3].map(|_| NodeBounds::default());
         let mut stretch = Stretch::measure(springs, &particles);
-        solver.set_tethers(Tethers::new(&grid, &material, &particles, 9.81));
+        solver.set_tethers(Tethers::new(&surface, &material, &particles, 9.81));
         let mut control = Control::default();
         let mut pushed = 0.0_f32;
         let choices = [
@@ -78,15 +79,15 @@ fn a_step_does_not_allocate() {
                     ..Default::default()
                 };
                 let root = tree.root_sphere(&particles, stretch.bound);
-                detection.begin(50.0);
-                let (probe, against) = detection.probe(&ball, &settings, &grid, 0.2, &root);
+                detection.begin(&surface, 50.0, false);
+                let (probe, against) = detection.probe(&ball, &settings, &surface, 0.2, &root);
                 for (bounds, choice) in bounds.iter_mut().zip(choices) {
                     query.clear();
                     let known = bounds.rebuild(choice, &tree, &particles, stretch.bound);
                     known.expect("there is such a rule");
                     query.search(&tree, bounds, &particles, &probe);
                 }
-                detection.add(0, &ball, against, query.candidates(), &particles, &grid);
+                detection.add(0, &ball, against, query.candidates(), &particles);
                 stretch = solver.advance(&mut particles, step, &pins, |particles, substep| {
                     detection.respond(particles, &settings, substep, |_| {})
                 });

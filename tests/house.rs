@@ -85,6 +85,8 @@ fn lower_floors_hold_no_ecs() {
             if file.ends_with("cloth/presence.rs") {
                 continue;
             }
+            // The error of a mesh that only its renderer has left is no world.
+            let code = code(&file).replace("ExtractedToRenderWorld", "");
             for word in [
                 "Query<",
                 "Single<",
@@ -99,11 +101,7 @@ fn lower_floors_hold_no_ecs() {
                 "bevy::app",
                 "World",
             ] {
-                assert!(
-                    !code(&file).contains(word),
-                    "{} holds {word}",
-                    file.display()
-                );
+                assert!(!code.contains(word), "{} holds {word}", file.display());
             }
         }
     }

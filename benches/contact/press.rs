@@ -1,10 +1,10 @@
 //! A ball pressed into a cloth that is held by its rim.
 
-use std::time::Instant;
+use std::{sync::Arc, time::Instant};
 
 use bevy::math::{Vec3, bounding::BoundingSphere};
 use bevy_drape::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::TopDownQuery,
     solver::{Solver, TickStep},
@@ -35,7 +35,8 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
         damping: 0.05,
         ..ClothMaterial::COTTON
     };
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let surface = Arc::new(Surface::of_grid(&grid));
+    let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
     let rim =
         |row: u32, column: u32| row.is_multiple_of(SIDE - 1) || column.is_multiple_of(SIDE - 1);
     let pinned: Vec<(u32, u32)> = grid
@@ -63,12 +64,12 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
     let (mut responses, mut candidates) = (Vec::new(), 0);
     for tick in 0..TICKS {
         let ball = MovingCollider::ball(radius, at(height(tick)), at(height(tick + 1)));
-        detection.begin(0.1);
+        detection.begin(&surface, 0.1, false);
         let cloth = BoundingSphere::new(at(0.0), 2.0);
-        let (probe, against) = detection.probe(&ball, &settings, &grid, 4.0 * SPACING, &cloth);
+        let (probe, against) = detection.probe(&ball, &settings, &surface, 4.0 * SPACING, &cloth);
         query.clear();
         query.scan(&particles, &probe);
-        detection.add(0, &ball, against, query.candidates(), &particles, &grid);
+        detection.add(0, &ball, against, query.candidates(), &particles);
         candidates = query.candidates().len();
         let step = TickStep {
             acceleration: Vec3::NEG_Z * 9.81,
@@ -86,7 +87,7 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
     }
     let centre = at(height(TICKS));
     Pressed {
-        deepest: deepest_triangle(&particles, &grid, centre, radius),
+        deepest: deepest_triangle(&particles, &surface, centre, radius),
         responses,
         candidates,
     }
@@ -95,13 +96,13 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
 /// Over a fine net of points of every triangle. A cloth above the ball's centre has let it through.
 fn deepest_triangle(
     particles: &ClothParticles,
-    grid: &ClothGrid,
+    surface: &Surface,
     centre: Vec3,
     radius: f32,
 ) -> f32 {
     const PARTS: u32 = 24;
     let mut deepest = f32::MIN;
-    for triangle in grid.triangles() {
+    for triangle in surface.triangles() {
         let [a, b, c] =
             triangle.map(|index| particles.position(index as usize).expect("it exists"));
         if a.distance(centre) > radius + 3.0 * SPACING {

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_drape::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, Probe, QuadTree},
     solver::Stretch,
 };
@@ -26,7 +26,8 @@ impl Draped {
             .grid(Vec3::ONE)
             .expect("a valid grid");
         let material = ClothMaterial::COTTON;
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+        let mut particles =
+            ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("a valid material");
         for (row, column) in grid.cells() {
             let [across, down] = [column, row].map(|index| index as f32 / (side - 1) as f32);
             let wave = (across * 2.0 * std::f32::consts::TAU).sin() * (down * 3.0).cos();

@@ -3,7 +3,7 @@
 use std::{process::ExitCode, time::Instant};
 
 use bevy::prelude::*;
-use bevy_drape::{contact::deepest_penetration, plugin::ClothTopology, prelude::*};
+use bevy_drape::{contact::deepest_penetration, plugin::ClothBuilt, prelude::*};
 use bevy_rapier3d::prelude::PhysicsSet;
 use serde::Serialize;
 
@@ -106,10 +106,10 @@ fn report(
     wall_seconds: f64,
     picture: Picture,
 ) -> Report {
-    let mut cloths = app.world_mut().query::<&ClothTopology>();
+    let mut cloths = app.world_mut().query::<&ClothBuilt>();
     let (particles, springs) = cloths
         .iter(app.world())
-        .map(|topology| (topology.grid().len(), topology.springs().len()))
+        .map(|built| (built.surface().len(), built.springs().len()))
         .next()
         .unwrap_or_default();
     let mut measured = app.world_mut().resource_mut::<Measured>();

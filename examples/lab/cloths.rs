@@ -1,10 +1,10 @@
 //! The cloths that experiments share.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use bevy::math::{Vec3, bounding::BoundingSphere};
 use bevy_drape::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, Probe, QuadTree, SearchMethod, TopDownQuery},
     solver::{Solver, Tethers, TickStep},
@@ -55,7 +55,8 @@ impl Recording {
         let grid = Cloth::new(SIDE, SIDE, SPACING)
             .grid(Vec3::ONE)
             .expect("a valid grid");
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+        let surface = Arc::new(Surface::of_grid(&grid));
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
         for column in 0..SIDE {
             particles
                 .set_inverse_mass((0, column), 0.0)
@@ -63,7 +64,7 @@ impl Recording {
         }
         let springs = Springs::of_grid(&grid, &material);
         let mut solver = Solver::new(&springs, &particles);
-        solver.set_tethers(Tethers::new(&grid, &material, &particles, 9.81));
+        solver.set_tethers(Tethers::new(&surface, &material, &particles, 9.81));
         let step = TickStep {
             acceleration: Vec3::NEG_Y * 9.81,
             damping: material.damping,
@@ -91,11 +92,12 @@ impl Recording {
         let cloth = BoundingSphere::new(Vec3::ZERO, 10.0);
         for tick in 0..ticks {
             let ball = MovingCollider::ball(RADIUS, at(tick), at(tick + 1));
-            detection.begin(reach);
-            let (probe, against) = detection.probe(&ball, &settings, &grid, 2.0 * SPACING, &cloth);
+            detection.begin(&surface, reach, false);
+            let (probe, against) =
+                detection.probe(&ball, &settings, &surface, 2.0 * SPACING, &cloth);
             query.clear();
             query.scan(&particles, &probe);
-            detection.add(0, &ball, against, query.candidates(), &particles, &grid);
+            detection.add(0, &ball, against, query.candidates(), &particles);
             let stretch = solver.advance(&mut particles, step, &[], |particles, substep| {
                 detection.respond(particles, &settings, substep, |_| {})
             });

@@ -9,7 +9,7 @@ use bevy::{
     window::PrimaryWindow,
 };
 use bevy_drape::{
-    plugin::{ClothPanel, ClothTopology},
+    plugin::{ClothBuilt, ClothPanel},
     prelude::*,
 };
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext, input::EguiWantsInput};
@@ -163,10 +163,10 @@ fn press_clock_keys(
 
 fn press_gizmo_keys(
     keys: Res<ButtonInput<KeyCode>>,
-    mut cloths: Query<(&mut ShowClothGizmos, &ClothTopology)>,
+    mut cloths: Query<(&mut ShowClothGizmos, &ClothBuilt)>,
 ) {
-    for (mut show, topology) in &mut cloths {
-        let leaves = topology.tree().levels().len().saturating_sub(1);
+    for (mut show, built) in &mut cloths {
+        let leaves = built.tree().levels().len().saturating_sub(1);
         if keys.just_pressed(KeyCode::KeyL) {
             // All levels, then none.
             show.levels = match show.levels.as_ref().map(|levels| *levels.start()) {

@@ -13,13 +13,15 @@ mod triangle;
 mod triangles;
 mod volume;
 
+use std::sync::Arc;
+
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{ContactSettings, Detection, MovingCollider};
 /// What `shots` calls the crate, which the lab reads, too.
 use crate as library;
 use crate::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Surface},
     solver::SubStep,
 };
 
@@ -30,29 +32,29 @@ const ONLY: SubStep = SubStep {
     farthest_move: 0.0,
 };
 
-fn build(columns: u32, rows: u32, spacing: f32) -> (ClothGrid, ClothParticles) {
-    let grid = Cloth::new(columns, rows, spacing)
-        .grid(Vec3::ONE)
+fn build(columns: u32, rows: u32, spacing: f32) -> (Arc<Surface>, ClothParticles) {
+    let surface = Cloth::new(columns, rows, spacing)
+        .surface(Vec3::ONE)
         .expect("a valid grid");
     let particles =
-        ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material");
-    (grid, particles)
+        ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("a valid material");
+    (Arc::new(surface), particles)
 }
 
 /// A tick in which every particle is a candidate of every collider: nothing can be missed.
 fn all_of(
     colliders: &[MovingCollider],
     settings: &ContactSettings,
-    grid: &ClothGrid,
+    surface: &Arc<Surface>,
     particles: &ClothParticles,
 ) -> Detection {
     let mut detection = Detection::default();
-    detection.begin(f32::INFINITY);
+    detection.begin(surface, f32::INFINITY, false);
     let all: Vec<u32> = (0..particles.len() as u32).collect();
     let cloth = particles.bounding_sphere();
     for (id, collider) in colliders.iter().enumerate() {
-        let (_, narrow_phase) = detection.probe(collider, settings, grid, 0.0, &cloth);
-        detection.add(id, collider, narrow_phase, &all, particles, grid);
+        let (_, narrow_phase) = detection.probe(collider, settings, surface, 0.0, &cloth);
+        detection.add(id, collider, narrow_phase, &all, particles);
     }
     detection
 }

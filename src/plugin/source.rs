@@ -4,8 +4,12 @@
 mod none;
 #[cfg(feature = "mesh")]
 mod asset;
+#[cfg(feature = "mesh")]
+mod id;
 
 #[cfg(feature = "mesh")]
-pub(super) use asset::{ChangedMeshes, Source, Sources, note_changed_meshes};
+pub(super) use asset::{ChangedMeshes, Sources, note_changed_meshes};
+#[cfg(feature = "mesh")]
+pub(super) use id::Source;
 #[cfg(not(feature = "mesh"))]
 pub(super) use none::{Source, Sources};

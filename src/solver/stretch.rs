@@ -42,15 +42,16 @@ impl Stretch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloth::{Cloth, ClothMaterial};
+    use crate::cloth::{Cloth, ClothMaterial, Surface};
     use bevy::math::Vec3;
 
     #[test]
     fn finds_the_longest_spring_of_each_kind() {
         let grid = Cloth::new(4, 4, 1.0).grid(Vec3::ONE).expect("a valid grid");
         let springs = Springs::of_grid(&grid, &ClothMaterial::COTTON);
+        let surface = Surface::of_grid(&grid);
         let mut particles =
-            ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material");
+            ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("a valid material");
         assert_eq!(Stretch::measure(&springs, &particles), Stretch::default());
 
         // The corner pulled out along the diagonal: both its structural springs become √(2² + 1²) long, its

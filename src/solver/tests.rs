@@ -3,7 +3,7 @@
 use bevy::math::{DVec3, Vec3};
 
 use super::{PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, kernel::MIN_MOVE};
-use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs};
+use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs, Surface};
 
 const STEP: TickStep = TickStep {
     seconds: 1.0 / 64.0,
@@ -25,7 +25,8 @@ fn crumpled(columns: u32, rows: u32, material: &ClothMaterial) -> (ClothGrid, Cl
     let grid = Cloth::new(columns, rows, 0.1)
         .grid(Vec3::new(1.0, 1.3, 1.0))
         .expect("a valid grid");
-    let mut particles = ClothParticles::at_rest(&grid, material).expect("a valid material");
+    let mut particles =
+        ClothParticles::at_rest(&Surface::of_grid(&grid), material).expect("a valid material");
     let mut seed = u64::from(columns * 1000 + rows);
     for (row, column) in grid.cells() {
         let noise = Vec3::from([(); 3].map(|()| 0.04 * random(&mut seed)));
@@ -145,7 +146,12 @@ fn threads_and_simd_levels_change_no_bit() {
         let run = |simd_level: SimdLevel, bands: usize| {
             let mut particles = start.clone();
             let mut solver = Solver::new(&springs, &particles);
-            solver.set_tethers(Tethers::new(&grid, &material, &particles, 9.81));
+            solver.set_tethers(Tethers::new(
+                &Surface::of_grid(&grid),
+                &material,
+                &particles,
+                9.81,
+            ));
             solver.set_simd_level(simd_level);
             solver.set_bands(bands);
             let mut stretch = Stretch::default();
@@ -261,7 +267,8 @@ fn no_particle_is_beyond_its_tether() {
         let grid = Cloth::new(32, 24, 0.1)
             .grid(Vec3::ONE)
             .expect("a valid grid");
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("valid");
+        let mut particles =
+            ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("valid");
         for pin in 0..pins {
             particles
                 .set_inverse_mass((0, (pin * 31 / pins.max(2)) as u32), 0.0)
@@ -273,7 +280,7 @@ fn no_particle_is_beyond_its_tether() {
             substeps: 4,
             ..STEP
         };
-        let tethers = Tethers::new(&grid, &material, &particles, 9.81);
+        let tethers = Tethers::new(&Surface::of_grid(&grid), &material, &particles, 9.81);
         let largest = |solver: &mut Solver, particles: &mut ClothParticles| {
             (0..64).fold(0.0_f32, |largest, _| {
                 solver.advance(particles, step, &[], |_, _| false);
@@ -318,7 +325,8 @@ fn what_cannot_be_satisfied_stays_finite() {
         .grid(Vec3::ONE)
         .expect("a valid grid");
     for place in [Vec3::ZERO, Vec3::splat(1.0e-20), Vec3::X * 1.0e15] {
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("valid");
+        let mut particles =
+            ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("valid");
         for index in 0..particles.len() {
             let at = if index < 12 { place } else { Vec3::ZERO };
             particles.set_position(index, at).expect("it exists");
@@ -328,7 +336,12 @@ fn what_cannot_be_satisfied_stays_finite() {
         }
         let springs = Springs::of_grid(&grid, &material);
         let mut solver = Solver::new(&springs, &particles);
-        solver.set_tethers(Tethers::new(&grid, &material, &particles, 9.81));
+        solver.set_tethers(Tethers::new(
+            &Surface::of_grid(&grid),
+            &material,
+            &particles,
+            9.81,
+        ));
         for _ in 0..10 {
             solver.advance(&mut particles, STEP, &[], |_, _| false);
             assert_eq!(particles.validate(), Ok(()), "{place}");
@@ -345,7 +358,8 @@ fn what_hardly_moves_does_not_move() {
         .grid(Vec3::ONE)
         .expect("a valid grid");
     let springs = Springs::of_grid(&grid, &material);
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let mut particles =
+        ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("a valid material");
     for column in 0..64 {
         particles
             .set_inverse_mass((0, column), 0.0)

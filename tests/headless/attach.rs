@@ -134,7 +134,7 @@ fn attachments_outlast_a_new_build() {
     let (mut app, flag, pole) = flag(Transform::IDENTITY);
     change::<ClothParticles>(&mut app, flag, |particles| *particles = default());
     tick(&mut app, 1);
-    change::<Cloth>(&mut app, flag, |cloth| cloth.rows = 6);
+    change::<Cloth>(&mut app, flag, |cloth| *cloth = Cloth::new(8, 6, 0.1));
     tick(&mut app, 1);
     let before = in_world(&app, flag, (3, 0));
     change::<Transform>(&mut app, pole, |transform| transform.translation.x = 0.05);

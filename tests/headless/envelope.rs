@@ -212,7 +212,7 @@ fn a_fine_rubber_and_a_large_cotton_are_within() {
         ),
     ] {
         let mut app = app();
-        let spawned = app.world_mut().spawn((cloth, corners())).id();
+        let spawned = app.world_mut().spawn((cloth.clone(), corners())).id();
         tick(&mut app, 128);
         let stretch = app
             .world()

@@ -222,8 +222,11 @@ fn a_nan_that_a_game_wrote() {
 
 #[test]
 fn particles_of_another_cloth() {
-    let grid = Cloth::new(4, 4, 0.1).grid(Vec3::ONE).expect("a valid grid");
-    let foreign = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material");
+    let surface = Cloth::new(4, 4, 0.1)
+        .surface(Vec3::ONE)
+        .expect("a valid grid");
+    let foreign =
+        ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("a valid material");
     expect_fault(
         (Cloth::default(), foreign),
         |_, _| {},
@@ -311,9 +314,9 @@ fn errors_read_well() {
         .grid(Vec3::ONE)
         .expect_err("negative");
     assert_eq!(error.to_string(), "spacing (m) must be positive, not -0.5");
-    let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("valid");
+    let surface = Cloth::new(4, 3, 0.5).surface(Vec3::ONE).expect("valid");
     let error = Pins::new([Pin::Row(3)])
-        .validate(&grid)
+        .validate(&surface)
         .expect_err("out of range");
     assert_eq!(
         error.to_string(),

@@ -134,8 +134,8 @@ fn components_may_be_removed() {
 #[test]
 fn particles_that_come_with_a_cloth_keep_their_masses() {
     let mut app = app();
-    let grid = Cloth::new(4, 4, 0.1).grid(Vec3::ONE).expect("a grid");
-    let mut own = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("particles");
+    let surface = Cloth::new(4, 4, 0.1).surface(Vec3::ONE).expect("a grid");
+    let mut own = ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("particles");
     own.set_inverse_mass((3, 3), 5.0).expect("a particle");
     own.set_inverse_mass((2, 0), 0.0).expect("a particle");
     let cloth = app.world_mut().spawn((Cloth::new(4, 4, 0.1), own)).id();

@@ -53,10 +53,10 @@ fn a_hanging_cloth_has_the_stretch_that_its_compliance_gives() {
             sleeps: false,
             ..ClothSettings::substeps(40)
         };
+        let height = cloth.height();
         let entity = app.world_mut().spawn((cloth, material, settings)).id();
         tick(&mut app, 64 * 12);
         let particles = particles(&app, entity);
-        let height = cloth.height();
         let extension = compliance * material.areal_density * GRAVITY * height * height / 2.0;
         let substep = TICK / 40.0;
         let unfinished = ((rows - 1) as f32).powi(2) * GRAVITY * substep * substep;
@@ -85,9 +85,9 @@ fn shear_and_bend_springs_only_help() {
         damping: 0.05,
         ..default()
     };
+    let height = cloth.height();
     let entity = app.world_mut().spawn((cloth, material)).id();
     tick(&mut app, 64 * 10);
-    let height = cloth.height();
     let elastic =
         material.stretch_compliance * material.areal_density * GRAVITY * height * height / 2.0;
     let unfinished = 15.0_f32.powi(2) * GRAVITY * (TICK / 20.0).powi(2);

@@ -1,5 +1,7 @@
 //! Scenes, inspectors and Blender's exports author components by reflection.
 
+use std::any::type_name;
+
 use bevy::{
     ecs::{
         component::ComponentId,
@@ -13,24 +15,27 @@ use bevy::{
     },
 };
 use bevy_drape::{
-    plugin::{ClothMesh, ClothSearch, ClothTopology},
+    plugin::{ClothBuilt, ClothMesh, ClothScratch, ClothSearch, ClothState, ClothTarget},
     prelude::*,
 };
 use serde::de::DeserializeSeed;
 
 use crate::support::*;
 
-/// Every component of ours on an entity, with its name; those that nobody can name outside are none.
+/// Every component of ours on an entity, with its name; those that nobody can name outside are none, nor are those
+/// that a scene has no use for: what a cloth remembers, and its scratch memory.
 fn components(app: &App, entity: Entity) -> Vec<(ComponentId, String)> {
     let world = app.world();
     let entity = world.entity(entity);
     let archetype = entity.archetype();
     let info = |id: &ComponentId| {
         let name = world.components().get_name(*id)?.to_string();
-        let is_private = ["ClothTick", "BroadPhaseBounds", "ColliderMotion"]
+        let is_private = ["BroadPhaseBounds", "ColliderMotion"]
             .iter()
             .any(|private| name.ends_with(private));
-        (name.starts_with("bevy_drape") && !is_private).then_some((*id, name))
+        let of_the_run = [type_name::<ClothState>(), type_name::<ClothScratch>()];
+        (name.starts_with("bevy_drape") && !is_private && !of_the_run.contains(&name.as_str()))
+            .then_some((*id, name))
     };
     archetype.components().iter().filter_map(info).collect()
 }
@@ -116,25 +121,25 @@ fn every_component_travels() {
         }
     }
     for name in [
-        std::any::type_name::<Cloth>(),
-        std::any::type_name::<Pins>(),
-        std::any::type_name::<ClothMaterial>(),
-        std::any::type_name::<ClothParticles>(),
-        std::any::type_name::<ClothSettings>(),
-        std::any::type_name::<SearchMethod>(),
-        std::any::type_name::<NarrowPhase>(),
-        std::any::type_name::<ClothAttachments>(),
-        std::any::type_name::<ClothTeleport>(),
-        std::any::type_name::<ClothContacts>(),
-        std::any::type_name::<ClothFrame>(),
-        std::any::type_name::<ClothStats>(),
-        std::any::type_name::<ClothFault>(),
-        std::any::type_name::<ClothTopology>(),
-        std::any::type_name::<ClothSearch>(),
-        std::any::type_name::<ClothMesh>(),
-        std::any::type_name::<ClothCollider>(),
-        std::any::type_name::<RapierClothCollider>(),
-        std::any::type_name::<ShowClothGizmos>(),
+        type_name::<Cloth>(),
+        type_name::<Pins>(),
+        type_name::<ClothMaterial>(),
+        type_name::<ClothParticles>(),
+        type_name::<ClothSettings>(),
+        type_name::<SearchMethod>(),
+        type_name::<NarrowPhase>(),
+        type_name::<ClothAttachments>(),
+        type_name::<ClothTeleport>(),
+        type_name::<ClothContacts>(),
+        type_name::<ClothFrame>(),
+        type_name::<ClothStats>(),
+        type_name::<ClothFault>(),
+        type_name::<ClothBuilt>(),
+        type_name::<ClothSearch>(),
+        type_name::<ClothMesh>(),
+        type_name::<ClothCollider>(),
+        type_name::<RapierClothCollider>(),
+        type_name::<ShowClothGizmos>(),
     ] {
         assert!(names.iter().any(|known| known == name), "{name}");
     }
@@ -154,9 +159,9 @@ fn pins_travel_but_for_predicates() {
     };
     let pins = Pins::new([Pin::Row(1), Pin::Corner(Corner::TopLeft), Pin::Cell(2, 3)]);
     assert_eq!(through_text(&pins), pins);
-    let grid = Cloth::new(4, 4, 0.1).grid(Vec3::ONE).expect("a grid");
+    let surface = Cloth::new(4, 4, 0.1).surface(Vec3::ONE).expect("a grid");
     let predicate = through_text(&Pins::filter(|_, _| true));
-    assert_eq!(predicate.validate(&grid), Ok(()));
+    assert_eq!(predicate.validate(&surface), Ok(()));
     let mut app = self::app();
     let cloth = app
         .world_mut()
@@ -170,7 +175,8 @@ fn pins_travel_but_for_predicates() {
 #[test]
 fn named_entities_are_mapped() {
     let (mut app, [cloth, ball, _]) = everything();
-    let old = |attachments: &ClothAttachments| attachments.iter().map(|each| each.target).next();
+    let old =
+        |attachments: &ClothAttachments| attachments.iter().map(|each| each.target.clone()).next();
     let mut attachments = app
         .world()
         .get::<ClothAttachments>(cloth)
@@ -181,7 +187,9 @@ fn named_entities_are_mapped() {
         .get::<ClothContacts>(cloth)
         .expect("contacts")
         .clone();
-    let pole = old(&attachments).expect("a pole");
+    let Some(ClothTarget::Entity(pole)) = old(&attachments) else {
+        panic!("a pole");
+    };
     let new = [(); 2].map(|()| app.world_mut().spawn_empty().id());
     let mut map = EntityHashMap::from_iter([(pole, new[0]), (ball, new[1])]);
     let app_registry = app.world().resource::<AppTypeRegistry>().clone();
@@ -197,6 +205,6 @@ fn named_entities_are_mapped() {
         map_entities(TypeId::of::<ClothAttachments>()).map_entities(&mut attachments, mapper);
         map_entities(TypeId::of::<ClothContacts>()).map_entities(&mut contacts, mapper);
     });
-    assert_eq!(old(&attachments), Some(new[0]));
+    assert_eq!(old(&attachments), Some(new[0].into()));
     assert!(contacts.with(new[1]).is_some() && contacts.with(ball).is_none());
 }

@@ -205,7 +205,7 @@ fn it_sleeps_soon_after_an_eye_sees_no_motion() {
         let mut app = app();
         let cloth = spawn(&mut app);
         tick(&mut app, 1);
-        let grid = *app.world().get::<Cloth>(cloth).expect("a cloth");
+        let grid = app.world().get::<Cloth>(cloth).expect("a cloth");
         let pixel = 1.0e-3 * grid.width().hypot(grid.height());
         let mut history: Vec<Vec<Vec3>> = Vec::new();
         let mut last_seen = 0;

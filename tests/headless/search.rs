@@ -7,7 +7,7 @@ use bevy::{
 use bevy_drape::{
     contact::{ContactSettings, Detection, MovingCollider},
     hierarchy::SearchReason,
-    plugin::ClothTopology,
+    plugin::ClothBuilt,
     prelude::*,
     solver::{Solver, TickStep},
 };
@@ -235,7 +235,10 @@ fn what_snaps_back_is_not_missed() {
         let from = places(&app, balls);
         tick(&mut app, 1);
         let to = places(&app, balls);
-        let topology = app.world().get::<ClothTopology>(cloth).expect("a topology");
+        let built = app
+            .world()
+            .get::<ClothBuilt>(cloth)
+            .expect("what was built");
         let contact_settings = ContactSettings {
             particle_radius: settings.particle_radius,
             friction: stiff.friction,
@@ -243,18 +246,16 @@ fn what_snaps_back_is_not_missed() {
             ..default()
         };
         let mut detection = Detection::default();
-        detection.begin(f32::INFINITY);
+        detection.begin(built.surface(), f32::INFINITY, false);
         let everything: Vec<u32> = (0..256).collect();
         for id in 0..2 {
             let ball = MovingCollider::ball(0.4, from[id], to[id]);
-            let grid = topology.grid();
             detection.add(
                 id,
                 &ball,
                 contact_settings.narrow_phase,
                 &everything,
                 &by_hand,
-                grid,
             );
         }
         let step = TickStep {
@@ -262,7 +263,7 @@ fn what_snaps_back_is_not_missed() {
             damping: stiff.damping,
             ..default()
         };
-        let mut solver = Solver::new(topology.springs(), &by_hand);
+        let mut solver = Solver::new(built.springs(), &by_hand);
         solver.advance(&mut by_hand, step, &[], |particles, substep| {
             detection.respond(particles, &contact_settings, substep, |_| {})
         });

@@ -5,7 +5,7 @@ use bevy::{
     gizmos::GizmoPlugin, mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy,
 };
 use bevy_drape::{
-    plugin::{ClothGizmosPlugin, ClothPlugin, ClothSearch, ClothTopology},
+    plugin::{ClothBuilt, ClothGizmosPlugin, ClothPlugin, ClothSearch},
     prelude::*,
 };
 use bevy_transform_interpolation::prelude::TransformInterpolationPlugin;
@@ -163,15 +163,18 @@ pub fn spawn_pass(app: &mut App) -> (Entity, Entity) {
 
 /// Red nodes on each level.
 pub fn red(app: &App, cloth: Entity) -> Vec<usize> {
-    let topology = app.world().get::<ClothTopology>(cloth).expect("a topology");
+    let built = app
+        .world()
+        .get::<ClothBuilt>(cloth)
+        .expect("what was built");
     let query = app
         .world()
         .get::<ClothSearch>(cloth)
         .expect("a search")
         .query();
-    let levels = 0..topology.tree().levels().len();
+    let levels = 0..built.tree().levels().len();
     levels
-        .map(|level| query.level(topology.tree(), level).1)
+        .map(|level| query.level(built.tree(), level).1)
         .collect()
 }
 

@@ -6,7 +6,7 @@ use bevy_drape::{
         ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase, deepest_penetration,
     },
     hierarchy::NodeState,
-    plugin::{ClothSearch, ClothTopology},
+    plugin::{ClothBuilt, ClothSearch},
     prelude::*,
     solver::{Solver, Tethers, TickStep},
 };
@@ -54,8 +54,8 @@ fn spheres_turn_red_and_back_green() {
         tick(&mut app, 400);
         assert_eq!(red(&app, cloth), [0; 5], "{rule:?}");
         let search = app.world().get::<ClothSearch>(cloth).expect("a search");
-        let topology = app.world().get::<ClothTopology>(cloth).expect("a tree");
-        let states = search.query().states(topology.tree());
+        let built = app.world().get::<ClothBuilt>(cloth).expect("a tree");
+        let states = search.query().states(built.tree());
         let is_unvisited = |state: &NodeState| *state == NodeState::Unvisited;
         assert!(states[1..].iter().all(is_unvisited));
         let started = started.len() + messages::<ClothTouchStarted>(&mut app).len();
@@ -144,12 +144,9 @@ fn a_resting_ball_does_not_sink_in() {
     let left = deepest_penetration(particles, &ball, pose, settings.particle_radius);
     assert!(left < 0.01 * f64::from(radius), "{left} m of {radius}");
 
-    let grid = *world
-        .get::<ClothTopology>(entity)
-        .expect("a topology")
-        .grid();
+    let built = world.get::<ClothBuilt>(entity).expect("what was built");
     let mut deepest = 0.0_f32;
-    for triangle in grid.triangles() {
+    for triangle in built.surface().triangles() {
         let [a, b, c] =
             triangle.map(|index| particles.position(index as usize).expect("a particle"));
         // The sagitta is largest in the middle of the longest edge; the middle and the edges' middles show it.
@@ -280,9 +277,12 @@ fn the_candidates_are_complete() {
                 ..default()
             };
             let everything: Vec<u32> = (0..256).collect();
-            let springs = app.world().get::<ClothTopology>(cloth).expect("a topology");
-            let mut solver = Solver::new(springs.springs(), &by_hand);
-            solver.set_tethers(Tethers::new(springs.grid(), &material, &by_hand, GRAVITY));
+            let built = app
+                .world()
+                .get::<ClothBuilt>(cloth)
+                .expect("what was built");
+            let mut solver = Solver::new(built.springs(), &by_hand);
+            solver.set_tethers(Tethers::new(built.surface(), &material, &by_hand, GRAVITY));
             let contact_settings = ContactSettings {
                 particle_radius: 0.01,
                 friction: material.friction,
@@ -290,17 +290,15 @@ fn the_candidates_are_complete() {
                 ..default()
             };
             let mut detection = Detection::default();
-            detection.begin(f32::INFINITY);
+            detection.begin(built.surface(), f32::INFINITY, false);
             for (id, (from, to)) in from.into_iter().zip(to).enumerate() {
                 let ball = MovingCollider::ball(0.4, from, to);
-                let grid = springs.grid();
                 detection.add(
                     id,
                     &ball,
                     contact_settings.narrow_phase,
                     &everything,
                     &by_hand,
-                    grid,
                 );
             }
             solver.advance(&mut by_hand, step, &[], |particles, substep| {

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_drape::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Solver, Tethers, TickStep},
 };
 
@@ -63,7 +63,8 @@ fn hang((columns, span): Strip, compliance: f32, tethers: bool) -> (f64, f64) {
     let grid = Cloth::new(columns, 2, spacing)
         .grid(Vec3::ONE)
         .expect("a valid grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let surface = Surface::of_grid(&grid);
+    let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
     for (row, column) in grid.cells() {
         // Up one flank of a V and down the other.
         let along = f64::from(column) / f64::from(columns - 1) - 0.5;
@@ -81,7 +82,12 @@ fn hang((columns, span): Strip, compliance: f32, tethers: bool) -> (f64, f64) {
     let springs = Springs::of_grid(&grid, &material);
     let mut solver = Solver::new(&springs, &particles);
     if tethers {
-        solver.set_tethers(Tethers::new(&grid, &material, &particles, GRAVITY as f32));
+        solver.set_tethers(Tethers::new(
+            &surface,
+            &material,
+            &particles,
+            GRAVITY as f32,
+        ));
     }
     let step = TickStep {
         seconds: 20.0 * SUBSTEP as f32,

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_drape::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Solver, Tethers, TickStep},
 };
 
@@ -23,14 +23,15 @@ fn sag(along: u32, material: &ClothMaterial, substeps: u32, is_sheared: bool) ->
     let grid = Cloth::new(columns, rows, spacing)
         .grid(Vec3::ONE)
         .expect("a valid grid");
-    let mut particles = ClothParticles::at_rest(&grid, material).expect("a valid material");
+    let surface = Surface::of_grid(&grid);
+    let mut particles = ClothParticles::at_rest(&surface, material).expect("a valid material");
     for across in 0..(columns * rows / along) {
         let pin = if is_sheared { (across, 0) } else { (0, across) };
         particles.set_inverse_mass(pin, 0.0).expect("it exists");
     }
     let springs = Springs::of_grid(&grid, material);
     let mut solver = Solver::new(&springs, &particles);
-    solver.set_tethers(Tethers::new(&grid, material, &particles, GRAVITY));
+    solver.set_tethers(Tethers::new(&surface, material, &particles, GRAVITY));
     let step = TickStep {
         seconds: 1.0 / 64.0,
         substeps,

@@ -2,7 +2,7 @@
 
 use bevy::math::{Quat, Vec3};
 use bevy_drape::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Solver, TickStep},
 };
 
@@ -13,7 +13,8 @@ fn swing(spacing: f32, substeps: u32, distance: f32) -> (Vec<Vec3>, f32) {
         .grid(Vec3::ONE)
         .expect("a valid grid");
     let material = ClothMaterial::COTTON;
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let mut particles =
+        ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("a valid material");
     let place = Vec3::new(0.8, 0.6, 0.2).normalize() * distance;
     for index in 0..particles.len() {
         let rest = particles.position(index).expect("it exists");

@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Vec3};
 use bevy_drape::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{
         Solver, TickStep,
         methods::{GRAVITY, MassSpring, Scene},
@@ -26,7 +26,8 @@ fn a_pendulum_has_its_period() {
     let grid = Cloth::new(2, 2, length)
         .grid(Vec3::ONE)
         .expect("a valid grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let mut particles =
+        ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("a valid material");
     for column in 0..2 {
         let down = Vec3::new(0.0, -amplitude.cos(), amplitude.sin()) * length;
         let place = Vec3::X * column as f32 * length + down;
@@ -129,7 +130,8 @@ fn a_free_cloth_keeps_its_momentum() {
     let grid = Cloth::new(12, 12, 0.1)
         .grid(Vec3::ONE)
         .expect("a valid grid");
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let mut particles =
+        ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("a valid material");
     for index in 0..particles.len() {
         let phase = index as f32;
         let wave = Vec3::new(phase.sin(), (1.7 * phase).cos(), (0.3 * phase).sin());

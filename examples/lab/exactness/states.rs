@@ -4,7 +4,7 @@ use std::f32::consts::{PI, TAU};
 
 use bevy::math::{Quat, Vec3};
 use bevy_drape::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs, Surface},
     hierarchy::{Probe, QuadTree},
     solver::Stretch,
 };
@@ -33,7 +33,8 @@ impl State {
             .expect("a valid grid");
         let material = ClothMaterial::COTTON;
         let springs = Springs::of_grid(&grid, &material);
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+        let surface = Surface::of_grid(&grid);
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
         let bent = bent(random, &grid);
         let moves = moves(random, &grid, &bent);
         let mut measure = |part: f32| {

@@ -46,7 +46,7 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(place: fn(u32) -> Vec3, cloths: u32, cloth: Cloth, sleeps: bool) -> Self {
+    fn new(place: fn(u32) -> Vec3, cloths: u32, cloth: &Cloth, sleeps: bool) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
@@ -72,7 +72,8 @@ impl Stage {
         for index in 0..cloths {
             let at = Vec3::new((index % 10) as f32, 0.0, (index / 10) as f32);
             let place = Transform::from_translation(at * 4.0);
-            app.world_mut().spawn((cloth, material, settings, place));
+            app.world_mut()
+                .spawn((cloth.clone(), material, settings, place));
         }
         let collider = (
             ClothCollider::ball(RADIUS),
@@ -175,7 +176,7 @@ fn dragging(tick: u32) -> Vec3 {
 pub fn one_cloth(run: &mut Run) -> Vec<Row> {
     let turns = run.either(100, 1500);
     run.set("one cloth", format!("64², spacing 0.03 m, ball of 0.3 m, 20 sub-steps: all of the plugin's systems, {turns} ticks"));
-    let stage = |place, sleeps| Stage::new(place, 1, Cloth::new(64, 64, 0.03), sleeps);
+    let stage = |place, sleeps| Stage::new(place, 1, &Cloth::new(64, 64, 0.03), sleeps);
     let mut stages = [
         (FAR, stage(far, false)),
         (NEAR, stage(near, false)),
@@ -210,7 +211,7 @@ pub fn many_cloths(run: &mut Run) -> Vec<Row> {
         "100 cloths",
         format!("16², spacing 0.12 m, the same ball: {turns} ticks, awake ones on all threads"),
     );
-    let stage = |place, sleeps| Stage::new(place, 100, Cloth::new(16, 16, 0.12), sleeps);
+    let stage = |place, sleeps| Stage::new(place, 100, &Cloth::new(16, 16, 0.12), sleeps);
     let mut stages = [
         (ALL_AWAKE, stage(dragging, false)),
         (ONE_TOUCHED, stage(dragging, true)),

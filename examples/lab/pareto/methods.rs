@@ -1,10 +1,13 @@
 //! What moves the cloths: the library's solver and its peers, each with its settings.
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use bevy::math::{DVec3, Vec3, bounding::BoundingSphere};
 use bevy_drape::{
-    cloth::ClothParticles,
+    cloth::{ClothParticles, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::TopDownQuery,
     solver::{
@@ -276,6 +279,7 @@ impl<'a, R: Real> Peer<'a, R> {
 /// The library's solver, on one thread, as the plugin drives it.
 pub struct Ours<'a> {
     case: &'a Case,
+    surface: Arc<Surface>,
     particles: ClothParticles,
     backup: ClothParticles,
     solver: Solver,
@@ -295,6 +299,7 @@ impl<'a> Ours<'a> {
         let solver = case.scene.solver(tethers == Tethers::On);
         Self {
             case,
+            surface: Arc::new(case.scene.surface.clone()),
             particles: case.scene.particles.clone(),
             backup: case.scene.particles.clone(),
             stretch: solver.measure(&case.scene.particles),
@@ -330,16 +335,16 @@ impl<'a> Ours<'a> {
             let ball = MovingCollider::ball(Ball::RADIUS, Ball::at(tick), Ball::at(tick + 1));
             // A ball around all that the cloth ever does.
             let cloth = BoundingSphere::new(Ball::at(0), 4.0);
-            self.detection.begin(self.reach());
+            self.detection.begin(&self.surface, self.reach(), false);
             let (probe, against) =
                 // Particles, not triangles, are tested.
                 self.detection
-                    .probe(&ball, &contact_settings, &scene.grid, 0.0, &cloth);
+                    .probe(&ball, &contact_settings, &scene.surface, 0.0, &cloth);
             self.query.clear();
             self.query.scan(&self.particles, &probe);
             let found = self.query.candidates();
             self.detection
-                .add(0, &ball, against, found, &self.particles, &scene.grid);
+                .add(0, &ball, against, found, &self.particles);
         }
         if matches!(self.substepping, Substepping::Adaptive { .. }) {
             self.backup.clone_from(&self.particles);

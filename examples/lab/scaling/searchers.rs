@@ -1,8 +1,10 @@
 //! What is timed: searches, and a tick of the solver.
 
+use std::sync::Arc;
+
 use bevy::math::{Vec3, bounding::BoundingSphere};
 use bevy_drape::{
-    cloth::{Cloth, ClothGrid, ClothMaterial},
+    cloth::{Cloth, ClothMaterial, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{Core, NodeBounds, Probe, TopDownQuery, brute_force},
     solver::{Solver, TickStep},
@@ -100,18 +102,19 @@ pub const PARRY: &str = "parry3d";
 /// A tick of a solver on one thread, with the response to the ball.
 pub struct Ticking {
     solver: Solver,
-    grid: ClothGrid,
+    surface: Arc<Surface>,
     detection: Detection,
     query: TopDownQuery,
 }
 
 impl Ticking {
     pub fn new(draped: &Draped, side: u32) -> Self {
+        let surface = Cloth::new(side, side, SPACING)
+            .surface(Vec3::ONE)
+            .expect("a valid grid");
         Self {
             solver: Solver::new(&draped.springs, &draped.particles),
-            grid: Cloth::new(side, side, SPACING)
-                .grid(Vec3::ONE)
-                .expect("a valid grid"),
+            surface: Arc::new(surface),
             detection: Detection::default(),
             query: TopDownQuery::default(),
         }
@@ -137,15 +140,14 @@ impl Ticking {
         };
         // A ball around all of the cloth, and more than a particle moves in the tick.
         let cloth = BoundingSphere::new(Vec3::ZERO, 200.0);
-        self.detection.begin(4.0 * SPACING);
-        let (probe, against) = self
-            .detection
-            .probe(&collider, &settings, &self.grid, SPACING, &cloth);
+        self.detection.begin(&self.surface, 4.0 * SPACING, false);
+        let (probe, against) =
+            self.detection
+                .probe(&collider, &settings, &self.surface, SPACING, &cloth);
         self.query.clear();
         self.query.scan(&particles, &probe);
         let found = self.query.candidates();
-        self.detection
-            .add(0, &collider, against, found, &particles, &self.grid);
+        self.detection.add(0, &collider, against, found, &particles);
         let step = TickStep {
             acceleration: Vec3::NEG_Y * 9.81,
             damping: ClothMaterial::COTTON.damping,

@@ -4,8 +4,10 @@ use super::*;
 use crate::cloth::Cloth;
 
 fn particles() -> ClothParticles {
-    let grid = Cloth::new(4, 3, 0.5).grid(Vec3::ONE).expect("a valid grid");
-    ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("a valid material")
+    let surface = Cloth::new(4, 3, 0.5)
+        .surface(Vec3::ONE)
+        .expect("a valid grid");
+    ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("a valid material")
 }
 
 #[test]

@@ -55,7 +55,8 @@ fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> 
         return Err(ClothError::MeshTooLarge { particles: vertices });
     }
     // So that squares of lengths, and their products with masses, stay well inside of `f32`.
-    let is_measurable = |place: &Vec3| (*place * scale).abs().max_element() < 1.0e12;
+    // Not by the largest element, which leaves NaN out.
+    let is_measurable = |place: &Vec3| (*place * scale).abs().cmplt(Vec3::splat(1.0e12)).all();
     if let Some(vertex) = mesh.positions.iter().position(|place| !is_measurable(place)) {
         return Err(ClothError::VertexNotFinite {
             vertex,

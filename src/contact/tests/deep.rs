@@ -17,7 +17,7 @@ use crate::{
 fn a_sheet_is_not_split_by_a_ball_that_appears_in_it() {
     for seed in 0..50 {
         let mut random = Random(seed);
-        let (grid, mut particles) = build(21, 21, 0.05);
+        let (surface, mut particles) = build(21, 21, 0.05);
         let noise = 0.02;
         for index in 0..particles.len() {
             let place = particles.position(index).expect("it exists");
@@ -31,7 +31,7 @@ fn a_sheet_is_not_split_by_a_ball_that_appears_in_it() {
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        let mut detection = all_of(&[ball], &settings, &surface, &particles);
         for index in 0..3 {
             let substep = SubStep {
                 index,

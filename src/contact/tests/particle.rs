@@ -21,10 +21,10 @@ fn first_against(
     particles: &ClothParticles,
     narrow_phase: NarrowPhase,
 ) -> Detection {
-    let (grid, _) = build(2, 2, 1.0);
+    let (surface, _) = build(2, 2, 1.0);
     let mut detection = Detection::default();
-    detection.begin(f32::INFINITY);
-    detection.add(0, collider, narrow_phase, &[0], particles, &grid);
+    detection.begin(&surface, f32::INFINITY, false);
+    detection.add(0, collider, narrow_phase, &[0], particles);
     detection
 }
 
@@ -92,7 +92,7 @@ fn a_turning_ball_carries_what_sticks() {
 
 #[test]
 fn pushes_out_exactly_and_leaves_pins_and_neighbours() {
-    let (grid, mut particles) = build(3, 3, 1.0);
+    let (surface, mut particles) = build(3, 3, 1.0);
     particles.set_inverse_mass(0, 0.0).expect("it exists");
     // Its last sub-step of ten is slow, so that nothing is swept.
     let end = Vec3::new(0.5, -0.5, 0.4);
@@ -104,7 +104,7 @@ fn pushes_out_exactly_and_leaves_pins_and_neighbours() {
         narrow_phase: NarrowPhase::Particles,
         ..ContactSettings::default()
     };
-    let mut detection = all_of(&[ball], &settings, &grid, &particles);
+    let mut detection = all_of(&[ball], &settings, &surface, &particles);
     let last = SubStep {
         index: 9,
         count: 10,
@@ -174,18 +174,11 @@ fn colliders_push_in_the_order_of_their_numbers() {
     let balls = [-0.4_f32, 0.4].map(|x| MovingCollider::ball(1.0, Vec3::X * x, Vec3::X * x));
     let ends = [[0, 1], [1, 0]].map(|order| {
         let mut particles = loose(&[Vec3::Y * 0.5], &[]);
-        let (grid, _) = build(2, 2, 1.0);
+        let (surface, _) = build(2, 2, 1.0);
         let mut detection = Detection::default();
-        detection.begin(1.0);
+        detection.begin(&surface, 1.0, false);
         for id in order {
-            detection.add(
-                id,
-                &balls[id],
-                NarrowPhase::Particles,
-                &[0],
-                &particles,
-                &grid,
-            );
+            detection.add(id, &balls[id], NarrowPhase::Particles, &[0], &particles);
         }
         detection.respond(&mut particles, &ContactSettings::default(), ONLY, |_| {});
         particles.position(0).expect("it exists")

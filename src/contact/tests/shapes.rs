@@ -65,13 +65,13 @@ proptest! {
         let displacements: Vec<Vec3> =
             (0..24).map(|_| random.within(1.0) * random.part()).collect();
         let mut particles = loose(&positions, &displacements);
-        let (grid, _) = build(24, 2, 0.1);
+        let (surface, _) = build(24, 2, 0.1);
         let settings = ContactSettings {
             particle_radius: random.between(0.0, 0.1),
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[collider], &settings, &grid, &particles);
+        let mut detection = all_of(&[collider], &settings, &surface, &particles);
         let substep = SubStep {
             index: 1,
             count: 3,
@@ -101,13 +101,13 @@ proptest! {
         }
         let displacements: Vec<Vec3> = (0..8).map(|_| random.within(0.3)).collect();
         let mut particles = loose(&positions, &displacements);
-        let (grid, _) = build(8, 2, 0.1);
+        let (surface, _) = build(8, 2, 0.1);
         let settings = ContactSettings {
             friction: random.between(0.0, 2.0),
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[collider], &settings, &grid, &particles);
+        let mut detection = all_of(&[collider], &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let deepest = deepest_at(&particles, &collider, 1.0, 0.0);
         prop_assert!(deepest < f64::from(ROUNDING), "{collider:?} {deepest}");

@@ -1,9 +1,11 @@
 //! A ball shot at a free cloth: whether it gets through. The lab uses this, too.
 
+use std::sync::Arc;
+
 use bevy::math::{DVec3, Vec3, bounding::BoundingSphere};
 
 use super::library::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider},
     solver::{Solver, TickStep},
 };
@@ -42,7 +44,8 @@ impl Shot {
         let grid = Cloth::new(SIDE, SIDE, SPACING)
             .grid(Vec3::ONE)
             .expect("a valid grid");
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+        let surface = Arc::new(Surface::of_grid(&grid));
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
         let springs = Springs::of_grid(&grid, &material);
         let mut solver = Solver::new(&springs, &particles);
         let step = TickStep {
@@ -68,13 +71,13 @@ impl Shot {
                 turn: self.spin * step.seconds,
                 ..MovingCollider::ball(self.radius, centre, to)
             };
-            let mut detection = of_all(&ball, &settings, &grid, &particles);
-            let mut before = seen(&particles, &grid, centre);
+            let mut detection = of_all(&ball, &settings, &surface, &particles);
+            let mut before = seen(&particles, &surface, centre);
             let mut is_through = false;
             solver.advance(&mut particles, step, &[], |particles, substep| {
                 let is_pushed = detection.respond(particles, &settings, substep, |_| {});
                 let at = Vec3::from(ball.pose_at(substep.end()).translation);
-                let after = seen(particles, &grid, at);
+                let after = seen(particles, &surface, at);
                 is_through |= before.iter().zip(&after).any(|(a, b)| crosses(*a, *b));
                 before = after;
                 is_pushed
@@ -94,23 +97,25 @@ impl Shot {
 fn of_all(
     ball: &MovingCollider,
     settings: &ContactSettings,
-    grid: &ClothGrid,
+    surface: &Arc<Surface>,
     particles: &ClothParticles,
 ) -> Detection {
     let mut detection = Detection::default();
-    detection.begin(f32::INFINITY);
+    detection.begin(surface, f32::INFINITY, false);
     let all: Vec<u32> = (0..particles.len() as u32).collect();
     let cloth = BoundingSphere::new(Vec3::ZERO, 100.0);
-    let (_, narrow_phase) = detection.probe(ball, settings, grid, 0.0, &cloth);
-    detection.add(0, ball, narrow_phase, &all, particles, grid);
+    let (_, narrow_phase) = detection.probe(ball, settings, surface, 0.0, &cloth);
+    detection.add(0, ball, narrow_phase, &all, particles);
     detection
 }
 
 /// Corners of all triangles, seen from a ball's centre (m).
-fn seen(particles: &ClothParticles, grid: &ClothGrid, centre: Vec3) -> Vec<[DVec3; 3]> {
+fn seen(particles: &ClothParticles, surface: &Surface, centre: Vec3) -> Vec<[DVec3; 3]> {
     let place = |index: u32| particles.position(index as usize).expect("it exists");
     let offset = |index: u32| place(index).as_dvec3() - centre.as_dvec3();
-    grid.triangles()
+    surface
+        .triangles()
+        .iter()
         .map(|corners| corners.map(offset))
         .collect()
 }

@@ -14,13 +14,13 @@ use crate::contact::{
 /// One particle against one collider: where it ends, and its displacement.
 fn meet(collider: MovingCollider, place: Vec3, moved: Vec3, is_swept: bool) -> [Vec3; 2] {
     let mut particles = loose(&[place + moved, Vec3::splat(99.0)], &[moved]);
-    let (grid, _) = build(2, 2, 0.1);
+    let (surface, _) = build(2, 2, 0.1);
     let settings = ContactSettings {
         narrow_phase: NarrowPhase::Particles,
         is_swept,
         ..ContactSettings::default()
     };
-    let mut detection = all_of(&[collider], &settings, &grid, &particles);
+    let mut detection = all_of(&[collider], &settings, &surface, &particles);
     detection.respond(&mut particles, &settings, ONLY, |_| {});
     [
         particles.position(0).expect("it exists"),

@@ -1,5 +1,7 @@
 //! Nothing is missed in the course of a tick, however wild it is.
 
+use std::sync::Arc;
+
 use bevy::math::{DVec3, Vec3};
 use proptest::prelude::*;
 
@@ -8,7 +10,7 @@ use super::{
     random::{Random, cases},
 };
 use crate::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, SpringKind, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, SpringKind, Springs, Surface},
     contact::{ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     solver::{Solver, TickStep},
@@ -18,7 +20,7 @@ const SPACING: f32 = 0.1;
 
 /// A cloth in some violent state, and colliders that move through it.
 struct Scene {
-    grid: ClothGrid,
+    surface: Arc<Surface>,
     springs: Springs,
     particles: ClothParticles,
     colliders: Vec<(usize, MovingCollider)>,
@@ -34,7 +36,8 @@ fn scene(seed: u64, narrow_phase: NarrowPhase) -> Scene {
         .expect("a valid grid");
     let material = ClothMaterial::COTTON;
     let springs = Springs::of_grid(&grid, &material);
-    let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+    let surface = Arc::new(Surface::of_grid(&grid));
+    let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
     let seconds = 1.0 / 60.0;
     let substeps = 1 + random.below(20);
     let crumpled = random.part() * 0.5;
@@ -69,7 +72,7 @@ fn scene(seed: u64, narrow_phase: NarrowPhase) -> Scene {
         })
         .collect();
     Scene {
-        grid,
+        surface,
         springs,
         particles,
         colliders,
@@ -94,7 +97,7 @@ type Outcome = (Vec<Vec3>, Vec<(usize, Vec<u32>, f32)>);
 impl Scene {
     /// As the plugin does it: by the tree or a scan when the tick begins, and again when particles outrun the margin.
     fn detect(&self, margin: f32, by_tree: bool) -> Detection {
-        let tree = QuadTree::of_grid(&self.grid, self.springs.has(SpringKind::Shear));
+        let tree = QuadTree::of_surface(&self.surface, self.springs.has(SpringKind::Shear));
         let stretch = Solver::new(&self.springs, &self.particles).measure(&self.particles);
         let mut bounds = NodeBounds::default();
         let choice = (BoundingVolume::Sphere, BoundRule::RestShape);
@@ -103,27 +106,20 @@ impl Scene {
             .expect("there is such a rule");
         let mut detection = Detection::default();
         let mut query = TopDownQuery::default();
-        detection.begin(margin);
+        detection.begin(&self.surface, margin, false);
         let cloth = self.particles.bounding_sphere();
-        let longest = self.particles.longest_edge();
+        let longest = self.particles.longest_face_reach(&self.surface);
         // In whatever order.
         for (id, collider) in self.colliders.iter().rev() {
             let (probe, narrow_phase) =
-                detection.probe(collider, &self.settings, &self.grid, longest, &cloth);
+                detection.probe(collider, &self.settings, &self.surface, longest, &cloth);
             let found = if by_tree {
                 query.search(&tree, &bounds, &self.particles, &probe)
             } else {
                 query.scan(&self.particles, &probe)
             };
             let found = &query.candidates()[found];
-            detection.add(
-                *id,
-                collider,
-                narrow_phase,
-                found,
-                &self.particles,
-                &self.grid,
-            );
+            detection.add(*id, collider, narrow_phase, found, &self.particles);
         }
         detection
     }
@@ -158,7 +154,7 @@ impl Scene {
 
     fn brute(&self) -> Outcome {
         let colliders: Vec<MovingCollider> = self.colliders.iter().map(|(_, c)| *c).collect();
-        let mut detection = all_of(&colliders, &self.settings, &self.grid, &self.particles);
+        let mut detection = all_of(&colliders, &self.settings, &self.surface, &self.particles);
         let (positions, mut touched) = self.run(&mut detection);
         assert_eq!(detection.requeries(), 0);
         for (id, ..) in &mut touched {

@@ -8,15 +8,19 @@ use super::{
     random::{Random, cases},
 };
 use crate::{
-    cloth::{ClothGrid, ClothParticles},
+    cloth::{ClothParticles, Surface},
     contact::{ContactSettings, MovingCollider, NarrowPhase, triangle::nearest},
 };
 
 const SPACING: f32 = 0.1;
 
-fn triangles(particles: &ClothParticles, grid: &ClothGrid) -> Vec<[Vec3; 3]> {
+fn triangles(particles: &ClothParticles, surface: &Surface) -> Vec<[Vec3; 3]> {
     let place = |index: u32| particles.position(index as usize).expect("it exists");
-    grid.triangles().map(|corners| corners.map(place)).collect()
+    surface
+        .triangles()
+        .iter()
+        .map(|corners| corners.map(place))
+        .collect()
 }
 
 fn settings() -> ContactSettings {
@@ -38,19 +42,19 @@ proptest! {
     fn a_small_ball_dents_a_cell(
         x in 0.3_f32..0.7, y in 0.3_f32..0.7, height in 0.05_f32..0.25, is_below in any::<bool>(),
     ) {
-        let (grid, mut particles) = build(2, 2, SPACING);
+        let (surface, mut particles) = build(2, 2, SPACING);
         let sign = if is_below { -1.0 } else { 1.0 };
         let centre = Vec3::new(x, -y, sign * height) * SPACING;
         let radius = 0.3 * SPACING;
         let ball = MovingCollider::ball(radius, centre, centre);
         let settings = ContactSettings { particle_radius: 0.001, ..settings() };
         let before: Vec<Vec3> = particles.positions().collect();
-        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        let mut detection = all_of(&[ball], &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let reach = radius + 0.001;
         let depth = reach - height * SPACING;
         let tolerance = depth * depth / (0.7 * SPACING) + 1e-6;
-        for triangle in triangles(&particles, &grid) {
+        for triangle in triangles(&particles, &surface) {
             let distance = nearest(triangle, [centre; 2]).offset.length();
             prop_assert!(distance > reach - tolerance, "{} of {reach}", distance);
         }
@@ -67,7 +71,7 @@ proptest! {
     /// momentum goes along the normal.
     #[test]
     fn momentum_goes_along_the_normal(u in 0.2_f32..0.4, v in 0.2_f32..0.4, seed in any::<u64>()) {
-        let (grid, mut particles) = build(2, 2, SPACING);
+        let (surface, mut particles) = build(2, 2, SPACING);
         let mut random = Random(seed);
         let index = 3;
         // The other triangle out of the way.
@@ -81,7 +85,7 @@ proptest! {
         let centre = Vec3::new(u, -v, 0.1) * SPACING;
         let ball = MovingCollider::ball(0.15 * SPACING, centre, centre);
         let settings = ContactSettings { is_swept: false, ..settings() };
-        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        let mut detection = all_of(&[ball], &settings, &surface, &particles);
         let is_moved = detection.respond(&mut particles, &settings, ONLY, |_| {});
         prop_assert!(is_moved);
         let gained: Vec3 = particles.displacements().zip(before).map(|(a, b)| a - b).sum();
@@ -97,14 +101,14 @@ fn pinned_corners_hold() {
     let centre = Vec3::new(0.25, -0.25, 0.1) * SPACING;
     let ball = MovingCollider::ball(0.3 * SPACING, centre, centre);
     for free in [None, Some(0)] {
-        let (grid, mut particles) = build(2, 2, SPACING);
+        let (surface, mut particles) = build(2, 2, SPACING);
         for index in 0..4 {
             if Some(index) != free {
                 particles.set_inverse_mass(index, 0.0).expect("it exists");
             }
         }
         let before: Vec<Vec3> = particles.positions().collect();
-        let mut detection = all_of(&[ball], &settings(), &grid, &particles);
+        let mut detection = all_of(&[ball], &settings(), &surface, &particles);
         let moved = detection.respond(&mut particles, &settings(), ONLY, |_| {});
         assert_eq!(moved, free.is_some());
         for (index, before) in before.into_iter().enumerate() {

@@ -14,14 +14,14 @@ use crate::contact::{ColliderShape, ContactSettings, MovingCollider, NarrowPhase
 fn a_ball_cuts_a_disc() {
     let spacing = 0.02;
     for (radius, height) in [(0.5_f32, 0.05_f32), (0.5, 0.1), (0.5, -0.3), (0.8, 0.45)] {
-        let (grid, mut particles) = build(101, 101, spacing);
+        let (surface, mut particles) = build(101, 101, spacing);
         let centre = Vec3::new(1.003, -0.996, height);
         let ball = MovingCollider::ball(radius, centre, centre);
         let settings = ContactSettings {
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        let mut detection = all_of(&[ball], &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let touch = &detection.touches()[0];
         let (h, a) = (height.abs(), (radius * radius - height * height).sqrt());
@@ -45,14 +45,14 @@ fn a_ball_cuts_a_disc() {
 #[test]
 fn a_small_ball_cuts_a_disc_out_of_a_triangle() {
     for height in [0.0_f32, 0.05, -0.12, 0.19] {
-        let (grid, mut particles) = build(2, 2, 1.0);
+        let (surface, mut particles) = build(2, 2, 1.0);
         let centre = Vec3::new(0.25, -0.3, height);
         let ball = MovingCollider::ball(0.2, centre, centre);
         let settings = ContactSettings {
             narrow_phase: NarrowPhase::Triangles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &settings, &grid, &particles);
+        let mut detection = all_of(&[ball], &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let touch = &detection.touches()[0];
         let area = PI * (0.04 - height * height);
@@ -70,7 +70,7 @@ fn a_small_ball_cuts_a_disc_out_of_a_triangle() {
 /// and below 10⁴ × 6e-8 for sure.
 #[test]
 fn a_half_space_holds_area_times_depth() {
-    let (grid, mut particles) = build(101, 101, 0.02);
+    let (surface, mut particles) = build(101, 101, 0.02);
     let pose = bevy::math::Isometry3d {
         rotation: Quat::from_rotation_arc(Vec3::Y, Vec3::Z),
         ..at(Vec3::Z * 0.3)
@@ -80,7 +80,7 @@ fn a_half_space_holds_area_times_depth() {
         particle_radius: 0.05,
         ..ContactSettings::default()
     };
-    let mut detection = all_of(&[plane], &settings, &grid, &particles);
+    let mut detection = all_of(&[plane], &settings, &surface, &particles);
     detection.respond(&mut particles, &settings, ONLY, |_| {});
     let touch = &detection.touches()[0];
     assert!((touch.area - 4.0).abs() < 4.0 * 6e-4, "{}", touch.area);

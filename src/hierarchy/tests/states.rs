@@ -7,7 +7,7 @@ use proptest::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, SpringKind, Springs},
+    cloth::{Cloth, ClothMaterial, ClothParticles, SpringKind, Springs, Surface},
     hierarchy::{BoundRule, BoundingVolume, Core, NodeBounds, Probe, QuadTree, TopDownQuery},
     solver::Stretch,
 };
@@ -151,7 +151,8 @@ impl State {
             shear_compliance: if self.diagonals { 0.0 } else { f32::INFINITY },
             ..ClothMaterial::COTTON
         };
-        let mut particles = ClothParticles::at_rest(&grid, &material).expect("a valid material");
+        let mut particles =
+            ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("a valid material");
         let rest: Vec<Vec3> = particles.positions().collect();
         let mut seed = self.seed;
         let mut random = || {

@@ -174,11 +174,9 @@ fn a_network_that_is_not_valid_is_refused() {
 fn validate_finds_what_is_broken() {
     let grid = grid(5, 3);
     let break_it = |mend: fn(&mut GridTree)| {
-        let Shape::Grid(mut tree) = QuadTree::of_grid(&grid, true).0 else {
-            panic!("a grid's tree");
-        };
+        let mut tree = GridTree::new(&grid, true);
         mend(&mut tree);
-        QuadTree(Shape::Grid(tree)).validate(15)
+        QuadTree(Arc::new(tree)).validate(15)
     };
     assert_eq!(break_it(|_| {}), Ok(()));
     assert!(break_it(|tree| tree.levels[0].columns[0].children.end -= 1).is_err());
@@ -192,10 +190,10 @@ fn validate_finds_what_is_broken() {
 /// As many particles in rows and columns lie elsewhere than those of a network, which lie in one row.
 #[test]
 fn a_network_is_not_of_particles_in_a_grid() {
-    let grid = Cloth::new(12, 3, 0.1)
-        .grid(Vec3::ONE)
+    let surface = Cloth::new(12, 3, 0.1)
+        .surface(Vec3::ONE)
         .expect("a valid grid");
-    let in_grid = ClothParticles::at_rest(&grid, &ClothMaterial::COTTON).expect("particles");
+    let in_grid = ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("particles");
     let rest: Vec<Vec3> = in_grid.positions().collect();
     let in_row = ClothParticles::new(&rest, &vec![1.0; rest.len()]).expect("particles");
     let tree = QuadTree::of_network(&rest, &[]).expect("a tree");

@@ -13,15 +13,8 @@ use bevy::{
     platform::collections::{HashMap, HashSet},
 };
 
-use super::super::ClothMesh;
+use super::{super::ClothMesh, id::Source};
 use crate::cloth::{Cloth, ClothError, ClothShape, Surface, TriangleMesh};
-
-/// Which mesh, and how often it had been changed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Source {
-    mesh: AssetId<Mesh>,
-    version: u32,
-}
 
 /// How often meshes have been changed since they were loaded; those that never were are not in it.
 #[derive(Resource, Debug, Default)]

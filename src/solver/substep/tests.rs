@@ -1,7 +1,9 @@
 //! Ticks of sub-steps: free fall, damping, momentum, pins.
 
+use bevy::math::Vec3;
+
 use super::*;
-use crate::cloth::{Cloth, ClothMaterial, Pins, Spring, SpringKind};
+use crate::cloth::{Cloth, ClothMaterial, Pins, Spring, SpringKind, Surface};
 
 /// Beyond the end there is nothing to move, in the last block's unused lanes neither.
 #[test]
@@ -39,9 +41,10 @@ fn advance(particles: &mut ClothParticles, springs: &Springs, step: TickStep, pi
 
 fn cloth(material: &ClothMaterial, pins: &Pins) -> (ClothParticles, Springs) {
     let grid = Cloth::new(6, 5, 0.1).grid(Vec3::ONE).expect("a valid grid");
-    let mut particles = ClothParticles::at_rest(&grid, material).expect("a valid material");
+    let surface = Surface::of_grid(&grid);
+    let mut particles = ClothParticles::at_rest(&surface, material).expect("a valid material");
     particles
-        .assign_masses(&grid, material, pins)
+        .assign_masses(&surface, material, pins)
         .expect("valid pins");
     (particles, Springs::of_grid(&grid, material))
 }
