@@ -42,8 +42,8 @@ pub mod solver;
 /// What most games need, to be imported with `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{
-        Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, ClothShape, Corner, Pin, Pins,
-        Surface,
+        Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, ClothShape, Corner, Pin,
+        Pins, Surface,
     };
     pub use crate::contact::{ClothCollider, ContactPoint, NarrowPhase};
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};

@@ -82,7 +82,9 @@ pub enum ClothError {
         pin: Pin,
     },
     /// The asset of a cloth from a mesh is not there, and nothing loads it.
-    #[error("the cloth's mesh has not been loaded, and nothing is loading it: is there a `Mesh3d` with it?")]
+    #[error(
+        "the cloth's mesh has not been loaded, and nothing is loading it: is there a `Mesh3d` with it?"
+    )]
     MeshNotLoaded,
     /// The asset of a cloth from a mesh is being loaded: the cloth waits for it. Neither logged nor marked.
     #[error("the cloth's mesh is being loaded")]

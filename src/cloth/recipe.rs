@@ -221,7 +221,12 @@ impl Cloth {
     /// [`ClothError::Quantity`] for an unevenness that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         let range = |u: f32| (0.0..=0.1).contains(&u);
-        ClothError::check(self.unevenness, range, "unevenness (spacings)", "from 0 to 0.1")?;
+        ClothError::check(
+            self.unevenness,
+            range,
+            "unevenness (spacings)",
+            "from 0 to 0.1",
+        )?;
         Ok(())
     }
 }

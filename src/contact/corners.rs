@@ -207,9 +207,14 @@ pub fn meets_triangles(
     };
     let reach = probe.reach() as f32;
     let layout = particles.layout();
-    let mut faces = found.iter().flat_map(|&particle| surface.faces().of(particle));
+    let mut faces = found
+        .iter()
+        .flat_map(|&particle| surface.faces().of(particle));
     faces.any(|face| {
-        let corners = Corners::of(particles, face.map(|corner| layout.slot_of(corner as usize)));
+        let corners = Corners::of(
+            particles,
+            face.map(|corner| layout.slot_of(corner as usize)),
+        );
         nearest(corners.positions, segment).offset.length_squared() < reach * reach
     })
 }

@@ -8,7 +8,7 @@ use super::{
     MovingCollider, NarrowPhase,
     faces::{ResumePoint, SubstepMotion, push_triangles},
     particle::push_particles,
-    touch::{Candidate, ContactPoint, Fans, ContactSettings, Touch},
+    touch::{Candidate, ContactPoint, ContactSettings, Fans, Touch},
 };
 use crate::{
     cloth::{ClothParticles, Surface},

@@ -36,7 +36,8 @@ impl NodeBounds {
             self.volumes = Volumes::of(volume);
         }
         self.size = tree.size();
-        tree.shape().rebuild(&mut self.volumes, rule, particles, stretch);
+        tree.shape()
+            .rebuild(&mut self.volumes, rule, particles, stretch);
         Ok(())
     }
 
@@ -68,7 +69,9 @@ impl NodeBounds {
             BoundRule::Paper => 0.0,
             BoundRule::Refit | BoundRule::RestShape => particle_radius,
         };
-        tree.shape().volume(&self.volumes, particles, node).inflated(radius)
+        tree.shape()
+            .volume(&self.volumes, particles, node)
+            .inflated(radius)
     }
 
     /// Whether each node's volume holds its particles' centres and, under `Refit`, its children's volumes. Under

@@ -46,7 +46,8 @@ impl TopDownQuery {
     ) -> Range<usize> {
         let first = self.found.candidates.len();
         if tree.matches(particles) && bounds.matches(tree) {
-            tree.shape().search(&bounds.volumes, particles, probe, &mut self.found);
+            tree.shape()
+                .search(&bounds.volumes, particles, probe, &mut self.found);
         }
         first..self.found.candidates.len()
     }
@@ -94,7 +95,12 @@ impl TopDownQuery {
     /// Nodes of `level` that were looked at, once for each search, and those of them that touched.
     pub fn level(&self, tree: &QuadTree, level: usize) -> (usize, usize) {
         let nodes = tree.levels().get(level).cloned().unwrap_or_default();
-        let on_it = || self.found.visits.iter().filter(|(node, _)| nodes.contains(node));
+        let on_it = || {
+            self.found
+                .visits
+                .iter()
+                .filter(|(node, _)| nodes.contains(node))
+        };
         (
             on_it().count(),
             on_it().filter(|(_, touching)| *touching).count(),

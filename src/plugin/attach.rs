@@ -30,21 +30,32 @@ pub(super) struct Targets<'w, 's> {
 
 impl Targets<'_, '_> {
     /// The entity that an attachment names; `known` is the one that it was in the last tick.
-    fn entity(&self, attachment: &ClothAttachment, known: Option<Entity>) -> Result<Entity, ClothError> {
+    fn entity(
+        &self,
+        attachment: &ClothAttachment,
+        known: Option<Entity>,
+    ) -> Result<Entity, ClothError> {
         let name = match &attachment.target {
             ClothTarget::Entity(entity) => return Ok(*entity),
             ClothTarget::Named(name) => name,
         };
-        let is_so_called = |entity: &Entity| self.names.get(*entity).is_ok_and(|(_, its)| its.as_str() == name);
+        let is_so_called = |entity: &Entity| {
+            self.names
+                .get(*entity)
+                .is_ok_and(|(_, its)| its.as_str() == name)
+        };
         let find = || {
             let called = self.names.iter().filter(|(_, its)| its.as_str() == name);
             let exists = |entity: &Entity| global_transform(&self.transforms, *entity).is_ok();
             called.map(|(entity, _)| entity).filter(exists).min()
         };
-        known.filter(is_so_called).or_else(find).ok_or_else(|| ClothError::NoTargetNamed {
-            pin: attachment.pin.clone(),
-            name: name.clone(),
-        })
+        known
+            .filter(is_so_called)
+            .or_else(find)
+            .ok_or_else(|| ClothError::NoTargetNamed {
+                pin: attachment.pin.clone(),
+                name: name.clone(),
+            })
     }
 
     /// Finds where the targets of attachments are.

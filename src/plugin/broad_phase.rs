@@ -50,13 +50,16 @@ pub(super) fn update_bounds(
     let root = built.tree().root_sphere(particles, stretch);
     let centre = frame.to_world(root.center.into());
     let settings = &scratch.contact_settings;
-    let around = scratch.reach + settings.particle_radius + cover(settings, stretch, built.surface());
+    let around =
+        scratch.reach + settings.particle_radius + cover(settings, stretch, built.surface());
     let is_asleep = state.rest.is_asleep();
     let mut is_stale = bounds.is_searched || bounds.is_stale;
     if !is_asleep {
         scratch.near.clear();
         let expects = state.was_outrun;
-        scratch.detection.begin(built.surface(), scratch.reach, expects);
+        scratch
+            .detection
+            .begin(built.surface(), scratch.reach, expects);
         state.rests_on.clear();
         if is_stale {
             search.query.clear();

@@ -56,7 +56,8 @@ fn is_built(wanted: &Wanted, built: &mut ClothBuilt) -> bool {
     }
     // A mesh of the game's is long to compare with.
     if from.changed != wanted.changed {
-        let is_same = from.unevenness == wanted.cloth.unevenness && recipe.shape == wanted.cloth.shape;
+        let is_same =
+            from.unevenness == wanted.cloth.unevenness && recipe.shape == wanted.cloth.shape;
         if !is_same {
             return false;
         }
@@ -121,7 +122,9 @@ fn at_rest(wanted: &Wanted, surface: &Surface) -> Result<ClothParticles, ClothEr
     let mut is_held = vec![false; surface.len()];
     for attachment in wanted.attachments {
         if attachment.pin.validate(surface).is_ok() {
-            attachment.pin.for_each(surface, |index| is_held[index] = true);
+            attachment
+                .pin
+                .for_each(surface, |index| is_held[index] = true);
         }
     }
     particles.make_uneven(surface, wanted.cloth.unevenness, |index| is_held[index]);

@@ -76,7 +76,11 @@ impl ClothBuilt {
     }
 
     /// Gives particles the masses that material and pins give them.
-    pub(super) fn give_masses(&self, of: impl Iterator<Item = usize> + Clone, particles: &mut ClothParticles) {
+    pub(super) fn give_masses(
+        &self,
+        of: impl Iterator<Item = usize> + Clone,
+        particles: &mut ClothParticles,
+    ) {
         let Some(BuiltFrom { material, pins, .. }) = &self.from else {
             return;
         };

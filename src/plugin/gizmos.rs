@@ -241,7 +241,8 @@ impl Drawing {
         let root = tree.root_sphere(cloth.particles, stretch);
         for (_, collider) in &scratch.near {
             let (probe, _) =
-                scratch.detection
+                scratch
+                    .detection
                     .probe(collider, &scratch.contact_settings, surface, 0.0, &root);
             self.query
                 .search(tree, &self.bounds, cloth.particles, &probe);

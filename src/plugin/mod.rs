@@ -55,13 +55,13 @@ pub use fault::ClothFault;
 pub use frame::ClothFrame;
 #[cfg(feature = "gizmos")]
 pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
+pub use gravity::ClothGravity;
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
 #[cfg(feature = "egui")]
 pub use panel::{ClothColliderSpeed, ClothPanel, ClothPanelPlugin};
 #[cfg(feature = "rapier")]
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
-pub use gravity::ClothGravity;
 pub use scratch::ClothScratch;
 pub use sets::ClothSystems;
 pub use simulation::ClothPlugin;

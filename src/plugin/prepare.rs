@@ -94,7 +94,13 @@ pub(super) fn prepare_cloths(
         }
         // What is on its way is no fault.
         if outcome != Err(ClothError::MeshLoading) {
-            ClothFault::report(&mut commands, cloth.entity, cloth.fault, Part::Cloth, outcome);
+            ClothFault::report(
+                &mut commands,
+                cloth.entity,
+                cloth.fault,
+                Part::Cloth,
+                outcome,
+            );
         }
     }
 }
@@ -116,7 +122,11 @@ impl PreparingItem<'_, '_> {
         let attachments = self.attachments.map_or(&[][..], ClothAttachments::as_slice);
         let (particles, state) = (&mut self.particles, &mut *self.state);
         let (built, scratch) = (&mut *self.built, &mut *self.scratch);
-        let known = built.shared.recipe.as_ref().and_then(|recipe| recipe.source);
+        let known = built
+            .shared
+            .recipe
+            .as_ref()
+            .and_then(|recipe| recipe.source);
         let wanted = Wanted {
             cloth: &self.cloth,
             changed: self.cloth.last_changed(),
@@ -139,12 +149,22 @@ impl PreparingItem<'_, '_> {
             state.largest_speed = check_particles(particles)?;
         }
         let surface = built.surface().clone();
-        targets.find(attachments, &surface, &mut state.targets, &mut scratch.targets)?;
+        targets.find(
+            attachments,
+            &surface,
+            &mut state.targets,
+            &mut scratch.targets,
+        )?;
         scratch.teleports = self.teleport.is_some();
         if scratch.teleports {
             *self.frame = frame;
         } else if seconds > 0.0 && *self.frame != frame {
-            carry(particles, self.frame.isometry(), frame.isometry(), &mut scratch.pins);
+            carry(
+                particles,
+                self.frame.isometry(),
+                frame.isometry(),
+                &mut scratch.pins,
+            );
             state.rest.disturb();
             *self.frame = frame;
         }
@@ -170,7 +190,12 @@ impl PreparingItem<'_, '_> {
             state.rest.disturb();
         }
         let acceleration = self.frame.isometry().rotation.inverse() * inputs.gravity;
-        built.tether(settings.tethers, material, particles, inputs.gravity.length());
+        built.tether(
+            settings.tethers,
+            material,
+            particles,
+            inputs.gravity.length(),
+        );
         let known = Some((*settings, inputs.search, inputs.narrow_phase, acceleration));
         if state.known != known || !scratch.pins.is_empty() || !settings.sleeps {
             state.known = known;
@@ -195,7 +220,13 @@ impl PreparingItem<'_, '_> {
             narrow_phase: inputs.narrow_phase,
             ..ContactSettings::default()
         };
-        scratch.reach = reach(state, &surface, &scratch.pins, acceleration.length(), seconds);
+        scratch.reach = reach(
+            state,
+            &surface,
+            &scratch.pins,
+            acceleration.length(),
+            seconds,
+        );
         update_bounds(
             particles,
             &self.frame,

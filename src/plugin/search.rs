@@ -7,11 +7,8 @@ use bevy::{
 };
 
 use super::{
-    ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats,
-    broad_phase::cover,
-    clock::milliseconds_since,
-    colliders::ColliderMotion,
-    components::BroadPhaseBounds,
+    ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats, broad_phase::cover,
+    clock::milliseconds_since, colliders::ColliderMotion, components::BroadPhaseBounds,
 };
 use crate::{
     cloth::ClothParticles,
@@ -118,7 +115,10 @@ impl SearchingItem<'_, '_> {
         }
         self.broad_phase.is_searched = true;
         let stretch = self.state.stretch.bound;
-        let (method, reason) = self.scratch.search.chosen(self.particles.len(), near, stretch);
+        let (method, reason) = self
+            .scratch
+            .search
+            .chosen(self.particles.len(), near, stretch);
         (self.stats.search, self.stats.reason) = (method, reason);
         if let SearchMethod::Tree(volume, rule) = method {
             let start = Instant::now();
@@ -162,13 +162,8 @@ impl SearchingItem<'_, '_> {
             if rests_on.contains(&(entity, collider)) {
                 still += 1;
             } else if is_near {
-                let (probe, narrow_phase) = sleep_detection.probe(
-                    &collider,
-                    contact_settings,
-                    surface,
-                    cover,
-                    root,
-                );
+                let (probe, narrow_phase) =
+                    sleep_detection.probe(&collider, contact_settings, surface, cover, root);
                 query.clear();
                 query.search(tree, bounds, self.particles, &probe);
                 let met = match narrow_phase {
@@ -197,7 +192,8 @@ impl SearchingItem<'_, '_> {
         let mut is_dragged = false;
         for (id, (_, collider)) in scratch.near.iter().enumerate() {
             let (probe, narrow_phase) =
-                scratch.detection
+                scratch
+                    .detection
                     .probe(collider, &scratch.contact_settings, surface, cover, &root);
             let found = match self.stats.search {
                 SearchMethod::Tree(..) => query.search(tree, bounds, self.particles, &probe),
@@ -205,14 +201,20 @@ impl SearchingItem<'_, '_> {
             };
             is_dragged |= !found.is_empty() && collider.max_surface_travel(1.0) > 0.0;
             let found = &query.candidates()[found];
-            scratch.detection
+            scratch
+                .detection
                 .add(id, collider, narrow_phase, found, self.particles);
         }
         if is_dragged {
             self.state.rest.disturb();
         }
         let by_triangles = |touch: &&Touch| touch.narrow_phase == NarrowPhase::Triangles;
-        self.stats.by_triangles = scratch.detection.touches().iter().filter(by_triangles).count();
+        self.stats.by_triangles = scratch
+            .detection
+            .touches()
+            .iter()
+            .filter(by_triangles)
+            .count();
         self.stats.nodes_visited = query.nodes_visited();
         self.stats.leaf_tests = query.leaf_tests();
         self.stats.query_ms = milliseconds_since(start);

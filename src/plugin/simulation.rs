@@ -1,9 +1,7 @@
 //! The plugin that simulates: system sets, schedule, gravity.
 
 #[cfg(feature = "mesh")]
-use bevy::{
-    app::First, asset::AssetEvent, ecs::message::Messages, mesh::Mesh,
-};
+use bevy::{app::First, asset::AssetEvent, ecs::message::Messages, mesh::Mesh};
 use bevy::{
     app::{App, FixedUpdate, Plugin},
     ecs::{
@@ -22,6 +20,8 @@ use bevy::{
     time::Time,
 };
 
+#[cfg(feature = "mesh")]
+use super::source::{ChangedMeshes, note_changed_meshes};
 use super::{
     ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
     ClothLimitExceeded, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
@@ -37,8 +37,6 @@ use super::{
     shared::SharedParts,
     tick::integrate,
 };
-#[cfg(feature = "mesh")]
-use super::source::{ChangedMeshes, note_changed_meshes};
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, Pins},
     contact::{ClothCollider, NarrowPhase},
@@ -130,7 +128,10 @@ impl Plugin for ClothPlugin {
 
     fn finish(&self, app: &mut App) {
         #[cfg(feature = "mesh")]
-        if app.world().contains_resource::<Messages<AssetEvent<Mesh>>>() {
+        if app
+            .world()
+            .contains_resource::<Messages<AssetEvent<Mesh>>>()
+        {
             app.init_resource::<ChangedMeshes>()
                 .add_systems(First, note_changed_meshes);
         }

@@ -1,11 +1,11 @@
 //! Where the triangles of a cloth from a mesh come from.
 
-#[cfg(not(feature = "mesh"))]
-mod none;
 #[cfg(feature = "mesh")]
 mod asset;
 #[cfg(feature = "mesh")]
 mod id;
+#[cfg(not(feature = "mesh"))]
+mod none;
 
 #[cfg(feature = "mesh")]
 pub(super) use asset::{ChangedMeshes, Sources, note_changed_meshes};

@@ -90,7 +90,8 @@ impl IntegratingItem<'_, '_> {
         self.state.written = Some(self.particles.last_changed());
         self.state.was_outrun = self.scratch.detection.was_outrun();
         self.remember_contacts();
-        self.contacts.renew(&self.scratch.near, &self.scratch.detection);
+        self.contacts
+            .renew(&self.scratch.near, &self.scratch.detection);
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();

@@ -36,7 +36,8 @@ impl ListSweep {
         let none = (layout.blocks() * LANES) as u32;
         let packet = |springs: &[Spring]| {
             let of = |at: usize| springs.get(at);
-            let end = |at: usize, which: usize| of(at).map_or(none, |spring| row_of(spring.ends[which]));
+            let end =
+                |at: usize, which: usize| of(at).map_or(none, |spring| row_of(spring.ends[which]));
             let numbers = |number: &dyn Fn(&Spring) -> f32, without: f32| {
                 Vec4::from_array(std::array::from_fn(|at| of(at).map_or(without, number)))
             };
@@ -47,8 +48,13 @@ impl ListSweep {
                 compliance: numbers(&|spring| spring.compliance, f32::INFINITY),
             }
         };
-        let colours = springs.colours.iter().map(|colour| &springs.springs[colour.clone()]);
-        let packets = colours.flat_map(|colour| colour.chunks(SPRINGS)).map(packet);
+        let colours = springs
+            .colours
+            .iter()
+            .map(|colour| &springs.springs[colour.clone()]);
+        let packets = colours
+            .flat_map(|colour| colour.chunks(SPRINGS))
+            .map(packet);
         Self {
             springs: springs.clone(),
             packets: packets.collect(),
@@ -63,7 +69,8 @@ impl ListSweep {
         let of_rows = self.rows.chunks_exact_mut(strip * LANES);
         for (rows, blocks) in of_rows.zip(blocks.chunks_exact(strip)) {
             let mut each = rows.chunks_exact_mut(strip);
-            let mut strips: [&mut [Row]; LANES] = std::array::from_fn(|_| each.next().unwrap_or_default());
+            let mut strips: [&mut [Row]; LANES] =
+                std::array::from_fn(|_| each.next().unwrap_or_default());
             for (at, block) in blocks.iter().enumerate() {
                 let view = block.view();
                 for (lane, strip) in strips.iter_mut().enumerate() {
@@ -82,12 +89,14 @@ impl ListSweep {
         let of_rows = self.rows.chunks_exact(strip * LANES);
         for (rows, blocks) in of_rows.zip(blocks.chunks_exact_mut(strip)) {
             let mut strips = rows.chunks_exact(strip);
-            let strips: [&[Row]; LANES] = std::array::from_fn(|_| strips.next().unwrap_or_default());
+            let strips: [&[Row]; LANES] =
+                std::array::from_fn(|_| strips.next().unwrap_or_default());
             for (at, block) in blocks.iter_mut().enumerate() {
                 let view = block.view_mut();
                 for (lane, strip) in strips.iter().enumerate() {
                     let Row { moved, .. } = strip[at];
-                    (view[DX + lane], view[DY + lane], view[DZ + lane]) = (moved.x, moved.y, moved.z);
+                    (view[DX + lane], view[DY + lane], view[DZ + lane]) =
+                        (moved.x, moved.y, moved.z);
                 }
             }
         }

@@ -43,9 +43,8 @@ pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f
     for packet in packets {
         let a = packet.from.map(|end| rows[end as usize]);
         let b = packet.to.map(|end| rows[end as usize]);
-        let ways: [Vec4; SPRINGS] = std::array::from_fn(|at| {
-            (b[at].place - a[at].place) + (b[at].moved - a[at].moved)
-        });
+        let ways: [Vec4; SPRINGS] =
+            std::array::from_fn(|at| (b[at].place - a[at].place) + (b[at].moved - a[at].moved));
         let [x, y, z] = coordinates(ways);
         let (weight_a, weight_b) = (weights(&a), weights(&b));
         let q = x * x + y * y + z * z;

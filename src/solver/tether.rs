@@ -90,8 +90,8 @@ impl Lengths<'_> {
         if !flat.has_threads || bias == 0.0 {
             return straight * stretch;
         }
-        let sheared = straight
-            * (stretch + self.material.shear_compliance * self.tension * bias * bias);
+        let sheared =
+            straight * (stretch + self.material.shear_compliance * self.tension * bias * bias);
         let threads = (across + down) * stretch;
         sheared.min(threads)
     }
@@ -122,14 +122,26 @@ impl Lengths<'_> {
             return sources.into_iter().enumerate().map(of_sources).collect();
         };
         let tether = |particle: usize, pin: u32| {
-            (pin, self.straight(flat, particle, pinned[pin as usize] as usize))
+            (
+                pin,
+                self.straight(flat, particle, pinned[pin as usize] as usize),
+            )
         };
         if is_few {
-            let to = |pin: u32| particles.clone().map(|particle| tether(particle, pin)).collect();
+            let to = |pin: u32| {
+                particles
+                    .clone()
+                    .map(|particle| tether(particle, pin))
+                    .collect()
+            };
             return (0..pinned.len() as u32).map(to).collect();
         }
         let nearest = nearest_pins(flat, self.surface.graph(), pinned);
-        vec![particles.map(|particle| tether(particle, nearest[particle])).collect()]
+        vec![
+            particles
+                .map(|particle| tether(particle, nearest[particle]))
+                .collect(),
+        ]
     }
 }
 
@@ -167,7 +179,11 @@ impl Tethers {
             let squares = squares.map(|((_, length), inverse_mass)| {
                 // Nothing moves a pin, however far it is from others.
                 let is_pinned = inverse_mass == 0.0;
-                if is_pinned { ENDLESS } else { (length * length).min(ENDLESS) }
+                if is_pinned {
+                    ENDLESS
+                } else {
+                    (length * length).min(ENDLESS)
+                }
             });
             Layer {
                 pattern_of: pins.iter().map(index).collect(),
@@ -332,7 +348,9 @@ mod tests {
     #[test]
     fn each_particle_gets_its_nearest_pin() {
         let cloth = Cloth::new(37, 23, 0.1);
-        let surface = cloth.surface(Vec3::new(1.0, 1.5, 1.0)).expect("a valid grid");
+        let surface = cloth
+            .surface(Vec3::new(1.0, 1.5, 1.0))
+            .expect("a valid grid");
         let flat = surface.flat().expect("a grid is flat");
         for count in [1, 5, 17, 60] {
             let place = |pin: u32| (pin * 7919 + 3) % 23 * 37 + (pin * 104_729 + 11) % 37;
@@ -344,7 +362,10 @@ mod tests {
                 let found = distance(pinned[nearest as usize]);
                 let truth = pinned.iter().copied().map(distance);
                 let truth = truth.fold(f32::INFINITY, f32::min);
-                assert!(found <= truth + 0.1, "{count} pins, {particle}: {found} {truth}");
+                assert!(
+                    found <= truth + 0.1,
+                    "{count} pins, {particle}: {found} {truth}"
+                );
             }
         }
     }

@@ -55,7 +55,11 @@ impl ClothParticles {
     /// A mass that a float can't hold or invert.
     pub fn at_rest(surface: &Surface, material: &ClothMaterial) -> Result<Self, ClothError> {
         let mut particles = Self::of_layout(Layout::of(surface));
-        for (&position, slot) in surface.rest_positions().iter().zip(particles.layout.slots()) {
+        for (&position, slot) in surface
+            .rest_positions()
+            .iter()
+            .zip(particles.layout.slots())
+        {
             particles.blocks[slot.block].set_position(slot.lane, position);
         }
         particles.assign_masses(surface, material, &Pins::none())?;

@@ -66,7 +66,11 @@ impl ClothParticles {
     }
 
     fn check_mass(surface: &Surface, material: &ClothMaterial) -> Result<(), ClothError> {
-        let smallest = surface.areas().iter().copied().fold(f32::INFINITY, f32::min);
+        let smallest = surface
+            .areas()
+            .iter()
+            .copied()
+            .fold(f32::INFINITY, f32::min);
         ClothError::check(
             material.areal_density * smallest,
             |mass| (1.0e-15..1.0e15).contains(&mass),
@@ -159,7 +163,12 @@ impl ClothParticles {
     }
 
     /// Gives a particle the mass that surface and material give it.
-    pub(crate) fn assign_mass(&mut self, index: usize, surface: &Surface, material: &ClothMaterial) {
+    pub(crate) fn assign_mass(
+        &mut self,
+        index: usize,
+        surface: &Surface,
+        material: &ClothMaterial,
+    ) {
         let mass = material.areal_density * surface.area_of(index);
         let Slot { block, lane } = self.layout.slot_of(index);
         self.blocks[block].set_inverse_mass(lane, 1.0 / mass);

@@ -26,7 +26,11 @@ impl Pin {
                 let none = "none".to_string();
                 return Err(ClothError::NoSuchAttribute {
                     pin: pin(),
-                    attributes: if names.is_empty() { none } else { names.join(", ") },
+                    attributes: if names.is_empty() {
+                        none
+                    } else {
+                        names.join(", ")
+                    },
                 });
             }
             (_, None) => return Err(ClothError::PinNeedsGrid { pin: pin() }),
@@ -55,18 +59,30 @@ impl Pin {
 
     /// Calls `pinned` with the index of each particle of `surface` that it names, if it is valid for it.
     pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
-        let places = || surface.rest_positions().iter().map(|place| *place / surface.scale());
+        let places = || {
+            surface
+                .rest_positions()
+                .iter()
+                .map(|place| *place / surface.scale())
+        };
         match self {
             Self::Index(index) => pinned(*index),
-            Self::Vertex(vertex) => surface.particle_of_vertex(*vertex).into_iter().for_each(pinned),
+            Self::Vertex(vertex) => surface
+                .particle_of_vertex(*vertex)
+                .into_iter()
+                .for_each(pinned),
             Self::Near { point, radius } => {
                 // To a rounding of where they are.
-                let near = |place: bevy::math::Vec3| place.distance(*point) <= radius + 1.0e-6 * place.length();
+                let near = |place: bevy::math::Vec3| {
+                    place.distance(*point) <= radius + 1.0e-6 * place.length()
+                };
                 let found = places().enumerate().filter(|(_, place)| near(*place));
                 found.for_each(|(index, _)| pinned(index));
             }
             Self::AtRest(predicate) => {
-                let found = places().enumerate().filter(|(_, place)| predicate.holds(*place));
+                let found = places()
+                    .enumerate()
+                    .filter(|(_, place)| predicate.holds(*place));
                 found.for_each(|(index, _)| pinned(index));
             }
             Self::Attribute {
@@ -76,13 +92,20 @@ impl Pin {
             } => {
                 let attribute = surface.attributes().iter().find(|each| each.name() == name);
                 let values = attribute.map_or(&[][..], |attribute| attribute.values());
-                let is_above = |value: &[f32; 4]| value.get(*channel).is_some_and(|value| value > above);
-                let found = values.iter().enumerate().filter(|(_, value)| is_above(value));
+                let is_above =
+                    |value: &[f32; 4]| value.get(*channel).is_some_and(|value| value > above);
+                let found = values
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, value)| is_above(value));
                 found.for_each(|(index, _)| pinned(index));
             }
             _ => {
                 if let Some(grid) = surface.as_grid() {
-                    self.for_each_cell(grid, |row, column| pinned(grid.index(row, column) as usize));
+                    self.for_each_cell(
+                        grid,
+                        |row, column| pinned(grid.index(row, column) as usize),
+                    );
                 }
             }
         }
@@ -105,7 +128,11 @@ impl Pin {
                 .cells()
                 .filter(|&(row, column)| predicate.holds(row, column))
                 .for_each(|(row, column)| cell(row, column)),
-            Self::Index(_) | Self::Vertex(_) | Self::Near { .. } | Self::AtRest(_) | Self::Attribute { .. } => {}
+            Self::Index(_)
+            | Self::Vertex(_)
+            | Self::Near { .. }
+            | Self::AtRest(_)
+            | Self::Attribute { .. } => {}
         }
     }
 }

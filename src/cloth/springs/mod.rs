@@ -68,7 +68,8 @@ impl SpringList {
         colour_of.sort_unstable();
         for group in colour_of.chunk_by(|(a, _), (b, _)| a == b) {
             let start = self.springs.len();
-            self.springs.extend(group.iter().map(|&(_, index)| springs[index]));
+            self.springs
+                .extend(group.iter().map(|&(_, index)| springs[index]));
             self.colours.push(start..self.springs.len());
         }
     }
@@ -184,7 +185,11 @@ impl Springs {
         let bend = stiffness(material.bend_compliance);
         let shear = stiffness(material.shear_compliance) - stiffness(material.stretch_compliance);
         // Rigid stretch leaves nothing to add, not even to rigid shear.
-        let shear = if material.stretch_compliance > 0.0 { shear.max(0.0) } else { 0.0 };
+        let shear = if material.stretch_compliance > 0.0 {
+            shear.max(0.0)
+        } else {
+            0.0
+        };
         let across = stiffness(bend + shear);
         let compliance = |kind| match kind {
             SpringKind::Structural => material.stretch_compliance,

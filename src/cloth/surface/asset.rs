@@ -2,7 +2,10 @@
 
 use bevy::{
     math::{Vec2, Vec3},
-    mesh::{Indices, Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues},
+    mesh::{
+        Indices, Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology,
+        VertexAttributeValues,
+    },
 };
 
 use super::{TriangleMesh, VertexAttribute};
@@ -31,16 +34,21 @@ impl TriangleMesh {
             Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),
             Err(_) => Ok(None),
         };
-        let Some(VertexAttributeValues::Float32x3(positions)) = read(Mesh::ATTRIBUTE_POSITION)? else {
+        let Some(VertexAttributeValues::Float32x3(positions)) = read(Mesh::ATTRIBUTE_POSITION)?
+        else {
             return Err(ClothError::MeshWithoutPositions);
         };
         let triangles = triangles(mesh, positions.len())?;
         let vectors = |values: Option<&VertexAttributeValues>| match values {
-            Some(VertexAttributeValues::Float32x3(values)) => values.iter().copied().map(Vec3::from).collect(),
+            Some(VertexAttributeValues::Float32x3(values)) => {
+                values.iter().copied().map(Vec3::from).collect()
+            }
             _ => Vec::new(),
         };
         let uvs = match read(Mesh::ATTRIBUTE_UV_0)? {
-            Some(VertexAttributeValues::Float32x2(values)) => values.iter().copied().map(Vec2::from).collect(),
+            Some(VertexAttributeValues::Float32x2(values)) => {
+                values.iter().copied().map(Vec2::from).collect()
+            }
             _ => Vec::new(),
         };
         let attributes = mesh.attributes().filter_map(|(attribute, values)| {
@@ -84,7 +92,9 @@ fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> 
         PrimitiveTopology::TriangleStrip => {
             let triangles = indices.array_windows::<3>().enumerate();
             // Every second one runs the other way round.
-            let turned = |(index, &[a, b, c]): (usize, &[u32; 3])| if index % 2 == 0 { [a, b, c] } else { [b, a, c] };
+            let turned = |(index, &[a, b, c]): (usize, &[u32; 3])| {
+                if index % 2 == 0 { [a, b, c] } else { [b, a, c] }
+            };
             Ok(triangles.map(turned).collect())
         }
         topology => Err(ClothError::MeshTopology {
@@ -96,20 +106,25 @@ fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> 
 /// Up to four numbers for each vertex, if they are numbers of a kind that artists paint.
 fn numbers(values: &VertexAttributeValues) -> Option<Vec<[f32; 4]>> {
     fn filled<const N: usize>(values: &[[f32; N]]) -> Vec<[f32; 4]> {
-        let fill = |value: &[f32; N]| std::array::from_fn(|at| value.get(at).copied().unwrap_or(0.0));
+        let fill =
+            |value: &[f32; N]| std::array::from_fn(|at| value.get(at).copied().unwrap_or(0.0));
         values.iter().map(fill).collect()
     }
     Some(match values {
-        VertexAttributeValues::Float32(values) => values.iter().map(|value| [*value, 0.0, 0.0, 0.0]).collect(),
+        VertexAttributeValues::Float32(values) => {
+            values.iter().map(|value| [*value, 0.0, 0.0, 0.0]).collect()
+        }
         VertexAttributeValues::Float32x2(values) => filled(values),
         VertexAttributeValues::Float32x3(values) => filled(values),
         VertexAttributeValues::Float32x4(values) => filled(values),
-        VertexAttributeValues::Unorm8x4(values) => {
-            values.iter().map(|value| value.map(|channel| f32::from(channel) / 255.0)).collect()
-        }
-        VertexAttributeValues::Unorm16x4(values) => {
-            values.iter().map(|value| value.map(|channel| f32::from(channel) / 65535.0)).collect()
-        }
+        VertexAttributeValues::Unorm8x4(values) => values
+            .iter()
+            .map(|value| value.map(|channel| f32::from(channel) / 255.0))
+            .collect(),
+        VertexAttributeValues::Unorm16x4(values) => values
+            .iter()
+            .map(|value| value.map(|channel| f32::from(channel) / 65535.0))
+            .collect(),
         _ => return None,
     })
 }

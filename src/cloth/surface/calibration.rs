@@ -38,7 +38,10 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
     let frames: Vec<Frame> = normals.iter().map(|normal| Frame::new(*normal)).collect();
     let square = |link: &Link| f64::from(link.rest_length).powi(2);
     // Stiffness × length² of a patch's springs, before and after: what they stand for (m²).
-    let areas: Vec<f64> = links.iter().map(|link| square(link) / f64::from(link.slenderness)).collect();
+    let areas: Vec<f64> = links
+        .iter()
+        .map(|link| square(link) / f64::from(link.slenderness))
+        .collect();
     let mut corrected = areas.clone();
     for _ in 0..PASSES {
         let star = |particle: usize| {
@@ -46,12 +49,23 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
             for &(other, at) in graph.of(particle as u32) {
                 let way = rest[other as usize] - rest[particle];
                 let (at, length) = (at as usize, f64::from(way.length()));
-                star.add(frames[particle].direction(way), length, corrected[at], areas[at]);
+                star.add(
+                    frames[particle].direction(way),
+                    length,
+                    corrected[at],
+                    areas[at],
+                );
             }
             star.relaxed()
         };
         let stars: Vec<Option<Star>> = (0..rest.len())
-            .map(|particle| if is_border[particle] { None } else { star(particle) })
+            .map(|particle| {
+                if is_border[particle] {
+                    None
+                } else {
+                    star(particle)
+                }
+            })
             .collect();
         let compliance = |particle: usize| {
             let neighbours = graph.of(particle as u32).iter().map(|near| near.0 as usize);
@@ -72,7 +86,8 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
             };
             // Without a whole star near, nothing is known.
             let known = [given(a), given(b)].into_iter().flatten();
-            let (count, sum) = known.fold((0.0, 0.0), |(count, sum), given| (count + 1.0, sum + given));
+            let (count, sum) =
+                known.fold((0.0, 0.0), |(count, sum), given| (count + 1.0, sum + given));
             if count > 0.0 && sum.is_finite() {
                 *corrected *= (sum / count).clamp(LIMITS[0], LIMITS[1]);
             }
@@ -136,7 +151,8 @@ impl Springs {
         let outer = DMat3::from_cols(strain * strain.x, strain * strain.y, strain * strain.z);
         let stiffness = corrected / (length * length);
         self.affine += outer * (corrected / 2.0);
-        self.holding += DMat2::from_cols(direction * direction.x, direction * direction.y) * stiffness;
+        self.holding +=
+            DMat2::from_cols(direction * direction.x, direction * direction.y) * stiffness;
         self.pulling[0] += strain * (direction.x * stiffness * length);
         self.pulling[1] += strain * (direction.y * stiffness * length);
         self.area += area / 6.0;
@@ -145,7 +161,10 @@ impl Springs {
     fn relaxed(&self) -> Option<Star> {
         let held = self.holding.inverse();
         let [a, b] = self.pulling;
-        let moved = [a * held.x_axis.x + b * held.y_axis.x, a * held.x_axis.y + b * held.y_axis.y];
+        let moved = [
+            a * held.x_axis.x + b * held.y_axis.x,
+            a * held.x_axis.y + b * held.y_axis.y,
+        ];
         let column = |at: usize| moved[0] * a[at] + moved[1] * b[at];
         let lost = DMat3::from_cols(column(0), column(1), column(2));
         lost.is_finite().then_some(Star {
@@ -211,7 +230,10 @@ mod tests {
         let is_border: Vec<bool> = (0..7).map(|particle| particle > 0).collect();
         calibrate(&mut links, &rest, &[Vec3::Y; 7], &is_border);
         for (link, before) in links.iter().zip(&before) {
-            assert!((link.slenderness / before.slenderness - 1.0).abs() < 1.0e-4, "{link:?}");
+            assert!(
+                (link.slenderness / before.slenderness - 1.0).abs() < 1.0e-4,
+                "{link:?}"
+            );
         }
         // Without any whole star, too.
         calibrate(&mut links, &rest, &[Vec3::Y; 7], &[true; 7]);
@@ -221,14 +243,23 @@ mod tests {
     #[test]
     fn turned_stars_are_the_same() {
         let mut springs = Springs::NONE;
-        for (angle, area) in [(0.1_f64, 1.0), (1.3, 1.2), (2.2, 0.7), (4.0, 1.1), (5.0, 0.9)] {
+        for (angle, area) in [
+            (0.1_f64, 1.0),
+            (1.3, 1.2),
+            (2.2, 0.7),
+            (4.0, 1.1),
+            (5.0, 0.9),
+        ] {
             springs.add(DVec2::from_angle(angle), 0.1, area, area);
         }
         let star = springs.relaxed().expect("enough directions");
         let mut turned = Star::NONE;
         let angle = DVec2::from_angle(0.7);
         turned.add(&star, angle);
-        let (compliance, other) = (star.compliance().expect("it is"), turned.compliance().expect("it is"));
+        let (compliance, other) = (
+            star.compliance().expect("it is"),
+            turned.compliance().expect("it is"),
+        );
         for direction in [0.0_f64, 0.5, 1.5] {
             let here = strain(DVec2::from_angle(direction));
             let there = strain(DVec2::from_angle(direction + 0.7));

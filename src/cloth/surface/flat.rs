@@ -18,7 +18,10 @@ pub(crate) struct Flat {
 impl Flat {
     /// From one particle to another in the plane (m).
     pub fn between(&self, a: usize, b: usize) -> [f32; 2] {
-        (self.places[a] - self.places[b]).abs().to_array().map(|way| way as f32)
+        (self.places[a] - self.places[b])
+            .abs()
+            .to_array()
+            .map(|way| way as f32)
     }
 
     /// The plane of particles at `rest` (m) with faces of an `area` in all (m²), if they lie in one and there is neither a
@@ -66,7 +69,10 @@ fn hull_area(places: &[DVec2]) -> f64 {
         }
         let origin = hull.first().copied().unwrap_or_default();
         let pairs = hull.windows(2);
-        pairs.map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin)).sum::<f64>() / 2.0
+        pairs
+            .map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin))
+            .sum::<f64>()
+            / 2.0
     };
     chain(&mut sorted.iter().copied()) + chain(&mut sorted.iter().rev().copied())
 }
@@ -77,7 +83,8 @@ mod tests {
 
     #[test]
     fn a_square_is_flat_and_convex_and_one_with_a_hole_or_a_fold_is_not() {
-        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(x, 0.5, y));
+        let square =
+            [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(x, 0.5, y));
         let faces = [[0, 2, 1], [0, 3, 2]];
         let flat = Flat::find(&square, &faces, 1.0).expect("it is flat");
         assert!((flat.places[0].distance(flat.places[2]) - 2.0_f64.sqrt()).abs() < 1e-12);

@@ -14,8 +14,12 @@ impl Surface {
         let spacing = grid.spacing();
         let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
         Self {
-            rest: cells().map(|(row, column)| grid.rest_position(row, column)).collect(),
-            areas: cells().map(|(row, column)| grid.tributary_area(row, column)).collect(),
+            rest: cells()
+                .map(|(row, column)| grid.rest_position(row, column))
+                .collect(),
+            areas: cells()
+                .map(|(row, column)| grid.tributary_area(row, column))
+                .collect(),
             normals: vec![grid.normal()],
             particle_of_vertex: None,
             attributes: Vec::new(),
@@ -52,17 +56,27 @@ mod tests {
 
     #[test]
     fn is_the_grid_in_other_words() {
-        let grid = Cloth::new(5, 4, 0.5).grid(Vec3::new(1.0, 2.0, 1.0)).expect("a valid grid");
+        let grid = Cloth::new(5, 4, 0.5)
+            .grid(Vec3::new(1.0, 2.0, 1.0))
+            .expect("a valid grid");
         let surface = Surface::of_grid(&grid);
         let cells: Vec<(u32, u32)> = grid.cells().collect();
         for (index, &(row, column)) in cells.iter().enumerate() {
-            assert_eq!(surface.rest_positions()[index], grid.rest_position(row, column));
+            assert_eq!(
+                surface.rest_positions()[index],
+                grid.rest_position(row, column)
+            );
             assert_eq!(surface.area_of(index), grid.tributary_area(row, column));
             assert_eq!(surface.particle_of_vertex(index), Some(index));
             let owned = surface.faces().of(index as u32);
             let begins_cell = row < 3 && column < 4;
             assert_eq!(owned.len(), if begins_cell { 2 } else { 0 });
-            let neighbours: Vec<u32> = surface.graph().of(index as u32).iter().map(|near| near.0).collect();
+            let neighbours: Vec<u32> = surface
+                .graph()
+                .of(index as u32)
+                .iter()
+                .map(|near| near.0)
+                .collect();
             let expected: Vec<u32> = cells
                 .iter()
                 .filter(|cell| **cell != (row, column))

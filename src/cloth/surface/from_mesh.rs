@@ -48,22 +48,34 @@ impl Surface {
 
 fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> {
     let range = "zero or more, and finite";
-    ClothError::check(weld, |w| w >= 0.0 && w.is_finite(), "weld distance (m)", range)?;
+    ClothError::check(
+        weld,
+        |w| w >= 0.0 && w.is_finite(),
+        "weld distance (m)",
+        range,
+    )?;
     let vertices = mesh.positions.len();
     // A few vertices a particle are usual; what is far beyond is not even welded.
     if vertices > 8 * MAX_MESH_PARTICLES {
-        return Err(ClothError::MeshTooLarge { particles: vertices });
+        return Err(ClothError::MeshTooLarge {
+            particles: vertices,
+        });
     }
     // So that squares of lengths, and their products with masses, stay well inside of `f32`.
     // Not by the largest element, which leaves NaN out.
     let is_measurable = |place: &Vec3| (*place * scale).abs().cmplt(Vec3::splat(1.0e12)).all();
-    if let Some(vertex) = mesh.positions.iter().position(|place| !is_measurable(place)) {
+    if let Some(vertex) = mesh
+        .positions
+        .iter()
+        .position(|place| !is_measurable(place))
+    {
         return Err(ClothError::VertexNotFinite {
             vertex,
             position: mesh.positions[vertex],
         });
     }
-    let is_beyond = |triangle: &[u32; 3]| triangle.iter().any(|corner| *corner as usize >= vertices);
+    let is_beyond =
+        |triangle: &[u32; 3]| triangle.iter().any(|corner| *corner as usize >= vertices);
     if let Some(triangle) = mesh.triangles.iter().position(is_beyond) {
         return Err(ClothError::TriangleOutOfRange {
             triangle,
@@ -87,7 +99,10 @@ struct Welded {
 impl Welded {
     fn new(mesh: &TriangleMesh, weld: f32, places: &[Vec3]) -> Self {
         let (first, particle_of) = same_places(&mesh.positions, weld);
-        let rest: Vec<Vec3> = first.iter().map(|&vertex| places[vertex as usize]).collect();
+        let rest: Vec<Vec3> = first
+            .iter()
+            .map(|&vertex| places[vertex as usize])
+            .collect();
         let mut normals = Vec::new();
         if mesh.normals.len() == mesh.positions.len() {
             normals.resize(rest.len(), Vec3::ZERO);
@@ -112,7 +127,8 @@ impl Welded {
         let (areas, total) = self.areas();
         let mean = total / areas.iter().filter(|area| **area > 0.0).count().max(1) as f32;
         let is_something = |particle: u32| areas[particle as usize] > NEGLIGIBLE * mean;
-        self.faces.retain(|face| face.iter().all(|corner| is_something(*corner)));
+        self.faces
+            .retain(|face| face.iter().all(|corner| is_something(*corner)));
         // What is measured in a cloth has to be more than rounding.
         if self.faces.is_empty() || mean < 1.0e-18 {
             return Err(ClothError::MeshWithoutArea { triangles });
@@ -151,7 +167,10 @@ impl Welded {
         }
         self.rest = order.iter().map(|&old| self.rest[old as usize]).collect();
         if !self.normals.is_empty() {
-            self.normals = order.iter().map(|&old| self.normals[old as usize]).collect();
+            self.normals = order
+                .iter()
+                .map(|&old| self.normals[old as usize])
+                .collect();
         }
         for face in &mut self.faces {
             *face = face.map(|corner| number[corner as usize]);
@@ -185,13 +204,21 @@ impl Welded {
             typical: lengths[lengths.len() / 2],
             longest: lengths[lengths.len() - 1],
         };
-        let [low, high] = self.rest.iter().fold([Vec3::MAX, Vec3::MIN], |[low, high], place| {
-            [low.min(*place), high.max(*place)]
-        });
+        let [low, high] = self
+            .rest
+            .iter()
+            .fold([Vec3::MAX, Vec3::MIN], |[low, high], place| {
+                [low.min(*place), high.max(*place)]
+            });
         let diagonal = low.distance(high);
         let has_uvs = mesh.uvs.len() == self.particle_of.len();
-        let uvs = if has_uvs { merged(&mesh.uvs, &self.particle_of, particles, |first, _| first) } else { Vec::new() };
-        let larger = |first: [f32; 4], other: [f32; 4]| std::array::from_fn(|at| first[at].max(other[at]));
+        let uvs = if has_uvs {
+            merged(&mesh.uvs, &self.particle_of, particles, |first, _| first)
+        } else {
+            Vec::new()
+        };
+        let larger =
+            |first: [f32; 4], other: [f32; 4]| std::array::from_fn(|at| first[at].max(other[at]));
         let attributes = mesh
             .attributes
             .iter()
@@ -228,14 +255,22 @@ impl Welded {
 }
 
 /// What each particle has of its vertices' values.
-fn merged<T: Copy + Default>(values: &[T], particle_of: &[u32], particles: usize, merge: impl Fn(T, T) -> T) -> Vec<T> {
+fn merged<T: Copy + Default>(
+    values: &[T],
+    particle_of: &[u32],
+    particles: usize,
+    merge: impl Fn(T, T) -> T,
+) -> Vec<T> {
     let mut of_particle = vec![None; particles];
     for (value, &particle) in values.iter().zip(particle_of) {
         if let Some(known) = of_particle.get_mut(particle as usize) {
             *known = Some(known.map_or(*value, |known| merge(known, *value)));
         }
     }
-    of_particle.into_iter().map(Option::unwrap_or_default).collect()
+    of_particle
+        .into_iter()
+        .map(Option::unwrap_or_default)
+        .collect()
 }
 
 /// Each particle's normal, of length 1: of its faces, by their areas.
@@ -244,16 +279,26 @@ fn normals(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Vec3> {
     for face in faces {
         let [a, b, c] = face.map(|corner| rest[corner as usize]);
         let normal = (b - a).cross(c - a);
-        face.iter().for_each(|corner| normals[*corner as usize] += normal);
+        face.iter()
+            .for_each(|corner| normals[*corner as usize] += normal);
     }
-    normals.into_iter().map(|normal| normal.normalize_or(Vec3::Y)).collect()
+    normals
+        .into_iter()
+        .map(|normal| normal.normalize_or(Vec3::Y))
+        .collect()
 }
 
 /// Which particles are at an edge that does not have two faces.
 fn borders(sides: &[Side], particles: usize) -> Vec<bool> {
     let mut is_border = vec![false; particles];
-    for faces in sides.chunk_by(|a, b| a.ends == b.ends).filter(|faces| faces.len() != 2) {
-        faces[0].ends.iter().for_each(|end| is_border[*end as usize] = true);
+    for faces in sides
+        .chunk_by(|a, b| a.ends == b.ends)
+        .filter(|faces| faces.len() != 2)
+    {
+        faces[0]
+            .ends
+            .iter()
+            .for_each(|end| is_border[*end as usize] = true);
     }
     is_border
 }
@@ -273,7 +318,9 @@ fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
     known.sort_unstable();
     let mut is_first = vec![true; faces.len()];
     for same in known.chunk_by(|a, b| a.0 == b.0) {
-        same[1..].iter().for_each(|(_, index)| is_first[*index] = false);
+        same[1..]
+            .iter()
+            .for_each(|(_, index)| is_first[*index] = false);
     }
     let mut is_first = is_first.into_iter();
     faces.retain(|_| is_first.next().unwrap_or(false));
@@ -282,6 +329,9 @@ fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
 /// How many faces meet in one particle at most.
 fn max_faces(faces: &[[u32; 3]], particles: usize) -> usize {
     let mut counts = vec![0; particles];
-    faces.iter().flatten().for_each(|corner| counts[*corner as usize] += 1);
+    faces
+        .iter()
+        .flatten()
+        .for_each(|corner| counts[*corner as usize] += 1);
     counts.into_iter().max().unwrap_or(0)
 }

@@ -164,7 +164,10 @@ mod tests {
             }
         }
         let alone = Graph::new(2, [].into_iter());
-        assert_eq!(alone.distances([1].into_iter()), [(f32::INFINITY, u32::MAX), (0.0, 0)]);
+        assert_eq!(
+            alone.distances([1].into_iter()),
+            [(f32::INFINITY, u32::MAX), (0.0, 0)]
+        );
     }
 
     /// Each particle once; neighbours are no farther apart than a column is long, a piece after the other.
@@ -181,7 +184,9 @@ mod tests {
             let neighbours = graph.of(particle).iter();
             neighbours.map(move |near| (particle, near.0))
         };
-        let widest = (0..63).flat_map(apart).map(|(a, b)| place[a as usize].abs_diff(place[b as usize]));
+        let widest = (0..63)
+            .flat_map(apart)
+            .map(|(a, b)| place[a as usize].abs_diff(place[b as usize]));
         assert!(widest.max() <= Some(18), "two rows or columns, at most");
     }
 }

@@ -14,7 +14,8 @@ pub(super) fn uvs(grid: &ClothGrid) -> Vec<Vec2> {
 
 /// Two faces a cell, for which its first particle stands.
 pub(super) fn faces(grid: &ClothGrid) -> Faces {
-    let begins_cell = |(row, column): (u32, u32)| row + 1 < grid.rows() && column + 1 < grid.columns();
+    let begins_cell =
+        |(row, column): (u32, u32)| row + 1 < grid.rows() && column + 1 < grid.columns();
     let counts = grid.cells().map(|cell| 2 * u32::from(begins_cell(cell)));
     Faces::new(grid.triangles().collect(), counts)
 }
@@ -22,16 +23,19 @@ pub(super) fn faces(grid: &ClothGrid) -> Faces {
 /// Neighbours in rows, columns and along both diagonals.
 pub(super) fn graph(grid: &ClothGrid) -> Graph {
     let steps = [(0, 1), (1, -1), (1, 0), (1, 1)];
-    let edges: Vec<([u32; 2], f32)> = grid.cells().flat_map(move |(row, column)| {
-        steps.into_iter().filter_map(move |(down, across)| {
-            let (below, beside) = (row + down, column.checked_add_signed(across)?);
-            let exists = below < grid.rows() && beside < grid.columns();
-            exists.then(|| {
-                let ends = [grid.index(row, column), grid.index(below, beside)];
-                (ends, grid.step_length((down, across)))
+    let edges: Vec<([u32; 2], f32)> = grid
+        .cells()
+        .flat_map(move |(row, column)| {
+            steps.into_iter().filter_map(move |(down, across)| {
+                let (below, beside) = (row + down, column.checked_add_signed(across)?);
+                let exists = below < grid.rows() && beside < grid.columns();
+                exists.then(|| {
+                    let ends = [grid.index(row, column), grid.index(below, beside)];
+                    (ends, grid.step_length((down, across)))
+                })
             })
         })
-    }).collect();
+        .collect();
     Graph::new(grid.len(), edges.into_iter())
 }
 

@@ -253,7 +253,11 @@ impl Surface {
             + of(&self.normals)
             + of(&self.links)
             + self.particle_of_vertex.as_ref().map_or(0, |map| of(map))
-            + self.attributes.iter().map(|each| of(each.values())).sum::<usize>()
+            + self
+                .attributes
+                .iter()
+                .map(|each| of(each.values()))
+                .sum::<usize>()
             + lazy
     }
 }

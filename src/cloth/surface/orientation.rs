@@ -20,7 +20,9 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
         };
         for (from, to) in [(one, other), (other, one)] {
             let mut corners = faces[from.face as usize].iter();
-            let at = corners.position(|corner| *corner == from.opposite).unwrap_or(0);
+            let at = corners
+                .position(|corner| *corner == from.opposite)
+                .unwrap_or(0);
             beyond[from.face as usize][at] = to.face;
         }
     }
@@ -60,7 +62,10 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
         }
         let agreement = |&index: &usize| {
             let [a, b, c] = faces[index].map(|corner| rest[corner as usize]);
-            let sum: Vec3 = faces[index].iter().map(|corner| normals[*corner as usize]).sum();
+            let sum: Vec3 = faces[index]
+                .iter()
+                .map(|corner| normals[*corner as usize])
+                .sum();
             (b - a).cross(c - a).dot(sum)
         };
         if piece.iter().map(agreement).sum::<f32>() < 0.0 {
@@ -91,9 +96,15 @@ mod tests {
         for mut faces in [[[0, 1, 2], [0, 2, 3]], [[0, 1, 2], [0, 3, 2]]] {
             let sides = sides_of(&faces);
             orient(&mut faces, &sides, &rest, &[]);
-            assert!(faces.iter().all(|face| normal(*face, &rest).y < 0.0), "as the first");
+            assert!(
+                faces.iter().all(|face| normal(*face, &rest).y < 0.0),
+                "as the first"
+            );
             orient(&mut faces, &sides, &rest, &[Vec3::Y; 4]);
-            assert!(faces.iter().all(|face| normal(*face, &rest).y > 0.0), "as the normals");
+            assert!(
+                faces.iter().all(|face| normal(*face, &rest).y > 0.0),
+                "as the normals"
+            );
         }
     }
 

@@ -85,7 +85,14 @@ impl<'a> ShortestPaths<'a> {
         };
         distances.clear();
         distances.extend(patch.iter().map(|&particle| distance(particle)));
-        let beyond = || patch.iter().copied().find(|&particle| distance(particle).is_infinite());
-        last.map(|(particle, _)| particle).or_else(beyond).unwrap_or(start)
+        let beyond = || {
+            patch
+                .iter()
+                .copied()
+                .find(|&particle| distance(particle).is_infinite())
+        };
+        last.map(|(particle, _)| particle)
+            .or_else(beyond)
+            .unwrap_or(start)
     }
 }

@@ -39,7 +39,11 @@ pub(super) fn links(faces: &[[u32; 3]], sides: &[Side], rest: &[Vec3]) -> Vec<Li
     };
     let (mut along, mut across) = (Vec::new(), Vec::new());
     for sides in sides.chunk_by(|a, b| a.ends == b.ends) {
-        along.push(link(SpringKind::Structural, sides[0].ends, sides.iter().map(area).sum()));
+        along.push(link(
+            SpringKind::Structural,
+            sides[0].ends,
+            sides.iter().map(area).sum(),
+        ));
         for (index, one) in sides.iter().enumerate() {
             for other in &sides[index + 1..] {
                 let (a, b) = (one.opposite, other.opposite);

@@ -30,8 +30,13 @@ pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
         let (low, high) = (position - weld, position + weld);
         let ends = [low, high];
         for corner in 0..8 {
-            let near = Vec3::new(ends[corner & 1].x, ends[(corner >> 1) & 1].y, ends[corner >> 2].z);
-            let of_cell = std::iter::successors(cells.get(&cell(near)).copied(), |at| before[*at as usize]);
+            let near = Vec3::new(
+                ends[corner & 1].x,
+                ends[(corner >> 1) & 1].y,
+                ends[corner >> 2].z,
+            );
+            let of_cell =
+                std::iter::successors(cells.get(&cell(near)).copied(), |at| before[*at as usize]);
             for known in of_cell.filter(is_same) {
                 // Of several the earliest, so that the order of cells does not matter.
                 found = Some(found.map_or(known, |found: u32| found.min(known)));

@@ -55,7 +55,13 @@ impl Tree for GridTree {
         &[0]
     }
 
-    fn rebuild(&self, volumes: &mut Volumes, rule: BoundRule, particles: &ClothParticles, stretch: f32) {
+    fn rebuild(
+        &self,
+        volumes: &mut Volumes,
+        rule: BoundRule,
+        particles: &ClothParticles,
+        stretch: f32,
+    ) {
         each!(volumes, bounds => {
             bounds.rule = rule;
             bounds.growth = growth(stretch);
@@ -83,7 +89,13 @@ impl Tree for GridTree {
         })
     }
 
-    fn search(&self, volumes: &Volumes, particles: &ClothParticles, probe: &Probe, found: &mut Found) {
+    fn search(
+        &self,
+        volumes: &Volumes,
+        particles: &ClothParticles,
+        probe: &Probe,
+        found: &mut Found,
+    ) {
         let reach = probe.reach() as f32;
         each!(volumes, bounds => match bounds.rule {
             BoundRule::RestShape => descend(self, particles, probe, found, |level, _, rows, columns| {

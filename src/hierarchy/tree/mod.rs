@@ -19,9 +19,7 @@ use bevy::{
 };
 
 use super::stored::growth;
-use crate::cloth::{
-    ClothError, ClothGrid, ClothParticles, Graph, Spring, SpringKind, Surface,
-};
+use crate::cloth::{ClothError, ClothGrid, ClothParticles, Graph, Spring, SpringKind, Surface};
 
 use network::NetworkTree;
 use shape::Tree;
@@ -93,8 +91,13 @@ impl QuadTree {
             });
         }
         // What a bend spring allows is not measured.
-        let paths = springs.iter().filter(|spring| spring.kind != SpringKind::Bend);
-        let graph = Graph::new(rest.len(), paths.map(|spring| (spring.ends, spring.rest_length)));
+        let paths = springs
+            .iter()
+            .filter(|spring| spring.kind != SpringKind::Bend);
+        let graph = Graph::new(
+            rest.len(),
+            paths.map(|spring| (spring.ends, spring.rest_length)),
+        );
         Ok(Self(Arc::new(NetworkTree::new(rest, &graph))))
     }
 

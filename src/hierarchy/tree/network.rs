@@ -100,7 +100,9 @@ impl NetworkTree {
 
     /// Bottom up. Children come after their parents, so one way backwards does it.
     fn refit<V: Volume>(&self, bounds: &mut Bounds<V>, particles: &ClothParticles) {
-        bounds.nodes.resize(self.nodes.len(), V::around(Vec3::ZERO, 0.0));
+        bounds
+            .nodes
+            .resize(self.nodes.len(), V::around(Vec3::ZERO, 0.0));
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let children = node.children.start as usize..node.children.end as usize;
             let volume = match &bounds.nodes[children] {
@@ -157,7 +159,13 @@ impl Tree for NetworkTree {
         &self.tops
     }
 
-    fn rebuild(&self, volumes: &mut Volumes, rule: BoundRule, particles: &ClothParticles, stretch: f32) {
+    fn rebuild(
+        &self,
+        volumes: &mut Volumes,
+        rule: BoundRule,
+        particles: &ClothParticles,
+        stretch: f32,
+    ) {
         each!(volumes, bounds => {
             // The paper's Figure 4 is of a grid.
             bounds.rule = if rule == BoundRule::Paper { BoundRule::RestShape } else { rule };
@@ -173,7 +181,13 @@ impl Tree for NetworkTree {
         each!(volumes, bounds => self.volume_of(bounds, node, middle).into())
     }
 
-    fn search(&self, volumes: &Volumes, particles: &ClothParticles, probe: &Probe, found: &mut Found) {
+    fn search(
+        &self,
+        volumes: &Volumes,
+        particles: &ClothParticles,
+        probe: &Probe,
+        found: &mut Found,
+    ) {
         if self.nodes.is_empty() {
             return;
         }
@@ -227,10 +241,15 @@ impl Splitter<'_> {
     fn measure(&mut self, patch: Range<usize>) -> (u32, f32) {
         let members = &self.order[patch];
         let at = |particle: u32| self.rest[particle as usize].as_dvec3();
-        let centroid = members.iter().map(|&particle| at(particle)).sum::<DVec3>() / members.len() as f64;
+        let centroid =
+            members.iter().map(|&particle| at(particle)).sum::<DVec3>() / members.len() as f64;
         let distance = |&particle: &u32| at(particle).distance_squared(centroid);
         let nearest = |a: &u32, b: &u32| distance(a).total_cmp(&distance(b));
-        let middle = members.iter().copied().min_by(nearest).expect("no patch is empty");
+        let middle = members
+            .iter()
+            .copied()
+            .min_by(nearest)
+            .expect("no patch is empty");
         (middle, self.paths.farthest(middle, members))
     }
 
@@ -249,13 +268,21 @@ impl Splitter<'_> {
 
     /// The corners of a box around a patch.
     fn corners(&self, patch: Range<usize>) -> [Vec3; 2] {
-        let places = self.order[patch].iter().map(|&particle| self.rest[particle as usize]);
-        places.fold([Vec3::MAX, Vec3::MIN], |[low, high], place| [low.min(place), high.max(place)])
+        let places = self.order[patch]
+            .iter()
+            .map(|&particle| self.rest[particle as usize]);
+        places.fold([Vec3::MAX, Vec3::MIN], |[low, high], place| {
+            [low.min(place), high.max(place)]
+        })
     }
 
     /// Halves a patch: one that is not folded along its longest extent, any other by which of two ends is nearer along the
     /// surface, so that no half has two sides of a fold.
-    fn halve(&mut self, patch: Range<usize>, is_folded: bool) -> impl Iterator<Item = Range<usize>> + use<> {
+    fn halve(
+        &mut self,
+        patch: Range<usize>,
+        is_folded: bool,
+    ) -> impl Iterator<Item = Range<usize>> + use<> {
         let half = patch.len().div_ceil(2);
         if half < patch.len() {
             if is_folded {
@@ -270,7 +297,9 @@ impl Splitter<'_> {
             let keys = &self.keys;
             // Ties by index, so that the tree is the same everywhere.
             self.order[patch.clone()].select_nth_unstable_by(half, |a, b| {
-                keys[*a as usize].total_cmp(&keys[*b as usize]).then(a.cmp(b))
+                keys[*a as usize]
+                    .total_cmp(&keys[*b as usize])
+                    .then(a.cmp(b))
             });
         }
         let parts = [
@@ -283,7 +312,9 @@ impl Splitter<'_> {
     /// Keys that tell which of two ends of a patch is nearer; pieces that no path joins are told apart by them, too.
     fn sort_by_ends(&mut self, patch: Range<usize>) {
         let members = &self.order[patch];
-        let one = self.paths.distances(members[0], members, &mut self.distances);
+        let one = self
+            .paths
+            .distances(members[0], members, &mut self.distances);
         let other = self.paths.distances(one, members, &mut self.distances);
         for (&particle, &distance) in members.iter().zip(&self.distances) {
             self.keys[particle as usize] = distance as f32;

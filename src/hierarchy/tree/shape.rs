@@ -23,11 +23,23 @@ pub(crate) trait Tree: Debug + Send + Sync {
     fn tops(&self) -> &[u32];
 
     /// Brings the volumes up to date with the particles.
-    fn rebuild(&self, volumes: &mut Volumes, rule: BoundRule, particles: &ClothParticles, stretch: f32);
+    fn rebuild(
+        &self,
+        volumes: &mut Volumes,
+        rule: BoundRule,
+        particles: &ClothParticles,
+        stretch: f32,
+    );
 
     /// The volume of a node around its particles' centres.
     fn volume(&self, volumes: &Volumes, particles: &ClothParticles, node: u32) -> NodeVolume;
 
     /// Adds what a probe meets to what was found.
-    fn search(&self, volumes: &Volumes, particles: &ClothParticles, probe: &Probe, found: &mut Found);
+    fn search(
+        &self,
+        volumes: &Volumes,
+        particles: &ClothParticles,
+        probe: &Probe,
+        found: &mut Found,
+    );
 }

@@ -172,7 +172,13 @@ fn remember_positions(
 }
 
 fn add_meshes(
-    cloths: Query<(Entity, &Cloth, &ClothBuilt, Option<&Mesh3d>, Option<&ClothMesh>)>,
+    cloths: Query<(
+        Entity,
+        &Cloth,
+        &ClothBuilt,
+        Option<&Mesh3d>,
+        Option<&ClothMesh>,
+    )>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
@@ -188,7 +194,10 @@ fn add_meshes(
         let known = drawn.and_then(|drawn| drawn.source.clone());
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
-        let source = other.map(|mesh| mesh.0.clone()).or(known).filter(|_| is_asset);
+        let source = other
+            .map(|mesh| mesh.0.clone())
+            .or(known)
+            .filter(|_| is_asset);
         let copy = match &source {
             Some(source) => meshes.get(source).map(copy_of),
             None => Some(mesh_of(surface)),

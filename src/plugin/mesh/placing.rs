@@ -96,8 +96,12 @@ impl Weights {
         self.own.extend(own.map(|index| index as u32));
         let distances: Vec<Vec<f32>> = (0..self.carriers)
             .map(|carrier| {
-                let sources = (0..carrier_of.len()).filter(|&index| carrier_of[index] == Some(carrier));
-                let found = built.surface().graph().distances(sources.map(|index| index as u32));
+                let sources =
+                    (0..carrier_of.len()).filter(|&index| carrier_of[index] == Some(carrier));
+                let found = built
+                    .surface()
+                    .graph()
+                    .distances(sources.map(|index| index as u32));
                 found.into_iter().map(|(distance, _)| distance).collect()
             })
             .collect();
@@ -155,7 +159,9 @@ impl Drawn<'_> {
             for index in 0..=self.state.attachments.len() {
                 if let Some(correction) = self.correction(carriers, index) {
                     if !is_corrected {
-                        carriers.weights.follow(self.built, self.particles, self.state);
+                        carriers
+                            .weights
+                            .follow(self.built, self.particles, self.state);
                         is_corrected = true;
                     }
                     // In the cloth's frame, one carrier after the other: each moves its own part.

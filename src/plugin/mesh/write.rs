@@ -8,18 +8,41 @@ use bevy::{
 
 use crate::cloth::{Surface, TriangleMesh};
 
-/// A mesh of a surface at rest: its particles are the vertices, with texture coordinates and tangents where it has them.
+/// A mesh of a surface at rest, with the vertices that it was made from, and texture coordinates and tangents where it has
+/// them.
 pub(super) fn mesh_of(surface: &Surface) -> Mesh {
-    let positions: Vec<_> = surface.rest_positions().iter().map(Vec3::to_array).collect();
-    let normals: Vec<_> = (0..surface.len()).map(|particle| surface.normal_of(particle).to_array()).collect();
-    let indices = surface.triangles().iter().flatten().copied().collect();
-    let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
-        .with_inserted_indices(Indices::U32(indices));
-    if !surface.uvs().is_empty() {
+    let particle_of = |vertex: usize| surface.particle_of_vertex(vertex);
+    // One that is no particle is no triangle's.
+    let place = |vertex: usize| {
+        particle_of(vertex).map_or(Vec3::ZERO, |particle| surface.rest_positions()[particle])
+    };
+    let normal =
+        |vertex: usize| particle_of(vertex).map_or(Vec3::Y, |particle| surface.normal_of(particle));
+    let mut vertex_of = vec![0; surface.len()];
+    for vertex in (0..surface.vertices()).rev() {
+        if let Some(particle) = particle_of(vertex) {
+            vertex_of[particle] = vertex as u32;
+        }
+    }
+    let vertices = 0..surface.vertices();
+    let positions: Vec<_> = vertices
+        .clone()
+        .map(|vertex| place(vertex).to_array())
+        .collect();
+    let normals: Vec<_> = vertices.map(|vertex| normal(vertex).to_array()).collect();
+    let corners = surface.triangles().iter().flatten();
+    let indices = corners.map(|corner| vertex_of[*corner as usize]).collect();
+    let mut mesh = Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+    .with_inserted_indices(Indices::U32(indices));
+    // Those that the game gives as triangles have none.
+    if surface.uvs().len() == surface.vertices() {
         let uvs: Vec<_> = surface.uvs().iter().map(Vec2::to_array).collect();
-        let tangents = vec![[1.0, 0.0, 0.0, 1.0]; surface.len()];
+        let tangents = vec![[1.0, 0.0, 0.0, 1.0]; surface.vertices()];
         mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, uvs);
         mesh.insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
     }
@@ -53,7 +76,8 @@ impl Tangents {
         let Ok(TriangleMesh { triangles, uvs, .. }) = TriangleMesh::of_asset(mesh) else {
             return Self::default();
         };
-        let exists = |triangle: &[u32; 3]| triangle.iter().all(|corner| (*corner as usize) < uvs.len());
+        let exists =
+            |triangle: &[u32; 3]| triangle.iter().all(|corner| (*corner as usize) < uvs.len());
         if !mesh.contains_attribute(Mesh::ATTRIBUTE_TANGENT) || !triangles.iter().all(exists) {
             return Self::default();
         }
@@ -77,24 +101,31 @@ impl Tangents {
             parts,
             sums,
         } = self;
-        if let Ok(VertexAttributeValues::Float32x3(places)) = mesh.try_attribute(Mesh::ATTRIBUTE_POSITION)
+        if let Ok(VertexAttributeValues::Float32x3(places)) =
+            mesh.try_attribute(Mesh::ATTRIBUTE_POSITION)
             && places.len() == sums.len()
         {
             sums.fill(Vec3::ZERO);
             for (triangle, parts) in triangles.iter().zip(parts) {
                 let [a, b, c] = triangle.map(|corner| Vec3::from(places[corner as usize]));
                 let along = (b - a) * parts[0] + (c - a) * parts[1];
-                triangle.iter().for_each(|corner| sums[*corner as usize] += along);
+                triangle
+                    .iter()
+                    .for_each(|corner| sums[*corner as usize] += along);
             }
         }
         let mut normals: Option<&mut [[f32; 3]]> = None;
         let mut tangents: Option<&mut [[f32; 4]]> = None;
         for (attribute, values) in mesh.attributes_mut() {
             match values {
-                VertexAttributeValues::Float32x3(values) if attribute.id == Mesh::ATTRIBUTE_NORMAL.id => {
+                VertexAttributeValues::Float32x3(values)
+                    if attribute.id == Mesh::ATTRIBUTE_NORMAL.id =>
+                {
                     normals = Some(values);
                 }
-                VertexAttributeValues::Float32x4(values) if attribute.id == Mesh::ATTRIBUTE_TANGENT.id => {
+                VertexAttributeValues::Float32x4(values)
+                    if attribute.id == Mesh::ATTRIBUTE_TANGENT.id =>
+                {
                     tangents = Some(values);
                 }
                 _ => {}
@@ -128,12 +159,16 @@ pub(super) fn write_mesh(
         let [a, b, c] = face.map(|corner| drawn[corner as usize]);
         // Of twice its area: the larger a face is, the more it says.
         let normal = (b - a).cross(c - a);
-        face.iter().for_each(|corner| normals[*corner as usize] += normal);
+        face.iter()
+            .for_each(|corner| normals[*corner as usize] += normal);
     }
     for (particle, normal) in normals.iter_mut().enumerate() {
         *normal = normal.normalize_or(surface.normal_of(particle));
     }
-    for (attribute, of_particles) in [(Mesh::ATTRIBUTE_POSITION, drawn), (Mesh::ATTRIBUTE_NORMAL, normals)] {
+    for (attribute, of_particles) in [
+        (Mesh::ATTRIBUTE_POSITION, drawn),
+        (Mesh::ATTRIBUTE_NORMAL, normals),
+    ] {
         if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
             for (vertex, value) in values.iter_mut().enumerate() {
                 if let Some(particle) = surface.particle_of_vertex(vertex) {

@@ -6,7 +6,7 @@ use crate::{
     cloth::ClothMaterial,
     contact::NarrowPhase,
     hierarchy::SearchMethod,
-    plugin::{ClothSearch, ClothStats, ClothBuilt, ShowClothGizmos},
+    plugin::{ClothBuilt, ClothSearch, ClothStats, ShowClothGizmos},
     solver::ClothSettings,
 };
 

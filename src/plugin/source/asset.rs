@@ -74,7 +74,11 @@ impl Sources<'_, '_> {
         };
         let handle = handle.ok_or(ClothError::MeshNotLoaded)?;
         let id = handle.id();
-        if self.meshes.as_ref().is_some_and(|meshes| meshes.contains(id)) {
+        if self
+            .meshes
+            .as_ref()
+            .is_some_and(|meshes| meshes.contains(id))
+        {
             let version = self.changed.as_ref().and_then(|changed| changed.0.get(&id));
             return Ok(Some(Source {
                 mesh: id,
@@ -85,7 +89,11 @@ impl Sources<'_, '_> {
         if known.is_some_and(|known| known.mesh == id) {
             return Ok(known);
         }
-        match self.server.as_ref().and_then(|server| server.get_load_state(id)) {
+        match self
+            .server
+            .as_ref()
+            .and_then(|server| server.get_load_state(id))
+        {
             Some(LoadState::Failed(error)) => Err(ClothError::MeshFailed {
                 reason: error.to_string(),
             }),
@@ -98,11 +106,19 @@ impl Sources<'_, '_> {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn surface(&self, cloth: &Cloth, source: Option<&Source>, scale: Vec3) -> Result<Surface, ClothError> {
+    pub fn surface(
+        &self,
+        cloth: &Cloth,
+        source: Option<&Source>,
+        scale: Vec3,
+    ) -> Result<Surface, ClothError> {
         let (ClothShape::Mesh { weld }, Some(source)) = (&cloth.shape, source) else {
             return cloth.surface(scale);
         };
-        let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(source.mesh));
+        let mesh = self
+            .meshes
+            .as_ref()
+            .and_then(|meshes| meshes.get(source.mesh));
         let mesh = TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)?;
         Surface::of_mesh(&mesh, *weld, scale)
     }

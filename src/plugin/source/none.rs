@@ -21,12 +21,22 @@ pub(crate) struct Sources<'w> {
 
 impl Sources<'_> {
     /// No cloth has one.
-    pub fn find(&self, _: Entity, _: &Cloth, _: Option<Source>) -> Result<Option<Source>, ClothError> {
+    pub fn find(
+        &self,
+        _: Entity,
+        _: &Cloth,
+        _: Option<Source>,
+    ) -> Result<Option<Source>, ClothError> {
         Ok(None)
     }
 
     /// The surface of a cloth.
-    pub fn surface(&self, cloth: &Cloth, _: Option<&Source>, scale: Vec3) -> Result<Surface, ClothError> {
+    pub fn surface(
+        &self,
+        cloth: &Cloth,
+        _: Option<&Source>,
+        scale: Vec3,
+    ) -> Result<Surface, ClothError> {
         cloth.surface(scale)
     }
 }

@@ -18,7 +18,11 @@ pub fn irregular(width: f32, height: f32, spacing: f32, jitter: f32) -> Triangle
         for column in 0..=columns {
             let mut off = || jitter * random.next();
             // What is on a border stays there.
-            let x = if column == 0 || column == columns { 0.0 } else { off() };
+            let x = if column == 0 || column == columns {
+                0.0
+            } else {
+                off()
+            };
             let y = if row == 0 || row == rows { 0.0 } else { off() };
             let place = Vec2::new(
                 (column as f32 + x) / columns as f32,

@@ -1,0 +1,292 @@
+//! The three cloths, what they hang from, and what they lie on.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use bevy::{
+    gltf::GltfAssetLabel,
+    image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor},
+    prelude::*,
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
+use bevy_drape::prelude::*;
+use bevy_transform_interpolation::prelude::*;
+
+use crate::{
+    models,
+    shared::stage::{Grid, Shot, StagePlugin},
+};
+
+/// Triangles along either side of the pennant, and rings of the poncho.
+pub const FINENESS: u32 = 24;
+
+/// The tent, as a modelling program exports it: metres, y up, the ground at 0.
+const TENT: &str = "models/tent.glb";
+
+const POLE: Vec3 = Vec3::new(-2.5, 0.0, 0.1);
+const YARD: Vec3 = Vec3::new(-2.5, 2.1, 0.15);
+const PERSON: Vec3 = Vec3::new(-0.6, 0.0, 0.5);
+const CAMP: Vec3 = Vec3::new(2.2, 0.0, -0.2);
+
+/// All of it, and each by itself.
+pub const ALL: Shot = Shot {
+    from: Vec3::new(0.3, 2.4, 7.6),
+    focus: Vec3::new(0.05, 0.95, 0.0),
+    fov: 0.46,
+};
+pub const SHOTS: [(&str, Shot); 3] = [
+    (
+        "pennant.png",
+        Shot {
+            from: Vec3::new(-1.6, 1.7, 4.4),
+            focus: Vec3::new(-2.5, 1.3, 0.15),
+            fov: 0.48,
+        },
+    ),
+    (
+        "poncho.png",
+        Shot {
+            from: Vec3::new(0.6, 2.2, 3.7),
+            focus: Vec3::new(-0.6, 1.05, 0.5),
+            fov: 0.48,
+        },
+    ),
+    (
+        "tent.png",
+        Shot {
+            from: Vec3::new(5.4, 1.7, 2.3),
+            focus: Vec3::new(2.25, 0.5, -0.1),
+            fov: 0.52,
+        },
+    ),
+];
+
+/// The scene, without a camera.
+pub struct ScenePlugin;
+
+impl Plugin for ScenePlugin {
+    fn build(&self, app: &mut App) {
+        let stage = StagePlugin {
+            has_floor: true,
+            light_from: Vec3::new(-3.5, 5.0, 4.0),
+        };
+        app.add_plugins((
+            stage,
+            DrapePlugins::default(),
+            TransformInterpolationPlugin::default(),
+        ))
+        .add_systems(
+            Startup,
+            (spawn_floor, spawn_pennant, spawn_poncho, spawn_tent),
+        )
+        .add_systems(FixedUpdate, (sway, press).before(ClothSystems::Prepare));
+    }
+}
+
+fn spawn_floor(mut commands: Commands) {
+    commands.spawn((Name::new("floor"), ClothCollider::plane()));
+}
+
+/// What sways.
+#[derive(Component)]
+struct Sways;
+
+fn spawn_pennant(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    fineness: Res<Grid>,
+) {
+    let wood = materials.add(Color::srgb(0.45, 0.32, 0.2));
+    commands.spawn((
+        Mesh3d(meshes.add(Cylinder::new(0.025, 2.3))),
+        MeshMaterial3d(wood.clone()),
+        Transform::from_translation(POLE + Vec3::Y * 1.15),
+    ));
+    let lying = Quat::from_rotation_z(FRAC_PI_2);
+    commands.spawn((
+        Name::new("yard"),
+        Sways,
+        TransformInterpolation,
+        Mesh3d(meshes.add(Cylinder::new(0.018, 0.95))),
+        MeshMaterial3d(wood),
+        Transform::from_translation(YARD).with_rotation(lying),
+    ));
+    // Positions and triangles as the game has them; its upper edge follows the entity that is called "yard".
+    let (positions, triangles) = models::pennant(0.8, 1.5, fineness.0);
+    let edge = Pin::at_rest(|place| place.x < 1.0e-3);
+    commands.spawn((
+        Name::new("pennant"),
+        Cloth::triangles(positions, triangles),
+        Pins::none(),
+        ClothAttachments::new([(edge, "yard")]),
+        ClothMaterial {
+            damping: 0.02,
+            ..ClothMaterial::SILK
+        },
+        ClothSettings::substeps(30),
+        ShowClothGizmos::nothing(),
+        MeshMaterial3d(materials.add(fabric(Color::srgb(0.72, 0.07, 0.12)))),
+        // Its point down.
+        Transform::from_translation(YARD + Vec3::X * 0.4).with_rotation(lying.inverse()),
+    ));
+}
+
+/// To and fro around the pole, and up and down: there is no wind yet.
+fn sway(mut yards: Query<&mut Transform, With<Sways>>, time: Res<Time>) {
+    let seconds = time.elapsed_secs();
+    for mut yard in &mut yards {
+        let lean = 0.08 * (TAU * seconds / 2.5).sin();
+        let turn = 0.7 * (TAU * seconds / 5.0).sin();
+        yard.rotation = Quat::from_rotation_y(turn) * Quat::from_rotation_z(FRAC_PI_2 + lean);
+    }
+}
+
+fn spawn_poncho(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut images: ResMut<Assets<Image>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    fineness: Res<Grid>,
+) {
+    let skin = materials.add(Color::srgb(0.55, 0.57, 0.6));
+    let mut body = |name: &str, collider, mesh: Mesh, place: Transform| {
+        let mesh = (Mesh3d(meshes.add(mesh)), MeshMaterial3d(skin.clone()));
+        commands.spawn((Name::new(name.to_string()), collider, mesh, place));
+    };
+    let at = |x: f32, y: f32| Transform::from_translation(PERSON + Vec3::new(x, y, 0.0));
+    body(
+        "head",
+        ClothCollider::ball(0.12),
+        Sphere::new(0.12).mesh().uv(48, 24),
+        at(0.0, 1.64),
+    );
+    body(
+        "neck",
+        ClothCollider::capsule(0.06, 0.2),
+        Capsule3d::new(0.06, 0.2).into(),
+        at(0.0, 1.46),
+    );
+    let lying = at(0.0, 1.34).with_rotation(Quat::from_rotation_z(FRAC_PI_2));
+    body(
+        "shoulders",
+        ClothCollider::capsule(0.1, 0.34),
+        Capsule3d::new(0.1, 0.34).into(),
+        lying,
+    );
+    body(
+        "chest",
+        ClothCollider::capsule(0.17, 0.7),
+        Capsule3d::new(0.17, 0.7).into(),
+        at(0.0, 0.86),
+    );
+    // The mesh asset of the entity is the cloth.
+    let poncho = meshes.add(models::poncho(1.5, 0.12, fineness.0));
+    let stripes = images.add(stripes());
+    commands.spawn((
+        Name::new("poncho"),
+        Cloth::mesh(),
+        Mesh3d(poncho),
+        ClothMaterial {
+            damping: 0.03,
+            areal_density: 0.3,
+            ..ClothMaterial::COTTON
+        },
+        ClothSettings {
+            particle_radius: 0.012,
+            ..ClothSettings::substeps(30)
+        },
+        ShowClothGizmos::nothing(),
+        MeshMaterial3d(materials.add(StandardMaterial {
+            base_color_texture: Some(stripes),
+            ..fabric(Color::WHITE)
+        })),
+        // Around the neck.
+        Transform::from_translation(PERSON + Vec3::Y * 1.47),
+    ));
+}
+
+/// Rings of colour from the hole to the hem.
+fn stripes() -> Image {
+    let colors = [
+        [196, 86, 42],
+        [236, 200, 120],
+        [58, 94, 120],
+        [236, 226, 206],
+        [150, 44, 48],
+        [58, 94, 120],
+    ];
+    let texels = (0..96_usize).flat_map(|row| {
+        let [r, g, b] = colors[(row / 8) % colors.len()];
+        [r, g, b, 255]
+    });
+    let size = Extent3d {
+        width: 1,
+        height: 96,
+        depth_or_array_layers: 1,
+    };
+    let mut image = Image::new(
+        size,
+        TextureDimension::D2,
+        texels.collect(),
+        TextureFormat::Rgba8UnormSrgb,
+        default(),
+    );
+    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        address_mode_u: ImageAddressMode::Repeat,
+        ..ImageSamplerDescriptor::linear()
+    });
+    image
+}
+
+/// A ball that presses into the tent's side now and then.
+#[derive(Component)]
+struct Presses;
+
+fn spawn_tent(
+    mut commands: Commands,
+    assets: Res<AssetServer>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let primitive = |mesh| {
+        let label = GltfAssetLabel::Primitive { mesh, primitive: 0 };
+        Mesh3d(assets.load(label.from_asset(TENT)))
+    };
+    let material = |material| {
+        MeshMaterial3d(assets.load::<StandardMaterial>(format!("{TENT}#Material{material}/std")))
+    };
+    let place = Transform::from_translation(CAMP).with_rotation(Quat::from_rotation_y(0.45));
+    // It waits for its asset. The artist has painted what is pinned: pegs and ridge, in the alpha of the vertex colours.
+    commands.spawn((
+        Name::new("tent"),
+        Cloth::mesh(),
+        primitive(0),
+        Pins::new([Pin::color(3, 0.5)]),
+        ClothMaterial {
+            damping: 0.04,
+            ..ClothMaterial::CANVAS
+        },
+        ClothSettings::substeps(36),
+        ShowClothGizmos::nothing(),
+        material(0),
+        place,
+    ));
+    commands.spawn((Name::new("poles"), primitive(1), material(1), place));
+    commands.spawn((
+        Name::new("ball"),
+        Presses,
+        TransformInterpolation,
+        ClothCollider::ball(0.24),
+        Mesh3d(meshes.add(Sphere::new(0.24).mesh().uv(64, 32))),
+        MeshMaterial3d(materials.add(Color::srgb(0.92, 0.42, 0.04))),
+        Transform::from_translation(CAMP + Vec3::Y),
+    ));
+}
+
+/// Towards the tent's front side and back, every six seconds.
+fn press(mut balls: Query<&mut Transform, With<Presses>>, time: Res<Time>) {
+    let away = 0.95 - 0.19 * (1.0 - (TAU * time.elapsed_secs() / 6.0).cos());
+    for mut ball in &mut balls {
+        ball.translation = CAMP + Quat::from_rotation_y(0.45) * Vec3::new(0.1, 0.6, away);
+    }
+}
