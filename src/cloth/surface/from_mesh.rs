@@ -8,7 +8,7 @@ use super::{
     Extent, Faces, Graph, Spacing, Surface, TriangleMesh, VertexAttribute,
     calibration::calibrate,
     orientation::orient,
-    springs::{Side, face_area, links, sides, sides_of},
+    springs::{Side, face_area, has_area, links, sides, sides_of},
     weld::same_places,
 };
 use crate::cloth::{ClothError, SpringKind};
@@ -122,8 +122,9 @@ impl Welded {
         }
     }
 
-    /// Takes out particles that stand for no area, with their faces.
+    /// Takes out faces without an area, and particles that stand for none, with their faces.
     fn drop_what_is_nothing(&mut self, triangles: usize) -> Result<(), ClothError> {
+        self.faces.retain(|face| has_area(*face, &self.rest));
         let (areas, total) = self.areas();
         let mean = total / areas.iter().filter(|area| **area > 0.0).count().max(1) as f32;
         let is_something = |particle: u32| areas[particle as usize] > NEGLIGIBLE * mean;
