@@ -2,6 +2,7 @@
 
 mod deep;
 mod fast;
+mod meshes;
 mod moving;
 mod particle;
 mod random;

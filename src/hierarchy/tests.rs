@@ -2,6 +2,7 @@
 
 mod misses;
 mod states;
+mod surfaces;
 
 use proptest::{prelude::*, strategy::ValueTree, test_runner::TestRunner};
 

@@ -7,3 +7,4 @@ mod distance;
 mod energy;
 mod precision;
 mod scenes;
+mod strip;

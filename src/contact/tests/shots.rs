@@ -45,9 +45,20 @@ impl Shot {
             .grid(Vec3::ONE)
             .expect("a valid grid");
         let surface = Arc::new(Surface::of_grid(&grid));
-        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
+        let particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
         let springs = Springs::of_grid(&grid, &material);
-        let mut solver = Solver::new(&springs, &particles);
+        self.through_cloth(&surface, &springs, particles, 13)
+    }
+
+    /// The same of any cloth as large as that one and in its place, within so many ticks.
+    pub fn through_cloth(
+        &self,
+        surface: &Arc<Surface>,
+        springs: &Springs,
+        mut particles: ClothParticles,
+        ticks: u32,
+    ) -> Option<u32> {
+        let mut solver = Solver::new(springs, &particles);
         let step = TickStep {
             seconds: SUBSTEPS as f32 / SUBSTEPS_A_SECOND,
             substeps: SUBSTEPS,
@@ -65,19 +76,19 @@ impl Shot {
         let beside = Vec3::new(across, down, 0.0) * (width / 6.0);
         let behind = self.radius + 0.01 + self.delay * self.speed * step.seconds;
         let mut centre = Vec3::new(width / 2.0, -width / 2.0, -behind) + beside;
-        for tick in 0..13 {
+        for tick in 0..ticks {
             let to = centre + Vec3::Z * self.speed * step.seconds;
             let ball = MovingCollider {
                 turn: self.spin * step.seconds,
                 ..MovingCollider::ball(self.radius, centre, to)
             };
-            let mut detection = of_all(&ball, &settings, &surface, &particles);
-            let mut before = seen(&particles, &surface, centre);
+            let mut detection = of_all(&ball, &settings, surface, &particles);
+            let mut before = seen(&particles, surface, centre);
             let mut is_through = false;
             solver.advance(&mut particles, step, &[], |particles, substep| {
                 let is_pushed = detection.respond(particles, &settings, substep, |_| {});
                 let at = Vec3::from(ball.pose_at(substep.end()).translation);
-                let after = seen(particles, &surface, at);
+                let after = seen(particles, surface, at);
                 is_through |= before.iter().zip(&after).any(|(a, b)| crosses(*a, *b));
                 before = after;
                 is_pushed

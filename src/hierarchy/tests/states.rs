@@ -199,7 +199,8 @@ impl State {
         }
     }
 
-    fn probe(&self, particles: &ClothParticles) -> Probe {
+    /// A collider near a particle.
+    pub fn probe(&self, particles: &ClothParticles) -> Probe {
         let near = particles
             .position(self.near % particles.len())
             .expect("it exists");
