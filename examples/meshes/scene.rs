@@ -180,7 +180,7 @@ fn spawn_poncho(
         at(0.0, 0.86),
     );
     // The mesh asset of the entity is the cloth.
-    let poncho = meshes.add(models::poncho(1.5, 0.12, fineness.0));
+    let poncho = meshes.add(models::poncho(1.5, 0.16, fineness.0));
     let stripes = images.add(stripes());
     commands.spawn((
         Name::new("poncho"),
@@ -188,13 +188,15 @@ fn spawn_poncho(
         Mesh3d(poncho),
         ClothMaterial {
             damping: 0.03,
-            areal_density: 0.3,
+            friction: 0.6,
             ..ClothMaterial::COTTON
         },
         ClothSettings {
             particle_radius: 0.012,
-            ..ClothSettings::substeps(30)
+            ..ClothSettings::substeps(40)
         },
+        // Nobody is thin enough to slip between particles.
+        NarrowPhase::Particles,
         ShowClothGizmos::nothing(),
         MeshMaterial3d(materials.add(StandardMaterial {
             base_color_texture: Some(stripes),
