@@ -180,7 +180,7 @@ fn spawn_poncho(
         at(0.0, 0.86),
     );
     // The mesh asset of the entity is the cloth.
-    let poncho = meshes.add(models::poncho(1.5, 0.16, fineness.0));
+    let poncho = meshes.add(models::poncho(1.5, 0.17, fineness.0));
     let stripes = images.add(stripes());
     commands.spawn((
         Name::new("poncho"),
@@ -193,7 +193,7 @@ fn spawn_poncho(
         },
         ClothSettings {
             particle_radius: 0.012,
-            ..ClothSettings::substeps(40)
+            ..ClothSettings::substeps(80)
         },
         // Nobody is thin enough to slip between particles.
         NarrowPhase::Particles,
