@@ -74,7 +74,7 @@ impl Graph {
     }
 
     /// An order in which neighbours are near each other in memory: breadth first, from a particle that is far from the
-    /// others of its piece, those with few neighbours first (Cuthill and McKee 1969).
+    /// others of its piece, those with few neighbours first (Cuthill and `McKee` 1969).
     pub fn order(&self) -> Vec<u32> {
         let mut order: Vec<u32> = Vec::with_capacity(self.len());
         let mut is_placed = vec![false; self.len()];

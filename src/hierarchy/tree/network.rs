@@ -256,8 +256,8 @@ impl Splitter<'_> {
     /// Halves a patch, and each half.
     fn split(&mut self, patch: Range<usize>, rest_radius: f32, parts: &mut Vec<Range<usize>>) {
         let is_folded = self.is_folded(patch.clone(), rest_radius);
-        for half in self.halve(patch, is_folded) {
-            parts.extend(self.halve(half, is_folded));
+        for half in self.bisect(patch, is_folded) {
+            parts.extend(self.bisect(half, is_folded));
         }
     }
 
@@ -278,7 +278,7 @@ impl Splitter<'_> {
 
     /// Halves a patch: one that is not folded along its longest extent, any other by which of two ends is nearer along the
     /// surface, so that no half has two sides of a fold.
-    fn halve(
+    fn bisect(
         &mut self,
         patch: Range<usize>,
         is_folded: bool,

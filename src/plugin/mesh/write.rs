@@ -53,6 +53,9 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
 pub(super) fn copy_of(asset: &Mesh) -> Mesh {
     let mut mesh = asset.clone();
     mesh.asset_usage = RenderAssetUsages::default();
+    // Bones would move what the simulation has moved already.
+    mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_INDEX);
+    mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
     if !mesh.contains_attribute(Mesh::ATTRIBUTE_NORMAL) {
         let normals = vec![Vec3::Y.to_array(); mesh.count_vertices()];
         mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
