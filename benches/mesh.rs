@@ -34,7 +34,7 @@ fn surfaces() -> [(&'static str, Surface); 3] {
     ]
 }
 
-/// Hung by its upper edge and blown at, a third of a second into its swing: no column is flat, no number tiny.
+/// Hung by its upper edge and blown at, a third of a second into its swing: not flat, and no number tiny.
 fn in_motion(surface: &Surface) -> (Springs, ClothParticles, TickStep) {
     let springs = Springs::of_surface(surface, &MATERIAL);
     let mut particles = ClothParticles::at_rest(surface, &MATERIAL).expect("a valid material");

@@ -54,8 +54,8 @@ pub struct ClothAttachment {
 pub enum ClothTarget {
     /// An entity.
     Entity(Entity),
-    /// The entity of this `Name`, as a scene or a modelling program gave it; of several the one that was there first. It
-    /// may be spawned later than the cloth, which waits for it.
+    /// The entity of this `Name`, as a scene or a modelling program gave it; of several the one that was
+    /// spawned first. While there is none the cloth stands still, with a fault.
     Named(String),
 }
 

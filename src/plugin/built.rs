@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use bevy::{
     ecs::{change_detection::Tick, component::Component, reflect::ReflectComponent},
+    math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::shared::Shared;
+use super::{shared::Shared, source::Source};
 use crate::{
-    cloth::{ClothMaterial, ClothParticles, Pins, Springs, Surface},
+    cloth::{ClothError, ClothMaterial, ClothParticles, Pins, Springs, Surface},
     hierarchy::QuadTree,
     solver::{Solver, Tethers, material_stretch},
 };
@@ -25,6 +26,9 @@ pub struct ClothBuilt {
     /// What all this was made from.
     #[reflect(ignore)]
     pub(super) from: Option<BuiltFrom>,
+    /// What could not be built, and why.
+    #[reflect(ignore)]
+    pub(super) refused: Option<(Tried, ClothError)>,
     #[reflect(ignore)]
     pub(super) solver: Solver,
     /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
@@ -51,6 +55,17 @@ pub(super) struct BuiltFrom {
     pub changed: Tick,
     pub material: ClothMaterial,
     pub pins: Pins,
+}
+
+/// What a cloth was to be built from, besides the recipe of its surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tried {
+    pub changed: Tick,
+    pub source: Option<Source>,
+    pub material: ClothMaterial,
+    pub pins: Pins,
+    pub scale: Vec3,
+    pub particles: usize,
 }
 
 impl ClothBuilt {

@@ -182,8 +182,8 @@ fn clear_removed_cloth(
     mut cloths: Query<(&ClothBuilt, &mut ClothParticles)>,
     mut commands: Commands,
 ) {
-    if let Ok((topology, mut particles)) = cloths.get_mut(removed.entity) {
-        topology.release_pins(&mut particles);
+    if let Ok((built, mut particles)) = cloths.get_mut(removed.entity) {
+        built.release_pins(&mut particles);
     }
     commands.entity(removed.entity).try_remove::<(
         ClothBuilt,

@@ -38,7 +38,7 @@ pub(super) trait Sweep: fmt::Debug + Send + Sync {
     /// How many tasks it is parted into at most where some are wanted.
     fn bands(&self, wanted: usize) -> usize;
 
-    /// Moves the particles in `blocks` by one sub-step, in so many bands.
+    /// Moves the particles in `blocks` by one sub-step, in this many bands.
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept;
 
     /// Measures the stretch.

@@ -116,6 +116,22 @@ impl Graph {
         order
     }
 
+    /// Into how many pieces the particles of an `order` fall that no edge joins: each begins where a particle has no neighbour
+    /// before it.
+    pub fn pieces(&self, order: &[u32]) -> usize {
+        let mut is_before = vec![false; self.len()];
+        let begins = |particle: &&u32| {
+            let neighbours = self.of(**particle).iter();
+            let is_joined = neighbours
+                .into_iter()
+                .any(|near| is_before[near.0 as usize]);
+            is_before[**particle as usize] = true;
+            !is_joined
+        };
+        let mut begins = begins;
+        order.iter().filter(|particle| begins(particle)).count()
+    }
+
     /// Bytes that it takes.
     pub fn memory(&self) -> usize {
         size_of_val(&self.first[..]) + size_of_val(&self.neighbours[..])

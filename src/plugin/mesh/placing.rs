@@ -109,7 +109,11 @@ impl Weights {
             let of_carriers = distances.iter().map(|distance| distance[index]);
             of_carriers.fold(f32::INFINITY, f32::min)
         };
-        let farthest = (0..particles.len()).map(nearest).fold(0.0, f32::max);
+        // Of what no path leads to a carrier, nothing is.
+        let reached = (0..particles.len())
+            .map(nearest)
+            .filter(|distance| distance.is_finite());
+        let farthest = reached.fold(0.0, f32::max);
         self.of_particle.clear();
         for index in 0..particles.len() {
             let nearest = nearest(index);
