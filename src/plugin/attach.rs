@@ -50,7 +50,7 @@ impl Targets<'_, '_> {
             called
                 .map(|(entity, _)| entity)
                 .filter(exists)
-                .min_by_key(|entity| (entity.generation(), entity.index()))
+                .min_by_key(|entity| (entity.generation().to_bits(), entity.index_u32()))
         };
         known
             .filter(is_so_called)

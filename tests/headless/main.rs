@@ -9,6 +9,7 @@ mod gizmos;
 mod lifetime;
 mod log;
 mod mesh;
+mod meshes;
 mod motion;
 mod near;
 mod rapier;

@@ -8,7 +8,7 @@ use super::{
     Extent, Faces, Graph, Spacing, Surface, TriangleMesh, VertexAttribute,
     calibration::calibrate,
     orientation::orient,
-    springs::{Side, face_area, links, sides, sides_of},
+    springs::{Side, face_area, has_area, links, sides, sides_of},
     weld::same_places,
 };
 use crate::cloth::{ClothError, SpringKind};
@@ -26,8 +26,8 @@ impl Surface {
     /// The surface of a mesh under a transform's `scale`. Vertices no farther apart than `weld` (m, before the scale) are
     /// one particle.
     ///
-    /// Left out are all but the first of triangles between the same three particles, and vertices that are in no triangle with
-    /// an area, with the triangles that they are in. Several pieces are one cloth; an edge may have any number of faces.
+    /// Left out are triangles without an area, all but the first between the same three particles, and vertices of no other
+    /// triangle. Several pieces are one cloth; an edge may have any number of faces.
     ///
     /// # Errors
     /// What is wrong, with the vertex or triangle at fault.
@@ -136,15 +136,16 @@ impl Welded {
         Ok(())
     }
 
-    /// Takes out particles that stand for no area, with their faces.
+    /// Takes out faces without an area, and particles that stand for none, with their faces.
     fn drop_what_has_no_area(&mut self, triangles: usize) -> Result<(), ClothError> {
+        self.faces.retain(|face| has_area(*face, &self.rest));
         loop {
             let (areas, total) = self.areas();
             let mean = total / areas.iter().filter(|area| **area > 0.0).count().max(1) as f32;
-            let has_area = |particle: u32| areas[particle as usize] > NEGLIGIBLE * mean;
+            let stands_for_some = |particle: u32| areas[particle as usize] > NEGLIGIBLE * mean;
             let before = self.faces.len();
             self.faces
-                .retain(|face| face.iter().all(|corner| has_area(*corner)));
+                .retain(|face| face.iter().all(|corner| stands_for_some(*corner)));
             // What is measured in a cloth has to be more than rounding.
             if self.faces.is_empty() || mean < 1.0e-18 {
                 return Err(ClothError::MeshWithoutArea { triangles });

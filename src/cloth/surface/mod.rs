@@ -203,7 +203,7 @@ impl Surface {
     }
 
     /// Texture coordinates of each particle; empty where there are none.
-    pub(crate) fn uvs(&self) -> &[Vec2] {
+    pub fn uvs(&self) -> &[Vec2] {
         self.uvs.get_or_init(|| {
             let grid = self.grid.as_ref();
             grid.map_or_else(Vec::new, grid::uvs)

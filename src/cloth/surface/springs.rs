@@ -90,6 +90,13 @@ pub(super) fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
+/// Whether a face at rest is more than a line, but for rounding.
+pub(super) fn has_area(face: [u32; 3], rest: &[Vec3]) -> bool {
+    let square = |[a, b]: [u32; 2]| rest[a as usize].distance_squared(rest[b as usize]);
+    let longest = sides(face).map(square).into_iter().fold(0.0, f32::max);
+    face_area(face, rest) > SMALLEST_AREA * longest
+}
+
 /// Area of a face at rest (m²).
 pub(super) fn face_area(face: [u32; 3], rest: &[Vec3]) -> f32 {
     let [a, b, c] = face.map(|corner| rest[corner as usize]);
