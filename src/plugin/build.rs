@@ -178,7 +178,7 @@ fn follow_changes(
     material.validate()?;
     if was.areal_density != material.areal_density || are_others_pinned {
         particles.assign_masses(&built.shared.surface, material, pins)?;
-        // They are pinned anew with the offsets that they have.
+        // They are pinned again with the offsets that they have.
         for attached in &state.attached {
             particles.pin(attached.particle as usize);
         }

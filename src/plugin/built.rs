@@ -15,7 +15,7 @@ use crate::{
     solver::{Solver, Tethers, material_stretch},
 };
 
-/// What a cloth's surface, springs, tree and solver are. Made from its other components, and made anew where they change.
+/// What a cloth's surface, springs, tree and solver are. Made from its other components, and made again where they change.
 /// Empty until the first tick. Reflected as nothing.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Component, Default, Debug)]
@@ -31,7 +31,7 @@ pub struct ClothBuilt {
     pub(super) refused: Option<(Tried, ClothError)>,
     #[reflect(ignore)]
     pub(super) solver: Solver,
-    /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
+    /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made again.
     #[reflect(ignore)]
     tethered: Option<(bool, f32)>,
     /// The stretch that its material gives by itself.
@@ -127,12 +127,12 @@ impl ClothBuilt {
         }
     }
 
-    /// Has tethers be made anew: other particles are pinned, or the material gives in another way.
+    /// Has tethers be made again: other particles are pinned, or the material gives in another way.
     pub(super) fn forget_tethers(&mut self) {
         self.tethered = None;
     }
 
-    /// Makes tethers anew if what they were made for has changed: the pins, the material, or what pulls at them; and
+    /// Makes tethers again if what they were made for has changed: the pins, the material, or what pulls at them; and
     /// what follows from the same.
     pub(super) fn tether(
         &mut self,

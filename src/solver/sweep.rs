@@ -35,7 +35,7 @@ pub(super) trait Sweep: fmt::Debug + Send + Sync {
     /// Takes over the length of a sub-step (s).
     fn set_substep(&mut self, substep: f32);
 
-    /// How many tasks it is parted into at most where some are wanted.
+    /// How many tasks it is split into at most where some are wanted.
     fn bands(&self, wanted: usize) -> usize;
 
     /// Moves the particles in `blocks` by one sub-step, in this many bands.

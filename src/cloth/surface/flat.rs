@@ -149,7 +149,7 @@ mod tests {
         let pieces = Flat::find(&pieces, &faces, &[true; 6], 1.0);
         assert!(
             pieces.is_some(),
-            "pieces that touch are told apart by the surface"
+            "pieces that touch count as two by the surface"
         );
         let folded = [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(0.5, 0.5)];
         let faces = [[0, 1, 3], [0, 2, 3], [0, 1, 2]];

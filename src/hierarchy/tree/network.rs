@@ -1,4 +1,4 @@
-//! The tree of particles anywhere: patches parted along the surface at rest, each node stored.
+//! The tree of particles anywhere: patches split along the surface at rest, each node stored.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// From this many times on that its radius along the surface is its radius through space, a patch is folded: its halves are
-/// parted along the surface. A path along edges is up to √2 times as long as a straight one on a flat patch.
+/// split along the surface. A path along edges is up to √2 times as long as a straight one on a flat patch.
 const FOLDED: f32 = 1.5;
 
 /// A tree over particles joined in any way.

@@ -43,7 +43,7 @@ use write::{Tangents, copy_of, mesh_of, write_mesh};
 /// Pinned and attached particles are drawn where the cloth's entity and their targets are drawn. Interpolate what moves in
 /// `FixedUpdate` and touches cloth, as the cloth is, for instance by the crate `bevy_transform_interpolation`.
 ///
-/// Reflected as nothing: it is made anew.
+/// Reflected as nothing: it is made again.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Component, Default, Debug)]
 pub struct ClothMesh {

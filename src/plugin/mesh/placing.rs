@@ -76,7 +76,7 @@ struct Weights {
 }
 
 impl Weights {
-    /// Makes them anew if the pins have changed.
+    /// Makes them again if the pins have changed.
     fn follow(&mut self, built: &ClothBuilt, particles: &ClothParticles, state: &ClothState) {
         if self.made_for == Some(built.pins_version) {
             return;

@@ -23,7 +23,7 @@ use crate::cloth::{Cloth, ClothError, ClothShape, Surface, TriangleMesh};
 #[derive(Resource, Debug, Default)]
 pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
 
-/// Takes over which meshes a game has changed: cloths that are made from them are built anew.
+/// Takes over which meshes a game has changed: cloths that are made from them are built again.
 pub(crate) fn note_changed_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
     mut changed: ResMut<ChangedMeshes>,
