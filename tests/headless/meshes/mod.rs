@@ -2,7 +2,8 @@
 
 mod alike;
 mod drawn;
+mod life;
 mod pins;
 mod refused;
-mod sheets;
+pub mod sheets;
 mod sources;
