@@ -25,7 +25,7 @@
 //!
 //! | module | what lives there |
 //! |---|---|
-//! | [`cloth`] | what a cloth *is*: particles, grid, springs and their colours, material, pins |
+//! | [`cloth`] | what a cloth *is*: its surface, from a grid or a mesh, particles, springs and their colours, material, pins |
 //! | [`solver`] | how it *moves*: Verlet, distance constraints, sub-steps, tethers, tolerance, rest |
 //! | [`hierarchy`] | how it is *searched*: the quad-tree, bound rules, the top-down query |
 //! | [`contact`] | what happens on *touch*: shapes, push-out, friction |
@@ -47,17 +47,17 @@ pub mod prelude {
     };
     pub use crate::contact::{ClothCollider, ContactPoint, NarrowPhase};
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
+    #[cfg(feature = "egui")]
+    pub use crate::plugin::ClothPanelPlugin;
     #[cfg(feature = "rapier")]
     pub use crate::plugin::RapierClothCollider;
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
         ClothAttachment, ClothAttachments, ClothContact, ClothContacts, ClothFault, ClothFrame,
-        ClothGravity, ClothLimitExceeded, ClothStats, ClothSystems, ClothTeleport,
+        ClothGravity, ClothLimitExceeded, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
         ClothTouchStarted, ClothTouchStopped, DrapePlugins,
     };
-    #[cfg(feature = "egui")]
-    pub use crate::plugin::{ClothColliderSpeed, ClothPanelPlugin};
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
     pub use crate::solver::{ClothLimit, ClothSettings, Substepping};

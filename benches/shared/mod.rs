@@ -6,7 +6,7 @@ use bevy_drape::{cloth::SpringKind, solver::methods::Scene};
 /// Sub-steps in a timed tick.
 pub const SUBSTEPS: u32 = 20;
 
-/// The cloth hung by two corners, a quarter of a second into its fall: no column is flat, no number tiny.
+/// The cloth hung by two corners, a quarter of a second into its fall: not flat, and no number tiny.
 pub fn in_motion(side: u32) -> Scene {
     let mut scene = Scene::hung_by_corners(side, 2.0).expect("a valid scene");
     let mut solver = scene.solver(true);

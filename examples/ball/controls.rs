@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::plugin::ClothColliderSpeed;
 
 use crate::{
     scene::{self, ScenePlugin},

@@ -1,7 +1,7 @@
 //! The cloth, the ball that rapier moves, light, and a floor to cast shadows on.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::{plugin::ClothColliderSpeed, prelude::*};
 use bevy_rapier3d::prelude::{
     Collider, NoUserData, PhysicsSet, RapierPhysicsPlugin, RigidBody, TimestepMode, Velocity,
 };

@@ -136,7 +136,7 @@ impl fmt::Display for Table {
     }
 }
 
-/// Where files go, and whether they are only drawn anew.
+/// Where files go, and whether they are only drawn again.
 pub struct Output {
     pub folder: PathBuf,
     pub redraw: bool,

@@ -3,7 +3,7 @@
 //! ```sh
 //! cargo run --release --example lab -- all                       # everything, to out/lab
 //! cargo run --release --example lab -- pareto --quick            # one experiment, short
-//! cargo run --release --example lab -- all --redraw --out DIR    # charts anew from the CSV files in DIR
+//! cargo run --release --example lab -- all --redraw --out DIR    # charts again from the CSV files in DIR
 //! ```
 //!
 //! Each experiment writes `NAME.csv` with the machine and the settings in its header, and its charts as SVG and PNG for

@@ -2,18 +2,16 @@
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-use bevy::{
-    gltf::GltfAssetLabel,
-    image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor},
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
+use bevy::{gltf::GltfAssetLabel, math::Affine2, prelude::*};
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
 
 use crate::{
     models,
-    shared::stage::{Grid, Shot, StagePlugin},
+    shared::{
+        stage::{Grid, Shot, StagePlugin},
+        woven::woven,
+    },
 };
 
 /// Triangles along either side of the pennant, and rings of the poncho.
@@ -180,33 +178,8 @@ fn spawn_poncho(
         at(0.0, 0.86),
     );
     // The mesh asset of the entity is the cloth.
-    let poncho = meshes.add(models::poncho(1.5, 0.12, fineness.0));
-    let stripes = images.add(stripes());
-    commands.spawn((
-        Name::new("poncho"),
-        Cloth::mesh(),
-        Mesh3d(poncho),
-        ClothMaterial {
-            damping: 0.03,
-            areal_density: 0.3,
-            ..ClothMaterial::COTTON
-        },
-        ClothSettings {
-            particle_radius: 0.012,
-            ..ClothSettings::substeps(30)
-        },
-        ShowClothGizmos::nothing(),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            base_color_texture: Some(stripes),
-            ..fabric(Color::WHITE)
-        })),
-        // Around the neck.
-        Transform::from_translation(PERSON + Vec3::Y * 1.47),
-    ));
-}
-
-/// Rings of colour from the hole to the hem.
-fn stripes() -> Image {
+    let poncho = meshes.add(models::poncho(1.5, 0.17, fineness.0));
+    // Rings of colour from the hole to the hem, between light yarns.
     let colors = [
         [196, 86, 42],
         [236, 200, 120],
@@ -215,27 +188,40 @@ fn stripes() -> Image {
         [150, 44, 48],
         [58, 94, 120],
     ];
-    let texels = (0..96_usize).flat_map(|row| {
-        let [r, g, b] = colors[(row / 8) % colors.len()];
-        [r, g, b, 255]
+    let weave = woven(&mut images, 1, |runs_down, yarn| {
+        let [r, g, b] = colors[(yarn as usize / 6) % colors.len()];
+        if runs_down {
+            Color::srgb_u8(226, 216, 196)
+        } else {
+            Color::srgb_u8(r, g, b)
+        }
     });
-    let size = Extent3d {
-        width: 1,
-        height: 96,
-        depth_or_array_layers: 1,
-    };
-    let mut image = Image::new(
-        size,
-        TextureDimension::D2,
-        texels.collect(),
-        TextureFormat::Rgba8UnormSrgb,
-        default(),
-    );
-    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
-        address_mode_u: ImageAddressMode::Repeat,
-        ..ImageSamplerDescriptor::linear()
-    });
-    image
+    commands.spawn((
+        Name::new("poncho"),
+        Cloth::mesh(),
+        Mesh3d(poncho),
+        ClothMaterial {
+            damping: 0.03,
+            friction: 0.6,
+            ..ClothMaterial::COTTON
+        },
+        ClothSettings {
+            particle_radius: 0.012,
+            ..ClothSettings::substeps(80)
+        },
+        // Nobody is thin enough to slip between particles.
+        NarrowPhase::Particles,
+        ShowClothGizmos::nothing(),
+        MeshMaterial3d(materials.add(StandardMaterial {
+            // As wide around as from the hole to the hem.
+            uv_transform: Affine2::from_scale(Vec2::new(12.0, 1.5)),
+            // The mesh has no tangents.
+            normal_map_texture: None,
+            ..weave
+        })),
+        // Around the neck.
+        Transform::from_translation(PERSON + Vec3::Y * 1.47),
+    ));
 }
 
 /// A ball that presses into the tent's side now and then.

@@ -110,7 +110,7 @@ pub enum ClothError {
     #[error("the cloth's mesh has no positions of three floats")]
     MeshWithoutPositions,
     /// Indices that are not three for each triangle.
-    #[error("{indices} indices are no whole number of triangles")]
+    #[error("{indices} indices are not three for each triangle")]
     MeshIndexCount {
         /// How many there are.
         indices: usize,

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{ClothError, MAX_PARTICLES};
 
-/// The plane that a [`Cloth`] is laid out in, in its entity's frame.
+/// The plane that a [`Cloth`](super::Cloth) is laid out in, in its entity's frame.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothPlane {

@@ -16,6 +16,11 @@ use super::ClothError;
 ///
 /// Bending is resisted by the same law between every second particle. Such a chord shortens with the fourth
 /// power of a bend's sharpness: it keeps folds from closing, softly at first, and is weaker on a finer grid.
+///
+/// A mesh has no rows: its stretch springs run along all edges, each standing for the area of the faces beside it, and give
+/// alike in all directions. They resist shear as well, as much as an isotropic sheet of that stretch and a Poisson's ratio of a
+/// third; only a shear compliance below the stretch compliance adds to that. Bend springs join the two corners that face each
+/// other across an edge.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothMaterial {

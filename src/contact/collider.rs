@@ -15,7 +15,7 @@ use crate::cloth::ClothError;
 ///
 /// Its speed, and with it its friction, comes from how the transform changed since the last tick: move it in
 /// the cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To move it without any
-/// speed, a teleport, insert this component anew.
+/// speed, a teleport, insert this component again.
 ///
 /// However fast it is: what moves farther in a sub-step than half of its thickness is tested all along its way, so that
 /// nothing that a ball or a capsule meets passes through it, nor any particle that a box or a plane meets.

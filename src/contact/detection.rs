@@ -172,7 +172,7 @@ impl Detection {
         }
     }
 
-    /// Begins the tick anew, from the same particles: for one that is done again.
+    /// Begins the tick again, from the same particles: for one that is done again.
     pub fn restart(&mut self) {
         for touch in &mut self.touches {
             (touch.deepest, touch.area, touch.volume) = (0.0, 0.0, 0.0);

@@ -17,6 +17,7 @@ mod triangle;
 
 pub use collider::ClothCollider;
 pub use corners::meets_triangles;
+#[doc(hidden)]
 pub use depth::deepest_penetration;
 pub use detection::Detection;
 pub use moving::MovingCollider;

@@ -103,6 +103,7 @@ pub struct ContactSettings {
     /// What colliders are tested against.
     pub narrow_phase: NarrowPhase,
     /// Whether what moves fast is tested all along its way; only comparisons turn this off.
+    #[doc(hidden)]
     pub is_swept: bool,
 }
 

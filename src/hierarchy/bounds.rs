@@ -41,7 +41,7 @@ impl NodeBounds {
         Ok(())
     }
 
-    /// Whether they are those of a tree as large as this. The rest shape is anybody's.
+    /// Whether they are those of a tree as large as this. Those of the rest shape belong to any tree.
     pub(super) fn matches(&self, tree: &QuadTree) -> bool {
         self.rule() == BoundRule::RestShape || self.size == tree.size()
     }

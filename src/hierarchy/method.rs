@@ -116,7 +116,7 @@ pub enum SearchReason {
     FewParticles,
     /// There are so few colliders that volumes which cost nothing to keep are best.
     FewColliders,
-    /// There are so many colliders, or the cloth is so stretched, that tight volumes are worth a refit.
+    /// There are many colliders, or the cloth is stretched much: tight volumes are worth a refit.
     ManyColliders,
 }
 

@@ -8,7 +8,7 @@
 //! depends on the rest shape alone and is made once.
 //!
 //! - *Grids.* Rows and columns are halved on each level. Nothing is stored a node: the halves of the rows and
-//!   those of the columns say all. Columns are parted strip by strip first, and all strips are then halved
+//!   those of the columns say all. Columns are split strip by strip first, and all strips are then halved
 //!   alike. So, where nodes are no wider than a strip, eight lanes hold eight nodes of one level, and one
 //!   instruction works on all of them.
 //! - *Meshes.* Any particles, joined by any springs. A patch is halved along its longest extent at rest, and each

@@ -47,7 +47,10 @@ impl Targets<'_, '_> {
         let find = || {
             let called = self.names.iter().filter(|(_, its)| its.as_str() == name);
             let exists = |entity: &Entity| global_transform(&self.transforms, *entity).is_ok();
-            called.map(|(entity, _)| entity).filter(exists).min()
+            called
+                .map(|(entity, _)| entity)
+                .filter(exists)
+                .min_by_key(|entity| (entity.generation().to_bits(), entity.index_u32()))
         };
         known
             .filter(is_so_called)
@@ -58,7 +61,7 @@ impl Targets<'_, '_> {
             })
     }
 
-    /// Finds where the targets of attachments are.
+    /// Finds where the targets of attachments are; `known` are those of the last tick.
     ///
     /// # Errors
     /// [`ClothError::NoTarget`] for one that does not exist, has no transform, or is scaled to nothing, and
@@ -66,13 +69,19 @@ impl Targets<'_, '_> {
     pub fn find(
         &self,
         attachments: &[ClothAttachment],
+        known: &[ClothAttachment],
         surface: &Surface,
         entities: &mut Vec<Entity>,
         places: &mut Vec<Affine3A>,
     ) -> Result<(), ClothError> {
         places.clear();
+        // What is known was valid.
+        if attachments != known {
+            attachments
+                .iter()
+                .try_for_each(|each| each.pin.validate(surface))?;
+        }
         for (index, attachment) in attachments.iter().enumerate() {
-            attachment.pin.validate(surface)?;
             let target = self.entity(attachment, entities.get(index).copied())?;
             let transform = global_transform(&self.transforms, target).ok();
             let affine = transform.map(|transform| transform.affine());

@@ -18,7 +18,7 @@ use crate::cloth::Pin;
 /// Each particle keeps the offset that it has when it is attached; scaled and turned with its target. Attached
 /// particles are pinned besides those of [`Pins`](crate::cloth::Pins). Move targets before
 /// [`ClothSystems::Prepare`](super::ClothSystems). May change at any time: what is no longer attached is released. A
-/// predicate is known by itself: set it anew as a clone, since another one is another attachment. Before a target is
+/// predicate is known by itself: set it again as a clone, since another one is another attachment. Before a target is
 /// despawned take the attachment off, and the cloth falls; otherwise it stays where it is, with a fault.
 ///
 /// ```
@@ -54,8 +54,8 @@ pub struct ClothAttachment {
 pub enum ClothTarget {
     /// An entity.
     Entity(Entity),
-    /// The entity of this `Name`, as a scene or a modelling program gave it; of several the one that was there first. It
-    /// may be spawned later than the cloth, which waits for it.
+    /// The entity of this `Name`, as a scene or a modelling program gave it; of several the one that was
+    /// spawned first. While there is none the cloth stands still, with a fault.
     Named(String),
 }
 

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{
     ClothAttachment, ClothBuilt, ClothState,
-    built::BuiltFrom,
+    built::{BuiltFrom, Tried},
     shared::{Recipe, SharedParts, compliances},
     source::{Source, Sources},
 };
@@ -36,14 +36,29 @@ pub(super) fn build(
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<bool, ClothError> {
-    let was_built = is_built(wanted, built) && !particles.is_empty();
-    if was_built {
+    if is_built(wanted, built) && !particles.is_empty() {
         follow_changes(wanted, parts, particles, built, state)?;
-    } else {
-        build_new(wanted, sources, parts, particles, built, state)?;
-        state.rest.disturb();
+        return Ok(true);
     }
-    Ok(was_built)
+    // What was refused once would be again: a mesh takes milliseconds to look at.
+    let tried = Tried {
+        changed: wanted.changed,
+        source: wanted.source,
+        material: *wanted.material,
+        pins: wanted.pins.clone(),
+        scale: wanted.scale,
+        particles: particles.len(),
+    };
+    if let Some((before, error)) = &built.refused
+        && *before == tried
+    {
+        return Err(error.clone());
+    }
+    let new = build_new(wanted, sources, parts, particles, built, state);
+    built.refused = new.as_ref().err().map(|error| (tried, error.clone()));
+    new?;
+    state.rest.disturb();
+    Ok(false)
 }
 
 /// Whether what was built is that cloth, whatever its pins and material.
@@ -70,7 +85,7 @@ fn build_new(
     wanted: &Wanted,
     sources: &Sources,
     parts: &mut SharedParts,
-    particles: &mut ClothParticles,
+    particles: &mut Mut<ClothParticles>,
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<(), ClothError> {
@@ -84,10 +99,10 @@ fn build_new(
     material.validate()?;
     let recipe = Recipe {
         shape: cloth.shape.clone(),
-        scale: wanted.scale,
+        scale: scale_of(wanted),
         source: wanted.source,
     };
-    let make = || sources.surface(cloth, wanted.source.as_ref(), wanted.scale);
+    let make = || sources.surface(cloth, recipe.source.as_ref(), recipe.scale);
     let shared = parts.get(&recipe, material, make)?;
     let surface = &shared.surface;
     pins.validate(surface)?;
@@ -97,13 +112,13 @@ fn build_new(
         at_rest(wanted, surface)?
     } else {
         check_count(particles, surface)?;
-        particles.clone()
+        (**particles).clone()
     };
     pins.for_each(surface, |index| new.pin(index));
     built.solver = shared.solver.clone();
     built.forget_tethers();
     state.detach();
-    *particles = new;
+    **particles = new;
     built.shared = shared;
     built.from = Some(BuiltFrom {
         unevenness: cloth.unevenness,
@@ -112,6 +127,16 @@ fn build_new(
         pins: pins.clone(),
     });
     Ok(())
+}
+
+/// The scale of a cloth. That of a mesh without its last digits, which depend on how the cloth is turned: so that those made
+/// alike share one surface.
+fn scale_of(wanted: &Wanted) -> Vec3 {
+    if wanted.cloth.as_grid().is_some() {
+        return wanted.scale;
+    }
+    let round = |number: f32| f32::from_bits(number.to_bits().wrapping_add(16) & !31);
+    Vec3::from_array(wanted.scale.to_array().map(round))
 }
 
 /// The particles of a new cloth.
@@ -153,7 +178,7 @@ fn follow_changes(
     material.validate()?;
     if was.areal_density != material.areal_density || are_others_pinned {
         particles.assign_masses(&built.shared.surface, material, pins)?;
-        // They are pinned anew with the offsets that they have.
+        // They are pinned again with the offsets that they have.
         for attached in &state.attached {
             particles.pin(attached.particle as usize);
         }

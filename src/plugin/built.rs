@@ -4,17 +4,18 @@ use std::sync::Arc;
 
 use bevy::{
     ecs::{change_detection::Tick, component::Component, reflect::ReflectComponent},
+    math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::shared::Shared;
+use super::{shared::Shared, source::Source};
 use crate::{
-    cloth::{ClothMaterial, ClothParticles, Pins, Springs, Surface},
+    cloth::{ClothError, ClothMaterial, ClothParticles, Pins, Springs, Surface},
     hierarchy::QuadTree,
     solver::{Solver, Tethers, material_stretch},
 };
 
-/// What a cloth's surface, springs, tree and solver are. Made from its other components, and made anew where they change.
+/// What a cloth's surface, springs, tree and solver are. Made from its other components, and made again where they change.
 /// Empty until the first tick. Reflected as nothing.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Component, Default, Debug)]
@@ -25,9 +26,12 @@ pub struct ClothBuilt {
     /// What all this was made from.
     #[reflect(ignore)]
     pub(super) from: Option<BuiltFrom>,
+    /// What could not be built, and why.
+    #[reflect(ignore)]
+    pub(super) refused: Option<(Tried, ClothError)>,
     #[reflect(ignore)]
     pub(super) solver: Solver,
-    /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made anew.
+    /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made again.
     #[reflect(ignore)]
     tethered: Option<(bool, f32)>,
     /// The stretch that its material gives by itself.
@@ -51,6 +55,17 @@ pub(super) struct BuiltFrom {
     pub changed: Tick,
     pub material: ClothMaterial,
     pub pins: Pins,
+}
+
+/// What a cloth was to be built from, besides the recipe of its surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tried {
+    pub changed: Tick,
+    pub source: Option<Source>,
+    pub material: ClothMaterial,
+    pub pins: Pins,
+    pub scale: Vec3,
+    pub particles: usize,
 }
 
 impl ClothBuilt {
@@ -112,12 +127,12 @@ impl ClothBuilt {
         }
     }
 
-    /// Has tethers be made anew: other particles are pinned, or the material gives in another way.
+    /// Has tethers be made again: other particles are pinned, or the material gives in another way.
     pub(super) fn forget_tethers(&mut self) {
         self.tethered = None;
     }
 
-    /// Makes tethers anew if what they were made for has changed: the pins, the material, or what pulls at them; and
+    /// Makes tethers again if what they were made for has changed: the pins, the material, or what pulls at them; and
     /// what follows from the same.
     pub(super) fn tether(
         &mut self,

@@ -85,9 +85,10 @@ pub(super) fn report_limits(
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
             let beyond = limit_inputs.exceeded(limit);
             stats.exceeded = stats.exceeded.or(beyond.map(|_| limit));
-            let is_news = state.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
+            let is_reported =
+                state.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
             if let Some([quantity, good_up_to]) = beyond
-                && is_news
+                && is_reported
             {
                 exceeded.write(ClothLimitExceeded {
                     cloth: name.entity,

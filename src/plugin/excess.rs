@@ -27,11 +27,11 @@ impl Excess {
         self.ticks = self.ticks.saturating_add(1);
         // What passes through does so at once.
         let lasts = self.ticks >= TICKS || limit == ClothLimit::SmallFastCollider;
-        let is_news = self.reported == 0.0 || quantity >= WORSE * self.reported;
-        if lasts && is_news {
+        let is_reported = self.reported == 0.0 || quantity >= WORSE * self.reported;
+        if lasts && is_reported {
             self.reported = quantity;
         }
-        lasts && is_news
+        lasts && is_reported
     }
 }
 

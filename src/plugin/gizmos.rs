@@ -306,6 +306,9 @@ fn draw_volume(
         gizmos.cube(transform, color);
     };
     match volume {
+        // Of several pieces no volume that knows only the rest shape is around all.
+        NodeVolume::Sphere(sphere) if !sphere.radius().is_finite() => {}
+        NodeVolume::Aabb(aabb) if !aabb.max.is_finite() => {}
         NodeVolume::Sphere(sphere) => {
             let place = frame * Isometry3d::from_translation(sphere.center);
             gizmos

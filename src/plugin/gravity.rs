@@ -6,7 +6,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-/// Acceleration of every cloth (m/s²), in the world; [`ClothSettings::gravity`] overrides it for one.
+/// Acceleration of every cloth (m/s²), in the world; [`ClothSettings::gravity`](crate::solver::ClothSettings::gravity) overrides it for one.
 #[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothGravity(pub Vec3);

@@ -59,7 +59,10 @@ pub use gravity::ClothGravity;
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
 #[cfg(feature = "egui")]
-pub use panel::{ClothColliderSpeed, ClothPanel, ClothPanelPlugin};
+#[doc(hidden)]
+pub use panel::ClothColliderSpeed;
+#[cfg(feature = "egui")]
+pub use panel::{ClothPanel, ClothPanelPlugin};
 #[cfg(feature = "rapier")]
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
 pub use scratch::ClothScratch;

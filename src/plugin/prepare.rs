@@ -93,15 +93,17 @@ pub(super) fn prepare_cloths(
             commands.entity(cloth.entity).try_remove::<ClothTeleport>();
         }
         // What is on its way is no fault.
-        if outcome != Err(ClothError::MeshLoading) {
-            ClothFault::report(
-                &mut commands,
-                cloth.entity,
-                cloth.fault,
-                Part::Cloth,
-                outcome,
-            );
-        }
+        let outcome = match outcome {
+            Err(ClothError::MeshLoading) => Ok(()),
+            outcome => outcome,
+        };
+        ClothFault::report(
+            &mut commands,
+            cloth.entity,
+            cloth.fault,
+            Part::Cloth,
+            outcome,
+        );
     }
 }
 
@@ -151,6 +153,7 @@ impl PreparingItem<'_, '_> {
         let surface = built.surface().clone();
         targets.find(
             attachments,
+            &state.attachments,
             &surface,
             &mut state.targets,
             &mut scratch.targets,

@@ -51,21 +51,27 @@ impl SharedParts {
         make: impl FnOnce() -> Result<Surface, ClothError>,
     ) -> Result<Arc<Shared>, ClothError> {
         let compliances = compliances(material);
-        let mut surface = None;
+        let mut alike = None;
         for known in self.known.iter().filter_map(Weak::upgrade) {
             if known.recipe.as_ref() == Some(recipe) {
                 if known.compliances == compliances {
                     return Ok(known);
                 }
-                surface = Some(known.surface.clone());
+                alike = Some(known);
             }
         }
-        let surface = match surface {
-            Some(surface) => surface,
+        let surface = match &alike {
+            Some(known) => known.surface.clone(),
             None => Arc::new(make()?),
         };
         let springs = Springs::of_surface(&surface, material);
-        let tree = QuadTree::of_surface(&surface, springs.has(SpringKind::Shear));
+        let diagonals = springs.has(SpringKind::Shear);
+        // A tree does not know of stiffness.
+        let known = alike.filter(|known| known.springs.has(SpringKind::Shear) == diagonals);
+        let tree = match known {
+            Some(known) => known.tree.clone(),
+            None => QuadTree::of_surface(&surface, diagonals),
+        };
         let shared = Arc::new(Shared {
             recipe: Some(recipe.clone()),
             compliances,

@@ -182,8 +182,8 @@ fn clear_removed_cloth(
     mut cloths: Query<(&ClothBuilt, &mut ClothParticles)>,
     mut commands: Commands,
 ) {
-    if let Ok((topology, mut particles)) = cloths.get_mut(removed.entity) {
-        topology.release_pins(&mut particles);
+    if let Ok((built, mut particles)) = cloths.get_mut(removed.entity) {
+        built.release_pins(&mut particles);
     }
     commands.entity(removed.entity).try_remove::<(
         ClothBuilt,
@@ -212,7 +212,7 @@ fn clear_removed_collider(
     ClothFault::report(&mut commands, removed.entity, known, Part::Collider, Ok(()));
 }
 
-/// A collider that is inserted anew has not come from where it was before.
+/// A collider that is inserted again has not come from where it was before.
 fn reset_motion(inserted: On<Insert, ClothCollider>, mut motions: Query<&mut ColliderMotion>) {
     if let Ok(mut motion) = motions.get_mut(inserted.entity) {
         *motion = ColliderMotion::default();

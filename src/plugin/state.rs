@@ -13,8 +13,8 @@ use crate::{
 };
 
 /// What a cloth remembers from tick to tick, besides its [`ClothParticles`](crate::cloth::ClothParticles) and its
-/// [`ClothFrame`](super::ClothFrame). The next tick depends on this, on those, and on what the game says in other
-/// components; on nothing else.
+/// [`ClothFrame`](super::ClothFrame). The next tick depends on this, on those, on what the game says in other components, from
+/// which [`ClothBuilt`](super::ClothBuilt) follows, and on how colliders move; on nothing else.
 #[derive(Component, Debug, Default, Clone)]
 pub struct ClothState {
     /// Whether the last preparation found nothing wrong: what is not valid is neither moved nor drawn.

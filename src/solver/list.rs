@@ -65,7 +65,8 @@ impl ListSweep {
     }
 
     fn load(&mut self, blocks: &[Block]) {
-        let strip = self.layout.strip as usize;
+        // Of no particles, one that holds none.
+        let strip = self.layout.strip.max(1) as usize;
         let of_rows = self.rows.chunks_exact_mut(strip * LANES);
         for (rows, blocks) in of_rows.zip(blocks.chunks_exact(strip)) {
             let mut each = rows.chunks_exact_mut(strip);
@@ -85,7 +86,8 @@ impl ListSweep {
     }
 
     fn store(&self, blocks: &mut [Block]) {
-        let strip = self.layout.strip as usize;
+        // Of no particles, one that holds none.
+        let strip = self.layout.strip.max(1) as usize;
         let of_rows = self.rows.chunks_exact(strip * LANES);
         for (rows, blocks) in of_rows.zip(blocks.chunks_exact_mut(strip)) {
             let mut strips = rows.chunks_exact(strip);

@@ -9,6 +9,7 @@ mod envelope;
 mod kernel;
 mod list;
 #[cfg(feature = "methods")]
+#[doc(hidden)]
 pub mod methods;
 mod packet;
 mod pipeline;
@@ -27,6 +28,7 @@ mod tether;
 
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
+#[doc(hidden)]
 pub use kernel::SimdLevel;
 pub use rest::Rest;
 pub use settings::ClothSettings;

@@ -43,9 +43,9 @@ pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f
     for packet in packets {
         let a = packet.from.map(|end| rows[end as usize]);
         let b = packet.to.map(|end| rows[end as usize]);
-        let ways: [Vec4; SPRINGS] =
+        let offsets: [Vec4; SPRINGS] =
             std::array::from_fn(|at| (b[at].place - a[at].place) + (b[at].moved - a[at].moved));
-        let [x, y, z] = coordinates(ways);
+        let [x, y, z] = coordinates(offsets);
         let (weight_a, weight_b) = (weights(&a), weights(&b));
         let q = x * x + y * y + z * z;
         let r2 = packet.rest_square;
@@ -56,9 +56,9 @@ pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f
         let share_b = (share * weight_b).to_array();
         for at in 0..SPRINGS {
             // What is beside a displacement stays 0.
-            let way = ways[at] * Vec4::new(1.0, 1.0, 1.0, 0.0);
-            rows[packet.from[at] as usize].moved = a[at].moved + way * share_a[at];
-            rows[packet.to[at] as usize].moved = b[at].moved - way * share_b[at];
+            let offset = offsets[at] * Vec4::new(1.0, 1.0, 1.0, 0.0);
+            rows[packet.from[at] as usize].moved = a[at].moved + offset * share_a[at];
+            rows[packet.to[at] as usize].moved = b[at].moved - offset * share_b[at];
         }
     }
 }

@@ -101,6 +101,7 @@ impl Solver {
     }
 
     /// With this SIMD level from now on.
+    #[doc(hidden)]
     pub fn set_simd_level(&mut self, simd_level: SimdLevel) {
         self.simd_level = simd_level;
     }

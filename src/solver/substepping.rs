@@ -4,7 +4,7 @@ use bevy::reflect::Reflect;
 
 use super::Stretch;
 
-/// More would be a slip of the finger, and would hang the game.
+/// More would be a mistake in typing, and would hang the game.
 pub(super) const MAX_SUBSTEPS: u32 = 10_000;
 
 /// Parts of the tolerance: below the first the sub-steps become fewer, above the last more, and the one between is

@@ -35,10 +35,10 @@ pub(super) trait Sweep: fmt::Debug + Send + Sync {
     /// Takes over the length of a sub-step (s).
     fn set_substep(&mut self, substep: f32);
 
-    /// How many tasks it is parted into at most where some are wanted.
+    /// How many tasks it is split into at most where some are wanted.
     fn bands(&self, wanted: usize) -> usize;
 
-    /// Moves the particles in `blocks` by one sub-step, in so many bands.
+    /// Moves the particles in `blocks` by one sub-step, in this many bands.
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept;
 
     /// Measures the stretch.

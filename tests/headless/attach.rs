@@ -128,7 +128,7 @@ fn a_target_that_is_gone_is_named() {
     assert!(matches!(fault.error, ClothError::PinOutOfRange { .. }));
 }
 
-/// A cloth that is built anew is attached anew, where it then is.
+/// A cloth that is built again is attached again, where it then is.
 #[test]
 fn attachments_outlast_a_new_build() {
     let (mut app, flag, pole) = flag(Transform::IDENTITY);

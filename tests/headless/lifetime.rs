@@ -52,7 +52,7 @@ fn despawning_either_is_harmless_and_reported() {
     );
 }
 
-/// A ball that jumps sweeps through what lies between; inserted anew, it has not come from anywhere.
+/// A ball that jumps sweeps through what lies between; inserted again, it has not come from anywhere.
 #[test]
 fn a_teleport_sweeps_nothing() {
     let pushed = |teleport: bool| {
@@ -187,7 +187,7 @@ fn what_was_prepared_does_not_outlast_its_tick() {
     assert_eq!(particles(&app, cloth).len(), 9);
 }
 
-/// What was pinned and attached is free again when it becomes a cloth anew without pins.
+/// What was pinned and attached is free again when it becomes a cloth again without pins.
 #[test]
 fn a_removed_cloth_is_not_pinned_for_ever() {
     let mut app = app();

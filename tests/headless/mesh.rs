@@ -157,7 +157,7 @@ fn a_new_grid_gets_a_new_mesh() {
     assert_eq!(vertices(&app, cloth, Mesh::ATTRIBUTE_POSITION).len(), 25);
 }
 
-/// What sleeps is drawn where it sleeps, and no tick ago, and drawn anew once it is woken.
+/// What sleeps is drawn where it sleeps, and no tick ago, and drawn again once it is woken.
 #[test]
 fn a_sleeping_cloth_is_drawn_where_it_is() {
     let mut app = app_that_draws(FixedUpdate);

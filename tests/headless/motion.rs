@@ -168,7 +168,7 @@ fn a_grabbed_particle_stays_grabbed() {
     assert_ne!(position(&app, cloth, (9, 9)), grabbed);
 }
 
-/// Games may write particles, and empty them to begin anew.
+/// Games may write particles, and empty them to begin again.
 #[test]
 fn games_may_write_particles() {
     let mut app = app();

@@ -57,7 +57,7 @@ fn a_slope_far_below_is_not_near() {
     }
 }
 
-/// A cloth that is built anew, larger, in the very tick in which something else is wrong with it, is not searched by the
+/// A cloth that is built again, larger, in the very tick in which something else is wrong with it, is not searched by the
 /// volumes of what it was.
 #[test]
 fn a_cloth_at_fault_is_not_searched() {

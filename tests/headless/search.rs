@@ -303,7 +303,7 @@ fn drawn(app: &App) -> Vec<LinearRgba> {
     })
 }
 
-/// However it is searched, what touches is drawn red; and what vanishes, begins anew or is NaN is no trouble.
+/// However it is searched, what touches is drawn red; and what vanishes, begins again or is NaN is no trouble.
 #[test]
 fn every_search_is_drawn() {
     let look = ClothGizmos::default();

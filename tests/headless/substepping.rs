@@ -100,7 +100,7 @@ fn a_repeated_tick_leaves_no_trace() {
         ));
         tick(&mut app, 40);
         change::<ClothSettings>(&mut app, cloth, |settings| {
-            settings.substepping = substepping
+            settings.substepping = substepping;
         });
         tick(&mut app, 1);
         let stats = app.world().get::<ClothStats>(cloth).expect("figures");

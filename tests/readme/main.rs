@@ -11,10 +11,11 @@ use bevy::{
 use bevy_drape::prelude::*;
 
 /// README's programs, by their files.
-const PROGRAMS: [&str; 5] = [
+const PROGRAMS: [&str; 6] = [
     include_str!("first.rs"),
     include_str!("flag.rs"),
     include_str!("table.rs"),
+    include_str!("model.rs"),
     include_str!("rapier.rs"),
     include_str!("executor.rs"),
 ];
@@ -57,12 +58,12 @@ fn run(app: &mut App, seconds: f32) {
     for _ in 0..(seconds * 64.0) as usize {
         app.update();
     }
-    let faults = app
-        .world_mut()
-        .query::<&ClothFault>()
+    let mut faults = app.world_mut().query::<&ClothFault>();
+    let faults: Vec<String> = faults
         .iter(app.world())
-        .count();
-    assert_eq!(faults, 0);
+        .map(|fault| fault.error.to_string())
+        .collect();
+    assert!(faults.is_empty(), "{faults:?}");
     assert_eq!(app.world().resource::<Reports>().0, []);
 }
 
@@ -214,6 +215,47 @@ mod table {
         );
         let hem = beside.iter().map(|at| at.y).fold(f32::MAX, f32::min);
         assert!((0.3..0.7).contains(&hem), "{hem}");
+    }
+}
+
+mod model {
+    include!("model.rs");
+
+    use bevy::{
+        gltf::GltfPlugin, image::ImagePlugin, world_serialization::WorldSerializationPlugin,
+    };
+    use std::{thread::sleep, time::Duration};
+
+    /// The tent comes from its file, stands on its pegs and hangs from its ridge.
+    #[test]
+    fn the_tent_stands() {
+        let loading = |app: &mut App| {
+            app.add_plugins((
+                ImagePlugin::default(),
+                WorldSerializationPlugin,
+                GltfPlugin::default(),
+            ));
+        };
+        let mut app = super::app(tent, loading);
+        let mut waits = app.world_mut().query::<&ClothParticles>();
+        for _ in 0..1000 {
+            let particles = waits.single(app.world()).expect("one cloth");
+            if !particles.is_empty() {
+                break;
+            }
+            sleep(Duration::from_millis(10));
+            app.update();
+        }
+        super::run(&mut app, 3.0);
+        let particles = waits.single(app.world()).expect("one cloth");
+        let heights = || particles.positions().map(|at| at.y);
+        let pinned = particles.inverse_masses().filter(|mass| *mass == 0.0);
+        assert_eq!((particles.len(), pinned.count()), (2025, 55));
+        assert!(
+            (heights().fold(0.0, f32::max) - 1.3).abs() < 0.01,
+            "its ridge"
+        );
+        assert!(heights().fold(0.0, f32::min) > -0.1, "its hem");
     }
 }
 

@@ -365,7 +365,7 @@ impl<'a> Ours<'a> {
             self.stretch = stretch;
             self.fastest = farthest * substeps as f32 / scene.seconds;
             let Some(more) = self.control.observe(self.substepping, stretch) else {
-                // Of the way through the tick that counts: beginning anew forgets the others'.
+                // Of the way through the tick that counts: beginning again forgets the others'.
                 let depths = self.detection.touches().iter().map(|touch| touch.deepest);
                 self.deepest = self.deepest.max(f64::from(depths.fold(0.0, f32::max)));
                 return;

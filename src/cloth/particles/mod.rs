@@ -29,7 +29,7 @@ const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
 /// position − previous position, taken from rounded numbers, loses gravity as steps shrink.
 ///
 /// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write between
-/// ticks; emptying it (`*particles = default()`) builds the cloth anew at rest.
+/// ticks; emptying it (`*particles = default()`) builds the cloth again at rest.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {

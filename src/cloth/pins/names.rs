@@ -1,7 +1,7 @@
 //! What each way of naming particles means on a surface.
 
 use super::{Corner, Pin};
-use crate::cloth::{ClothError, ClothGrid, Surface};
+use crate::cloth::{ClothError, ClothGrid, Surface, VertexAttribute};
 
 impl Pin {
     /// Whether it names particles of `surface`.
@@ -15,14 +15,14 @@ impl Pin {
         let is_inside = match (self, surface.as_grid()) {
             (Self::Index(index), _) => *index < surface.len(),
             (Self::Vertex(vertex), _) => surface.particle_of_vertex(*vertex).is_some(),
-            (Self::Top | Self::AtRest(_), _) => true,
+            (Self::Top | Self::AtRest(_), _) | (Self::Corner(_) | Self::Where(_), Some(_)) => true,
             (Self::Near { .. }, _) => return self.finds_something(surface),
             (Self::Attribute { name, channel, .. }, _) => {
                 let attributes = surface.attributes();
                 if *channel < 4 && attributes.iter().any(|each| each.name() == name) {
                     return self.finds_something(surface);
                 }
-                let names: Vec<&str> = attributes.iter().map(|each| each.name()).collect();
+                let names: Vec<&str> = attributes.iter().map(VertexAttribute::name).collect();
                 let none = "none".to_string();
                 return Err(ClothError::NoSuchAttribute {
                     pin: pin(),
@@ -37,7 +37,6 @@ impl Pin {
             (Self::Cell(row, column), Some(grid)) => *row < grid.rows() && *column < grid.columns(),
             (Self::Row(row), Some(grid)) => *row < grid.rows(),
             (Self::Column(column), Some(grid)) => *column < grid.columns(),
-            (Self::Corner(_) | Self::Where(_), Some(_)) => true,
         };
         if is_inside {
             return Ok(());
@@ -91,7 +90,7 @@ impl Pin {
                 above,
             } => {
                 let attribute = surface.attributes().iter().find(|each| each.name() == name);
-                let values = attribute.map_or(&[][..], |attribute| attribute.values());
+                let values = attribute.map_or(&[][..], VertexAttribute::values);
                 let is_above =
                     |value: &[f32; 4]| value.get(*channel).is_some_and(|value| value > above);
                 let found = values

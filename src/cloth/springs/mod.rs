@@ -175,8 +175,8 @@ impl Springs {
     /// The springs of a surface: those of its [grid](Self::of_grid), if it was made from one.
     ///
     /// Those of a mesh run along its edges, of the stretch compliance, and across each edge between the corners that face each
-    /// other there, of the bend compliance. Edges run in all directions, so they resist shear as well, as a patch of the
-    /// shear compliance `stretch` would; where the material's is less, what it lacks is added to the springs across.
+    /// other there, of the bend compliance. Edges run in all directions, so they resist shear as well; where the material's
+    /// shear compliance is less than its stretch compliance, what is lacking is added to the springs across.
     pub fn of_surface(surface: &Surface, material: &ClothMaterial) -> Self {
         if let Some(grid) = surface.as_grid() {
             return Self::of_grid(grid, material);

@@ -1,6 +1,7 @@
 //! Triangles from Bevy's mesh assets.
 
 use bevy::{
+    asset::RenderAssetUsages,
     math::{Vec2, Vec3},
     mesh::{
         Indices, Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology,
@@ -29,6 +30,10 @@ impl TriangleMesh {
     /// [`ClothError::MeshNotReadable`] of a mesh that is in the render world only; [`ClothError::MeshTopology`] of lines or
     /// points; [`ClothError::MeshWithoutPositions`]; [`ClothError::MeshIndexCount`] if indices are left over.
     pub fn of_asset(mesh: &Mesh) -> Result<Self, ClothError> {
+        // It would be gone as soon as the renderer takes it.
+        if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+            return Err(ClothError::MeshNotReadable);
+        }
         let read = |attribute: MeshVertexAttribute| match mesh.try_attribute_option(attribute) {
             Ok(values) => Ok(values),
             Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),

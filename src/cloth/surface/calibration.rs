@@ -43,6 +43,13 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
         .map(|link| square(link) / f64::from(link.slenderness))
         .collect();
     let mut corrected = areas.clone();
+    let turns: Vec<Vec<DVec2>> = (0..rest.len())
+        .map(|particle| {
+            let neighbours = graph.of(particle as u32).iter();
+            let turn = |near: &(u32, f32)| frames[particle].angle_to(&frames[near.0 as usize]);
+            neighbours.map(turn).collect()
+        })
+        .collect();
     for _ in 0..PASSES {
         let star = |particle: usize| {
             let mut star = Springs::NONE;
@@ -68,11 +75,10 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
             })
             .collect();
         let compliance = |particle: usize| {
-            let neighbours = graph.of(particle as u32).iter().map(|near| near.0 as usize);
-            let mut sum = Star::NONE;
-            for other in neighbours.chain([particle]) {
-                if let Some(star) = &stars[other] {
-                    sum.add(star, frames[particle].angle_to(&frames[other]));
+            let mut sum = stars[particle].unwrap_or(Star::NONE);
+            for (near, turn) in graph.of(particle as u32).iter().zip(&turns[particle]) {
+                if let Some(star) = &stars[near.0 as usize] {
+                    sum.add(star, *turn);
                 }
             }
             sum.compliance()
@@ -116,6 +122,9 @@ impl Frame {
 
     /// Cosine and sine of the angle of another's first axis in this one, unfolded along the line between the planes.
     fn angle_to(&self, other: &Self) -> DVec2 {
+        if self.0 == other.0 {
+            return DVec2::X;
+        }
         let turn = bevy::math::Quat::from_rotation_arc(other.0[2], self.0[2]);
         self.direction(turn * other.0[0])
     }
@@ -184,6 +193,12 @@ impl Star {
 
     /// Adds another, whose plane is turned by an angle of this cosine and sine.
     fn add(&mut self, other: &Self, angle: DVec2) {
+        self.area += other.area;
+        if angle == DVec2::X {
+            self.affine += other.affine;
+            self.lost += other.lost;
+            return;
+        }
         let (c, s) = (angle.x, angle.y);
         let turn = DMat3::from_cols(
             DVec3::new(c * c, s * s, c * s),
@@ -193,7 +208,6 @@ impl Star {
         let back = turn.transpose();
         self.affine += turn * other.affine * back;
         self.lost += turn * other.lost * back;
-        self.area += other.area;
     }
 
     /// What a patch gives, in parts of what it should.

@@ -25,14 +25,15 @@ impl Flat {
     }
 
     /// The plane of particles at `rest` (m) with faces of an `area` in all (m²), if they lie in one and there is neither a
-    /// hole nor a bay nor a fold in it: then the convex hull has the same area.
-    pub fn find(rest: &[Vec3], faces: &[[u32; 3]], area: f32) -> Option<Self> {
+    /// hole nor a bay, nor a slit, a fold or a second piece in it: all faces face one side, the convex hull has the same area,
+    /// and all that is on a border is on the hull.
+    pub fn find(rest: &[Vec3], faces: &[[u32; 3]], is_border: &[bool], area: f32) -> Option<Self> {
         let at = |particle: u32| rest[particle as usize].as_dvec3();
-        let mut normal = DVec3::ZERO;
-        for &[a, b, c] in faces {
-            normal += (at(b) - at(a)).cross(at(c) - at(a));
+        let normal_of = |&[a, b, c]: &[u32; 3]| (at(b) - at(a)).cross(at(c) - at(a));
+        let normal = faces.iter().map(normal_of).sum::<DVec3>().try_normalize()?;
+        if faces.iter().any(|face| normal_of(face).dot(normal) < 0.0) {
+            return None;
         }
-        let normal = normal.try_normalize()?;
         let origin = at(*faces.first()?.first()?);
         let (along, across) = normal.any_orthonormal_pair();
         let mut places = Vec::with_capacity(rest.len());
@@ -43,17 +44,34 @@ impl Flat {
             size = size.max(offset.length());
             places.push(DVec2::new(offset.dot(along), offset.dot(across)));
         }
-        let is_flat = off <= FLAT * size;
+        let hull = hull(&places);
         let area = f64::from(area);
-        (is_flat && hull_area(&places) <= area * (1.0 + 100.0 * FLAT)).then_some(Self {
-            places,
-            has_threads: false,
-        })
+        let is_whole = (hull_area(&hull) - area).abs() <= 100.0 * FLAT * area;
+        if off > FLAT * size || !is_whole {
+            return None;
+        }
+        let sides = || hull.windows(2).map(|side| [side[0], side[1]]);
+        let is_on_hull = |place: DVec2| {
+            sides().any(|[from, to]| {
+                let away = (to - from).normalize_or_zero().perp_dot(place - from);
+                away.abs() <= 10.0 * FLAT * size
+            })
+        };
+        let mut borders = places
+            .iter()
+            .zip(is_border)
+            .filter(|(_, is_border)| **is_border);
+        borders
+            .all(|(place, _)| is_on_hull(*place))
+            .then_some(Self {
+                places,
+                has_threads: false,
+            })
     }
 }
 
-/// Area of the convex hull (m²): by its lower and upper chain (Andrew 1979).
-fn hull_area(places: &[DVec2]) -> f64 {
+/// The convex hull, closed: its lower and then its upper chain (Andrew 1979).
+fn hull(places: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let chain = |points: &mut dyn Iterator<Item = DVec2>| {
@@ -67,14 +85,21 @@ fn hull_area(places: &[DVec2]) -> f64 {
             }
             hull.push(point);
         }
-        let origin = hull.first().copied().unwrap_or_default();
-        let pairs = hull.windows(2);
-        pairs
-            .map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin))
-            .sum::<f64>()
-            / 2.0
+        hull
     };
-    chain(&mut sorted.iter().copied()) + chain(&mut sorted.iter().rev().copied())
+    let mut lower = chain(&mut sorted.iter().copied());
+    lower.extend(chain(&mut sorted.iter().rev().copied()).into_iter().skip(1));
+    lower
+}
+
+/// Area of a closed polygon (m²).
+fn hull_area(hull: &[DVec2]) -> f64 {
+    let origin = hull.first().copied().unwrap_or_default();
+    let pairs = hull.windows(2);
+    pairs
+        .map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin))
+        .sum::<f64>()
+        / 2.0
 }
 
 #[cfg(test)]
@@ -86,14 +111,49 @@ mod tests {
         let square =
             [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(x, 0.5, y));
         let faces = [[0, 2, 1], [0, 3, 2]];
-        let flat = Flat::find(&square, &faces, 1.0).expect("it is flat");
+        let flat = Flat::find(&square, &faces, &[true; 4], 1.0).expect("it is flat");
         assert!((flat.places[0].distance(flat.places[2]) - 2.0_f64.sqrt()).abs() < 1e-12);
         // A quarter is missing.
-        assert_eq!(Flat::find(&square, &faces, 0.75), None);
+        assert_eq!(Flat::find(&square, &faces, &[true; 4], 0.75), None);
         let mut folded = square;
         folded[2].y = 0.6;
-        assert_eq!(Flat::find(&folded, &faces, 1.0), None);
-        assert_eq!(Flat::find(&square[..2], &[], 0.0), None);
+        assert_eq!(Flat::find(&folded, &faces, &[true; 4], 1.0), None);
+        assert_eq!(Flat::find(&square[..2], &[], &[], 0.0), None);
+    }
+
+    /// A slit to the middle of a square has no area, and the way around its end is longer than a straight line; two pieces
+    /// side by side, or a fold onto itself, are no convex whole either.
+    #[test]
+    fn a_slit_a_second_piece_and_a_fold_are_found() {
+        let at = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+        let slit = [
+            at(0.0, 0.0),
+            at(2.0, 0.0),
+            at(2.0, 2.0),
+            at(1.0, 2.0),
+            at(1.0, 2.0),
+            at(0.0, 2.0),
+            at(1.0, 1.0),
+        ];
+        let faces = [[0, 1, 6], [1, 2, 6], [2, 3, 6], [4, 5, 6], [5, 0, 6]];
+        assert_eq!(Flat::find(&slit, &faces, &[true; 7], 4.0), None);
+        let pieces = [
+            at(0.0, 0.0),
+            at(1.0, 0.0),
+            at(0.0, 1.0),
+            at(1.0, 0.0),
+            at(1.0, 1.0),
+            at(0.0, 1.0),
+        ];
+        let faces = [[0, 1, 2], [3, 4, 5]];
+        let pieces = Flat::find(&pieces, &faces, &[true; 6], 1.0);
+        assert!(
+            pieces.is_some(),
+            "pieces that touch count as two by the surface"
+        );
+        let folded = [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(0.5, 0.5)];
+        let faces = [[0, 1, 3], [0, 2, 3], [0, 1, 2]];
+        assert_eq!(Flat::find(&folded, &faces, &[true; 4], 1.0), None);
     }
 
     #[test]
@@ -105,6 +165,6 @@ mod tests {
             })
             .collect();
         let pentagon = 2.5 * (std::f64::consts::TAU / 5.0).sin();
-        assert!((hull_area(&places) - pentagon).abs() < 1e-12);
+        assert!((hull_area(&hull(&places)) - pentagon).abs() < 1e-12);
     }
 }

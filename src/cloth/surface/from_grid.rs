@@ -24,6 +24,7 @@ impl Surface {
             particle_of_vertex: None,
             attributes: Vec::new(),
             links: Vec::new(),
+            is_border: Vec::new(),
             scale: grid.scale(),
             spacing: Spacing {
                 shortest: spacing.min_element(),
@@ -38,6 +39,7 @@ impl Surface {
                 face_reach: spacing.element_sum(),
                 longest_spring: spacing.length(),
                 max_faces: 6,
+                pieces: 1,
             },
             grid: Some(*grid),
             uvs: OnceLock::new(),

@@ -34,14 +34,12 @@ impl Surface {
     pub fn of_mesh(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<Self, ClothError> {
         check(mesh, weld, scale)?;
         let places: Vec<Vec3> = mesh.positions.iter().map(|place| *place * scale).collect();
+        // What is nearer than this has no length that could be measured.
+        let weld = weld.max(1.0e-9 / scale.abs().min_element());
         let mut welded = Welded::new(mesh, weld, &places);
-        welded.drop_what_is_nothing(mesh.triangles.len())?;
+        welded.check_count()?;
+        welded.drop_what_has_no_area(mesh.triangles.len())?;
         welded.arrange();
-        if welded.rest.len() > MAX_MESH_PARTICLES {
-            return Err(ClothError::MeshTooLarge {
-                particles: welded.rest.len(),
-            });
-        }
         Ok(welded.surface(mesh, scale))
     }
 }
@@ -94,6 +92,7 @@ struct Welded {
     faces: Vec<[u32; 3]>,
     /// The sum of the vertices' normals at each particle; empty without any.
     normals: Vec<Vec3>,
+    pieces: usize,
 }
 
 impl Welded {
@@ -119,22 +118,42 @@ impl Welded {
             particle_of,
             faces,
             normals,
+            pieces: 0,
         }
     }
 
-    /// Takes out faces without an area, and particles that stand for none, with their faces.
-    fn drop_what_is_nothing(&mut self, triangles: usize) -> Result<(), ClothError> {
-        self.faces.retain(|face| has_area(*face, &self.rest));
-        let (areas, total) = self.areas();
-        let mean = total / areas.iter().filter(|area| **area > 0.0).count().max(1) as f32;
-        let is_something = |particle: u32| areas[particle as usize] > NEGLIGIBLE * mean;
+    /// Whether there are no more particles than a cloth may have.
+    fn check_count(&self) -> Result<(), ClothError> {
+        let mut is_corner = vec![false; self.rest.len()];
         self.faces
-            .retain(|face| face.iter().all(|corner| is_something(*corner)));
-        // What is measured in a cloth has to be more than rounding.
-        if self.faces.is_empty() || mean < 1.0e-18 {
-            return Err(ClothError::MeshWithoutArea { triangles });
+            .iter()
+            .flatten()
+            .for_each(|corner| is_corner[*corner as usize] = true);
+        let particles = is_corner.into_iter().filter(|is_corner| *is_corner).count();
+        if particles > MAX_MESH_PARTICLES {
+            return Err(ClothError::MeshTooLarge { particles });
         }
         Ok(())
+    }
+
+    /// Takes out faces without an area, and particles that stand for none, with their faces.
+    fn drop_what_has_no_area(&mut self, triangles: usize) -> Result<(), ClothError> {
+        self.faces.retain(|face| has_area(*face, &self.rest));
+        loop {
+            let (areas, total) = self.areas();
+            let mean = total / areas.iter().filter(|area| **area > 0.0).count().max(1) as f32;
+            let stands_for_some = |particle: u32| areas[particle as usize] > NEGLIGIBLE * mean;
+            let before = self.faces.len();
+            self.faces
+                .retain(|face| face.iter().all(|corner| stands_for_some(*corner)));
+            // What is measured in a cloth has to be more than rounding.
+            if self.faces.is_empty() || mean < 1.0e-18 {
+                return Err(ClothError::MeshWithoutArea { triangles });
+            }
+            if self.faces.len() == before {
+                return Ok(());
+            }
+        }
     }
 
     /// The area that each particle stands for, a third of each of its faces, and their sum (m²).
@@ -162,6 +181,7 @@ impl Welded {
             .into_iter()
             .filter(|particle| !graph.of(*particle).is_empty())
             .collect();
+        self.pieces = graph.pieces(&order);
         let mut number = vec![NO_PARTICLE; self.rest.len()];
         for (index, &particle) in order.iter().enumerate() {
             number[particle as usize] = index as u32;
@@ -188,6 +208,7 @@ impl Welded {
         let sides = sides_of(&self.faces);
         orient(&mut self.faces, &sides, &unscaled, &self.normals);
         let (areas, area) = self.areas();
+        let pieces = self.pieces;
         let particles = self.rest.len();
         let faces = Faces::by_first_corner(self.faces, particles);
         let normals = normals(faces.all(), &self.rest);
@@ -236,6 +257,7 @@ impl Welded {
             particle_of_vertex: Some(self.particle_of),
             attributes,
             links,
+            is_border,
             scale,
             spacing,
             extent: Extent {
@@ -245,6 +267,7 @@ impl Welded {
                 face_reach: spacing.longest,
                 longest_spring: spacing.longest,
                 max_faces: max_faces(faces.all(), particles),
+                pieces,
             },
             grid: None,
             uvs: OnceLock::from(uvs),

@@ -74,7 +74,7 @@ impl Graph {
     }
 
     /// An order in which neighbours are near each other in memory: breadth first, from a particle that is far from the
-    /// others of its piece, those with few neighbours first (Cuthill and McKee 1969).
+    /// others of its piece, those with few neighbours first (Cuthill and `McKee` 1969).
     pub fn order(&self) -> Vec<u32> {
         let mut order: Vec<u32> = Vec::with_capacity(self.len());
         let mut is_placed = vec![false; self.len()];
@@ -114,6 +114,22 @@ impl Graph {
             }
         }
         order
+    }
+
+    /// Into how many pieces the particles of an `order` fall that no edge joins: each begins where a particle has no neighbour
+    /// before it.
+    pub fn pieces(&self, order: &[u32]) -> usize {
+        let mut is_before = vec![false; self.len()];
+        let begins = |particle: &&u32| {
+            let neighbours = self.of(**particle).iter();
+            let is_joined = neighbours
+                .into_iter()
+                .any(|near| is_before[near.0 as usize]);
+            is_before[**particle as usize] = true;
+            !is_joined
+        };
+        let mut begins = begins;
+        order.iter().filter(|particle| begins(particle)).count()
     }
 
     /// Bytes that it takes.

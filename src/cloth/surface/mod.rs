@@ -50,6 +50,8 @@ pub struct Surface {
     attributes: Vec<VertexAttribute>,
     /// The springs of a mesh; a grid's follow from its rows and columns.
     links: Vec<Link>,
+    /// Of a mesh, which particles are at an edge that does not have two faces.
+    is_border: Vec<bool>,
     scale: Vec3,
     spacing: Spacing,
     extent: Extent,
@@ -87,6 +89,8 @@ struct Extent {
     pub longest_spring: f32,
     /// Faces that meet in one particle, at most.
     pub max_faces: usize,
+    /// How many pieces there are that no edge joins.
+    pub pieces: usize,
 }
 
 impl Surface {
@@ -199,7 +203,7 @@ impl Surface {
     }
 
     /// Texture coordinates of each particle; empty where there are none.
-    pub(crate) fn uvs(&self) -> &[Vec2] {
+    pub fn uvs(&self) -> &[Vec2] {
         self.uvs.get_or_init(|| {
             let grid = self.grid.as_ref();
             grid.map_or_else(Vec::new, grid::uvs)
@@ -230,7 +234,13 @@ impl Surface {
     pub(crate) fn flat(&self) -> Option<&Flat> {
         let flat = self.flat.get_or_init(|| match &self.grid {
             Some(grid) => Some(grid::flat(grid)),
-            None => Flat::find(&self.rest, self.faces().all(), self.extent.area),
+            None if self.extent.pieces > 1 => None,
+            None => Flat::find(
+                &self.rest,
+                self.faces().all(),
+                &self.is_border,
+                self.extent.area,
+            ),
         });
         flat.as_ref()
     }
@@ -252,6 +262,7 @@ impl Surface {
             + of(&self.areas)
             + of(&self.normals)
             + of(&self.links)
+            + of(&self.is_border)
             + self.particle_of_vertex.as_ref().map_or(0, |map| of(map))
             + self
                 .attributes
@@ -272,6 +283,7 @@ impl Default for Surface {
             particle_of_vertex: None,
             attributes: Vec::new(),
             links: Vec::new(),
+            is_border: Vec::new(),
             scale: Vec3::ONE,
             spacing: Spacing::default(),
             extent: Extent::default(),

@@ -26,7 +26,7 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
             beyond[from.face as usize][at] = to.face;
         }
     }
-    let ways = faces.to_vec();
+    let before = faces.to_vec();
     let mut is_seen = vec![false; faces.len()];
     let mut piece: Vec<usize> = Vec::new();
     for start in 0..faces.len() {
@@ -39,7 +39,7 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
         let mut next = 0;
         while let Some(&index) = piece.get(next) {
             next += 1;
-            // `ways` still have the corners in their first order.
+            // `before` still has the corners in their first order.
             for (at, &other) in beyond[index].iter().enumerate() {
                 let Some(is_seen) = is_seen.get_mut(other as usize) else {
                     continue;
@@ -48,7 +48,7 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
                     continue;
                 }
                 let other = other as usize;
-                let [a, b] = [ways[index][(at + 1) % 3], ways[index][(at + 2) % 3]];
+                let [a, b] = [before[index][(at + 1) % 3], before[index][(at + 2) % 3]];
                 // Faces of one side run along their common edge in opposite directions.
                 let runs = |face: [u32; 3]| edges(face).contains(&[a, b]);
                 if runs(faces[index]) == runs(faces[other]) {

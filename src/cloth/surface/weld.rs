@@ -6,12 +6,14 @@ use bevy::{math::Vec3, platform::collections::HashMap};
 pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>) {
     // Cells are so large that most vertices need only their own.
     let size = 8.0 * weld;
+    // −0 is 0.
     let cell = |place: Vec3| -> [u32; 3] {
         if weld > 0.0 {
             // Far from the origin neighbouring cells may be one number: more to compare with, and nothing missed.
-            (place / size).floor().to_array().map(f32::to_bits)
+            ((place / size).floor() + Vec3::ZERO)
+                .to_array()
+                .map(f32::to_bits)
         } else {
-            // −0 is 0.
             (place + Vec3::ZERO).to_array().map(f32::to_bits)
         }
     };

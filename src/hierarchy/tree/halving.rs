@@ -149,7 +149,7 @@ impl GridTree {
     }
 }
 
-/// `full` rows or columns halved level by level, of which only the first `count` are there. Units are parted from each
+/// `full` rows or columns halved level by level, of which only the first `count` are there. Units are split from each
 /// other before they are halved, and all units alike: so that eight lanes hold eight nodes of one level.
 fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
     let part = |full: Range<u32>| {

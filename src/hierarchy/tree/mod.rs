@@ -28,7 +28,7 @@ pub use node::Node;
 
 pub(super) use halving::{GridTree, Level, Part};
 
-/// A tree over the particles of a cloth: each node's patch is parted into up to four, down to one particle a
+/// A tree over the particles of a cloth: each node's patch is split into up to four, down to one particle a
 /// leaf. It depends on the rest shape alone, is made once, and is shared by its clones.
 ///
 /// Nodes are numbered level by level from the root, 0. A grid's tree stores no nodes at all, just how its rows and

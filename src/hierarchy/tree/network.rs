@@ -1,4 +1,4 @@
-//! The tree of particles anywhere: patches parted along the surface at rest, each node stored.
+//! The tree of particles anywhere: patches split along the surface at rest, each node stored.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// From this many times on that its radius along the surface is its radius through space, a patch is folded: its halves are
-/// parted along the surface. A path along edges is up to √2 times as long as a straight one on a flat patch.
+/// split along the surface. A path along edges is up to √2 times as long as a straight one on a flat patch.
 const FOLDED: f32 = 1.5;
 
 /// A tree over particles joined in any way.
@@ -256,8 +256,8 @@ impl Splitter<'_> {
     /// Halves a patch, and each half.
     fn split(&mut self, patch: Range<usize>, rest_radius: f32, parts: &mut Vec<Range<usize>>) {
         let is_folded = self.is_folded(patch.clone(), rest_radius);
-        for half in self.halve(patch, is_folded) {
-            parts.extend(self.halve(half, is_folded));
+        for half in self.bisect(patch, is_folded) {
+            parts.extend(self.bisect(half, is_folded));
         }
     }
 
@@ -278,7 +278,7 @@ impl Splitter<'_> {
 
     /// Halves a patch: one that is not folded along its longest extent, any other by which of two ends is nearer along the
     /// surface, so that no half has two sides of a fold.
-    fn halve(
+    fn bisect(
         &mut self,
         patch: Range<usize>,
         is_folded: bool,

@@ -43,7 +43,7 @@ use write::{Tangents, copy_of, mesh_of, write_mesh};
 /// Pinned and attached particles are drawn where the cloth's entity and their targets are drawn. Interpolate what moves in
 /// `FixedUpdate` and touches cloth, as the cloth is, for instance by the crate `bevy_transform_interpolation`.
 ///
-/// Reflected as nothing: it is made anew.
+/// Reflected as nothing: it is made again.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Component, Default, Debug)]
 pub struct ClothMesh {
@@ -187,7 +187,15 @@ fn add_meshes(
         let is_right = |drawn: &ClothMesh| {
             Arc::ptr_eq(&drawn.surface, surface) && meshes.contains(&drawn.handle)
         };
-        if surface.is_empty() || drawn.is_some_and(is_right) {
+        if surface.is_empty() {
+            continue;
+        }
+        if let Some(drawn) = drawn.filter(|drawn| is_right(drawn)) {
+            // The game has put back what the cloth was made from.
+            if mesh.is_some_and(|mesh| Some(&mesh.0) == drawn.source.as_ref()) {
+                let own = Mesh3d(drawn.handle.clone());
+                commands.entity(entity).try_insert(own);
+            }
             continue;
         }
         // What the entity drew before the plugin's own mesh.
@@ -198,14 +206,11 @@ fn add_meshes(
             .map(|mesh| mesh.0.clone())
             .or(known)
             .filter(|_| is_asset);
-        let copy = match &source {
-            Some(source) => meshes.get(source).map(copy_of),
-            None => Some(mesh_of(surface)),
-        };
-        // What the cloth was made from may have gone meanwhile.
-        let Some(copy) = copy.filter(|copy| copy.count_vertices() == surface.vertices()) else {
-            continue;
-        };
+        // What the cloth was made from may have gone meanwhile, or be the renderer's alone.
+        let copy = source
+            .as_ref()
+            .and_then(|source| copy_of(meshes.get(source)?, surface));
+        let copy = copy.unwrap_or_else(|| mesh_of(surface));
         let tangents = Tangents::of(&copy);
         let handle = meshes.add(copy);
         let drawn = ClothMesh {
@@ -219,14 +224,21 @@ fn add_meshes(
     }
 }
 
-/// What is no cloth any more is not drawn as one, but as what it was made from, if it was.
-fn remove_mesh(removed: On<Remove, Cloth>, meshes: Query<&ClothMesh>, mut commands: Commands) {
-    if let Ok(mesh) = meshes.get(removed.entity) {
+/// What is no cloth any more is not drawn as one, but as what it was made from, if it was. What the game has put in place of
+/// the plugin's mesh stays.
+fn remove_mesh(
+    removed: On<Remove, Cloth>,
+    meshes: Query<(&ClothMesh, Option<&Mesh3d>)>,
+    mut commands: Commands,
+) {
+    if let Ok((own, drawn)) = meshes.get(removed.entity) {
         let mut entity = commands.entity(removed.entity);
-        match &mesh.source {
-            Some(source) => entity.try_insert(Mesh3d(source.clone())),
-            None => entity.try_remove::<Mesh3d>(),
-        };
+        if drawn.is_some_and(|drawn| drawn.0 == own.handle) {
+            match &own.source {
+                Some(source) => entity.try_insert(Mesh3d(source.clone())),
+                None => entity.try_remove::<Mesh3d>(),
+            };
+        }
         entity.try_remove::<ClothMesh>();
     }
 }

@@ -76,7 +76,7 @@ struct Weights {
 }
 
 impl Weights {
-    /// Makes them anew if the pins have changed.
+    /// Makes them again if the pins have changed.
     fn follow(&mut self, built: &ClothBuilt, particles: &ClothParticles, state: &ClothState) {
         if self.made_for == Some(built.pins_version) {
             return;
@@ -109,7 +109,11 @@ impl Weights {
             let of_carriers = distances.iter().map(|distance| distance[index]);
             of_carriers.fold(f32::INFINITY, f32::min)
         };
-        let farthest = (0..particles.len()).map(nearest).fold(0.0, f32::max);
+        // Of what no path leads to a carrier, nothing is.
+        let reached = (0..particles.len())
+            .map(nearest)
+            .filter(|distance| distance.is_finite());
+        let farthest = reached.fold(0.0, f32::max);
         self.of_particle.clear();
         for index in 0..particles.len() {
             let nearest = nearest(index);

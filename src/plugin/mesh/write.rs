@@ -49,15 +49,42 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
     mesh
 }
 
-/// A copy of an asset for one cloth: it is read and written, and lit.
-pub(super) fn copy_of(asset: &Mesh) -> Mesh {
+/// A copy of an asset for one cloth: it is read and written, and lit. Triangles that are no part of the surface are left out,
+/// as their corners do not move. `None` of one that cannot be read, or that is not the surface's.
+pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<Mesh> {
+    let TriangleMesh {
+        positions,
+        triangles,
+        normals,
+        ..
+    } = TriangleMesh::of_asset(asset).ok()?;
+    if positions.len() != surface.vertices() {
+        return None;
+    }
     let mut mesh = asset.clone();
     mesh.asset_usage = RenderAssetUsages::default();
-    if !mesh.contains_attribute(Mesh::ATTRIBUTE_NORMAL) {
-        let normals = vec![Vec3::Y.to_array(); mesh.count_vertices()];
-        mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
+    // Bones would move what the simulation has moved already.
+    mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_INDEX);
+    mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
+    if normals.is_empty() {
+        mesh.insert_attribute(
+            Mesh::ATTRIBUTE_NORMAL,
+            vec![Vec3::Y.to_array(); positions.len()],
+        );
     }
-    mesh
+    let moves = |triangle: &&[u32; 3]| {
+        let mut corners = triangle.iter();
+        corners.all(|corner| surface.particle_of_vertex(*corner as usize).is_some())
+    };
+    if triangles.iter().filter(moves).count() < triangles.len() {
+        let left = triangles.iter().filter(moves).flatten().copied().collect();
+        let mut list = Mesh::new(PrimitiveTopology::TriangleList, mesh.asset_usage);
+        for (attribute, values) in mesh.attributes() {
+            list.insert_attribute(*attribute, values.clone());
+        }
+        mesh = list.with_inserted_indices(Indices::U32(left));
+    }
+    Some(mesh)
 }
 
 /// How the tangents of a mesh follow its vertices: by the texture coordinates of its triangles.
@@ -78,7 +105,8 @@ impl Tangents {
         };
         let exists =
             |triangle: &[u32; 3]| triangle.iter().all(|corner| (*corner as usize) < uvs.len());
-        if !mesh.contains_attribute(Mesh::ATTRIBUTE_TANGENT) || !triangles.iter().all(exists) {
+        let has_tangents = mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT).is_ok();
+        if !has_tangents || !triangles.iter().all(exists) {
             return Self::default();
         }
         let parts = |triangle: &[u32; 3]| {

@@ -13,27 +13,40 @@ use bevy::{
     platform::collections::{HashMap, HashSet},
 };
 
-use super::{super::ClothMesh, id::Source};
+use super::{
+    super::{ClothBuilt, ClothMesh},
+    id::Source,
+};
 use crate::cloth::{Cloth, ClothError, ClothShape, Surface, TriangleMesh};
 
 /// How often meshes have been changed since they were loaded; those that never were are not in it.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
 
-/// Takes over which meshes a game has changed: cloths that are made from them are built anew.
+/// Takes over which meshes a game has changed: cloths that are made from them are built again.
 pub(crate) fn note_changed_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
     mut changed: ResMut<ChangedMeshes>,
-    drawn: Query<&ClothMesh>,
+    cloths: Query<&ClothBuilt>,
 ) {
-    // The plugin's own are changed in every frame.
-    let own: HashSet<AssetId<Mesh>> = drawn.iter().map(ClothMesh::id).collect();
+    if events.is_empty() {
+        return;
+    }
+    let source = |built: &ClothBuilt| {
+        built
+            .shared
+            .recipe
+            .as_ref()?
+            .source
+            .map(|source| source.mesh)
+    };
+    let sources: HashSet<AssetId<Mesh>> = cloths.iter().filter_map(source).collect();
     for event in events.read() {
         match event {
-            AssetEvent::Modified { id } if !own.contains(id) => {
+            AssetEvent::Modified { id } | AssetEvent::Removed { id } if sources.contains(id) => {
                 *changed.0.entry(*id).or_default() += 1;
             }
-            AssetEvent::Unused { id } | AssetEvent::Removed { id } => {
+            AssetEvent::Unused { id } => {
                 changed.0.remove(id);
             }
             _ => {}
@@ -97,8 +110,8 @@ impl Sources<'_, '_> {
             Some(LoadState::Failed(error)) => Err(ClothError::MeshFailed {
                 reason: error.to_string(),
             }),
-            Some(LoadState::Loading | LoadState::Loaded) => Err(ClothError::MeshLoading),
-            Some(LoadState::NotLoaded) | None => Err(ClothError::MeshNotLoaded),
+            Some(LoadState::Loading) => Err(ClothError::MeshLoading),
+            Some(LoadState::NotLoaded | LoadState::Loaded) | None => Err(ClothError::MeshNotLoaded),
         }
     }
 

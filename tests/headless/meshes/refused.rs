@@ -135,9 +135,9 @@ fn a_cloth_outlasts_its_asset() {
     tick(&mut app, 20);
     assert_eq!(fault(&app, cloth), None);
     assert!(by_vertex(&app, cloth)[0].expect("a particle").y < before - 0.3);
-    // And so with another material, whose springs are made anew.
+    // And so with another material, whose springs are made again.
     change::<ClothMaterial>(&mut app, cloth, |material| {
-        *material = ClothMaterial::RUBBER
+        *material = ClothMaterial::RUBBER;
     });
     tick(&mut app, 2);
     assert_eq!(fault(&app, cloth), None);

@@ -141,7 +141,7 @@ fn another_mesh_is_another_cloth() {
     assert_eq!(mesh_of(&app, cloth), second);
 }
 
-/// A mesh that is edited is built anew from what it then is; others of it, too.
+/// A mesh that is edited is built again from what it then is; others of it, too.
 #[test]
 fn an_edited_mesh_is_built_anew() {
     let mut app = app_that_draws(FixedUpdate);

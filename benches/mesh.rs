@@ -1,0 +1,142 @@
+//! A cloth from a mesh beside the same cloth from a grid: a sub-step, a search, and the building.
+//! `cargo bench --profile dev --bench mesh`; in `sub-steps` an element is a spring in a sub-step.
+
+use std::time::Duration;
+
+use bevy::math::Vec3;
+use bevy_drape::{
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
+    hierarchy::{BoundRule, BoundingVolume, NodeBounds, Probe, QuadTree, TopDownQuery},
+    solver::{Solver, TickStep, methods::meshes},
+};
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+
+/// Vertices along either side: 5,041 in all, and how far apart they are (m).
+const SIDE: u32 = 71;
+const SPACING: f32 = 2.0 / (SIDE - 1) as f32;
+const SUBSTEPS: u32 = 20;
+const MATERIAL: ClothMaterial = ClothMaterial::COTTON;
+
+/// A grid, a mesh of the same triangles, and an irregular one of as many vertices.
+fn surfaces() -> [(&'static str, Surface); 3] {
+    let cloth = Cloth::new(SIDE, SIDE, SPACING);
+    let of = |mesh: &TriangleMesh| Surface::of_mesh(mesh, 1.0e-5, Vec3::ONE).expect("a surface");
+    [
+        ("grid", cloth.surface(Vec3::ONE).expect("a valid grid")),
+        (
+            "grid-shaped mesh",
+            of(&meshes::regular(SIDE, SIDE, SPACING)),
+        ),
+        (
+            "irregular mesh",
+            of(&meshes::irregular(2.0, 2.0, SPACING, 0.3)),
+        ),
+    ]
+}
+
+/// Hung by its upper edge and blown at, a third of a second into its swing: not flat, and no number tiny.
+fn in_motion(surface: &Surface) -> (Springs, ClothParticles, TickStep) {
+    let springs = Springs::of_surface(surface, &MATERIAL);
+    let mut particles = ClothParticles::at_rest(surface, &MATERIAL).expect("a valid material");
+    for (index, place) in surface.rest_positions().iter().enumerate() {
+        if place.y > -1.0e-4 {
+            particles.set_inverse_mass(index, 0.0).expect("a particle");
+        }
+    }
+    let step = TickStep {
+        substeps: SUBSTEPS,
+        acceleration: Vec3::new(0.5, -9.81, 2.0),
+        damping: MATERIAL.damping,
+        ..TickStep::default()
+    };
+    let mut solver = Solver::of_surface(surface, &springs);
+    for _ in 0..20 {
+        solver.advance(&mut particles, step, &[], |_, _| false);
+    }
+    (springs, particles, step)
+}
+
+fn substeps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("sub-steps");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(2));
+    for (name, surface) in surfaces() {
+        let (springs, particles, step) = in_motion(&surface);
+        let mut solver = Solver::of_surface(&surface, &springs);
+        group.throughput(Throughput::Elements(
+            springs.len() as u64 * u64::from(SUBSTEPS),
+        ));
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter_batched_ref(
+                || particles.clone(),
+                |particles| solver.advance(particles, step, &[], |_, _| false),
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+/// A ball of four spacings that touches the middle.
+fn searches(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("search");
+    group
+        .sample_size(30)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    for (name, surface) in surfaces() {
+        let (springs, particles, _) = in_motion(&surface);
+        let tree = QuadTree::of_surface(&surface, true);
+        let stretch = Solver::of_surface(&surface, &springs)
+            .measure(&particles)
+            .bound;
+        let middle = particles
+            .positions()
+            .nth(surface.len() / 2)
+            .expect("a particle");
+        let probe = Probe::ball(middle, 4.0 * SPACING, 0.01);
+        for choice in [
+            (BoundingVolume::Sphere, BoundRule::RestShape),
+            (BoundingVolume::Aabb, BoundRule::Refit),
+        ] {
+            let mut bounds = NodeBounds::default();
+            let mut query = TopDownQuery::default();
+            let id = BenchmarkId::new(name, format!("{}, {}", choice.0.name(), choice.1.name()));
+            group.bench_function(id, |bencher| {
+                bencher.iter(|| {
+                    bounds
+                        .rebuild(choice, &tree, &particles, stretch)
+                        .expect("a rule");
+                    query.clear();
+                    query.search(&tree, &bounds, &particles, &probe)
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// From the vertices and triangles of an asset to what the first tick needs.
+fn building(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("building");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(2));
+    let mesh = meshes::irregular(2.0, 2.0, SPACING, 0.3);
+    group.bench_function("irregular mesh", |bencher| {
+        bencher.iter(|| {
+            let surface = Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).expect("a surface");
+            let springs = Springs::of_surface(&surface, &MATERIAL);
+            let tree = QuadTree::of_surface(&surface, true);
+            let solver = Solver::of_surface(&surface, &springs);
+            (surface, springs, tree, solver)
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, substeps, searches, building);
+criterion_main!(benches);
