@@ -81,7 +81,7 @@ fn a_step_does_not_allocate() {
                     ..Default::default()
                 };
                 let root = tree.root_sphere(&particles, stretch.bound);
-                detection.begin(&surface, 50.0, false);
+                detection.begin(&surface, 50.0);
                 let (probe, against) = detection.probe(&ball, &settings, &surface, 0.2, &root);
                 for (bounds, choice) in bounds.iter_mut().zip(choices) {
                     query.clear();

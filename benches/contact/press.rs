@@ -64,7 +64,7 @@ pub fn press(radius: f32, narrow_phase: NarrowPhase) -> Pressed {
     let (mut responses, mut candidates) = (Vec::new(), 0);
     for tick in 0..TICKS {
         let ball = MovingCollider::ball(radius, at(height(tick)), at(height(tick + 1)));
-        detection.begin(&surface, 0.1, false);
+        detection.begin(&surface, 0.1);
         let cloth = BoundingSphere::new(at(0.0), 2.0);
         let (probe, against) = detection.probe(&ball, &settings, &surface, 4.0 * SPACING, &cloth);
         query.clear();

@@ -92,7 +92,7 @@ impl Recording {
         let cloth = BoundingSphere::new(Vec3::ZERO, 10.0);
         for tick in 0..ticks {
             let ball = MovingCollider::ball(RADIUS, at(tick), at(tick + 1));
-            detection.begin(&surface, reach, false);
+            detection.begin(&surface, reach);
             let (probe, against) =
                 detection.probe(&ball, &settings, &surface, 2.0 * SPACING, &cloth);
             query.clear();

@@ -201,13 +201,15 @@ fn spawn_poncho(
         Cloth::mesh(),
         Mesh3d(poncho),
         ClothMaterial {
-            damping: 0.03,
+            damping: 0.08,
             friction: 0.6,
+            // Loosely woven.
+            bend_compliance: 0.2,
             ..ClothMaterial::COTTON
         },
         ClothSettings {
             particle_radius: 0.012,
-            ..ClothSettings::substeps(80)
+            ..ClothSettings::substeps(90)
         },
         // Nobody is thin enough to slip between particles.
         NarrowPhase::Particles,

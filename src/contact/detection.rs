@@ -40,10 +40,6 @@ pub struct Detection {
     /// The particles as they were then, if anything was searched for.
     origin: ClothParticles,
     has_origin: bool,
-    /// Whether the sum of moves has exceeded the margin in this tick, and whether it is expected to: to remember all
-    /// particles is worth it then.
-    was_outrun: bool,
-    expects: bool,
     /// How often it was measured in this sub-step.
     measured: u32,
     /// How far of that in this sub-step: the way that is swept lies so far behind (m).
@@ -54,9 +50,8 @@ pub struct Detection {
 }
 
 impl Detection {
-    /// Begins a tick of a surface's particles, none of which is expected to move farther than `margin` (m). `expects` says whether one may all the
-    /// same, as in the tick before: all are remembered then, to measure how far.
-    pub fn begin(&mut self, surface: &Arc<Surface>, margin: f32, expects: bool) {
+    /// Begins a tick of a surface's particles, none of which is expected to move farther than `margin` (m).
+    pub fn begin(&mut self, surface: &Arc<Surface>, margin: f32) {
         if !Arc::ptr_eq(&self.surface, surface) {
             self.surface = surface.clone();
             self.fans.max_faces = surface.max_faces() as f32;
@@ -68,7 +63,6 @@ impl Detection {
         self.margin = margin;
         (self.moved, self.moved_now) = (0.0, 0.0);
         self.has_origin = false;
-        (self.expects, self.was_outrun) = (expects, false);
         self.requeries = 0;
     }
 
@@ -112,9 +106,6 @@ impl Detection {
         found: &[u32],
         particles: &ClothParticles,
     ) {
-        if self.expects && !self.has_origin {
-            self.remember(particles);
-        }
         // Most callers count upwards.
         let is_new = self.colliders.last().is_none_or(|(last, _)| *last < id);
         if is_new || self.colliders.iter().all(|(known, _)| *known != id) {
@@ -201,7 +192,6 @@ impl Detection {
         if !is_beyond(self.moved, self.margin) {
             return false;
         }
-        self.was_outrun = true;
         // Searching again widens the margin: cheaper than to measure for every push.
         if self.has_origin && self.measured < MAX_MEASURED {
             self.measured += 1;
@@ -359,11 +349,6 @@ impl Detection {
                 particle: candidate.particle,
                 depth: candidate.depth,
             })
-    }
-
-    /// Whether the sum of moves has exceeded the margin in the tick.
-    pub fn was_outrun(&self) -> bool {
-        self.was_outrun
     }
 
     /// How often in the tick particles moved farther than the margin.

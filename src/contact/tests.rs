@@ -50,7 +50,7 @@ fn all_of(
     particles: &ClothParticles,
 ) -> Detection {
     let mut detection = Detection::default();
-    detection.begin(surface, f32::INFINITY, false);
+    detection.begin(surface, f32::INFINITY);
     let all: Vec<u32> = (0..particles.len() as u32).collect();
     let cloth = particles.bounding_sphere();
     for (id, collider) in colliders.iter().enumerate() {

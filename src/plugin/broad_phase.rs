@@ -56,10 +56,7 @@ pub(super) fn update_bounds(
     let mut is_stale = bounds.is_searched || bounds.is_stale;
     if !is_asleep {
         scratch.near.clear();
-        let expects = state.was_outrun;
-        scratch
-            .detection
-            .begin(built.surface(), scratch.reach, expects);
+        scratch.detection.begin(built.surface(), scratch.reach);
         state.rests_on.clear();
         if is_stale {
             search.query.clear();

@@ -103,8 +103,7 @@ impl SearchingItem<'_, '_> {
             }
             dragged = farthest;
         }
-        let expects = self.state.was_outrun;
-        detection.begin(self.built.surface(), *reach + dragged, expects);
+        detection.begin(self.built.surface(), *reach + dragged);
         let near = near.len();
         self.stats.colliders_near = near;
         if near == 0 {

@@ -38,8 +38,6 @@ pub struct ClothState {
     pub(super) first_target: Option<Isometry3d>,
     /// The colliders that it touched as it fell asleep, each where it was then.
     pub(super) rests_on: Vec<(Entity, MovingCollider)>,
-    /// Whether particles moved farther in the last tick than was expected.
-    pub(super) was_outrun: bool,
     /// How far it is beyond each limit.
     pub(super) excess: [Excess; ClothLimit::ALL.len()],
 }

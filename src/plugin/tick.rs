@@ -88,7 +88,6 @@ impl IntegratingItem<'_, '_> {
         self.solve(step, colliders);
         self.stats.integrate_ms = milliseconds_since(start);
         self.state.written = Some(self.particles.last_changed());
-        self.state.was_outrun = self.scratch.detection.was_outrun();
         self.remember_contacts();
         self.contacts
             .renew(&self.scratch.near, &self.scratch.detection);

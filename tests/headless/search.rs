@@ -246,7 +246,7 @@ fn what_snaps_back_is_not_missed() {
             ..default()
         };
         let mut detection = Detection::default();
-        detection.begin(built.surface(), f32::INFINITY, false);
+        detection.begin(built.surface(), f32::INFINITY);
         let everything: Vec<u32> = (0..256).collect();
         for id in 0..2 {
             let ball = MovingCollider::ball(0.4, from[id], to[id]);

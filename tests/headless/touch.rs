@@ -290,7 +290,7 @@ fn the_candidates_are_complete() {
                 ..default()
             };
             let mut detection = Detection::default();
-            detection.begin(built.surface(), f32::INFINITY, false);
+            detection.begin(built.surface(), f32::INFINITY);
             for (id, (from, to)) in from.into_iter().zip(to).enumerate() {
                 let ball = MovingCollider::ball(0.4, from, to);
                 detection.add(

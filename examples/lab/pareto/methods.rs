@@ -335,7 +335,7 @@ impl<'a> Ours<'a> {
             let ball = MovingCollider::ball(Ball::RADIUS, Ball::at(tick), Ball::at(tick + 1));
             // A ball around all that the cloth ever does.
             let cloth = BoundingSphere::new(Ball::at(0), 4.0);
-            self.detection.begin(&self.surface, self.reach(), false);
+            self.detection.begin(&self.surface, self.reach());
             let (probe, against) =
                 // Particles, not triangles, are tested.
                 self.detection

@@ -140,7 +140,7 @@ impl Ticking {
         };
         // A ball around all of the cloth, and more than a particle moves in the tick.
         let cloth = BoundingSphere::new(Vec3::ZERO, 200.0);
-        self.detection.begin(&self.surface, 4.0 * SPACING, false);
+        self.detection.begin(&self.surface, 4.0 * SPACING);
         let (probe, against) =
             self.detection
                 .probe(&collider, &settings, &self.surface, SPACING, &cloth);

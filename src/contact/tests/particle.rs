@@ -23,7 +23,7 @@ fn first_against(
 ) -> Detection {
     let (surface, _) = build(2, 2, 1.0);
     let mut detection = Detection::default();
-    detection.begin(&surface, f32::INFINITY, false);
+    detection.begin(&surface, f32::INFINITY);
     detection.add(0, collider, narrow_phase, &[0], particles);
     detection
 }
@@ -176,7 +176,7 @@ fn colliders_push_in_the_order_of_their_numbers() {
         let mut particles = loose(&[Vec3::Y * 0.5], &[]);
         let (surface, _) = build(2, 2, 1.0);
         let mut detection = Detection::default();
-        detection.begin(&surface, 1.0, false);
+        detection.begin(&surface, 1.0);
         for id in order {
             detection.add(id, &balls[id], NarrowPhase::Particles, &[0], &particles);
         }

@@ -112,7 +112,7 @@ fn of_all(
     particles: &ClothParticles,
 ) -> Detection {
     let mut detection = Detection::default();
-    detection.begin(surface, f32::INFINITY, false);
+    detection.begin(surface, f32::INFINITY);
     let all: Vec<u32> = (0..particles.len() as u32).collect();
     let cloth = BoundingSphere::new(Vec3::ZERO, 100.0);
     let (_, narrow_phase) = detection.probe(ball, settings, surface, 0.0, &cloth);

@@ -106,7 +106,7 @@ impl Scene {
             .expect("there is such a rule");
         let mut detection = Detection::default();
         let mut query = TopDownQuery::default();
-        detection.begin(&self.surface, margin, false);
+        detection.begin(&self.surface, margin);
         let cloth = self.particles.bounding_sphere();
         let longest = self.particles.longest_face_reach(&self.surface);
         // In whatever order.

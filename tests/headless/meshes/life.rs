@@ -283,7 +283,7 @@ fn cloths_made_alike_share_what_they_are() {
     let (changed, unchanged) = cloths.split_at(500);
     for cloth in changed {
         change::<ClothMaterial>(&mut app, *cloth, |material| {
-            *material = ClothMaterial::RUBBER
+            *material = ClothMaterial::RUBBER;
         });
     }
     tick(&mut app, 2);
@@ -295,7 +295,7 @@ fn cloths_made_alike_share_what_they_are() {
     assert!(!ptr::eq(one, other));
     for cloth in unchanged {
         change::<ClothMaterial>(&mut app, *cloth, |material| {
-            *material = ClothMaterial::RUBBER
+            *material = ClothMaterial::RUBBER;
         });
     }
     tick(&mut app, 2);
