@@ -13,7 +13,7 @@
 //!   instruction works on all of them.
 //! - *Meshes.* Any particles, joined by any springs. A patch is halved along its longest extent at rest, and each
 //!   half along its own. Where it is folded, its radius along the surface 1.5 times that through space, it is halved
-//!   by which of its two ends is nearer along the surface: the front of a sleeve soon shares no patch with its back.
+//!   by which of its two ends is nearer along the surface: the front of a sleeve soon shares few patches with its back.
 //!   Distances along the springs are shortest paths (Dijkstra 1959).
 //!
 //! A node knows its *middle particle* *m*, and its *rest radius*: the largest distance at rest, along

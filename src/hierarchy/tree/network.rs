@@ -277,7 +277,8 @@ impl Splitter<'_> {
     }
 
     /// Halves a patch: one that is not folded along its longest extent, any other by which of two ends is nearer along the
-    /// surface, so that no half has two sides of a fold.
+    /// surface, so that few halves have two sides of a fold. As halves are of equal
+    /// numbers, a few particles of the other side may be left in one.
     fn bisect(
         &mut self,
         patch: Range<usize>,
