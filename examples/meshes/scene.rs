@@ -209,7 +209,7 @@ fn spawn_poncho(
         },
         ClothSettings {
             particle_radius: 0.012,
-            ..ClothSettings::substeps(90)
+            ..ClothSettings::substeps(110)
         },
         // Nobody is thin enough to slip between particles.
         NarrowPhase::Particles,
