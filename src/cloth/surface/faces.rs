@@ -43,9 +43,4 @@ impl Faces {
         let particle = particle as usize;
         &self.all[self.first[particle] as usize..self.first[particle + 1] as usize]
     }
-
-    /// Bytes that they take.
-    pub fn memory(&self) -> usize {
-        size_of_val(&self.all[..]) + size_of_val(&self.first[..])
-    }
 }

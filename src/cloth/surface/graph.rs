@@ -131,11 +131,6 @@ impl Graph {
         let mut begins = begins;
         order.iter().filter(|particle| begins(particle)).count()
     }
-
-    /// Bytes that it takes.
-    pub fn memory(&self) -> usize {
-        size_of_val(&self.first[..]) + size_of_val(&self.neighbours[..])
-    }
 }
 
 #[cfg(test)]

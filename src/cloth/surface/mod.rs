@@ -244,33 +244,6 @@ impl Surface {
         });
         flat.as_ref()
     }
-
-    /// Bytes that it takes now.
-    pub fn memory(&self) -> usize {
-        fn of<T>(values: &[T]) -> usize {
-            size_of_val(values)
-        }
-        let lazy = self.uvs.get().map_or(0, |uvs| of(uvs))
-            + self.faces.get().map_or(0, Faces::memory)
-            + self.graph.get().map_or(0, Graph::memory)
-            + match self.flat.get() {
-                Some(Some(flat)) => of(&flat.places),
-                _ => 0,
-            };
-        size_of::<Self>()
-            + of(&self.rest)
-            + of(&self.areas)
-            + of(&self.normals)
-            + of(&self.links)
-            + of(&self.is_border)
-            + self.particle_of_vertex.as_ref().map_or(0, |map| of(map))
-            + self
-                .attributes
-                .iter()
-                .map(|each| of(each.values()))
-                .sum::<usize>()
-            + lazy
-    }
 }
 
 impl Default for Surface {
