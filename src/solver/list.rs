@@ -28,13 +28,16 @@ pub(super) struct ListSweep {
 impl ListSweep {
     /// For particles that lie as `layout` says.
     pub fn new(springs: &Arc<SpringList>, layout: Layout) -> Self {
+        let row_of = |end: u32| {
+            let width = layout.strip * LANES as u32;
+            end / layout.columns * width + end % layout.columns
+        };
         // What is no spring moves the row behind all others.
         let none = (layout.blocks() * LANES) as u32;
         let packet = |springs: &[Spring]| {
             let of = |at: usize| springs.get(at);
-            let end = |at: usize, which: usize| {
-                of(at).map_or(none, |spring| row_of(layout, spring.ends[which]))
-            };
+            let end =
+                |at: usize, which: usize| of(at).map_or(none, |spring| row_of(spring.ends[which]));
             let numbers = |number: &dyn Fn(&Spring) -> f32, without: f32| {
                 Vec4::from_array(std::array::from_fn(|at| of(at).map_or(without, number)))
             };
@@ -134,16 +137,7 @@ impl Sweep for ListSweep {
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
-        let stretch = motion.measures.then(|| {
-            // By rows: to find each end in its block would take a tenth of a tick.
-            self.load(blocks);
-            let place = |end: u32| {
-                self.rows[row_of(self.layout, end) as usize]
-                    .place
-                    .truncate()
-            };
-            self.stretch(|spring| place(spring.ends[0]).distance_squared(place(spring.ends[1])))
-        });
+        let stretch = motion.measures.then(|| self.measure(blocks, kernels));
         Swept { moved, stretch }
     }
 
@@ -158,14 +152,4 @@ impl Sweep for ListSweep {
     fn boxed(&self) -> Box<dyn Sweep> {
         Box::new(self.clone())
     }
-}
-
-/// The row of a particle: its index, but for what is no particle at the end of each of several rows of the layout.
-#[inline(always)]
-fn row_of(layout: Layout, particle: u32) -> u32 {
-    if layout.rows == 1 {
-        return particle;
-    }
-    let width = layout.strip * LANES as u32;
-    particle / layout.columns * width + particle % layout.columns
 }
