@@ -65,6 +65,12 @@ impl Block {
         self.0[1..].first_chunk_mut().expect("56 of 63 numbers")
     }
 
+    /// Displacements alone: x, y and z.
+    #[inline(always)]
+    pub fn displacements_mut(&mut self) -> &mut [f32; 3 * LANES] {
+        self.0[DX..].first_chunk_mut().expect("24 of 32 numbers")
+    }
+
     pub fn position(&self, lane: usize) -> Vec3 {
         Vec3::new(self.0[X + lane], self.0[Y + lane], self.0[Z + lane])
     }
@@ -95,8 +101,7 @@ impl Block {
 pub(crate) struct Layout {
     pub columns: u32,
     pub rows: u32,
-    /// Columns in a strip, and so blocks in a row: even, so that horizontal springs have two colours, and at
-    /// least four, so that no bend spring leads back into its own block.
+    /// Columns in a strip, and so blocks in a row.
     pub strip: u32,
 }
 
@@ -117,7 +122,7 @@ impl Layout {
     }
 
     pub fn new(columns: u32, rows: u32) -> Self {
-        let strip = columns.div_ceil(LANES as u32).next_multiple_of(2).max(4);
+        let strip = columns.div_ceil(LANES as u32).max(1);
         Self {
             columns,
             rows,

@@ -214,6 +214,8 @@ impl PreparingItem<'_, '_> {
             substeps: state.control.substeps(settings.substepping),
             acceleration,
             damping: material.damping,
+            order: settings.order,
+            material_stretch: built.material_stretch,
         });
         scratch.substepping = settings.substepping;
         scratch.search = inputs.search;

@@ -13,9 +13,14 @@ use multiversion::{inherit_target, multiversion};
 
 use super::{
     packet::{Packet, Row, relax_packets},
+    predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
+    threads::{
+        Family, Link, Pull, RowSystems, clear, column_backward, column_forward, column_heads,
+        left_backward, left_forward, left_heads, right_backward, right_forward, solve_rows,
+    },
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
+use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, W, X, Y, Z};
 
 /// Moves the ends of eight springs towards their rest lengths, in inverse proportion to their masses: the XPBD
 /// distance constraint `λ = −C / (w_a + w_b + α/Δt²)` with one sweep a sub-step (Macklin et al. 2016, 2019).
@@ -47,29 +52,9 @@ fn relax(a: &mut View, b: &mut View, rest_square: impl Fn(usize) -> f32, softnes
     }
 }
 
-/// The paper's equation (2), `x' = x + (x − x_prev)(1 − D) + a Δt²`, but for adding the displacement to the
-/// position: [`commit`]. Pinned particles keep the displacement that they were given.
-#[inline(always)]
-fn integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]) {
-    for block in row {
-        let view = block.view_mut();
-        for (at, acceleration) in [DX, DY, DZ].into_iter().zip(acceleration_dt2) {
-            for l in 0..LANES {
-                let moved = view[at + l] * kept + acceleration;
-                view[at + l] = if view[W + l] > 0.0 {
-                    moved
-                } else {
-                    view[at + l]
-                };
-            }
-        }
-        one_block_at_a_time();
-    }
-}
-
 /// Keeps the compiler from gathering the lanes of several blocks: a block's own are side by side.
 #[inline(always)]
-fn one_block_at_a_time() {
+pub(super) fn one_block_at_a_time() {
     std::hint::black_box(());
 }
 
@@ -256,7 +241,9 @@ fn measure_within(row: &[Block], run: &Run, longest: &mut Longest) {
             &mut longest.across,
         );
     }
-    if let ([first, .., last], Some(softness)) = (row, run.softness.last()) {
+    if let (Some(first), Some(last), Some(softness)) =
+        (row.first(), row.last(), run.softness.last())
+    {
         measure(last.view(), first.shifted(), softness, &mut longest.across);
     }
 }
@@ -327,7 +314,19 @@ macro_rules! kernels {
 }
 
 kernels! {
-    integrate(row: &mut [Block], kept: f32, acceleration_dt2: [f32; 3]),
+    predict_first(row: &mut [Block], prediction: &Prediction),
+    predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction),
+    begin_past(row: &[Block], past: &mut [Earlier]),
+    clear(links: &mut [Link], pulls: &mut [Pull]),
+    column_forward(upper: &[Block], lower: &[Block], previous: &[Link], links: &mut [Link], family: &Family),
+    right_forward(upper: &[Block], lower: &[Block], previous: &[Link], links: &mut [Link], family: &Family),
+    left_forward(upper: &[Block], lower: &[Block], previous: &[Link], links: &mut [Link], family: &Family),
+    column_backward(lower: &mut [Block], links: &[Link], next: &[Pull], pulls: &mut [Pull]),
+    right_backward(lower: &mut [Block], links: &[Link], next: &[Pull], pulls: &mut [Pull]),
+    left_backward(lower: &mut [Block], links: &[Link], next: &[Pull], pulls: &mut [Pull]),
+    column_heads(first: &mut [Block], pulls: &[Pull]),
+    left_heads(first: &mut [Block], pulls: &[Pull]),
+    solve_rows(blocks: &mut [Block], systems: &mut RowSystems, border: &Family, inner: &Family, is_border: [bool; 2], springs: usize),
     commit(row: &mut [Block], farthest: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),

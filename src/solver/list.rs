@@ -120,8 +120,12 @@ impl ListSweep {
 }
 
 impl Sweep for ListSweep {
-    fn set_substep(&mut self, substep: f32) {
-        self.inverse_dt2 = 1.0 / (substep * substep);
+    fn set_weight(&mut self, weight_dt2: f32) {
+        self.inverse_dt2 = 1.0 / weight_dt2;
+    }
+
+    fn is_exact(&self) -> bool {
+        false
     }
 
     fn bands(&self, _: usize) -> usize {
@@ -130,7 +134,6 @@ impl Sweep for ListSweep {
 
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> Swept {
         let kernels = motion.kernels;
-        (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
         self.load(blocks);
         (kernels.relax_packets)(&mut self.rows, &self.packets, self.inverse_dt2);
         self.store(blocks);

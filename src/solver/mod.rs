@@ -13,6 +13,7 @@ mod list;
 pub mod methods;
 mod packet;
 mod pipeline;
+mod predict;
 mod rest;
 mod run;
 mod settings;
@@ -25,6 +26,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod tether;
+mod threads;
 
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
@@ -32,7 +34,7 @@ pub(crate) use envelope::LimitInputs;
 pub use kernel::SimdLevel;
 pub use rest::Rest;
 pub use settings::ClothSettings;
-pub use step::{PinMotion, SubStep, TickStep};
+pub use step::{PinMotion, SubStep, TickStep, TimeOrder};
 pub use stretch::Stretch;
 pub use substep::Solver;
 pub use substepping::{Control, Substepping};

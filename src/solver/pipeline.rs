@@ -15,7 +15,7 @@ use crate::cloth::{Block, ClothGrid, Compliances, Lanes, Layout};
 /// What is done to a group of rows at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Work {
-    /// Verlet, and the springs within a row.
+    /// The springs within a row.
     Arrive,
     /// Vertical bend springs: of every four rows the first two, or the last two.
     BendDown,
@@ -139,8 +139,8 @@ pub(super) struct GridSweep {
     stages: Vec<Stage>,
     has_shear: bool,
     has_bend: bool,
-    /// The Δt (s) that softnesses hold for.
-    substep: f32,
+    /// The Δt² (s²) that softnesses hold for.
+    weight_dt2: f32,
 }
 
 impl GridSweep {
@@ -167,7 +167,7 @@ impl GridSweep {
                 .collect(),
             has_shear,
             has_bend,
-            substep: 0.0,
+            weight_dt2: 0.0,
         }
     }
 
@@ -188,13 +188,13 @@ impl GridSweep {
         Stretch::of_ratios(structural, bound)
     }
 
-    /// Takes over the length of a sub-step (s).
-    fn soften(&mut self, substep: f32) {
-        if self.substep == substep {
+    /// Takes over what stands for Δt² (s²).
+    fn soften(&mut self, weight_dt2: f32) {
+        if self.weight_dt2 == weight_dt2 {
             return;
         }
-        self.substep = substep;
-        let inverse_dt2 = 1.0 / (substep * substep);
+        self.weight_dt2 = weight_dt2;
+        let inverse_dt2 = 1.0 / weight_dt2;
         let within = self.across.iter_mut().chain(&mut self.bend_across);
         let between = [&mut self.down, &mut self.diagonal, &mut self.bend_down];
         for run in within.chain(between) {
@@ -304,7 +304,6 @@ impl GridSweep {
         let kernels = motion.kernels;
         match work {
             Work::Arrive => {
-                (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
                 let on_border = rows.start == 0 || rows.end == self.layout.rows as usize;
                 let kind = usize::from(!on_border);
                 if self.has_bend {
@@ -351,8 +350,12 @@ impl GridSweep {
 }
 
 impl Sweep for GridSweep {
-    fn set_substep(&mut self, substep: f32) {
-        self.soften(substep);
+    fn set_weight(&mut self, weight_dt2: f32) {
+        self.soften(weight_dt2);
+    }
+
+    fn is_exact(&self) -> bool {
+        false
     }
 
     fn bands(&self, wanted: usize) -> usize {

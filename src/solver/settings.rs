@@ -6,7 +6,10 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::substepping::{MAX_SUBSTEPS, Substepping};
+use super::{
+    TimeOrder,
+    substepping::{MAX_SUBSTEPS, Substepping},
+};
 use crate::cloth::ClothError;
 
 /// How a cloth is simulated. May change at any time.
@@ -26,6 +29,9 @@ pub struct ClothSettings {
     /// material gives. That takes most of the stretch out of a fine cloth for a fifth of the cost more: see
     /// [`Tethers`](super::Tethers).
     pub tethers: bool,
+    /// How the error of its motion falls with the sub-steps: in proportion to their length squared, or, as in the paper, to
+    /// their length.
+    pub order: TimeOrder,
     /// Whether a cloth that has come to rest sleeps: it costs next to nothing, stays as it is to the last bit,
     /// and wakes by a collider that moves near it, a pin that moves, a change of its components or gravity.
     pub sleeps: bool,
@@ -38,7 +44,8 @@ impl Default for ClothSettings {
             substepping: Substepping::default(),
             gravity: None,
             particle_radius: 0.01,
-            tethers: true,
+            tethers: false,
+            order: TimeOrder::default(),
             sleeps: true,
         }
     }

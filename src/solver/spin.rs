@@ -8,7 +8,7 @@
 use bevy::math::Vec3;
 
 use super::{PinMotion, TickStep};
-use crate::cloth::{ClothParticles, DX, LANES, View, W, X};
+use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
 
 /// How far pins may be beside the line, in metres for each metre along it.
 const STRAIGHT: f32 = 1.0e-3;
@@ -129,12 +129,13 @@ impl Spin {
         // So little that the arc is its tangent.
         let back = turn * self.substeps as f32 / 2.0;
         let back = back.clamp(-LARGEST_TURN, LARGEST_TURN);
-        for block in particles.blocks_mut() {
+        for index in 0..particles.blocks().len() {
             for lane in 0..LANES {
+                let block = &mut particles.blocks_mut()[index];
                 let turned = self.axis.cross(lane_of(block.view(), X, lane) - origin);
                 if block.inverse_mass(lane) > 0.0 {
-                    block.set_displacement(lane, block.displacement(lane) + turned * turn);
                     block.set_position(lane, block.position(lane) + turned * back);
+                    particles.accelerate(Slot { block: index, lane }, turned * turn);
                 }
             }
         }

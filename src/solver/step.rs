@@ -1,6 +1,9 @@
 //! What a tick and a sub-step are.
 
-use bevy::math::Vec3;
+use bevy::{
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
 
 /// The time step for which the paper's damping D is given (s).
 pub(super) const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
@@ -16,6 +19,23 @@ pub struct TickStep {
     pub acceleration: Vec3,
     /// The paper's D: the part of its velocity that the cloth loses in 1/60 s.
     pub damping: f32,
+    /// Of which order in time.
+    pub order: TimeOrder,
+    /// The stretch that the material itself gives: what is far beyond it has not been solved, and is no motion to go on from.
+    pub material_stretch: f32,
+}
+
+/// How the error of a motion falls with the length of a sub-step Δt.
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub enum TimeOrder {
+    /// In proportion to Δt: the paper's Verlet, equation (2), which with constraints is implicit Euler. Takes energy out of a
+    /// motion of frequency ω, by the part ω² Δt in a second.
+    First,
+    /// In proportion to Δt²: backward differences over three displacements (BDF2). After what no past can foretell it falls
+    /// back to the first order for a while: contact, springs that were not solved, a write by the game.
+    #[default]
+    Second,
 }
 
 impl Default for TickStep {
@@ -26,6 +46,8 @@ impl Default for TickStep {
             substeps: 20,
             acceleration: Vec3::ZERO,
             damping: 0.0,
+            order: TimeOrder::default(),
+            material_stretch: 0.0,
         }
     }
 }

@@ -4,16 +4,27 @@
 mod tests;
 
 use super::{
-    PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep,
+    PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
     bands::with_threads_awake,
     list::ListSweep,
     pipeline::GridSweep,
+    predict::{Prediction, weight},
     spin::Spin,
     step::DAMPING_REFERENCE,
     sweep::{Motion, Sweep},
     tether::Anchors,
+    threads::ThreadSweep,
 };
-use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
+use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, StepKind, Surface};
+
+/// Sub-steps of first order after one that ended with a push.
+const AFTER_CONTACT: u32 = 3;
+
+/// A stretch beyond the material's own that has not been solved: to go on from it would feed in energy.
+const UNSOLVED: f32 = 0.05;
+
+/// Ticks of first order after a tick that ended so.
+const WARY_TICKS: u32 = 15;
 
 /// Moves the particles that it was made for, a tick at a time. On one thread it does not allocate.
 #[derive(Debug, Clone)]
@@ -43,6 +54,22 @@ impl Solver {
         Self::of_layout(springs, particles.layout())
     }
 
+    /// Solves `springs` by one sweep over them in each sub-step, spring after spring, which is of first order in time: what the
+    /// lab compares with.
+    ///
+    /// # Panics
+    /// As [`new`](Self::new) does.
+    #[doc(hidden)]
+    pub fn of_one_sweep(springs: &Springs, particles: &ClothParticles) -> Self {
+        match springs.storage() {
+            SpringStorage::Grid(grid, compliances) if particles.layout().strip > 1 => {
+                let sweep = Box::new(GridSweep::new(grid, compliances));
+                Self::of(particles.layout(), sweep)
+            }
+            _ => Self::new(springs, particles),
+        }
+    }
+
     /// Solves `springs` between the particles of a surface. Its clones share what it knows of the springs.
     ///
     /// # Panics
@@ -56,7 +83,7 @@ impl Solver {
             SpringStorage::Grid(grid, compliances) => {
                 let of_grid = Layout::new(grid.columns(), grid.rows());
                 assert!(layout == of_grid, "springs and particles of one grid");
-                Box::new(GridSweep::new(grid, compliances))
+                Box::new(ThreadSweep::new(grid, compliances))
             }
             SpringStorage::List(list) => {
                 let mut ends = list.springs.iter().flat_map(|spring| spring.ends);
@@ -118,6 +145,7 @@ impl Solver {
         pins: &[PinMotion],
         mut respond: impl FnMut(&mut ClothParticles, SubStep) -> bool,
     ) -> Stretch {
+        let step = self.allowed(step);
         assert!(
             particles.layout() == self.layout,
             "particles of the solver's own"
@@ -128,7 +156,9 @@ impl Solver {
         let dt = step.seconds / step.substeps.max(1) as f32;
         particles.set_substep(dt);
         particles.zero_pin_displacements();
-        self.sweep.set_substep(dt);
+        if step.order == TimeOrder::First {
+            particles.past_mut().forget(0);
+        }
         let bands = self.sweep.bands(self.bands);
         // What else turns the cloth, or carries it in another way, is not known here.
         let spin = Spin::of(particles, &step, pins);
@@ -150,7 +180,21 @@ impl Solver {
             // Not a rounding beside it.
             particles.put(pin.particle as usize, pin.to);
         }
-        measured.unwrap_or_else(|| self.measure(particles))
+        let stretch = measured.unwrap_or_else(|| self.measure(particles));
+        if stretch.structural > step.material_stretch + UNSOLVED {
+            particles.past_mut().wait(WARY_TICKS * step.substeps);
+        }
+        stretch
+    }
+
+    /// A step of the order that is safe with what solves the springs.
+    fn allowed(&self, step: TickStep) -> TickStep {
+        let order = if self.sweep.is_exact() {
+            step.order
+        } else {
+            TimeOrder::First
+        };
+        TickStep { order, ..step }
     }
 
     /// All sub-steps of a tick. Returns the stretch where it was measured on the way.
@@ -177,20 +221,34 @@ impl Solver {
                     .set_pin_target(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
             }
             self.tethers.locate(particles.blocks(), &mut self.anchors);
+            let kind = match step.order {
+                TimeOrder::First => StepKind::First,
+                TimeOrder::Second => particles.next_step(),
+            };
+            let weight_dt2 = weight(kind) * dt * dt;
+            let pull = (step.acceleration * weight_dt2).to_array();
+            let prediction = Prediction::new(kind, kept, pull);
+            let (blocks, past) = particles.blocks_and_past();
+            match step.order {
+                TimeOrder::First => (kernels.predict_first)(blocks, &prediction),
+                TimeOrder::Second => (kernels.predict)(blocks, past, &prediction),
+            }
+            self.sweep.set_weight(weight_dt2);
             let motion = Motion {
                 kernels: &kernels,
-                kept,
-                acceleration_dt2: (step.acceleration * (dt * dt)).to_array(),
                 tethers: &self.tethers,
                 anchors: &self.anchors,
                 measures: index + 1 == count,
             };
-            let blocks = particles.blocks_mut();
             let swept = self.sweep.substep(blocks, &motion, self.bands);
+            if kind == StepKind::Start {
+                (kernels.begin_past)(blocks, past);
+            }
             measured = swept.stretch;
             substep.farthest_move = swept.moved.into_iter().fold(0.0, f32::max).sqrt();
             if respond(particles, substep) {
                 measured = None;
+                particles.past_mut().forget(AFTER_CONTACT);
             }
         }
         measured

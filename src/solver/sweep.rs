@@ -13,8 +13,6 @@ use crate::cloth::{Block, Lanes};
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
     pub kernels: &'a Kernels,
-    pub kept: f32,
-    pub acceleration_dt2: [f32; 3],
     pub tethers: &'a Tethers,
     pub anchors: &'a Anchors,
     /// Whether lengths are measured, too.
@@ -30,15 +28,20 @@ pub(super) struct Swept {
     pub stretch: Option<Stretch>,
 }
 
-/// Verlet, one sweep over springs that are known, tethers: made once for them, and for as long as they stay.
+/// A solver of springs that are known, and of tethers, for particles where they would be without: made once for them, and for
+/// as long as they stay.
 pub(super) trait Sweep: fmt::Debug + Send + Sync {
-    /// Takes over the length of a sub-step (s).
-    fn set_substep(&mut self, substep: f32);
+    /// Takes over what a force is multiplied with to move a particle, besides its inverse mass: Δt², or what the method
+    /// makes of it (s²).
+    fn set_weight(&mut self, weight_dt2: f32);
+
+    /// Whether it leaves so little unsolved that a motion of second order may go on from it.
+    fn is_exact(&self) -> bool;
 
     /// How many tasks it is split into at most where some are wanted.
     fn bands(&self, wanted: usize) -> usize;
 
-    /// Moves the particles in `blocks` by one sub-step, in this many bands.
+    /// Corrects the displacements of the particles in `blocks` and moves them by them, in this many bands.
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept;
 
     /// Measures the stretch.

@@ -2,7 +2,9 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::{PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, kernel::MIN_MOVE};
+use super::{
+    PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, TimeOrder, kernel::MIN_MOVE,
+};
 use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs, Surface};
 
 const STEP: TickStep = TickStep {
@@ -10,6 +12,8 @@ const STEP: TickStep = TickStep {
     substeps: 20,
     acceleration: Vec3::new(0.3, -9.81, 0.2),
     damping: 0.01,
+    order: TimeOrder::Second,
+    material_stretch: 0.0,
 };
 
 /// `SplitMix64`, from −1 to 1.

@@ -94,6 +94,7 @@ fn hang((columns, span): Strip, compliance: f32, tethers: bool) -> (f64, f64) {
         substeps: 20,
         acceleration: Vec3::new(0.0, -GRAVITY as f32, 0.0),
         damping: material.damping,
+        ..TickStep::default()
     };
     for _ in 0..64 * 12 {
         solver.advance(&mut particles, step, &[], |_, _| false);

@@ -37,6 +37,7 @@ fn sag(along: u32, material: &ClothMaterial, substeps: u32, is_sheared: bool) ->
         substeps,
         acceleration: Vec3::new(0.0, -GRAVITY, 0.0),
         damping: material.damping,
+        ..TickStep::default()
     };
     for _ in 0..64 * 10 {
         solver.advance(&mut particles, step, &[], |_, _| false);

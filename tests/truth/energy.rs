@@ -43,6 +43,7 @@ fn a_pendulum_has_its_period() {
         substeps: 1,
         acceleration: GRAVITY,
         damping: 0.0,
+        ..TickStep::default()
     };
     let mut crossings = Vec::new();
     let mut before = amplitude * length;

@@ -30,6 +30,7 @@ fn elongation(width: f32, high: u32, jitter: f32, material: &ClothMaterial) -> f
         substeps: 80,
         acceleration: Vec3::new(0.0, -GRAVITY, 0.0),
         damping: material.damping,
+        ..TickStep::default()
     };
     for _ in 0..64 * 4 {
         solver.advance(&mut particles, step, &[], |_, _| false);

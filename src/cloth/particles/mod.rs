@@ -1,6 +1,7 @@
 //! The particles of a cloth, in columns.
 
 mod id;
+mod past;
 #[cfg(test)]
 mod tests;
 mod upkeep;
@@ -15,9 +16,13 @@ use bevy::{
 use super::{Block, ClothError, ClothMaterial, Layout, Pins, Slot, Surface};
 
 pub use id::ParticleId;
+pub(crate) use past::{Earlier, Past, StepKind};
 
 /// The sub-step that displacements span until the first tick says otherwise: 20 a tick of Bevy's 64 Hz.
 const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
+
+/// Sub-steps of first order after a particle was put somewhere else, or was given another mass.
+const AFTER_A_JUMP: u32 = 3;
 
 /// The particles of a cloth: position, displacement and inverse mass, in columns of eight lanes.
 ///
@@ -36,6 +41,8 @@ pub struct ClothParticles {
     layout: Layout,
     blocks: Vec<Block>,
     substep: f32,
+    #[reflect(ignore)]
+    past: Past,
 }
 
 impl Default for ClothParticles {
@@ -44,6 +51,7 @@ impl Default for ClothParticles {
             layout: Layout::default(),
             blocks: Vec::new(),
             substep: DEFAULT_SUBSTEP,
+            past: Past::default(),
         }
     }
 }
@@ -94,6 +102,7 @@ impl ClothParticles {
             layout,
             blocks: vec![Block::EMPTY; layout.blocks()],
             substep: DEFAULT_SUBSTEP,
+            past: Past::default(),
         }
     }
 
@@ -169,6 +178,7 @@ impl ClothParticles {
     ) -> Result<(), ClothError> {
         let Slot { block, lane } = self.existing(id.into())?;
         self.blocks[block].set_position(lane, position);
+        self.past.forget(AFTER_A_JUMP);
         Ok(())
     }
 
@@ -183,6 +193,7 @@ impl ClothParticles {
     ) -> Result<(), ClothError> {
         let Slot { block, lane } = self.existing(id.into())?;
         self.blocks[block].set_displacement(lane, displacement);
+        self.past.forget(0);
         Ok(())
     }
 
@@ -210,6 +221,7 @@ impl ClothParticles {
     ) -> Result<(), ClothError> {
         let Slot { block, lane } = self.existing(id.into())?;
         self.blocks[block].set_inverse_mass(lane, inverse_mass);
+        self.past.forget(AFTER_A_JUMP);
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use bevy::math::{Isometry3d, Vec3, bounding::BoundingSphere};
 
-use super::{ClothParticles, validity::is_valid};
+use super::{AFTER_A_JUMP, ClothParticles, Earlier, Past, StepKind, validity::is_valid};
 use crate::cloth::{
     Block, ClothError, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, Surface, W, X, Y, Z,
 };
@@ -37,6 +37,7 @@ impl ClothParticles {
             self.blocks[slot.block].set_inverse_mass(slot.lane, 1.0 / mass);
         }
         pins.for_each(surface, |index| self.pin(index));
+        self.past.forget(AFTER_A_JUMP);
         Ok(())
     }
 
@@ -63,6 +64,7 @@ impl ClothParticles {
     pub(crate) fn pin(&mut self, index: usize) {
         let slot = self.layout.slot_of(index);
         self.blocks[slot.block].set_inverse_mass(slot.lane, 0.0);
+        self.past.forget(AFTER_A_JUMP);
     }
 
     fn check_mass(surface: &Surface, material: &ClothMaterial) -> Result<(), ClothError> {
@@ -140,6 +142,29 @@ impl ClothParticles {
         &self.blocks
     }
 
+    /// The memory that they lie in, and what they remember of their motion.
+    pub(crate) fn blocks_and_past(&mut self) -> (&mut [Block], &mut [Earlier]) {
+        (&mut self.blocks, &mut self.past.blocks)
+    }
+
+    /// What they remember of their motion.
+    pub(crate) fn past_mut(&mut self) -> &mut Past {
+        &mut self.past
+    }
+
+    /// Of which order the coming sub-step is, if the second is wanted.
+    pub(crate) fn next_step(&mut self) -> StepKind {
+        self.past.next(self.blocks.len())
+    }
+
+    /// Has a particle be faster by `displacement` a sub-step (m), at any time that is remembered.
+    pub(crate) fn accelerate(&mut self, slot: Slot, displacement: Vec3) {
+        let block = &mut self.blocks[slot.block];
+        block.set_displacement(slot.lane, block.displacement(slot.lane) + displacement);
+        self.past
+            .change(slot.block, slot.lane, |moved| moved + displacement);
+    }
+
     /// The memory that they lie in.
     pub(crate) fn blocks_mut(&mut self) -> &mut [Block] {
         &mut self.blocks
@@ -172,6 +197,7 @@ impl ClothParticles {
         let mass = material.areal_density * surface.area_of(index);
         let Slot { block, lane } = self.layout.slot_of(index);
         self.blocks[block].set_inverse_mass(lane, 1.0 / mass);
+        self.past.forget(AFTER_A_JUMP);
     }
 
     /// Forgets what the pinned particles were moved by.
@@ -200,6 +226,8 @@ impl ClothParticles {
             let block = &mut self.blocks[slot.block];
             block.set_position(slot.lane, by * block.position(slot.lane));
             block.set_displacement(slot.lane, by.rotation * block.displacement(slot.lane));
+            self.past
+                .change(slot.block, slot.lane, |moved| by.rotation * moved);
         }
     }
 
@@ -208,6 +236,7 @@ impl ClothParticles {
         self.layout = other.layout;
         self.blocks.clone_from(&other.blocks);
         self.substep = other.substep;
+        self.past.copy_from(&other.past);
     }
 
     /// How far the particle that is farthest from where it was in `other`, or was before its last displacement, is from
@@ -300,12 +329,16 @@ impl ClothParticles {
     pub(crate) fn set_substep(&mut self, substep: f32) {
         if substep != self.substep {
             let ratio = substep / self.substep;
+            self.substep = substep;
+            if self.past.rescale(&mut self.blocks, ratio) {
+                return;
+            }
+            self.past.forget(0);
             for block in &mut self.blocks {
                 for displacement in &mut block.view_mut()[DX..] {
                     *displacement *= ratio;
                 }
             }
-            self.substep = substep;
         }
     }
 }

@@ -40,6 +40,7 @@ fn slide(slope: f32, friction: f32, ball: MovingCollider) -> f32 {
         substeps: 20,
         acceleration: Vec3::NEG_Y * GRAVITY,
         damping: 0.0,
+        ..TickStep::default()
     };
     let settings = ContactSettings {
         friction,

@@ -64,6 +64,7 @@ impl Shot {
             substeps: SUBSTEPS,
             acceleration: Vec3::NEG_Y * 9.81,
             damping: 0.01,
+            ..TickStep::default()
         };
         let settings = ContactSettings {
             particle_radius: 0.01,

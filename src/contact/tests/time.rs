@@ -87,6 +87,7 @@ fn scene(seed: u64, narrow_phase: NarrowPhase) -> Scene {
             substeps,
             acceleration: Vec3::NEG_Y * 9.81,
             damping: 0.01,
+            ..TickStep::default()
         },
     }
 }

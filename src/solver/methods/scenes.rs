@@ -127,6 +127,7 @@ impl Scene {
             substeps,
             acceleration: self.acceleration,
             damping: self.material.damping,
+            ..TickStep::default()
         }
     }
 

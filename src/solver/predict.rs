@@ -1,0 +1,115 @@
+//! Where particles would be without springs: of first and of second order in time.
+//!
+//! With v kept to the part κ in a sub-step, the paper's equation (2), `x' = x + κ (x − x_prev) + a Δt²`, is the first. The
+//! second takes backward differences of second order (BDF2) for x and for v: with d₀, d₁, d₂ the last displacements,
+//! `d = d₀ + (6 (d₀ − d₁) − (d₁ − d₂))/9 + (4/9) a Δt²` where nothing is damped. What forces and springs do in a sub-step
+//! counts with a weight c then: 1 and 4/9.
+//!
+//! It begins with a sub-step of weight ½ from position and velocity, `d = d₀ + ½ a Δt²`; the two displacements before are
+//! what a constant acceleration would have made them. A sub-step of first order in its place would leave a velocity that is
+//! off by a Δt/2, and all that follows of first order.
+
+use super::kernel::one_block_at_a_time;
+use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
+
+/// What a displacement becomes: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Prediction {
+    own: f32,
+    one: f32,
+    two: f32,
+    /// c a Δt² (m).
+    pull: [f32; 3],
+}
+
+impl Prediction {
+    /// With velocities kept to the part `kept`, and c a Δt² (m).
+    pub fn new(kind: StepKind, kept: f32, pull: [f32; 3]) -> Self {
+        let k = f64::from(kept);
+        let [own, one, two] = match kind {
+            StepKind::First => [k, 0.0, 0.0],
+            StepKind::Start => [k.sqrt(), 0.0, 0.0],
+            // (8 κ u₀ − 2 κ² u₁)/9 + d₀/3 with velocities u₀ = (3 d₀ − d₁)/2 and u₁ = (3 d₁ − d₂)/2.
+            StepKind::Second => [
+                (3.0 + 8.0 * k - 2.0 * k * k) / 9.0,
+                (4.0 * k + 2.0 * k * k) / 9.0,
+                -k * k / 9.0,
+            ],
+        };
+        Self {
+            own: own as f32,
+            one: one as f32,
+            two: two as f32,
+            pull,
+        }
+    }
+}
+
+/// The weight c of forces and springs.
+pub(super) fn weight(kind: StepKind) -> f32 {
+    match kind {
+        StepKind::First => 1.0,
+        StepKind::Start => 0.5,
+        StepKind::Second => 4.0 / 9.0,
+    }
+}
+
+/// Without a past. Pinned particles keep the displacement that they were given.
+#[inline(always)]
+pub(super) fn predict_first(row: &mut [Block], prediction: &Prediction) {
+    for block in row {
+        let view = block.view_mut();
+        for (at, pull) in [DX, DY, DZ].into_iter().zip(prediction.pull) {
+            for l in 0..LANES {
+                let moved = view[at + l] * prediction.own + pull;
+                view[at + l] = if view[W + l] > 0.0 {
+                    moved
+                } else {
+                    view[at + l]
+                };
+            }
+        }
+        one_block_at_a_time();
+    }
+}
+
+/// With a past, which moves on by a sub-step.
+#[inline(always)]
+pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction) {
+    let Prediction {
+        own,
+        one,
+        two,
+        pull,
+    } = *prediction;
+    for (block, Earlier(earlier)) in row.iter_mut().zip(past) {
+        let view = block.view_mut();
+        for axis in 0..3 {
+            let at = DX + axis * LANES;
+            for l in 0..LANES {
+                let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
+                let moved = own * now + one * (now - before) + two * (before - first) + pull[axis];
+                view[at + l] = if view[W + l] > 0.0 { moved } else { now };
+                earlier[axis + 3][l] = before;
+                earlier[axis][l] = now;
+            }
+        }
+        one_block_at_a_time();
+    }
+}
+
+/// Ends the first sub-step: the past is what the acceleration in it would have made it.
+#[inline(always)]
+pub(super) fn begin_past(row: &[Block], past: &mut [Earlier]) {
+    for (block, Earlier(earlier)) in row.iter().zip(past) {
+        let view = block.view();
+        for axis in 0..3 {
+            for l in 0..LANES {
+                let (moved, came) = (view[DX + axis * LANES + l], earlier[axis][l]);
+                earlier[axis][l] = came + (came - moved);
+                earlier[axis + 3][l] = came + 3.0 * (came - moved);
+            }
+        }
+        one_block_at_a_time();
+    }
+}

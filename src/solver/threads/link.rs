@@ -1,0 +1,150 @@
+//! One spring of a thread, in the system of equations of all springs of that thread.
+
+use crate::cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z};
+
+/// What keeps a spring between two pins from dividing by zero (1/kg).
+const HOLD: f32 = 1.0e-18;
+
+/// ε: what is added to a thread that is rigid, as a part of its diagonal. Straight between two pins it would have no solution.
+const REGULARISATION: f32 = 1.0e-3;
+
+/// Eight springs that begin in the lanes of one block, between the forward and the backward pass.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct Link {
+    /// From its first to its second particle, in rest lengths; after the backward pass what it pulls with (m kg).
+    pub way: [Lanes; 3],
+    /// One over the pivot of its row of the system (kg).
+    pub pivot: Lanes,
+    /// Right side, eliminated (m kg).
+    pub right: Lanes,
+}
+
+impl Link {
+    /// No spring.
+    pub const NONE: Self = Self {
+        way: [[0.0; LANES]; 3],
+        pivot: [0.0; LANES],
+        right: [0.0; LANES],
+    };
+
+    /// Each lane holds what its left neighbour did.
+    #[inline(always)]
+    pub fn from_left(&self) -> Self {
+        self.each(from_left)
+    }
+
+    /// Each lane holds what its right neighbour did.
+    #[inline(always)]
+    pub fn from_right(&self) -> Self {
+        self.each(from_right)
+    }
+
+    #[inline(always)]
+    fn each(&self, f: fn(&Lanes) -> Lanes) -> Self {
+        let [x, y, z] = &self.way;
+        Self {
+            way: [f(x), f(y), f(z)],
+            pivot: f(&self.pivot),
+            right: f(&self.right),
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn from_left([a, b, c, d, e, f, g, _]: &Lanes) -> Lanes {
+    [0.0, *a, *b, *c, *d, *e, *f, *g]
+}
+
+#[inline(always)]
+pub(super) fn from_right([_, a, b, c, d, e, f, g]: &Lanes) -> Lanes {
+    [*a, *b, *c, *d, *e, *f, *g, 0.0]
+}
+
+/// Springs that lie alike: those that begin in the blocks of a row.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Family {
+    /// Length at rest (m).
+    pub rest: f32,
+    /// One over it.
+    pub inverse_rest: f32,
+    /// m/N; 0 where there is none.
+    compliance: Vec<Lanes>,
+    /// Compliance over c Δt² (1/kg).
+    pub softness: Vec<Lanes>,
+    /// 0, or infinity where there is no spring (1/kg).
+    pub hold: Vec<Lanes>,
+}
+
+impl Family {
+    /// The springs of this step that begin in `row` of `grid`; one row stands for all like it.
+    pub fn new(
+        grid: &ClothGrid,
+        layout: Layout,
+        of: &Compliances,
+        step: (u32, i32),
+        row: u32,
+    ) -> Self {
+        let compliance = |block: usize, lane: usize| {
+            let column = layout.column(block, lane)?;
+            let end = column.checked_add_signed(step.1)?;
+            let row = row.min(grid.rows().saturating_sub(1));
+            (end < grid.columns()).then_some(())?;
+            of.of_strip(grid, step, (row, column))
+        };
+        let all = |number: &dyn Fn(Option<f32>) -> f32| -> Vec<Lanes> {
+            let lanes = |block| std::array::from_fn(|lane| number(compliance(block, lane)));
+            (0..layout.strip as usize).map(lanes).collect()
+        };
+        let rest = grid.step_length(step);
+        Self {
+            rest,
+            inverse_rest: 1.0 / rest,
+            compliance: all(&|compliance| compliance.unwrap_or(0.0)),
+            softness: all(&|_| 0.0),
+            hold: all(&|compliance| compliance.map_or(f32::INFINITY, |_| HOLD)),
+        }
+    }
+
+    /// Takes over c Δt² (s²).
+    pub fn soften(&mut self, weight_dt2: f32) {
+        let inverse = 1.0 / weight_dt2;
+        for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
+            *softness = compliance.map(|compliance| compliance * inverse);
+        }
+    }
+}
+
+/// The row of the system for eight springs: their ways, and diagonal (1/kg) and right side (m).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Equation {
+    pub way: [Lanes; 3],
+    pub diagonal: Lanes,
+    pub right: Lanes,
+}
+
+/// From views of the first and the second particles.
+#[inline(always)]
+pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equation {
+    let mut row = Equation {
+        way: [[0.0; LANES]; 3],
+        diagonal: [0.0; LANES],
+        right: [0.0; LANES],
+    };
+    let (softness, hold) = (&family.softness[block], &family.hold[block]);
+    for l in 0..LANES {
+        let x = ((b[X + l] - a[X + l]) + (b[DX + l] - a[DX + l])) * family.inverse_rest;
+        let y = ((b[Y + l] - a[Y + l]) + (b[DY + l] - a[DY + l])) * family.inverse_rest;
+        let z = ((b[Z + l] - a[Z + l]) + (b[DZ + l] - a[DZ + l])) * family.inverse_rest;
+        let p = x * x + y * y + z * z;
+        let weight = a[W + l] + b[W + l];
+        let soft = softness[l] * p;
+        let least = REGULARISATION * weight;
+        let soft = if soft > least { soft } else { least };
+        [row.way[0][l], row.way[1][l], row.way[2][l]] = [x, y, z];
+        row.diagonal[l] = weight * p + (soft + hold[l]);
+        // Halley's step for the root, as in a sweep.
+        row.right[l] = -family.rest * p * (p - 1.0) / (1.5 * p + 0.5);
+    }
+    row
+}

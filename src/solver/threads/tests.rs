@@ -1,0 +1,186 @@
+//! Threads solved side by side against one after the other in f64.
+
+use bevy::math::{DVec3, Vec3};
+
+use super::{Direction, ThreadSweep};
+use crate::{
+    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Compliances, Surface},
+    solver::{SimdLevel, sweep::Sweep},
+};
+
+const WEIGHT_DT2: f32 = 1.0 / 1200.0 / 1200.0;
+
+/// `SplitMix64`, from −1 to 1.
+fn random(seed: &mut u64) -> f32 {
+    *seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let z = (*seed ^ (*seed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((z ^ (z >> 31)) >> 40) as f32 / (1_u64 << 23) as f32 - 1.0
+}
+
+/// A crumpled cloth with a few pins anywhere, and a few heavy particles.
+fn crumpled(columns: u32, rows: u32, noise: f32) -> (ClothGrid, ClothParticles) {
+    let grid = Cloth::new(columns, rows, 0.1)
+        .grid(Vec3::new(1.0, 1.3, 1.0))
+        .expect("a valid grid");
+    let mut particles = ClothParticles::at_rest(&Surface::of_grid(&grid), &ClothMaterial::COTTON)
+        .expect("a valid material");
+    let mut seed = u64::from(columns * 1000 + rows);
+    for (row, column) in grid.cells() {
+        let off = Vec3::from([(); 3].map(|()| noise * random(&mut seed)));
+        let moved = Vec3::from([(); 3].map(|()| 0.1 * noise * random(&mut seed)));
+        let position = grid.rest_position(row, column) + off;
+        let inverse_mass = match random(&mut seed) {
+            0.9.. => 0.0,
+            0.8..0.9 => 10.0,
+            _ => 600.0,
+        };
+        particles
+            .set_position((row, column), position)
+            .and_then(|()| particles.set_displacement((row, column), moved))
+            .and_then(|()| particles.set_inverse_mass((row, column), inverse_mass))
+            .expect("it exists");
+    }
+    (grid, particles)
+}
+
+/// The threads of one direction, as particles.
+fn threads(grid: &ClothGrid, (down, across): (u32, i32)) -> Vec<Vec<(u32, u32)>> {
+    let next = |(row, column): (u32, u32)| {
+        let (row, column) = (row + down, column.checked_add_signed(across)?);
+        (row < grid.rows() && column < grid.columns()).then_some((row, column))
+    };
+    let is_first = |&(row, column): &(u32, u32)| {
+        let before = row
+            .checked_sub(down)
+            .zip(column.checked_add_signed(-across));
+        !before.is_some_and(|(_, column)| column < grid.columns())
+    };
+    let thread = |first| std::iter::successors(Some(first), |&cell| next(cell)).collect();
+    grid.cells().filter(is_first).map(thread).collect()
+}
+
+/// Solves a system by elimination with pivots.
+fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+    let n = right.len();
+    for at in 0..n {
+        let best = (at..n)
+            .max_by(|&a, &b| matrix[a][at].abs().total_cmp(&matrix[b][at].abs()))
+            .expect("a row");
+        matrix.swap(at, best);
+        right.swap(at, best);
+        for below in at + 1..n {
+            let factor = matrix[below][at] / matrix[at][at];
+            for column in at..n {
+                matrix[below][column] -= factor * matrix[at][column];
+            }
+            right[below] -= factor * right[at];
+        }
+    }
+    for at in (0..n).rev() {
+        let known: f64 = (at + 1..n)
+            .map(|column| matrix[at][column] * right[column])
+            .sum();
+        right[at] = (right[at] - known) / matrix[at][at];
+    }
+    right
+}
+
+/// What one thread's springs do to displacements, in f64, by the equations of [`super`].
+fn solve_thread(
+    thread: &[(u32, u32)],
+    particles: &ClothParticles,
+    rest: f64,
+    compliance: impl Fn((u32, u32)) -> f64,
+    moved: &mut [DVec3],
+) {
+    let at = |cell: (u32, u32)| particles.index(cell).expect("it exists");
+    let place = |cell| particles.position_at(at(cell)).as_dvec3() + moved[at(cell)];
+    let weight = |cell| f64::from(particles.inverse_mass(cell).expect("it exists"));
+    let springs: Vec<_> = thread.windows(2).map(|ends| (ends[0], ends[1])).collect();
+    let ways: Vec<DVec3> = springs
+        .iter()
+        .map(|(a, b)| (place(*b) - place(*a)) / rest)
+        .collect();
+    let n = springs.len();
+    if n == 0 {
+        return;
+    }
+    let mut matrix = vec![vec![0.0; n]; n];
+    let mut right = vec![0.0; n];
+    for (i, (a, b)) in springs.iter().enumerate() {
+        let p = ways[i].length_squared();
+        let sum = weight(*a) + weight(*b);
+        let soft = compliance(*a) / f64::from(WEIGHT_DT2) * p;
+        matrix[i][i] = sum * p + soft.max(1.0e-3 * sum) + 1.0e-18;
+        if i + 1 < n {
+            let off = -weight(*b) * ways[i].dot(ways[i + 1]);
+            (matrix[i][i + 1], matrix[i + 1][i]) = (off, off);
+        }
+        right[i] = -rest * p * (p - 1.0) / (1.5 * p + 0.5);
+    }
+    let multipliers = solved(matrix, right);
+    for (i, (a, b)) in springs.iter().enumerate() {
+        moved[at(*a)] -= weight(*a) * multipliers[i] * ways[i];
+        moved[at(*b)] += weight(*b) * multipliers[i] * ways[i];
+    }
+}
+
+/// In grids that fill their lanes and that do not, with pins in threads, crumpled a little and a lot, rigid and soft.
+#[test]
+fn each_family_is_solved_as_by_elimination_in_f64() {
+    for (columns, rows) in [
+        (2, 2),
+        (3, 5),
+        (7, 9),
+        (8, 8),
+        (9, 17),
+        (16, 16),
+        (17, 3),
+        (33, 20),
+        (70, 11),
+    ] {
+        for (noise, compliance) in [(0.01, 0.0), (0.01, 1.0e-3), (0.05, 1.0e-4), (0.05, 0.0)] {
+            let (grid, start) = crumpled(columns, rows, noise);
+            let compliances = Compliances {
+                structural: compliance,
+                shear: 2.0 * compliance,
+                bend: f32::INFINITY,
+            };
+            for step in [(0, 1), (1, 0), (1, 1), (1, -1)] {
+                let mut sweep = ThreadSweep::new(&grid, &compliances);
+                sweep.set_weight(WEIGHT_DT2);
+                let mut particles = start.clone();
+                let kernels = SimdLevel::Auto.kernels();
+                let blocks = particles.blocks_mut();
+                match step {
+                    (0, 1) => sweep.solve_across(blocks, &kernels),
+                    (1, 0) => sweep.solve_down(blocks, Direction::Down, &kernels),
+                    (1, 1) => sweep.solve_down(blocks, Direction::Right, &kernels),
+                    _ => sweep.solve_down(blocks, Direction::Left, &kernels),
+                }
+                let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
+                for thread in threads(&grid, step) {
+                    let soft = |cell| {
+                        let cell = if step == (1, -1) { (0, 0) } else { cell };
+                        let kind = if step == (1, -1) { (1, 1) } else { step };
+                        compliances
+                            .of_strip(&grid, kind, cell)
+                            .map_or(0.0, f64::from)
+                    };
+                    let rest = f64::from(grid.step_length(step));
+                    solve_thread(&thread, &start, rest, soft, &mut moved);
+                }
+                for (index, (found, expected)) in particles.displacements().zip(&moved).enumerate()
+                {
+                    let off = found.as_dvec3().distance(*expected);
+                    // 1e-6 of lengths of 0.1 m that a system of condition 1/ε = 1e3 enlarges.
+                    assert!(
+                        off < 1.0e-4,
+                        "{columns} × {rows}, {step:?}, {noise} {compliance}, {index}: {off:e}"
+                    );
+                }
+            }
+        }
+    }
+}
