@@ -16,8 +16,9 @@ use super::{
     predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
     threads::{
-        Family, Link, Pull, RowSystems, clear, column_backward, column_forward, column_heads,
-        left_backward, left_forward, left_heads, right_backward, right_forward, solve_rows,
+        Family, Link, Pull, Rows, clear, column_backward, column_forward, column_heads,
+        left_backward, left_forward, left_heads, pull_row, right_backward, right_forward,
+        row_equations, solve_turned, turn_back, turn_terms,
     },
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, W, X, Y, Z};
@@ -326,7 +327,11 @@ kernels! {
     left_backward(lower: &mut [Block], links: &[Link], next: &[Pull], pulls: &mut [Pull]),
     column_heads(first: &mut [Block], pulls: &[Pull]),
     left_heads(first: &mut [Block], pulls: &[Pull]),
-    solve_rows(blocks: &mut [Block], systems: &mut RowSystems, border: &Family, inner: &Family, is_border: [bool; 2], springs: usize),
+    row_equations(row: &[Block], family: &Family, ways: &mut [[Lanes; 3]], terms: &mut [[Lanes; 3]]),
+    turn_terms(terms: &[[Lanes; 3]], unknowns: &mut [[Rows; 3]], strip: usize),
+    solve_turned(unknowns: &mut [[Rows; 3]], springs: usize),
+    turn_back(unknowns: &[[Rows; 3]], terms: &mut [[Lanes; 3]], strip: usize),
+    pull_row(row: &mut [Block], ways: &mut [[Lanes; 3]], multipliers: &[[Lanes; 3]]),
     commit(row: &mut [Block], farthest: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),

@@ -21,7 +21,7 @@ use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, StepKind, Sur
 const AFTER_CONTACT: u32 = 3;
 
 /// A stretch beyond the material's own that has not been solved: to go on from it would feed in energy.
-const UNSOLVED: f32 = 0.05;
+const UNSOLVED: f32 = 0.5;
 
 /// Ticks of first order after a tick that ended so.
 const WARY_TICKS: u32 = 15;

@@ -106,14 +106,27 @@ pub(crate) fn right_forward(
     family: &Family,
 ) {
     let last = links.len() - 1;
-    let mut before = previous[last].from_left();
-    for j in 0..last {
-        let row = equation(upper[j].view(), lower[j + 1].view(), family, j);
-        eliminate(upper[j].view(), &row, &before, &mut links[j]);
-        before = previous[j];
+    let wrapped = previous[last].from_left();
+    if last == 0 {
+        let row = equation(upper[0].view(), lower[0].shifted(), family, 0);
+        eliminate(upper[0].view(), &row, &wrapped, &mut links[0]);
+        return;
+    }
+    let row = equation(upper[0].view(), lower[1].view(), family, 0);
+    eliminate(upper[0].view(), &row, &wrapped, &mut links[0]);
+    let ends = upper[1..].iter().zip(&lower[2..]);
+    for (j, ((a, b), (before, link))) in ends.zip(previous.iter().zip(&mut links[1..])).enumerate()
+    {
+        let row = equation(a.view(), b.view(), family, j + 1);
+        eliminate(a.view(), &row, before, link);
     }
     let row = equation(upper[last].view(), lower[0].shifted(), family, last);
-    eliminate(upper[last].view(), &row, &before, &mut links[last]);
+    eliminate(
+        upper[last].view(),
+        &row,
+        &previous[last - 1],
+        &mut links[last],
+    );
 }
 
 /// Backward: moves the lower row, but for its first column.
@@ -176,10 +189,11 @@ pub(crate) fn left_backward(
     pulls: &mut [Pull],
 ) {
     let last = links.len() - 1;
-    let mut after = [0, 1, 2].map(|axis| from_left(&next[last][axis]));
-    for j in 0..=last {
-        substitute(lower[j].view_mut(), &links[j], &after, &mut pulls[j]);
-        after = next[j];
+    let wrapped = [0, 1, 2].map(|axis| from_left(&next[last][axis]));
+    substitute(lower[0].view_mut(), &links[0], &wrapped, &mut pulls[0]);
+    let each = lower[1..].iter_mut().zip(&links[1..]);
+    for ((b, link), (next, pull)) in each.zip(next.iter().zip(&mut pulls[1..])) {
+        substitute(b.view_mut(), link, next, pull);
     }
 }
 

@@ -19,7 +19,9 @@ pub(super) use down::{
     left_heads, right_backward, right_forward,
 };
 pub(super) use link::{Family, Link};
-pub(super) use rows::{GROUP, RowSystems, solve_rows};
+pub(super) use rows::{Rows, pull_row, row_equations, solve_turned, turn_back, turn_terms};
+
+use rows::{GROUP, RowSystems};
 
 /// Where threads lead that go from row to row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,14 +124,8 @@ impl ThreadSweep {
         let springs = self.layout.columns as usize - 1;
         for (group, blocks) in blocks.chunks_mut(strip * GROUP).enumerate() {
             let is_border = [group == 0, (group + 1) * GROUP >= rows];
-            (kernels.solve_rows)(
-                blocks,
-                &mut self.systems,
-                &self.across[0],
-                &self.across[1],
-                is_border,
-                springs,
-            );
+            self.systems
+                .solve(blocks, &self.across, is_border, springs, kernels);
         }
     }
 

@@ -2,245 +2,249 @@
 
 use bevy::math::{Mat4, Vec4};
 
-use super::{
-    down::Pull,
-    link::{Family, equation, from_left},
+use super::link::{Family, equation, from_left};
+use crate::{
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
+    solver::kernel::Kernels,
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, W};
 
 /// Rows that are solved at once.
 pub(crate) const GROUP: usize = 16;
 
+/// Places in the terms of a spring.
+const DIAGONAL: usize = 0;
+const OFF: usize = 1;
+const RIGHT: usize = 2;
+
 /// One number of each row.
-type Rows = [f32; GROUP];
+pub(crate) type Rows = [f32; GROUP];
 
 /// The systems of a group of rows.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct RowSystems {
     /// Row by row, block by block.
     ways: Vec<[Lanes; 3]>,
-    pulls: Vec<Pull>,
-    /// Column by column: diagonal, then one over the pivot.
-    diagonal: Vec<Rows>,
-    /// What couples a spring with the one before it.
-    off: Vec<Rows>,
-    /// Right side, then the multiplier.
-    right: Vec<Rows>,
+    /// Row by row, block by block: diagonal, off, right.
+    terms: Vec<[Lanes; 3]>,
+    /// Column by column, of all rows: the same.
+    unknowns: Vec<[Rows; 3]>,
 }
+
+/// A row where there is none: nothing pulls.
+const NO_TERMS: [Lanes; 3] = [[1.0; LANES], [0.0; LANES], [0.0; LANES]];
 
 impl RowSystems {
     pub fn new(strip: usize) -> Self {
         let columns = strip * LANES;
         Self {
             ways: vec![[[0.0; LANES]; 3]; strip * GROUP],
-            pulls: vec![[[0.0; LANES]; 3]; strip * GROUP],
-            diagonal: vec![[1.0; GROUP]; columns],
-            off: vec![[0.0; GROUP]; columns + 1],
-            right: vec![[0.0; GROUP]; columns],
+            terms: vec![NO_TERMS; strip * GROUP],
+            unknowns: vec![[[0.0; GROUP]; 3]; columns],
+        }
+    }
+
+    /// Solves the rows in `blocks`, up to [`GROUP`] of them, of `springs` springs each; with the family of a border for the
+    /// first and the last of them where they are on one.
+    pub fn solve(
+        &mut self,
+        blocks: &mut [Block],
+        [border, inner]: &[Family; 2],
+        is_border: [bool; 2],
+        springs: usize,
+        kernels: &Kernels,
+    ) {
+        let strip = border.hold.len();
+        let count = blocks.len() / strip;
+        for (row, blocks) in blocks.chunks_exact(strip).enumerate() {
+            let is_border = (row == 0 && is_border[0]) || (row + 1 == count && is_border[1]);
+            let family = if is_border { border } else { inner };
+            let range = row * strip..(row + 1) * strip;
+            let (ways, terms) = (&mut self.ways[range.clone()], &mut self.terms[range]);
+            (kernels.row_equations)(blocks, family, ways, terms);
+        }
+        self.terms[count * strip..].fill(NO_TERMS);
+        (kernels.turn_terms)(&self.terms, &mut self.unknowns, strip);
+        (kernels.solve_turned)(&mut self.unknowns, springs);
+        (kernels.turn_back)(&self.unknowns, &mut self.terms, strip);
+        for (row, blocks) in blocks.chunks_exact_mut(strip).enumerate() {
+            let range = row * strip..(row + 1) * strip;
+            (kernels.pull_row)(blocks, &mut self.ways[range.clone()], &self.terms[range]);
         }
     }
 }
 
-/// Transposes eight by eight numbers.
+/// Transposes four by four numbers.
 #[inline(always)]
-fn turned(rows: [Lanes; LANES]) -> [Lanes; LANES] {
-    let quarter = |row: usize, lane: usize| {
-        let of = |at: usize| Vec4::from_slice(&rows[row + at][lane..lane + 4]);
-        Mat4::from_cols(of(0), of(1), of(2), of(3))
-            .transpose()
-            .to_cols_array_2d()
-    };
-    let quarters = [
-        [quarter(0, 0), quarter(4, 0)],
-        [quarter(0, 4), quarter(4, 4)],
-    ];
-    std::array::from_fn(|lane| {
-        let [low, high] = &quarters[lane / 4];
-        let ([a, b, c, d], [e, f, g, h]) = (low[lane % 4], high[lane % 4]);
-        [a, b, c, d, e, f, g, h]
-    })
+fn turned([a, b, c, d]: [&[f32]; 4]) -> [[f32; 4]; 4] {
+    let [a, b, c, d] = [a, b, c, d].map(Vec4::from_slice);
+    Mat4::from_cols(a, b, c, d).transpose().to_cols_array_2d()
 }
 
-/// Solves the rows in `blocks`, up to [`GROUP`] of them, of `strip` blocks each; their families by row.
+/// The rows of the system for the springs of one row of the cloth.
 #[inline(always)]
-pub(crate) fn solve_rows(
-    blocks: &mut [Block],
-    systems: &mut RowSystems,
-    border: &Family,
-    inner: &Family,
-    is_border: [bool; 2],
-    springs: usize,
+pub(crate) fn row_equations(
+    row: &[Block],
+    family: &Family,
+    ways: &mut [[Lanes; 3]],
+    terms: &mut [[Lanes; 3]],
 ) {
-    let strip = border.hold.len();
-    let count = blocks.len() / strip;
-    let family = |row: usize| {
-        if (row == 0 && is_border[0]) || (row + 1 == count && is_border[1]) {
-            border
-        } else {
-            inner
-        }
-    };
-    for j in 0..strip {
-        for half in 0..GROUP / LANES {
-            let mut diagonal = [[1.0; LANES]; LANES];
-            let mut off = [[0.0; LANES]; LANES];
-            let mut right = [[0.0; LANES]; LANES];
-            for r in 0..LANES {
-                let row = half * LANES + r;
-                if row >= count {
-                    break;
-                }
-                let own = &blocks[row * strip..(row + 1) * strip];
-                let a = own[j].view();
-                let b = if j + 1 < strip {
-                    own[j + 1].view()
-                } else {
-                    own[0].shifted()
-                };
-                let spring = equation(a, b, family(row), j);
-                systems.ways[row * strip + j] = spring.way;
-                diagonal[r] = spring.diagonal;
-                right[r] = spring.right;
-                if j > 0 {
-                    let before = &systems.ways[row * strip + j - 1];
-                    for l in 0..LANES {
-                        off[r][l] = -a[W + l]
-                            * (before[0][l] * spring.way[0][l]
-                                + before[1][l] * spring.way[1][l]
-                                + before[2][l] * spring.way[2][l]);
-                    }
-                }
-            }
-            let (diagonal, off, right) = (turned(diagonal), turned(off), turned(right));
-            for lane in 0..LANES {
-                let column = lane * strip + j;
-                let rows = half * LANES..(half + 1) * LANES;
-                systems.diagonal[column][rows.clone()].copy_from_slice(&diagonal[lane]);
-                systems.off[column][rows.clone()].copy_from_slice(&off[lane]);
-                systems.right[column][rows].copy_from_slice(&right[lane]);
+    let strip = row.len();
+    for (j, (way, terms)) in ways.iter_mut().zip(terms.iter_mut()).enumerate() {
+        let b = match row.get(j + 1) {
+            Some(b) => b.view(),
+            None => row[0].shifted(),
+        };
+        let spring = equation(row[j].view(), b, family, j);
+        *way = spring.way;
+        (terms[DIAGONAL], terms[RIGHT]) = (spring.diagonal, spring.right);
+    }
+    for j in 1..strip {
+        coupling(row[j].view(), &ways[j - 1], &ways[j], &mut terms[j][OFF]);
+    }
+    // The first spring of a strip follows on the last of the strip before.
+    let before = ways[strip - 1].map(|axis| from_left(&axis));
+    coupling(row[0].view(), &before, &ways[0], &mut terms[0][OFF]);
+}
+
+/// What a spring has to do with the one before it, whose second particle is its first.
+#[inline(always)]
+fn coupling(a: &View, before: &[Lanes; 3], way: &[Lanes; 3], off: &mut Lanes) {
+    for l in 0..LANES {
+        let along = before[0][l] * way[0][l] + before[1][l] * way[1][l] + before[2][l] * way[2][l];
+        off[l] = -a[W + l] * along;
+    }
+}
+
+/// Moves the particles of a row by what its springs pull with.
+#[inline(always)]
+pub(crate) fn pull_row(row: &mut [Block], ways: &mut [[Lanes; 3]], multipliers: &[[Lanes; 3]]) {
+    for (way, [multiplier, ..]) in ways.iter_mut().zip(multipliers) {
+        for axis in way {
+            for l in 0..LANES {
+                axis[l] *= multiplier[l];
             }
         }
     }
-    // What a strip's first spring shares with the last one of the strip before.
-    for row in 0..count {
-        let own = &systems.ways[row * strip..(row + 1) * strip];
-        let a = blocks[row * strip].view();
-        let before = [0, 1, 2].map(|axis| from_left(&own[strip - 1][axis]));
-        for l in 1..LANES {
-            let along = before[0][l] * own[0][0][l]
-                + before[1][l] * own[0][1][l]
-                + before[2][l] * own[0][2][l];
-            systems.off[l * strip][row] = -a[W + l] * along;
-        }
+    let last = row.len() - 1;
+    let before = ways[last].map(|axis| from_left(&axis));
+    move_by(row[0].view_mut(), &before, &ways[0]);
+    for (block, pulls) in row[1..].iter_mut().zip(ways.windows(2)) {
+        move_by(block.view_mut(), &pulls[0], &pulls[1]);
     }
-    solve(
-        &mut systems.diagonal,
-        &systems.off,
-        &mut systems.right,
-        springs,
-    );
-    systems.right[springs..].fill([0.0; GROUP]);
+}
+
+/// Moves eight particles by what the springs before and behind them pull with.
+#[inline(always)]
+fn move_by(view: &mut View, before: &[Lanes; 3], behind: &[Lanes; 3]) {
+    for l in 0..LANES {
+        let weight = view[W + l];
+        view[DX + l] += weight * (before[0][l] - behind[0][l]);
+        view[DY + l] += weight * (before[1][l] - behind[1][l]);
+        view[DZ + l] += weight * (before[2][l] - behind[2][l]);
+    }
+}
+
+/// Turns what the blocks of [`GROUP`] rows know of their springs to what each column's springs know of their rows.
+#[inline(always)]
+pub(crate) fn turn_terms(terms: &[[Lanes; 3]], unknowns: &mut [[Rows; 3]], strip: usize) {
     for j in 0..strip {
-        for half in 0..count.div_ceil(LANES) {
-            let rows = half * LANES..(half + 1) * LANES;
-            let multipliers = turned(std::array::from_fn(|lane| {
-                *systems.right[lane * strip + j][rows.clone()]
-                    .first_chunk()
-                    .expect("eight rows")
-            }));
-            for r in 0..LANES.min(count - half * LANES) {
-                let at = (half * LANES + r) * strip + j;
-                let (way, pull) = (&systems.ways[at], &mut systems.pulls[at]);
-                for axis in 0..3 {
-                    for l in 0..LANES {
-                        pull[axis][l] = way[axis][l] * multipliers[r][l];
+        for row in (0..GROUP).step_by(4) {
+            let of = |at: usize| &terms[(row + at) * strip + j];
+            let rows = [of(0), of(1), of(2), of(3)];
+            for lane in (0..LANES).step_by(4) {
+                for at in 0..3 {
+                    let numbers = turned(rows.map(|row| &row[at][lane..lane + 4]));
+                    for (l, numbers) in numbers.iter().enumerate() {
+                        let into = &mut unknowns[(lane + l) * strip + j][at];
+                        into[row..row + 4].copy_from_slice(numbers);
                     }
                 }
             }
         }
     }
-    for (row, pulls) in blocks
-        .chunks_exact_mut(strip)
-        .zip(systems.pulls.chunks_exact(strip))
-    {
-        let mut before = [0, 1, 2].map(|axis| from_left(&pulls[strip - 1][axis]));
-        for (block, pull) in row.iter_mut().zip(pulls) {
-            let view = block.view_mut();
-            for (axis, from) in [DX, DY, DZ].into_iter().enumerate() {
-                for l in 0..LANES {
-                    view[from + l] += view[W + l] * (before[axis][l] - pull[axis][l]);
+}
+
+/// And back: the multipliers, in the place of the diagonal.
+#[inline(always)]
+pub(crate) fn turn_back(unknowns: &[[Rows; 3]], terms: &mut [[Lanes; 3]], strip: usize) {
+    for j in 0..strip {
+        for lane in (0..LANES).step_by(4) {
+            let of = |at: usize| &unknowns[(lane + at) * strip + j][RIGHT];
+            let lanes = [of(0), of(1), of(2), of(3)];
+            for row in (0..GROUP).step_by(4) {
+                let numbers = turned(lanes.map(|column| &column[row..row + 4]));
+                for (r, numbers) in numbers.iter().enumerate() {
+                    let into = &mut terms[(row + r) * strip + j][0];
+                    into[lane..lane + 4].copy_from_slice(numbers);
                 }
             }
-            before = *pull;
         }
     }
 }
 
 /// Solves tridiagonal systems from both ends at once, so that two eliminations run side by side. Of `springs` unknowns.
 #[inline(always)]
-fn solve(diagonal: &mut [Rows], off: &[Rows], right: &mut [Rows], springs: usize) {
+pub(crate) fn solve_turned(unknowns: &mut [[Rows; 3]], springs: usize) {
+    let none = [0.0; GROUP];
+    let (mut first, mut last) = ([none; 2], [none; 2]);
     let middle = springs / 2;
-    let (mut left_pivot, mut left) = ([0.0; GROUP], [0.0; GROUP]);
-    let (mut right_pivot, mut last) = ([0.0; GROUP], [0.0; GROUP]);
-    let after = springs - 1 - middle;
-    for k in 0..middle.max(after) {
-        if k < middle {
-            step(
-                &mut diagonal[k],
-                &off[k],
-                &mut right[k],
-                &mut left_pivot,
-                &mut left,
-            );
-        }
-        if k < after {
-            let at = springs - 1 - k;
-            step(
-                &mut diagonal[at],
-                &off[at + 1],
-                &mut right[at],
-                &mut right_pivot,
-                &mut last,
-            );
-        }
+    let (low, high) = unknowns.split_at_mut(middle);
+    let (own, high) = high.split_first_mut().expect("a spring");
+    let (high, beyond) = high.split_at_mut(springs - 1 - middle);
+    let mut behind = none;
+    for (k, row) in low.iter_mut().enumerate() {
+        let off = row[OFF];
+        step(row, &off, &mut first);
+        // One fewer behind the middle, or as many.
+        let Some(at) = high.len().checked_sub(k + 1) else {
+            continue;
+        };
+        let off = if at + 1 < high.len() {
+            high[at + 1][OFF]
+        } else {
+            none
+        };
+        step(&mut high[at], &off, &mut last);
+        behind = high[0][OFF];
     }
-    // The one in the middle has a neighbour on each side.
-    let (before, behind) = (&off[middle], &off[middle + 1]);
-    let mut value = [0.0; GROUP];
+    let mut value = none;
     for r in 0..GROUP {
-        let beside =
-            before[r] * (before[r] * left_pivot[r]) + behind[r] * (behind[r] * right_pivot[r]);
-        let known = before[r] * left[r] + behind[r] * last[r];
-        value[r] = (right[middle][r] - known) / (diagonal[middle][r] - beside);
+        let off = own[OFF][r];
+        let beside = off * (off * first[0][r]) + behind[r] * (behind[r] * last[0][r]);
+        let known = off * first[1][r] + behind[r] * last[1][r];
+        value[r] = (own[RIGHT][r] - known) / (own[DIAGONAL][r] - beside);
     }
-    right[middle] = value;
-    let (mut left, mut last) = (value, value);
-    for k in 1..=middle.max(after) {
-        if k <= middle {
-            let at = middle - k;
-            back(&diagonal[at], &off[at + 1], &mut right[at], &mut left);
+    own[RIGHT] = value;
+    let (mut before, mut after, mut off) = (value, value, own[OFF]);
+    for (k, row) in low.iter_mut().rev().enumerate() {
+        back(row, &off, &mut before);
+        off = row[OFF];
+        if let Some(row) = high.get_mut(k) {
+            let off = row[OFF];
+            back(row, &off, &mut after);
         }
-        if k <= after {
-            let at = middle + k;
-            back(&diagonal[at], &off[at], &mut right[at], &mut last);
-        }
+    }
+    for row in beyond {
+        row[RIGHT] = none;
     }
 }
 
+/// Eliminates the spring before, of which pivot and right side are known.
 #[inline(always)]
-fn step(diagonal: &mut Rows, off: &Rows, right: &mut Rows, pivot: &mut Rows, before: &mut Rows) {
+fn step(row: &mut [Rows; 3], off: &Rows, known: &mut [Rows; 2]) {
     for r in 0..GROUP {
-        let own = 1.0 / (diagonal[r] - off[r] * (off[r] * pivot[r]));
-        let value = (right[r] - off[r] * before[r]) * own;
-        (diagonal[r], right[r]) = (own, value);
-        (pivot[r], before[r]) = (own, value);
+        let own = 1.0 / (row[DIAGONAL][r] - off[r] * (off[r] * known[0][r]));
+        let value = (row[RIGHT][r] - off[r] * known[1][r]) * own;
+        (known[0][r], known[1][r]) = (own, value);
     }
+    (row[DIAGONAL], row[RIGHT]) = (known[0], known[1]);
 }
 
+/// Puts in the spring beside, of which the multiplier is known.
 #[inline(always)]
-fn back(pivot: &Rows, off: &Rows, right: &mut Rows, neighbour: &mut Rows) {
+fn back(row: &mut [Rows; 3], off: &Rows, known: &mut Rows) {
     for r in 0..GROUP {
-        let value = right[r] - pivot[r] * (off[r] * neighbour[r]);
-        (right[r], neighbour[r]) = (value, value);
+        known[r] = row[RIGHT][r] - row[DIAGONAL][r] * (off[r] * known[r]);
     }
+    row[RIGHT] = *known;
 }
