@@ -101,7 +101,7 @@ impl Block {
 pub(crate) struct Layout {
     pub columns: u32,
     pub rows: u32,
-    /// Columns in a strip, and so blocks in a row.
+    /// Columns in a strip, and so blocks in a row: even, so that springs in a row have two colours.
     pub strip: u32,
 }
 
@@ -122,7 +122,7 @@ impl Layout {
     }
 
     pub fn new(columns: u32, rows: u32) -> Self {
-        let strip = columns.div_ceil(LANES as u32).max(1);
+        let strip = columns.div_ceil(LANES as u32).next_multiple_of(2).max(2);
         Self {
             columns,
             rows,

@@ -123,6 +123,15 @@ pub(super) struct Equation {
     pub right: Lanes,
 }
 
+/// So far apart are no two neighbours of a cloth (rest lengths): farther, and products of lengths would be infinite.
+const FARTHEST: f32 = 1.0e4;
+
+#[inline(always)]
+fn clamped(way: f32) -> f32 {
+    let way = if way > FARTHEST { FARTHEST } else { way };
+    if way < -FARTHEST { -FARTHEST } else { way }
+}
+
 /// From views of the first and the second particles.
 #[inline(always)]
 pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equation {
@@ -133,9 +142,9 @@ pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equ
     };
     let (softness, hold) = (&family.softness[block], &family.hold[block]);
     for l in 0..LANES {
-        let x = ((b[X + l] - a[X + l]) + (b[DX + l] - a[DX + l])) * family.inverse_rest;
-        let y = ((b[Y + l] - a[Y + l]) + (b[DY + l] - a[DY + l])) * family.inverse_rest;
-        let z = ((b[Z + l] - a[Z + l]) + (b[DZ + l] - a[DZ + l])) * family.inverse_rest;
+        let x = clamped(((b[X + l] - a[X + l]) + (b[DX + l] - a[DX + l])) * family.inverse_rest);
+        let y = clamped(((b[Y + l] - a[Y + l]) + (b[DY + l] - a[DY + l])) * family.inverse_rest);
+        let z = clamped(((b[Z + l] - a[Z + l]) + (b[DZ + l] - a[DZ + l])) * family.inverse_rest);
         let p = x * x + y * y + z * z;
         let weight = a[W + l] + b[W + l];
         let soft = softness[l] * p;
@@ -144,7 +153,7 @@ pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equ
         [row.way[0][l], row.way[1][l], row.way[2][l]] = [x, y, z];
         row.diagonal[l] = weight * p + (soft + hold[l]);
         // Halley's step for the root, as in a sweep.
-        row.right[l] = -family.rest * p * (p - 1.0) / (1.5 * p + 0.5);
+        row.right[l] = -family.rest * p * ((p - 1.0) / (1.5 * p + 0.5));
     }
     row
 }
