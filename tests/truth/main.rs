@@ -5,6 +5,11 @@ mod catenary;
 mod compliance;
 mod distance;
 mod energy;
+#[path = "../../examples/shared/modes.rs"]
+mod modes;
 mod precision;
 mod scenes;
+#[path = "../../examples/shared/sheet.rs"]
+mod sheet;
 mod strip;
+mod swings;
