@@ -37,6 +37,24 @@ pub fn hanging_period(length: f64, mode: usize) -> f64 {
     std::f64::consts::TAU / (ROOTS[mode] / 2.0 * (GRAVITY / length).sqrt())
 }
 
+/// How far each row is from the vertical in a mode, 1 at the free end.
+pub fn hanging_shape(rows: u32, mode: usize) -> Vec<f64> {
+    let from_end = |row: u32| 1.0 - f64::from(row) / f64::from(rows - 1);
+    let each = (0..rows).map(|row| j0(ROOTS[mode] * from_end(row).sqrt()));
+    each.collect()
+}
+
+/// Heights and offsets (m) of rows that hang one below the other, these `lengths` (m) apart, from 0 on.
+pub fn hanging_places(lengths: &[f64], shape: &[f64], amplitude: f64) -> Vec<[f64; 2]> {
+    let mut places = vec![[0.0, 0.0]];
+    for (length, part) in lengths.iter().zip(&shape[1..]) {
+        let [y, z] = places[places.len() - 1];
+        let next = amplitude * part;
+        places.push([y - (length * length - (next - z).powi(2)).sqrt(), next]);
+    }
+    places
+}
+
 /// The same as it is found by the solver: infinite where it does not swing. Of a sheet of 8 columns that is let go in the
 /// mode's shape, sloped by 1.5 % at most; lengthened by its own weight it is longer by 2 parts in 10,000 (cotton, 2 m).
 pub fn hanging_found(
@@ -48,15 +66,9 @@ pub fn hanging_found(
     tethers: bool,
 ) -> f64 {
     let spacing = length / f64::from(rows - 1);
-    let shape = |row: u32| j0(ROOTS[mode] * (1.0 - f64::from(row) / f64::from(rows - 1)).sqrt());
+    let shape = hanging_shape(rows, mode);
     let amplitude = 0.01 * length * (ROOTS[0] / ROOTS[mode]).powi(2);
-    // Threads are at their rest length on the way down.
-    let mut places = vec![[0.0, 0.0]];
-    for row in 1..rows {
-        let [y, z] = places[row as usize - 1];
-        let next = amplitude * shape(row);
-        places.push([y - (spacing * spacing - (next - z).powi(2)).sqrt(), next]);
-    }
+    let places = hanging_places(&vec![spacing; shape.len() - 1], &shape, amplitude);
     let place = |row: u32, column: u32| {
         let [y, z] = places[row as usize];
         Vec3::new(spacing as f32 * column as f32, y as f32, z as f32)
@@ -64,7 +76,11 @@ pub fn hanging_found(
     let size = (COLUMNS, rows);
     let pinned = |row, _| row == 0;
     let sheet = Sheet::new(size, spacing as f32, *material, step, place, pinned);
-    let weights: Vec<f64> = sheet.grid.cells().map(|(row, _)| shape(row)).collect();
+    let weights: Vec<f64> = sheet
+        .grid
+        .cells()
+        .map(|(row, _)| shape[row as usize])
+        .collect();
     period(
         sheet.tethered(tethers),
         &weights,
