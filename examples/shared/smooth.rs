@@ -93,7 +93,7 @@ fn swing(step: TickStep) -> Sheet {
     let spacing = 2.0 / f64::from(side - 1);
     let material = threads(COMPLIANCE, f32::INFINITY);
     // What hangs below the middle of a spring is that spring's load, and half a spacing less: the last row is half a row.
-    let load = f64::from(material.areal_density) * GRAVITY * spacing;
+    let load = f64::from(material.areal_density) * GRAVITY * spacing * spacing;
     let given = f64::from(COMPLIANCE) * load;
     let below = |row: u32| f64::from(side - 1 - row) - 0.5;
     let lengths: Vec<f64> = (0..side - 1)
