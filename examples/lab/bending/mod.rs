@@ -28,8 +28,9 @@ const TRUTH: [[f64; 2]; 7] = [
 const OURS: &str = "ours";
 const CHORDS: &str = "rigid chords";
 
-/// How far the finest may be from the truth, and any from that of other sub-steps, as parts of the length.
-const WITHIN: f64 = 0.02;
+/// How far the finest may be from the truth, and any from that of other sub-steps, as parts of the length. In exact arithmetic
+/// 17 particles along it are off by 0.0025, 33 by 0.0005.
+const WITHIN: f64 = 0.01;
 const ALIKE: f64 = 0.01;
 
 pub struct Bending;
@@ -192,7 +193,7 @@ fn chart(rows: &[Row]) -> Chart {
         let mut panel = Panel::new(
             title,
             Axis::log("weight against rigidity, Γ, log"),
-            Axis::linear("drop over length").between(0.0, 1.05),
+            Axis::linear("drop over length").between(0.0, 1.2),
         )
         .with(Series::new("elastica", Look::Ink, Kind::Line, TRUTH));
         for (style, &particles) in particles.iter().enumerate() {

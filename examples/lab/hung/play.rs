@@ -103,7 +103,7 @@ pub fn play(pinned: Pinned, substepping: Substepping, start: u32) -> Outcome {
 }
 
 /// The larger of two; NaN if one of them is.
-fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
 

@@ -15,20 +15,20 @@ pub const GROUPS: [(&str, fn(&Row) -> bool); 5] = [
     ("Taut strip: its sag", |row| row.scene == STRIP),
 ];
 
-/// What no axis shows is drawn on its edge.
+/// What is farther off than this factor is drawn on the edge.
 const MOST: f64 = 8.0;
 
 fn is_hanging(row: &Row, mode: usize) -> bool {
     row.scene.starts_with("hanging") && row.mode == mode
 }
 
-/// A panel a group: found over true, by particles, in 20 sub-steps; of a single size by sub-steps.
+/// A panel a group: found over true, by particles, in 20 sub-steps; and one by sub-steps.
 pub fn all(rows: &[Row]) -> Chart {
     let shown = || rows.iter().filter(|row| row.substeps == 20);
     let worst = shown().max_by(|a, b| off(a).total_cmp(&off(b)));
     let title = worst.map_or("Periods against closed forms".into(), |row| {
         format!(
-            "At 20 sub-steps periods and sags are {:.2} to {:.2} of the closed form; farthest: {}, mode {}, {} particles",
+            "At 20 sub-steps periods and sags are {:.3} to {:.3} of the closed form; farthest: {}, mode {}, {} particles",
             shown().map(Row::ratio).fold(f64::INFINITY, f64::min),
             shown().map(Row::ratio).fold(0.0, f64::max),
             row.scene,
@@ -36,50 +36,44 @@ pub fn all(rows: &[Row]) -> Chart {
             row.particles
         )
     });
-    let highest = shown()
-        .map(Row::ratio)
-        .filter(|ratio| ratio.is_finite())
-        .fold(1.05, f64::max)
-        .min(MOST);
-    let lowest = shown().map(Row::ratio).fold(0.95, f64::min).max(1.0 / MOST);
+    let ratios = || shown().map(Row::ratio).filter(|ratio| ratio.is_finite());
+    let highest = ratios().fold(1.05, f64::max).min(MOST);
+    let lowest = ratios().fold(0.95, f64::min).max(1.0 / MOST);
     let mut chart = Chart::new(
         "waves",
         title,
-        "Found over closed form: 1 is true. 20 sub-steps of 1/60 s, all else by default; in the last panel every number of sub-steps, the finest of each scene.",
+        "Found over closed form: 1 is true. 20 sub-steps of 1/60 s, all else by default; in the last panel every number of sub-steps, for the finest of each scene and its highest mode. What is beyond lies on the edge.",
     )
     .sized([960, 1060])
     .columns(2);
     let y = || Axis::log("found over true, log").between(lowest / 1.02, highest * 1.02);
     let point = |row: &Row, x: f64| [x, row.ratio().clamp(lowest, highest)];
+    let scenes = distinct(rows.iter().map(|row| row.scene.as_str()));
     for (name, is_of) in GROUPS {
         let mut panel = Panel::new(name, Axis::log("particles, log"), y());
-        let scenes = distinct(shown().filter(|row| is_of(row)).map(|row| &row.scene));
-        for (style, scene) in scenes.into_iter().enumerate() {
+        for (style, scene) in scenes.iter().enumerate() {
             let points = shown().filter(|row| is_of(row) && row.scene == *scene);
-            let points = points.map(|row| point(row, row.particles as f64));
-            let look = Look::Style(style);
-            panel = panel.with(Series::new(scene.as_str(), look, Kind::Marked, points));
+            let points: Vec<_> = points.map(|row| point(row, row.particles as f64)).collect();
+            if !points.is_empty() {
+                panel = panel.with(Series::new(
+                    *scene,
+                    Look::Style(style),
+                    Kind::Marked,
+                    points,
+                ));
+            }
         }
         chart = chart.with(with_truth(panel, shown().filter(|row| is_of(row)), |row| {
             row.particles as f64
         }));
     }
     let mut panel = Panel::new("The finest, by sub-steps", Axis::log("sub-steps, log"), y());
-    let scenes = distinct(rows.iter().map(|row| (&row.scene, row.mode)));
-    let kept = |mode: usize, scene: &str| mode == 3 || !scene.starts_with("hanging");
-    let scenes = scenes
-        .into_iter()
-        .filter(|(scene, mode)| kept(*mode, scene));
-    for (style, (scene, mode)) in scenes.enumerate() {
-        let of = || {
-            let of = rows.iter();
-            of.filter(move |row| row.scene == *scene && row.mode == mode)
-        };
-        let finest = of().map(|row| row.particles).max();
-        let points = of().filter(|row| Some(row.particles) == finest);
+    for (style, scene) in scenes.into_iter().enumerate() {
+        let of = || rows.iter().filter(|row| row.scene == scene);
+        let finest = of().map(|row| (row.particles, row.mode)).max();
+        let points = of().filter(|row| Some((row.particles, row.mode)) == finest);
         let points = points.map(|row| point(row, f64::from(row.substeps)));
-        let name = format!("{scene}, mode {mode}");
-        panel = panel.with(Series::new(name, Look::Style(style), Kind::Marked, points));
+        panel = panel.with(Series::new(scene, Look::Style(style), Kind::Marked, points));
     }
     chart.with(with_truth(panel, rows.iter(), |row| {
         f64::from(row.substeps)
