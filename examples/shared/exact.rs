@@ -1,7 +1,7 @@
 //! The same springs in f64, by explicit steps short enough that they count as exact.
 
 use super::sheet::{GRAVITY, Sheet};
-use bevy::math::DVec3;
+use bevy::math::{DVec3, Vec3};
 
 /// A sheet's particles and springs, undamped.
 pub struct Exact {
@@ -21,11 +21,7 @@ impl Exact {
         };
         let springs = sheet.springs.iter();
         Self {
-            positions: sheet
-                .particles
-                .positions()
-                .map(|place| place.as_dvec3())
-                .collect(),
+            positions: sheet.particles.positions().map(Vec3::as_dvec3).collect(),
             velocities: vec![DVec3::ZERO; sheet.particles.len()],
             inverse_masses: sheet.particles.inverse_masses().map(f64::from).collect(),
             springs: springs

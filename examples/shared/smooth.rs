@@ -72,7 +72,7 @@ impl Smooth {
             sheet.tick(|_, _| {});
         }
         let places = sheet.particles.positions();
-        reference.distance(places.map(|place| place.as_dvec3()))
+        reference.distance(places.map(Vec3::as_dvec3))
     }
 }
 

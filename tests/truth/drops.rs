@@ -74,8 +74,8 @@ fn drop(random: &mut Random) -> Sheet {
     )
 }
 
-/// What weight can do at most (J): no particle falls farther than from as high above the nearest pin as it is far from it to as
-/// low below it.
+/// What gains are parts of (J): each particle's weight × its distance from the nearest pin, which is as far as it can hang below
+/// it.
 fn scale(sheet: &Sheet) -> f64 {
     let all: Vec<Vec3> = sheet.particles.positions().collect();
     let each = || sheet.masses().iter().zip(&all);
@@ -83,18 +83,17 @@ fn scale(sheet: &Sheet) -> f64 {
         .filter(|(mass, _)| **mass == 0.0)
         .map(|(_, place)| *place)
         .collect();
-    let fall = |place: &Vec3| {
-        let below = |pin: &Vec3| place.y - pin.y + place.distance(*pin);
-        let falls = pins.iter().map(below);
-        f64::from(falls.fold(f32::INFINITY, f32::min))
+    let hang = |place: &Vec3| {
+        let apart = pins.iter().map(|pin| pin.distance(*place));
+        f64::from(apart.fold(f32::INFINITY, f32::min))
     };
     each()
-        .map(|(mass, place)| mass * GRAVITY * fall(place))
+        .map(|(mass, place)| mass * GRAVITY * hang(place))
         .sum()
 }
 
 /// Undamped and let go with its springs at rest, a cloth never has more kinetic and potential energy than it began with, to one per
-/// cent of what its weight can do.
+/// cent of what its weight can do hanging from its pins.
 #[test]
 fn random_drops_gain_no_energy() {
     let mut random = Random(12);
@@ -103,6 +102,10 @@ fn random_drops_gain_no_energy() {
     for number in 0..DROPS {
         let mut sheet = drop(&mut random);
         let scale = scale(&sheet);
+        if scale == 0.0 {
+            // All of it is pinned.
+            continue;
+        }
         let [_, start] = sheet.energy();
         let mut gain = 0.0_f64;
         for _ in 0..TICKS {
