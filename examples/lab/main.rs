@@ -9,9 +9,11 @@
 //! Each experiment writes `NAME.csv` with the machine and the settings in its header, and its charts as SVG and PNG for
 //! light and dark pages; it prints a table and what it found, and fails where something does not hold that must.
 
+mod bending;
 mod calls;
 mod chart;
 mod cloths;
+mod convergence;
 mod cpu;
 #[path = "../../benches/hierarchy/scene.rs"]
 mod draped;
@@ -19,6 +21,7 @@ mod drawn;
 mod exactness;
 mod experiment;
 mod frames;
+mod hung;
 mod measure;
 mod needs;
 mod pareto;
@@ -29,6 +32,10 @@ mod record;
 mod scene;
 #[path = "../shared"]
 mod shared {
+    pub mod exact;
+    pub mod modes;
+    pub mod sheet;
+    pub mod smooth;
     pub mod stage;
     pub mod woven;
 }
@@ -37,6 +44,7 @@ mod stability;
 mod table1;
 #[path = "../shared/view.rs"]
 mod view;
+mod waves;
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -83,6 +91,14 @@ enum Name {
     Needs,
     /// Speed against accuracy
     Pareto,
+    /// How it is hung: stretch against time for six ways of pinning
+    Hung,
+    /// With which power of the sub-step errors fall
+    Convergence,
+    /// Periods of sheets and membranes, and a strip's sag, against closed forms
+    Waves,
+    /// A clamped strip against the heavy elastica
+    Bending,
     /// Maps of where methods fail
     Stability,
     /// All of them, one after the other
@@ -91,7 +107,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 9] = [
+const EXPERIMENTS: [(Name, Conduct); 13] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -100,6 +116,10 @@ const EXPERIMENTS: [(Name, Conduct); 9] = [
     (Name::Exactness, conduct::<exactness::Exactness>),
     (Name::Needs, conduct::<needs::Needs>),
     (Name::Pareto, conduct::<pareto::Pareto>),
+    (Name::Hung, conduct::<hung::Hung>),
+    (Name::Convergence, conduct::<convergence::Convergence>),
+    (Name::Waves, conduct::<waves::Waves>),
+    (Name::Bending, conduct::<bending::Bending>),
     (Name::Stability, conduct::<stability::Stability>),
 ];
 

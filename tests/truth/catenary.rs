@@ -31,7 +31,7 @@ fn root(function: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
 
 /// Over a span (m), where a strip that weighs `weight` N/m and needs `stiffness` N for a strain of 1 hangs: (x, y) of the point that
 /// is `along` m from its middle at rest, from its lowest point (Irvine, Cable Structures, 1981).
-fn catenary(span: f64, weight: f64, stiffness: f64) -> impl Fn(f64) -> (f64, f64) {
+pub fn catenary(span: f64, weight: f64, stiffness: f64) -> impl Fn(f64) -> (f64, f64) {
     let x = move |tension: f64, along: f64| {
         tension * along / stiffness + tension / weight * (weight * along / tension).asinh()
     };

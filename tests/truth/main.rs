@@ -3,8 +3,21 @@
 
 mod catenary;
 mod compliance;
+mod convergence;
 mod distance;
+mod drops;
 mod energy;
+#[path = "../../examples/shared/exact.rs"]
+mod exact;
+#[path = "../../examples/shared/modes.rs"]
+mod modes;
+mod motion;
 mod precision;
 mod scenes;
+#[path = "../../examples/shared/sheet.rs"]
+mod sheet;
+mod singular;
+#[path = "../../examples/shared/smooth.rs"]
+mod smooth;
 mod strip;
+mod swings;

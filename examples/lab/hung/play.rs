@@ -1,0 +1,137 @@
+//! One cloth, hung in one way and simulated for three seconds.
+
+use std::time::Instant;
+
+use bevy::math::Vec3;
+use bevy_drape::{
+    cloth::SpringKind,
+    solver::{ClothSettings, Control, Substepping, TickStep},
+};
+
+use crate::shared::sheet::{GRAVITY, Sheet, threads};
+
+/// Particles along a side, and its length (m).
+pub const SIDE: u32 = 64;
+pub const WIDTH: f32 = 2.0;
+
+/// Ticks of 1/60 s, and how many of them, the last, the stretch is taken from.
+pub const TICKS: u32 = 180;
+const LAST: u32 = 60;
+
+/// How far one particle is moved in each start (m): what is a draw has to differ.
+const NUDGE: f32 = 1.0e-6;
+
+type Pinned = fn(row: u32, column: u32) -> bool;
+
+/// Names of all ways, and which particles are pinned.
+pub const PINS: [(&str, Pinned); 6] = [
+    ("two corners", |row, column| {
+        row == 0 && (column == 0 || column == SIDE - 1)
+    }),
+    ("one corner", |row, column| row == 0 && column == 0),
+    ("centre", |row, column| {
+        row == SIDE / 2 && column == SIDE / 2
+    }),
+    ("five points", |row, column| {
+        [(3, 9), (50, 60), (31, 7), (10, 44), (63, 0)].contains(&(row, column))
+    }),
+    ("diagonal", |row, column| row == column),
+    ("top row", |row, _| row == 0),
+];
+
+/// What came of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Outcome {
+    pub ms_per_tick: f64,
+    /// Over structural springs in the last second, as parts of their length.
+    pub max_stretch: f64,
+    pub rms_stretch: f64,
+    pub energy_gain: f64,
+}
+
+/// Plays a scene, with one particle a µm aside in each `start`.
+pub fn play(pinned: Pinned, substepping: Substepping, start: u32) -> Outcome {
+    let spacing = WIDTH / (SIDE - 1) as f32;
+    let step = TickStep {
+        seconds: 1.0 / 60.0,
+        ..TickStep::default()
+    };
+    let place = |row: u32, column: u32| {
+        let is_nudged = (row, column) == (7 * start % SIDE, (11 * start + 5) % SIDE);
+        let height = if is_nudged { NUDGE } else { 0.0 };
+        Vec3::new(column as f32 * spacing, height, row as f32 * spacing)
+    };
+    let size = (SIDE, SIDE);
+    let mut sheet = Sheet::new(size, spacing, threads(0.0, 0.0), step, place, pinned)
+        .tethered(ClothSettings::default().tethers);
+    let scale = scale(&sheet);
+    let [_, begins] = sheet.energy();
+    let mut control = Control::default();
+    let mut backup = sheet.particles.clone();
+    let (mut seconds, mut highest) = (0.0, begins);
+    let (mut largest, mut squares, mut count) = (0.0, 0.0, 0.0);
+    for tick in 0..TICKS {
+        let clock = Instant::now();
+        sheet.step.substeps = control.substeps(substepping);
+        if matches!(substepping, Substepping::Adaptive { .. }) {
+            backup.clone_from(&sheet.particles);
+        }
+        loop {
+            let stretch = sheet.tick(|_, _| {});
+            let Some(more) = control.observe(substepping, stretch) else {
+                break;
+            };
+            sheet.particles.clone_from(&backup);
+            sheet.step.substeps = more;
+        }
+        seconds += clock.elapsed().as_secs_f64();
+        highest = larger(highest, sheet.energy()[1]);
+        if tick + LAST >= TICKS {
+            for stretch in stretches(&sheet) {
+                largest = larger(largest, stretch);
+                squares += stretch * stretch;
+                count += 1.0;
+            }
+        }
+    }
+    Outcome {
+        ms_per_tick: 1.0e3 * seconds / f64::from(TICKS),
+        max_stretch: largest,
+        rms_stretch: f64::sqrt(squares / count),
+        energy_gain: (highest - begins) / scale,
+    }
+}
+
+/// The larger of two; NaN if one of them is.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
+/// Length over rest length, − 1, of each structural spring.
+fn stretches(sheet: &Sheet) -> impl Iterator<Item = f64> {
+    let places: Vec<Vec3> = sheet.particles.positions().collect();
+    let structural = sheet.springs.iter();
+    let structural = structural.filter(|spring| spring.kind == SpringKind::Structural);
+    structural.map(move |spring| {
+        let [a, b] = spring.ends.map(|end| places[end as usize].as_dvec3());
+        a.distance(b) / f64::from(spring.rest_length) - 1.0
+    })
+}
+
+/// The start's energy above the lowest that could be reached (J): no particle comes to hang lower below its nearest pin than it
+/// is far from it as the cloth lies flat. Kinetic energy is none at the start, and the potential is that of all pins' height.
+fn scale(sheet: &Sheet) -> f64 {
+    let places: Vec<Vec3> = sheet.particles.positions().collect();
+    let each = || sheet.masses().iter().zip(&places);
+    let pins: Vec<Vec3> = each()
+        .filter(|(mass, _)| **mass == 0.0)
+        .map(|(_, place)| *place)
+        .collect();
+    let fall = |place: &Vec3| {
+        let apart = pins.iter().map(|pin| pin.distance(*place));
+        f64::from(apart.fold(f32::INFINITY, f32::min))
+    };
+    each()
+        .map(|(mass, place)| mass * GRAVITY * fall(place))
+        .sum()
+}
