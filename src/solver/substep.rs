@@ -182,7 +182,7 @@ impl Solver {
         }
         let stretch = measured.unwrap_or_else(|| self.measure(particles));
         if stretch.structural > step.material_stretch + UNSOLVED {
-            particles.past_mut().wait(WARY_TICKS * step.substeps);
+            particles.past_mut().forget(WARY_TICKS * step.substeps);
         }
         stretch
     }

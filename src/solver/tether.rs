@@ -19,6 +19,10 @@ const FEW_PINS: usize = 4;
 /// they leave to the springs what is elastic: swings and colliders pull harder than weight.
 const MARGIN: f32 = 4.0;
 
+/// And beyond that by this part of their length: threads that are solved do not come to be so long, so that tethers pull at
+/// nothing that moves as it should.
+const SLACK: f32 = 0.01;
+
 /// What a cloth is taken to weigh at least (m/s²): without gravity it is pulled at, too.
 const MIN_ACCELERATION: f32 = 9.81;
 
@@ -84,7 +88,7 @@ impl Lengths<'_> {
         let [across, down] = flat.between(particle, pin);
         let square = across * across + down * down;
         let straight = square.sqrt();
-        let stretch = 1.0 + self.material.stretch_compliance * self.tension;
+        let stretch = 1.0 + SLACK + self.material.stretch_compliance * self.tension;
         let bias = 2.0 * across * down / square;
         // Along a thread there is nothing to shear, and infinite × 0 is NaN; nor where springs run in all directions.
         if !flat.has_threads || bias == 0.0 {
@@ -98,7 +102,7 @@ impl Lengths<'_> {
 
     /// Along edges, anywhere else.
     fn along(&self, path: f32) -> f32 {
-        path * (1.0 + self.material.stretch_compliance * self.tension)
+        path * (1.0 + SLACK + self.material.stretch_compliance * self.tension)
     }
 
     /// Which pin each particle is tethered to in a layer, and how long the tether is.

@@ -17,8 +17,8 @@ impl Earlier {
 pub(crate) struct Past {
     /// Block by block; none where all is of first order.
     pub blocks: Vec<Earlier>,
-    /// How many of the two are known.
-    known: u32,
+    /// Whether they are known.
+    is_known: bool,
     /// For how many sub-steps to come the past says nothing of the future.
     wait: u32,
 }
@@ -37,13 +37,8 @@ pub(crate) enum StepKind {
 impl Past {
     /// Forgets all, and lets this many sub-steps of first order pass first.
     pub fn forget(&mut self, wait: u32) {
-        self.known = 0;
+        self.is_known = false;
         self.wait = self.wait.max(wait);
-    }
-
-    /// Lets this many sub-steps of first order pass.
-    pub fn wait(&mut self, substeps: u32) {
-        self.wait = self.wait.max(substeps);
     }
 
     /// Of which order the coming sub-step is, if the second is wanted.
@@ -51,31 +46,24 @@ impl Past {
         if self.blocks.len() != blocks {
             self.blocks.clear();
             self.blocks.resize(blocks, Earlier::NONE);
-            self.known = 0;
+            self.is_known = false;
         }
         if self.wait > 0 {
             self.wait -= 1;
-            self.known = (self.known + 1).min(2);
             return StepKind::First;
         }
-        match self.known {
-            0 => {
-                self.known = 2;
-                StepKind::Start
-            }
-            1 => {
-                self.known = 2;
-                StepKind::First
-            }
-            _ => StepKind::Second,
+        if self.is_known {
+            return StepKind::Second;
         }
+        self.is_known = true;
+        StepKind::Start
     }
 
     /// Has all displacements, those of `now` with them, span a sub-step that is `ratio` times as long: the motion of third
     /// degree through the four places that are known stays the same. Returns whether it did: not if they are not known, or
     /// are too far from the new ones.
     pub fn rescale(&mut self, now: &mut [Block], ratio: f32) -> bool {
-        if self.known < 2 || self.blocks.len() != now.len() || !(0.25..=2.0).contains(&ratio) {
+        if !self.is_known || self.blocks.len() != now.len() || !(0.25..=2.0).contains(&ratio) {
             return false;
         }
         let rows = resampling(f64::from(ratio)).map(|row| row.map(|number| number as f32));
@@ -120,7 +108,7 @@ impl Past {
     /// Becomes what `other` is, in the memory that it has.
     pub fn copy_from(&mut self, other: &Self) {
         self.blocks.clone_from(&other.blocks);
-        (self.known, self.wait) = (other.known, other.wait);
+        (self.is_known, self.wait) = (other.is_known, other.wait);
     }
 }
 
@@ -171,9 +159,12 @@ mod tests {
             [StepKind::Start, StepKind::Second, StepKind::Second]
         );
         past.forget(3);
-        let kinds: Vec<StepKind> = (0..5).map(|_| past.next(1)).collect();
+        let kinds: Vec<StepKind> = (0..6).map(|_| past.next(1)).collect();
         assert_eq!(kinds[..3], [StepKind::First; 3]);
-        assert_eq!(kinds[3..], [StepKind::Second; 2]);
+        assert_eq!(
+            kinds[3..],
+            [StepKind::Start, StepKind::Second, StepKind::Second]
+        );
         past.forget(0);
         assert_eq!(past.next(1), StepKind::Start);
     }

@@ -8,6 +8,10 @@ const HOLD: f32 = 1.0e-18;
 /// ε: what is added to a thread that is rigid, as a part of its diagonal. Straight between two pins it would have no solution.
 const REGULARISATION: f32 = 1.0e-3;
 
+/// And for each part by which a squared length is off: a thread between pins too far apart pulls with C/ε, and what is off its
+/// line by y would be thrown beyond it, by C/ε × y.
+const STRAINED: f32 = 0.2;
+
 /// Eight springs that begin in the lanes of one block, between the forward and the backward pass.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
@@ -148,7 +152,8 @@ pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equ
         let p = x * x + y * y + z * z;
         let weight = a[W + l] + b[W + l];
         let soft = softness[l] * p;
-        let least = REGULARISATION * weight;
+        let off = if p > 1.0 { p - 1.0 } else { 1.0 - p };
+        let least = (REGULARISATION + STRAINED * off) * weight;
         let soft = if soft > least { soft } else { least };
         [row.way[0][l], row.way[1][l], row.way[2][l]] = [x, y, z];
         row.diagonal[l] = weight * p + (soft + hold[l]);

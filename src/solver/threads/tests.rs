@@ -112,7 +112,7 @@ fn solve_thread(
         let p = ways[i].length_squared();
         let sum = weight(*a) + weight(*b);
         let soft = compliance(*a) / f64::from(WEIGHT_DT2) * p;
-        matrix[i][i] = sum * p + soft.max(1.0e-3 * sum) + 1.0e-18;
+        matrix[i][i] = sum * p + soft.max((1.0e-3 + 0.2 * (p - 1.0).abs()) * sum) + 1.0e-18;
         if i + 1 < n {
             let off = -weight(*b) * ways[i].dot(ways[i + 1]);
             (matrix[i][i + 1], matrix[i + 1][i]) = (off, off);
