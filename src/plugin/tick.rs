@@ -160,7 +160,7 @@ impl IntegratingItem<'_, '_> {
             collider_travel: travels.fold(0.0, f32::max),
             stretch: self.state.stretch.structural,
             substepping: self.scratch.substepping,
-            is_capped: self.state.control.is_capped(),
+            is_beyond: self.state.control.is_beyond(),
             substep: step.seconds / count,
             damping: step.damping,
             material_stretch: self.built.material_stretch,

@@ -128,8 +128,8 @@ pub(crate) struct LimitInputs {
     pub stretch: f32,
     /// By what it is held.
     pub substepping: Substepping,
-    /// Whether the cap on sub-steps stopped it short of its tolerance.
-    pub is_capped: bool,
+    /// Whether it is stretched beyond its tolerance.
+    pub is_beyond: bool,
     /// Length of a sub-step (s).
     pub substep: f32,
     /// The stretch that the material itself may give.
@@ -161,7 +161,7 @@ impl LimitInputs {
             ClothLimit::Stretch if matches!(self.substepping, Substepping::Fixed(_)) => {
                 [self.stretch, MAX_STRETCH + self.material_stretch]
             }
-            ClothLimit::Tolerance if self.is_capped => match self.substepping {
+            ClothLimit::Tolerance if self.is_beyond => match self.substepping {
                 Substepping::Adaptive { stretch, .. } => [self.stretch, stretch],
                 Substepping::Fixed(_) => return None,
             },
@@ -192,7 +192,7 @@ mod tests {
     const WITHIN: LimitInputs = LimitInputs {
         stretch: MAX_STRETCH,
         substepping: Substepping::Fixed(20),
-        is_capped: false,
+        is_beyond: false,
         substep: USUAL_SUBSTEP,
         material_stretch: 0.0,
         damping: 0.97,
@@ -288,7 +288,7 @@ mod tests {
         };
         assert_eq!(beyond(tolerant), [], "it takes more sub-steps");
         let capped = LimitInputs {
-            is_capped: true,
+            is_beyond: true,
             ..tolerant
         };
         assert_eq!(beyond(capped), [ClothLimit::Tolerance]);

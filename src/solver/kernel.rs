@@ -17,8 +17,8 @@ use super::{
     run::Run,
     threads::{
         Family, Link, Pull, Rows, clear, column_backward, column_forward, column_heads,
-        left_backward, left_forward, left_heads, pull_row, right_backward, right_forward,
-        row_equations, solve_turned, turn_back, turn_terms,
+        left_backward, left_forward, left_heads, measure_given, pull_row, right_backward,
+        right_forward, row_equations, solve_turned, turn_back, turn_terms,
     },
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, W, X, Y, Z};
@@ -331,6 +331,7 @@ kernels! {
     turn_terms(terms: &[[Lanes; 3]], unknowns: &mut [[Rows; 3]], strip: usize),
     solve_turned(unknowns: &mut [[Rows; 3]], springs: usize),
     turn_back(unknowns: &[[Rows; 3]], terms: &mut [[Lanes; 3]], strip: usize),
+    measure_given(pulls: &[Pull], family: &Family, largest: &mut Lanes),
     pull_row(row: &mut [Block], ways: &mut [[Lanes; 3]], multipliers: &[[Lanes; 3]]),
     commit(row: &mut [Block], farthest: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),

@@ -11,6 +11,9 @@ pub struct Stretch {
     pub structural: f32,
     /// Over structural and shear springs: no path along them is longer than its rest length times 1 + this.
     pub bound: f32,
+    /// What the material gives at the largest tension of its structural springs, where they were solved for it; else 0. A
+    /// stretch beyond it is what the sub-steps left unsolved.
+    pub material: f32,
 }
 
 impl Stretch {
@@ -35,6 +38,7 @@ impl Stretch {
         Self {
             structural: structural.max(1.0) - 1.0,
             bound: bound.max(1.0) - 1.0,
+            material: 0.0,
         }
     }
 }

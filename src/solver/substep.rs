@@ -17,6 +17,11 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, StepKind, Surface};
 
+/// Sub-steps shorter than this part of those before hold springs better at once, and in how many sweeps they are brought to
+/// where they will be held.
+const MUCH_SHORTER: f32 = 0.95;
+const SETTLING: u32 = 4;
+
 /// Sub-steps of first order after one that ended with a push.
 const AFTER_CONTACT: u32 = 3;
 
@@ -154,10 +159,13 @@ impl Solver {
             return self.measure(particles);
         }
         let dt = step.seconds / step.substeps.max(1) as f32;
-        particles.set_substep(dt);
+        let ratio = particles.set_substep(dt);
         particles.zero_pin_displacements();
         if step.order == TimeOrder::First {
             particles.past_mut().forget(0);
+        }
+        if ratio < MUCH_SHORTER && step.order == TimeOrder::Second {
+            self.settle(particles, dt);
         }
         let bands = self.sweep.bands(self.bands);
         // What else turns the cloth, or carries it in another way, is not known here.
@@ -185,6 +193,27 @@ impl Solver {
             particles.past_mut().forget(WARY_TICKS * step.substeps);
         }
         stretch
+    }
+
+    /// Moves particles to where the springs want them, at the velocities that they have: what longer sub-steps left of stretch
+    /// would otherwise snap back.
+    fn settle(&mut self, particles: &mut ClothParticles, dt: f32) {
+        let kernels = self.simd_level.kernels();
+        particles.stop();
+        self.sweep.set_weight(dt * dt);
+        self.tethers.locate(particles.blocks(), &mut self.anchors);
+        let motion = Motion {
+            kernels: &kernels,
+            tethers: &self.tethers,
+            anchors: &self.anchors,
+            measures: false,
+        };
+        for _ in 0..SETTLING {
+            self.sweep
+                .substep(particles.blocks_mut(), &motion, self.bands);
+            particles.zero_displacements();
+        }
+        particles.go_on();
     }
 
     /// A step of the order that is safe with what solves the springs.

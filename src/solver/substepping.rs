@@ -7,15 +7,16 @@ use super::Stretch;
 /// More would be a mistake in typing, and would hang the game.
 pub(super) const MAX_SUBSTEPS: u32 = 10_000;
 
-/// Parts of the tolerance: below the first the sub-steps become fewer, above the last more, and the one between is
-/// aimed at then. What is left is for what can't be foreseen, and in the band between nothing changes.
-const SLACK: f32 = 0.65;
-const AIM: f32 = 0.75;
+/// Parts of the tolerance: below the first the sub-steps may become fewer, above the last more, and the one between is aimed
+/// at then. What is left is for what can't be foreseen, and in the wide band between nothing changes.
+const SLACK: f32 = 0.3;
+const AIM: f32 = 0.5;
 const TIGHT: f32 = 0.8;
 
-/// The part of its sub-steps that a cloth keeps at least from tick to tick (half of them after 23 ticks), so
-/// that stiffness never changes at one blow.
-const SLOWEST: f32 = 0.97;
+/// Ticks in a row that have to be below before sub-steps become fewer, and the part that is left of them then: a change of
+/// step is a small blow, and a cloth at rest has none.
+const CALM_TICKS: u32 = 20;
+const FEWER: f32 = 0.8;
 
 /// Fewer than this, and the first tick in which something happens would be repeated again and again.
 const FEWEST: f32 = 4.0;
@@ -31,7 +32,8 @@ pub enum Substepping {
     Adaptive {
         /// Largest length over rest length, − 1, that is allowed: 0.01 is one per cent. Positive.
         stretch: f32,
-        /// A tick has at most this many, from 1 to 10,000; where they don't suffice, that is logged:
+        /// A tick has at most this many, those done in vain with them, from 1 to 10,000; where they don't suffice, or the
+        /// material itself gives more, that is logged:
         /// [`ClothLimit::Tolerance`](super::ClothLimit::Tolerance).
         max_substeps: u32,
     },
@@ -46,12 +48,16 @@ impl Default for Substepping {
 /// Chooses the sub-steps of each tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub struct Control {
-    /// For the coming tick; a fraction, so that it can go down slowly. 0 before the first.
+    /// For the coming tick. 0 before the first.
     substeps: f32,
+    /// Done in this tick so far, in vain.
+    spent: f32,
     /// The stretch a tick ago.
     before: f32,
-    /// Whether the cap stopped it in the last tick.
-    is_capped: bool,
+    /// Ticks in a row for which fewer would have done.
+    calm: u32,
+    /// Whether the last tick ended beyond the tolerance.
+    is_beyond: bool,
 }
 
 impl Control {
@@ -59,14 +65,17 @@ impl Control {
     pub fn substeps(&mut self, substepping: Substepping) -> u32 {
         match substepping {
             Substepping::Fixed(substeps) => {
-                self.is_capped = false;
-                self.substeps = substeps as f32;
+                *self = Self {
+                    substeps: substeps as f32,
+                    ..Self::default()
+                };
                 substeps
             }
             Substepping::Adaptive { max_substeps, .. } => {
                 let fewest = FEWEST.min(max_substeps as f32);
-                self.substeps = self.substeps.clamp(fewest, max_substeps as f32);
-                self.substeps.ceil() as u32
+                self.substeps = self.substeps.clamp(fewest, max_substeps as f32).ceil();
+                self.spent = 0.0;
+                self.substeps as u32
             }
         }
     }
@@ -83,28 +92,44 @@ impl Control {
         };
         let max = max_substeps as f32;
         let found = stretch.structural;
-        // Stretch shrinks with the square of the sub-steps.
-        let wanted = |stretch: f32| self.substeps * (stretch / (AIM * tolerance)).sqrt();
-        let fails = found > tolerance;
-        self.is_capped = fails && self.substeps >= max;
-        if fails && !self.is_capped {
-            self.substeps = wanted(found).max(self.substeps * 1.25).min(max);
-            return Some(self.substeps.ceil() as u32);
+        // Solved threads stretch less with more than the square of the sub-steps: the cube is a cautious guess.
+        let substeps = self.substeps;
+        let wanted = |stretch: f32| substeps * (stretch / (AIM * tolerance)).cbrt();
+        // What the material gives at its tension no sub-steps take away.
+        let unsolved = found - stretch.material.min(found);
+        self.is_beyond = found > tolerance;
+        if self.is_beyond && unsolved > AIM * tolerance {
+            let more = wanted(unsolved).clamp(self.substeps * 1.25, self.substeps * 2.0);
+            let left = max - self.spent - self.substeps;
+            if more.ceil() <= left {
+                self.spent += self.substeps;
+                self.substeps = more.ceil();
+                self.calm = 0;
+                return Some(self.substeps as u32);
+            }
+            self.substeps = more.min(max);
         }
         // What it grew by in this tick it may grow by in the next.
-        let foreseen = found + (found - self.before).max(0.0);
+        let foreseen = unsolved + (unsolved - self.before).max(0.0);
         if foreseen > TIGHT * tolerance {
-            self.substeps = wanted(foreseen).min(self.substeps * 2.0);
+            self.substeps = wanted(foreseen).clamp(self.substeps, self.substeps * 2.0);
+            self.calm = 0;
         } else if foreseen < SLACK * tolerance {
-            self.substeps *= SLOWEST;
+            self.calm += 1;
+            if self.calm == CALM_TICKS {
+                self.substeps = (self.substeps * FEWER).floor();
+                self.calm = 0;
+            }
+        } else {
+            self.calm = 0;
         }
-        self.before = found;
+        self.before = unsolved;
         None
     }
 
-    /// Whether the last tick ended beyond the tolerance for want of sub-steps.
-    pub fn is_capped(&self) -> bool {
-        self.is_capped
+    /// Whether the last tick ended beyond the tolerance: for want of sub-steps, or since the material gives more.
+    pub fn is_beyond(&self) -> bool {
+        self.is_beyond
     }
 }
 
@@ -129,6 +154,7 @@ mod tests {
                 let stretch = Stretch {
                     structural,
                     bound: structural,
+                    material: 0.0,
                 };
                 match control.observe(PERCENT, stretch) {
                     Some(more) => {
@@ -139,7 +165,7 @@ mod tests {
                     None => break,
                 }
             }
-            assert!(load(tick) / ((substeps * substeps) as f32) <= 0.01 || control.is_capped());
+            assert!(load(tick) / ((substeps * substeps) as f32) <= 0.01 || control.is_beyond());
             taken.push(substeps);
         }
         (taken, vain)
@@ -181,10 +207,10 @@ mod tests {
     fn stops_at_the_cap_and_says_so() {
         let mut control = Control::default();
         let (taken, _) = run(&mut control, |_| 400.0, 10);
-        assert!(control.is_capped());
+        assert!(control.is_beyond());
         assert_eq!(taken[9], 100);
         let (_, _) = run(&mut control, |_| 1.0, 10);
-        assert!(!control.is_capped());
+        assert!(!control.is_beyond());
     }
 
     #[test]
@@ -194,6 +220,7 @@ mod tests {
         let stretched = Stretch {
             structural: 9.0,
             bound: 9.0,
+            material: 0.0,
         };
         assert_eq!(control.observe(Substepping::Fixed(7), stretched), None);
         assert_eq!(control.substeps(Substepping::Fixed(7)), 7);

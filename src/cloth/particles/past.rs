@@ -59,31 +59,54 @@ impl Past {
         StepKind::Start
     }
 
-    /// Has all displacements, those of `now` with them, span a sub-step that is `ratio` times as long: the motion of third
-    /// degree through the four places that are known stays the same. Returns whether it did: not if they are not known, or
-    /// are too far from the new ones.
-    pub fn rescale(&mut self, now: &mut [Block], ratio: f32) -> bool {
-        if !self.is_known || self.blocks.len() != now.len() || !(0.25..=2.0).contains(&ratio) {
-            return false;
+    /// Forgets all but the velocity: displacements become what it makes of a sub-step `ratio` times as long, to second order
+    /// where the past is known.
+    pub fn restart(&mut self, now: &mut [Block], ratio: f32) {
+        if !self.is_known || self.blocks.len() != now.len() {
+            for moved in now.iter_mut().flat_map(Block::displacements_mut) {
+                *moved *= ratio;
+            }
+            return;
         }
-        let rows = resampling(f64::from(ratio)).map(|row| row.map(|number| number as f32));
-        for (block, Earlier(earlier)) in now.iter_mut().zip(&mut self.blocks) {
+        self.is_known = false;
+        for (block, Earlier(earlier)) in now.iter_mut().zip(&self.blocks) {
             let moved = block.displacements_mut();
             for axis in 0..3 {
                 for lane in 0..LANES {
-                    let was = [
-                        moved[axis * LANES + lane],
-                        earlier[axis][lane],
-                        earlier[axis + 3][lane],
-                    ];
-                    let of = |row: &[f32; 3]| row[0] * was[0] + row[1] * was[1] + row[2] * was[2];
-                    moved[axis * LANES + lane] = of(&rows[0]);
-                    earlier[axis][lane] = of(&rows[1]);
-                    earlier[axis + 3][lane] = of(&rows[2]);
+                    let (before, first) = (earlier[axis][lane], earlier[axis + 3][lane]);
+                    let now = &mut moved[axis * LANES + lane];
+                    let [change, earlier] = [*now - before, before - first];
+                    // What changes to and fro is no acceleration.
+                    let steady = if change * earlier > 0.0 {
+                        change.signum() * change.abs().min(earlier.abs())
+                    } else {
+                        0.0
+                    };
+                    *now = ratio * (*now + 0.5 * steady);
                 }
             }
         }
-        true
+    }
+
+    /// Keeps displacements and makes them zero; what was known is forgotten.
+    pub fn put_aside(&mut self, now: &mut [Block]) {
+        self.is_known = false;
+        self.blocks.resize(now.len(), Earlier::NONE);
+        for (block, Earlier(kept)) in now.iter_mut().zip(&mut self.blocks) {
+            for (moved, kept) in block.displacements_mut().chunks_exact_mut(LANES).zip(kept) {
+                kept.copy_from_slice(moved);
+                moved.fill(0.0);
+            }
+        }
+    }
+
+    /// Has displacements be what was kept of them.
+    pub fn take_back(&mut self, now: &mut [Block]) {
+        for (block, Earlier(kept)) in now.iter_mut().zip(&self.blocks) {
+            for (moved, kept) in block.displacements_mut().chunks_exact_mut(LANES).zip(kept) {
+                moved.copy_from_slice(kept);
+            }
+        }
     }
 
     /// Applies `f` to the earlier displacements of a particle.
@@ -112,42 +135,26 @@ impl Past {
     }
 }
 
-/// How the last three displacements over a step follow from those over another, `ratio` times as long: both are differences
-/// of the cubic through four places (Newton's backward differences).
-fn resampling(ratio: f64) -> [[f64; 3]; 3] {
-    // The place at s steps from now, as a sum of displacements.
-    let place = |s: f64| {
-        let [first, second, third] = [s, s * (s + 1.0) / 2.0, s * (s + 1.0) * (s + 2.0) / 6.0];
-        [first + second + third, -second - 2.0 * third, third]
-    };
-    [0.0, 1.0, 2.0].map(|back| {
-        let (now, before) = (place(-back * ratio), place(-(back + 1.0) * ratio));
-        [0, 1, 2].map(|at| now[at] - before[at])
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// x = t³ + t² − t: its displacements over steps of 1 become those over steps of any other length.
+    /// Of a constant acceleration, the velocity is that at the end of the last displacement.
     #[test]
-    fn a_cubic_motion_is_the_same_in_other_steps() {
-        let place = |t: f64| t * t * t + t * t - t;
-        let displacements = |step: f64| {
-            [0.0, 1.0, 2.0].map(|back| place(-back * step) - place(-(back + 1.0) * step))
-        };
-        let was = displacements(1.0);
-        for ratio in [0.25, 0.5, 0.9, 1.0, 1.3, 2.0] {
-            let is = displacements(ratio);
-            for (row, expected) in resampling(ratio).iter().zip(is) {
-                let found: f64 = row.iter().zip(was).map(|(a, b)| a * b).sum();
-                assert!(
-                    (found - expected).abs() < 1.0e-12,
-                    "{ratio}: {found} {expected}"
-                );
-            }
-        }
+    fn what_is_left_of_a_past_is_its_velocity() {
+        let mut past = Past::default();
+        assert_eq!(past.next(1), StepKind::Start);
+        past.blocks[0].0[0][3] = 1.0;
+        past.blocks[0].0[4][3] = 1.0;
+        let mut blocks = [Block::EMPTY];
+        blocks[0].set_displacement(3, bevy::math::Vec3::new(2.0, 1.0, 0.0));
+        past.restart(&mut blocks, 0.5);
+        // Along x it is 1 faster in each sub-step, 2.5 at the end of the last; along y it goes to and fro.
+        assert_eq!(
+            blocks[0].displacement(3),
+            bevy::math::Vec3::new(1.25, 0.5, 0.0)
+        );
+        assert_eq!(past.next(1), StepKind::Start);
     }
 
     #[test]

@@ -325,21 +325,31 @@ impl ClothParticles {
         self.blocks[block].set_position(lane, position);
     }
 
-    /// Has displacements span `substep` seconds from now on, at the same velocities.
-    pub(crate) fn set_substep(&mut self, substep: f32) {
+    /// Has displacements span `substep` seconds from now on, at the same velocities. Returns how many times as long that is.
+    pub(crate) fn set_substep(&mut self, substep: f32) -> f32 {
+        let ratio = substep / self.substep;
         if substep != self.substep {
-            let ratio = substep / self.substep;
             self.substep = substep;
-            if self.past.rescale(&mut self.blocks, ratio) {
-                return;
-            }
-            self.past.forget(0);
-            for block in &mut self.blocks {
-                for displacement in &mut block.view_mut()[DX..] {
-                    *displacement *= ratio;
-                }
-            }
+            self.past.restart(&mut self.blocks, ratio);
         }
+        ratio
+    }
+
+    /// Sets displacements aside, in place of a past that is forgotten, so that all stand still.
+    pub(crate) fn stop(&mut self) {
+        self.past.put_aside(&mut self.blocks);
+    }
+
+    /// Makes all displacements zero.
+    pub(crate) fn zero_displacements(&mut self) {
+        for block in &mut self.blocks {
+            block.displacements_mut().fill(0.0);
+        }
+    }
+
+    /// Takes back the displacements that were set aside.
+    pub(crate) fn go_on(&mut self) {
+        self.past.take_back(&mut self.blocks);
     }
 }
 

@@ -12,13 +12,13 @@ use super::{
     run::Run,
     sweep::{Motion, Sweep, Swept},
 };
-use crate::cloth::{Block, ClothGrid, Compliances, Layout};
+use crate::cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout};
 
 pub(super) use down::{
     Pull, clear, column_backward, column_forward, column_heads, left_backward, left_forward,
     left_heads, right_backward, right_forward,
 };
-pub(super) use link::{Family, Link};
+pub(super) use link::{Family, Link, measure_given};
 pub(super) use rows::{Rows, pull_row, row_equations, solve_turned, turn_back, turn_terms};
 
 use rows::{GROUP, RowSystems};
@@ -74,8 +74,15 @@ impl ThreadSweep {
         }
     }
 
-    /// Solves all threads that lead from row to row in one direction.
-    fn solve_down(&mut self, blocks: &mut [Block], direction: Direction, kernels: &Kernels) {
+    /// Solves all threads that lead from row to row in one direction. Raises `given` to the squares of what their springs give
+    /// at their tension (m²).
+    fn solve_down(
+        &mut self,
+        blocks: &mut [Block],
+        direction: Direction,
+        kernels: &Kernels,
+        mut given: Option<&mut Lanes>,
+    ) {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
         let family = match direction {
@@ -108,6 +115,9 @@ impl ThreadSweep {
         for row in (0..rows - 1).rev() {
             let lower = &mut blocks[(row + 1) * strip..(row + 2) * strip];
             backward(lower, &links[row * strip..(row + 1) * strip], next, pulls);
+            if let Some(given) = &mut given {
+                (kernels.measure_given)(pulls, family, given);
+            }
             std::mem::swap(next, pulls);
         }
         let heads = if direction == Direction::Left {
@@ -118,7 +128,12 @@ impl ThreadSweep {
         heads(&mut blocks[..strip], next);
     }
 
-    fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+    fn solve_across(
+        &mut self,
+        blocks: &mut [Block],
+        kernels: &Kernels,
+        mut given: Option<&mut Lanes>,
+    ) {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
         let springs = self.layout.columns as usize - 1;
@@ -126,11 +141,20 @@ impl ThreadSweep {
             let is_border = [group == 0, (group + 1) * GROUP >= rows];
             self.systems
                 .solve(blocks, &self.across, is_border, springs, kernels);
+            if let Some(given) = &mut given {
+                self.systems.measure_given(
+                    &self.across,
+                    is_border,
+                    blocks.len() / strip,
+                    kernels,
+                    given,
+                );
+            }
         }
     }
 
     fn stretch(&self, longest: &Longest) -> Stretch {
-        let ratio = |lanes: &crate::cloth::Lanes, run: &Run| {
+        let ratio = |lanes: &Lanes, run: &Run| {
             (lanes.iter().copied().fold(0.0, f32::max) / run.rest_square).sqrt()
         };
         let structural =
@@ -165,14 +189,22 @@ impl Sweep for ThreadSweep {
 
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> Swept {
         let kernels = motion.kernels;
-        self.solve_down(blocks, Direction::Right, kernels);
-        self.solve_down(blocks, Direction::Left, kernels);
-        self.solve_across(blocks, kernels);
-        self.solve_down(blocks, Direction::Down, kernels);
+        self.solve_down(blocks, Direction::Right, kernels, None);
+        self.solve_down(blocks, Direction::Left, kernels, None);
+        let mut given = [0.0; LANES];
+        self.solve_across(blocks, kernels, motion.measures.then_some(&mut given));
+        let across = largest(&given) / self.across[0].rest;
+        given = [0.0; LANES];
+        let measured = motion.measures.then_some(&mut given);
+        self.solve_down(blocks, Direction::Down, kernels, measured);
+        let down = largest(&given) / self.down.rest;
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
-        let mut moved = [0.0; _];
+        let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
-        let stretch = motion.measures.then(|| self.measure(blocks, kernels));
+        let stretch = motion.measures.then(|| Stretch {
+            material: across.max(down),
+            ..self.measure(blocks, kernels)
+        });
         Swept { moved, stretch }
     }
 
@@ -196,4 +228,9 @@ impl Sweep for ThreadSweep {
     fn boxed(&self) -> Box<dyn Sweep> {
         Box::new(self.clone())
     }
+}
+
+/// The root of the largest of squares.
+fn largest(squares: &Lanes) -> f32 {
+    squares.iter().copied().fold(0.0, f32::max).sqrt()
 }

@@ -71,6 +71,22 @@ impl RowSystems {
             (kernels.pull_row)(blocks, &mut self.ways[range.clone()], &self.terms[range]);
         }
     }
+
+    /// Raises `largest` to the squares of what the springs of the rows solved last, this many, give at their tension (m²).
+    pub fn measure_given(
+        &self,
+        families: &[Family; 2],
+        is_border: [bool; 2],
+        count: usize,
+        kernels: &Kernels,
+        largest: &mut Lanes,
+    ) {
+        let strip = families[0].hold.len();
+        for (row, pulls) in self.ways.chunks_exact(strip).take(count).enumerate() {
+            let is_border = (row == 0 && is_border[0]) || (row + 1 == count && is_border[1]);
+            (kernels.measure_given)(pulls, &families[usize::from(!is_border)], largest);
+        }
+    }
 }
 
 /// Transposes four by four numbers.
