@@ -96,7 +96,7 @@ pub(crate) struct Layout {
     pub columns: u32,
     pub rows: u32,
     /// Columns in a strip, and so blocks in a row: even, so that horizontal springs have two colours, and at
-    /// least four, so that no bend spring leads back into its own block.
+    /// least four, so that no second neighbour is in its own block.
     pub strip: u32,
 }
 

@@ -130,7 +130,6 @@ impl Sweep for ListSweep {
 
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> Swept {
         let kernels = motion.kernels;
-        (kernels.integrate)(blocks, motion.kept, motion.acceleration_dt2);
         self.load(blocks);
         (kernels.relax_packets)(&mut self.rows, &self.packets, self.inverse_dt2);
         self.store(blocks);

@@ -1,10 +1,10 @@
-//! A tick of sub-steps: Verlet, one sweep over the springs, response.
+//! A tick of sub-steps: Verlet, bending, one sweep over the springs, response.
 
 #[cfg(test)]
 mod tests;
 
 use super::{
-    PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep,
+    Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep,
     bands::with_threads_awake,
     list::ListSweep,
     pipeline::GridSweep,
@@ -21,6 +21,7 @@ pub struct Solver {
     /// Of the particles.
     layout: Layout,
     sweep: Box<dyn Sweep>,
+    bending: Option<Bending>,
     tethers: Tethers,
     anchors: Anchors,
     bands: usize,
@@ -35,7 +36,7 @@ impl Default for Solver {
 }
 
 impl Solver {
-    /// Solves `springs` between `particles`. Without tethers, on one thread.
+    /// Solves `springs` between `particles`. Without bending or tethers, on one thread.
     ///
     /// # Panics
     /// If the springs are those of another grid, or between more particles than there are.
@@ -72,11 +73,17 @@ impl Solver {
         Self {
             layout,
             sweep,
+            bending: None,
             tethers: Tethers::default(),
             anchors: Anchors::default(),
             bands: 1,
             simd_level: SimdLevel::default(),
         }
+    }
+
+    /// With this resistance to bending from now on, which must be that of the solver's particles; `None` for none.
+    pub fn set_bending(&mut self, bending: Option<Bending>) {
+        self.bending = bending;
     }
 
     /// With tethers from now on, which must be those of the solver's particles.
@@ -164,6 +171,7 @@ impl Solver {
         let count = step.substeps.max(1);
         let dt = step.seconds / count as f32;
         let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
+        let acceleration_dt2 = (step.acceleration * (dt * dt)).to_array();
         let kernels = self.simd_level.kernels();
         let mut measured = None;
         for index in 0..count {
@@ -179,13 +187,16 @@ impl Solver {
             self.tethers.locate(particles.blocks(), &mut self.anchors);
             let motion = Motion {
                 kernels: &kernels,
-                kept,
-                acceleration_dt2: (step.acceleration * (dt * dt)).to_array(),
                 tethers: &self.tethers,
                 anchors: &self.anchors,
                 measures: index + 1 == count,
             };
             let blocks = particles.blocks_mut();
+            (kernels.integrate)(blocks, kept, acceleration_dt2);
+            if let Some(bending) = &mut self.bending {
+                bending.prepare(blocks, dt * dt);
+                bending.solve(blocks, &kernels);
+            }
             let swept = self.sweep.substep(blocks, &motion, self.bands);
             measured = swept.stretch;
             substep.farthest_move = swept.moved.into_iter().fold(0.0, f32::max).sqrt();

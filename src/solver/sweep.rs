@@ -13,8 +13,6 @@ use crate::cloth::{Block, Lanes};
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
     pub kernels: &'a Kernels,
-    pub kept: f32,
-    pub acceleration_dt2: [f32; 3],
     pub tethers: &'a Tethers,
     pub anchors: &'a Anchors,
     /// Whether lengths are measured, too.
@@ -30,7 +28,7 @@ pub(super) struct Swept {
     pub stretch: Option<Stretch>,
 }
 
-/// Verlet, one sweep over springs that are known, tethers: made once for them, and for as long as they stay.
+/// One sweep over springs that are known, tethers: made once for them, and for as long as they stay.
 pub(super) trait Sweep: fmt::Debug + Send + Sync {
     /// Takes over the length of a sub-step (s).
     fn set_substep(&mut self, substep: f32);
@@ -38,7 +36,8 @@ pub(super) trait Sweep: fmt::Debug + Send + Sync {
     /// How many tasks it is split into at most where some are wanted.
     fn bands(&self, wanted: usize) -> usize;
 
-    /// Moves the particles in `blocks` by one sub-step, in this many bands.
+    /// Ends a sub-step of the particles in `blocks`, which have the displacements that they would have without springs, in this
+    /// many bands.
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept;
 
     /// Measures the stretch.

@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::{PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, kernel::MIN_MOVE};
+use super::{Bending, PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, kernel::MIN_MOVE};
 use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs, Surface};
 
 const STEP: TickStep = TickStep {
@@ -102,7 +102,6 @@ fn a_sub_step_is_that_of_a_plain_solver_in_f64() {
         for shear_compliance in [0.0, 1.0e-3, f32::INFINITY] {
             let material = ClothMaterial {
                 shear_compliance,
-                bend_compliance: 1.0e-2,
                 ..ClothMaterial::COTTON
             };
             let (grid, mut particles) = crumpled(columns, rows, &material);
@@ -318,7 +317,7 @@ fn what_cannot_be_satisfied_stays_finite() {
     let material = ClothMaterial {
         stretch_compliance: 0.0,
         shear_compliance: 0.0,
-        bend_compliance: 0.0,
+        bend_rigidity: 1.0,
         ..ClothMaterial::COTTON
     };
     let grid = Cloth::new(12, 12, 0.1)
@@ -336,6 +335,7 @@ fn what_cannot_be_satisfied_stays_finite() {
         }
         let springs = Springs::of_grid(&grid, &material);
         let mut solver = Solver::new(&springs, &particles);
+        solver.set_bending(Bending::new(&Surface::of_grid(&grid), &material));
         solver.set_tethers(Tethers::new(
             &Surface::of_grid(&grid),
             &material,

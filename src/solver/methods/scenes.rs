@@ -41,7 +41,7 @@ impl Scene {
             areal_density: 0.15,
             stretch_compliance: 0.0,
             shear_compliance: 0.0,
-            bend_compliance: f32::INFINITY,
+            bend_rigidity: 0.0,
             damping: 1.0 - 0.99_f32.powf(1.0 / 60.0),
             friction: 0.0,
         };
@@ -68,7 +68,7 @@ impl Scene {
             areal_density: 0.15,
             stretch_compliance: compliance,
             shear_compliance: compliance,
-            bend_compliance: f32::INFINITY,
+            bend_rigidity: 0.0,
             damping: 0.0,
             friction: 0.0,
         };
