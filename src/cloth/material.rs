@@ -47,8 +47,8 @@ impl Default for ClothMaterial {
 }
 
 impl ClothMaterial {
-    /// A plain cotton weave, as in a bed sheet. Rigidity: 0.06 gf·cm²/cm, what the KES-F finds of light cotton shirting (Kawabata
-    /// 1980: 0.03 to 0.1).
+    /// A plain cotton weave, as in a bed sheet. Rigidity: 0.06 gf·cm²/cm, of the size that the KES-F finds of light shirting; it drapes
+    /// by 30 to 40 %.
     pub const COTTON: Self = Self {
         areal_density: 0.15,
         stretch_compliance: 1.0e-4,
@@ -57,7 +57,8 @@ impl ClothMaterial {
         damping: 0.01,
         friction: 0.4,
     };
-    /// Thin, slippery, and free to shear and fold. Rigidity: 0.02 gf·cm²/cm, as the KES-F finds of habutai and other light silks.
+    /// Thin, slippery, and free to shear and fold. Rigidity: 0.02 gf·cm²/cm, of the size that the KES-F finds of light
+    /// plain silks.
     pub const SILK: Self = Self {
         areal_density: 0.06,
         stretch_compliance: 2.0e-4,
@@ -67,7 +68,7 @@ impl ClothMaterial {
         friction: 0.2,
     };
     /// Cotton twill, as in jeans. Density and rigidity: an 11 oz denim, bent by its own weight (Wang, O'Brien and Ramamoorthi 2011,
-    /// Data-driven elastic models for cloth: 0.324 kg/m², 6·10⁻⁵ N·m along warp and weft). Softer denims have a third of that (0.14
+    /// Data-driven elastic models for cloth: 0.324 kg/m², 6·10⁻⁵ N·m where it is bent least). Softer denims have a third of that (0.14
     /// to 0.23 gf·cm²/cm on the KES-F, Journal of Textiles 2016, 4614168).
     pub const DENIM: Self = Self {
         areal_density: 0.324,
@@ -77,8 +78,8 @@ impl ClothMaterial {
         damping: 0.02,
         friction: 0.5,
     };
-    /// Heavy and stiff, as in a sail or a tent. Rigidity: a bending length of 4.5 cm, that of an unwashed cotton duck, which is D = g ρ
-    /// c³ (Peirce 1930).
+    /// Heavy and stiff, as in a sail or a tent. Rigidity: that of a bending length c of 4.5 cm, an estimate for unwashed cotton duck, by
+    /// D = g ρ c³ (Peirce 1930).
     pub const CANVAS: Self = Self {
         areal_density: 0.4,
         stretch_compliance: 2.0e-5,
@@ -87,8 +88,8 @@ impl ClothMaterial {
         damping: 0.02,
         friction: 0.6,
     };
-    /// Pressed wool, a millimetre thick, as in a hat: the same in all directions, and hardly sheared. Rigidity: a bending length of
-    /// 3.5 cm, D = g ρ c³ (Peirce 1930).
+    /// Pressed wool, a millimetre thick, as in a hat: the same in all directions, and hardly sheared. Rigidity: that of a bending length
+    /// c of 3.4 cm, an estimate, by D = g ρ c³ (Peirce 1930).
     pub const FELT: Self = Self {
         areal_density: 0.25,
         stretch_compliance: 5.0e-4,
@@ -97,13 +98,13 @@ impl ClothMaterial {
         damping: 0.04,
         friction: 0.6,
     };
-    /// Sheepskin, 0.8 mm thick, as in a jacket. Rigidity: that of a bending length of 3.3 cm, which drapes as garment leathers of 0.64
-    /// to 0.96 mm do (drape coefficients of 47 to 70 %: Memon et al. 2021, Materials 14, 4553).
+    /// Sheepskin, 0.8 mm thick, as in a jacket. Rigidity: one with which it drapes as garment leathers of 0.64 to 0.96 mm do, by 47 to
+    /// 70 % (Memon et al. 2021, Materials 14, 4553).
     pub const LEATHER: Self = Self {
         areal_density: 0.5,
         stretch_compliance: 2.0e-4,
         shear_compliance: 4.0e-4,
-        bend_rigidity: 1.8e-4,
+        bend_rigidity: 5.0e-5,
         damping: 0.04,
         friction: 0.6,
     };
