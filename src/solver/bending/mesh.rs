@@ -17,7 +17,7 @@
 //!
 //! `(M + s K) e = −s K p` is solved by conjugate gradients; soft cloth needs one or two iterations.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use bevy::math::{DMat3, DVec2, DVec3, Vec3, Vec4};
 
@@ -62,13 +62,13 @@ struct RestFace {
 #[derive(Debug, Clone)]
 pub(super) struct MeshBending {
     layout: Layout,
-    /// Where each particle's begin.
-    first: Vec<u32>,
+    /// Where each particle's entries begin.
+    first: Arc<[u32]>,
     /// Column and number (N/m) off the diagonal.
-    entries: Vec<(u32, f32)>,
+    entries: Arc<[(u32, f32)]>,
     /// On it.
-    diagonal: Vec<f32>,
-    rest: Vec<RestFace>,
+    diagonal: Arc<[f32]>,
+    rest: Arc<[RestFace]>,
     /// s (s²).
     weight: f32,
     rows: Vec<Row>,
@@ -117,10 +117,10 @@ impl MeshBending {
         }
         Self {
             layout: Layout::of(surface),
-            first,
-            entries,
-            diagonal,
-            rest,
+            first: first.into(),
+            entries: entries.into(),
+            diagonal: diagonal.into(),
+            rest: rest.into(),
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
         }
@@ -129,7 +129,7 @@ impl MeshBending {
     pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
         self.weight = weight;
         let slots = self.layout.slots();
-        for ((row, slot), diagonal) in self.rows.iter_mut().zip(slots).zip(&self.diagonal) {
+        for ((row, slot), diagonal) in self.rows.iter_mut().zip(slots).zip(&*self.diagonal) {
             let inverse_mass = blocks[slot.block].view()[W + slot.lane];
             (row.mass, row.inverse) = if inverse_mass > 0.0 {
                 let mass = 1.0 / inverse_mass;
@@ -171,7 +171,7 @@ impl MeshBending {
             }
             self.rows[at].left = -sum;
         }
-        for face in &self.rest {
+        for face in &*self.rest {
             let at = |corner: usize| {
                 let row = &self.rows[face.particles[corner] as usize];
                 (row.place + row.moved).truncate()
