@@ -81,6 +81,54 @@ pub(super) fn thread_links(from: &[Block], to: &[Block], shift: usize, links: &m
     wrap(links);
 }
 
+// Each of these makes eight numbers before any is stored: what is stored might else be what is loaded next, for all that the
+// compiler knows.
+
+#[inline(always)]
+fn scaled_difference(scale: &Lanes, a: &Lanes, b: &Lanes) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        out[l] = scale[l] * (a[l] - b[l]);
+    }
+    out
+}
+
+/// A particle's force, less what the two before it carry over.
+#[inline(always)]
+fn forward(
+    [own, before, next]: [&Lanes; 3],
+    lower: &Lanes,
+    first: &Lanes,
+    lowest: &Lanes,
+    second: &Lanes,
+) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        let force = (own[l] - before[l]) + (own[l] - next[l]);
+        let rest = force - lower[l] * first[l];
+        out[l] = flush(rest - lowest[l] * second[l], MIN_MOMENT);
+    }
+    out
+}
+
+/// How far a particle moves, given how far the two after it do.
+#[inline(always)]
+fn backward(
+    solved: &Lanes,
+    inverse: &Lanes,
+    upper: &Lanes,
+    first: &Lanes,
+    uppermost: &Lanes,
+    second: &Lanes,
+) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        let rest = solved[l] * inverse[l] - upper[l] * first[l];
+        out[l] = flush(rest - uppermost[l] * second[l], MIN_MOVE);
+    }
+    out
+}
+
 /// Moments of a row (kg m), from the links that lead to it and away from it.
 #[inline(always)]
 pub(super) fn thread_moments(
@@ -95,9 +143,7 @@ pub(super) fn thread_moments(
     let inner = &mut moments[GHOSTS..][..strip];
     for (((before, after), stiffness), out) in before.iter().zip(after).zip(stiffness).zip(inner) {
         for axis in 0..3 {
-            for l in 0..LANES {
-                out[axis][l] = stiffness[l] * (after[axis][l] - before[axis][l]);
-            }
+            out[axis] = scaled_difference(stiffness, &after[axis], &before[axis]);
         }
     }
     if shift > 0 {
@@ -128,12 +174,8 @@ pub(super) fn thread_forward(
     for j in 0..strip {
         let [lower, lowest, _] = &factors[j];
         for axis in 0..3 {
-            for l in 0..LANES {
-                let own = own[j][axis][l];
-                let force = (own - before[j][axis][l]) + (own - next[j][axis][l]);
-                let rest = force - lower[l] * first[j][axis][l];
-                inner[j][axis][l] = flush(rest - lowest[l] * second[j][axis][l], MIN_MOMENT);
-            }
+            let of = [&own[j][axis], &before[j][axis], &next[j][axis]];
+            inner[j][axis] = forward(of, lower, &first[j][axis], lowest, &second[j][axis]);
         }
     }
     if shift > 0 {
@@ -164,11 +206,18 @@ pub(super) fn thread_backward(
         let view = block.view_mut();
         let (inverse, upper, uppermost) = (&own[j][2], &upper[j][0], &uppermost[j][1]);
         for axis in 0..3 {
+            let own = inner[j][axis];
+            let moved = backward(
+                &own,
+                inverse,
+                upper,
+                &first[j][axis],
+                uppermost,
+                &second[j][axis],
+            );
+            inner[j][axis] = moved;
             for l in 0..LANES {
-                let rest = inner[j][axis][l] * inverse[l] - upper[l] * first[j][axis][l];
-                let moved = flush(rest - uppermost[l] * second[j][axis][l], MIN_MOVE);
-                inner[j][axis][l] = moved;
-                view[MOVES[axis] + l] += moved;
+                view[MOVES[axis] + l] += moved[l];
             }
         }
     }
@@ -221,9 +270,7 @@ pub(super) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Fa
     let moment = |before: &Trio, after: &Trio| {
         let mut moment = none;
         for axis in 0..3 {
-            for l in 0..LANES {
-                moment[axis][l] = stiffness[l] * (after[axis][l] - before[axis][l]);
-            }
+            moment[axis] = scaled_difference(stiffness, &after[axis], &before[axis]);
         }
         moment
     };
@@ -238,11 +285,8 @@ pub(super) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Fa
         let [lower, lowest, _] = &factors[at];
         let solved = &mut columns[at];
         for axis in 0..3 {
-            for l in 0..LANES {
-                let force = (own[axis][l] - before[axis][l]) + (own[axis][l] - next[axis][l]);
-                let rest = force - lower[l] * first[axis][l];
-                solved[axis][l] = flush(rest - lowest[l] * second[axis][l], MIN_MOMENT);
-            }
+            let of = [&own[axis], &before[axis], &next[axis]];
+            solved[axis] = forward(of, lower, &first[axis], lowest, &second[axis]);
         }
         (before, own) = (own, next);
         (second, first) = (first, *solved);
@@ -252,10 +296,15 @@ pub(super) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Fa
     let mut after = [0.0; LANES];
     for (solved, [lower, lowest, inverse]) in columns.iter_mut().zip(factors).rev() {
         for axis in 0..3 {
-            for l in 0..LANES {
-                let rest = solved[axis][l] * inverse[l] - upper[l] * first[axis][l];
-                solved[axis][l] = flush(rest - uppermost[l] * second[axis][l], MIN_MOVE);
-            }
+            let own = solved[axis];
+            solved[axis] = backward(
+                &own,
+                inverse,
+                &upper,
+                &first[axis],
+                &uppermost,
+                &second[axis],
+            );
         }
         (second, first) = (first, *solved);
         (upper, uppermost, after) = (*lower, after, *lowest);

@@ -5,7 +5,9 @@
 //! energy is quadratic in the positions as long as the cloth does not stretch (Bergou et al. 2006), so K is constant, the same for
 //! x, y and z, and stable at any rigidity and sub-step.
 
+mod factor;
 mod mesh;
+mod patch;
 #[cfg(test)]
 mod tests;
 mod threads;
