@@ -1,5 +1,14 @@
 //! A thread's pentadiagonal system, factored.
 
+use crate::solver::thread::Factor;
+
+/// Puts a thread's numbers into its lane.
+pub(super) fn set(factors: &mut Factor, lane: usize, factor: [f32; 3]) {
+    for (lanes, number) in factors.iter_mut().zip(factor) {
+        lanes[lane] = number;
+    }
+}
+
 /// Factors M + s K of a thread of `count` particles into L D Lᵀ, in f64: given inverse masses (1/kg), and s k (kg) of each
 /// particle that has two neighbours. A pinned particle is coupled to none, and keeps its place: its 1/D is 0.
 pub(super) fn factor_thread(

@@ -321,11 +321,6 @@ fn nothing_pulls_from_outside() {
             moment += rest.as_dvec3().cross(moved);
             scale += moved.length();
         }
-        println!(
-            "{surface}: {:e} {:e} of {scale:e}",
-            impulse.length(),
-            moment.length()
-        );
         assert!(scale > 0.0);
         assert!(impulse.length() < 1.0e-3 * scale);
         assert!(moment.length() < 1.0e-3 * scale * f64::from(surface.diagonal()));
@@ -375,7 +370,6 @@ fn a_curved_mesh_rests_as_it_was_modelled() {
         }
         let found = added(&mut bending, &particles, 1.0e-4, SimdLevel::Auto);
         let largest = found.iter().map(|of| of.length()).fold(0.0, f32::max);
-        println!("{largest:e} m");
         assert!(largest < allowed, "{largest}");
     }
     // Flat, it wants to bend.

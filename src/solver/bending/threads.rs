@@ -13,7 +13,7 @@
 //! rigidity in its thread. The four directions are solved one after the other, which is as exact as the sub-step is small beside
 //! the period of a bend; each by itself takes energy away, however stiff it is.
 
-use super::factor::factor_thread;
+use super::factor::{factor_thread, set};
 use crate::{
     cloth::{Block, ClothGrid, LANES, Lanes, Layout, W},
     solver::{
@@ -204,7 +204,6 @@ impl ThreadBending {
             self.current = other;
             return;
         }
-        // With other masses neither is of use any more.
         if !self.factors[self.current].weight.is_nan() {
             self.current = other;
         }
@@ -396,11 +395,5 @@ impl Way {
             Self::Rising => rows - 1 - row,
             _ => row,
         }
-    }
-}
-
-fn set(factors: &mut Factor, lane: usize, factor: [f32; 3]) {
-    for (lanes, number) in factors.iter_mut().zip(factor) {
-        lanes[lane] = number;
     }
 }
