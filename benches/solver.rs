@@ -5,9 +5,12 @@ mod shared;
 
 use std::time::Duration;
 
-use bevy_drape::solver::{
-    SimdLevel, Solver,
-    methods::{Method, Scene, Stepper},
+use bevy_drape::{
+    cloth::ClothMaterial,
+    solver::{
+        Bending, SimdLevel, Solver,
+        methods::{Method, Scene, Stepper},
+    },
 };
 use criterion::{
     BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
@@ -84,6 +87,36 @@ fn ticks(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// What bending adds to a tick: an element is a particle in a sub-step.
+fn bending(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("bending");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    for side in [16, 64, 128] {
+        let scene = in_motion(side);
+        group.throughput(Throughput::Elements(
+            scene.particles.len() as u64 * u64::from(SUBSTEPS),
+        ));
+        for (name, material) in [
+            ("none", None),
+            ("cotton", Some(ClothMaterial::COTTON)),
+            ("canvas", Some(ClothMaterial::CANVAS)),
+        ] {
+            let mut solver = scene.solver(false);
+            solver.set_bending(material.and_then(|of| Bending::new(&scene.surface, &of)));
+            time(
+                &mut group,
+                BenchmarkId::new(name, side),
+                &scene,
+                &mut solver,
+            );
+        }
+    }
+    group.finish();
+}
+
 /// The methods that the solver is compared with, on a swinging cloth of 32² with a compliance that all of them take.
 fn methods(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("methods, a frame of 32²");
@@ -124,5 +157,5 @@ fn methods(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, sweeps, ticks, methods);
+criterion_group!(benches, sweeps, bending, ticks, methods);
 criterion_main!(benches);

@@ -204,7 +204,7 @@ fn spawn_poncho(
             damping: 0.08,
             friction: 0.6,
             // Loosely woven.
-            bend_compliance: 0.2,
+            bend_rigidity: 3.0e-6,
             ..ClothMaterial::COTTON
         },
         ClothSettings {

@@ -8,7 +8,7 @@ use bevy::{
 use super::{
     ClothAttachment, ClothBuilt, ClothState,
     built::{BuiltFrom, Tried},
-    shared::{Recipe, SharedParts, compliances},
+    shared::{Recipe, SharedParts, stiffnesses},
     source::{Source, Sources},
 };
 use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, Surface};
@@ -186,7 +186,7 @@ fn follow_changes(
     let tethered_by =
         |of: &ClothMaterial| [of.areal_density, of.stretch_compliance, of.shear_compliance];
     let gives_otherwise = tethered_by(was) != tethered_by(material);
-    let is_sprung_otherwise = compliances(was) != compliances(material);
+    let is_sprung_otherwise = stiffnesses(was) != stiffnesses(material);
     (from.material, from.pins) = (*material, pins.clone());
     if are_others_pinned || gives_otherwise {
         built.forget_tethers();

@@ -8,15 +8,14 @@ use super::source::Source;
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothShape, SpringKind, Springs, Surface},
     hierarchy::QuadTree,
-    solver::Solver,
+    solver::{Bending, Solver},
 };
 
 /// A surface with its springs and tree.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     pub recipe: Option<Recipe>,
-    /// Of stretch, shear and bend (m/N).
-    compliances: [f32; 3],
+    stiffnesses: [f32; 3],
     pub surface: Arc<Surface>,
     pub springs: Springs,
     pub tree: QuadTree,
@@ -50,11 +49,11 @@ impl SharedParts {
         material: &ClothMaterial,
         make: impl FnOnce() -> Result<Surface, ClothError>,
     ) -> Result<Arc<Shared>, ClothError> {
-        let compliances = compliances(material);
+        let stiffnesses = stiffnesses(material);
         let mut alike = None;
         for known in self.known.iter().filter_map(Weak::upgrade) {
             if known.recipe.as_ref() == Some(recipe) {
-                if known.compliances == compliances {
+                if known.stiffnesses == stiffnesses {
                     return Ok(known);
                 }
                 alike = Some(known);
@@ -72,10 +71,12 @@ impl SharedParts {
             Some(known) => known.tree.clone(),
             None => QuadTree::of_surface(&surface, diagonals),
         };
+        let mut solver = Solver::of_surface(&surface, &springs);
+        solver.set_bending(Bending::new(&surface, material));
         let shared = Arc::new(Shared {
             recipe: Some(recipe.clone()),
-            compliances,
-            solver: Solver::of_surface(&surface, &springs),
+            stiffnesses,
+            solver,
             surface,
             springs,
             tree,
@@ -96,11 +97,11 @@ impl SharedParts {
     }
 }
 
-/// Those of a material's springs (m/N).
-pub(super) fn compliances(material: &ClothMaterial) -> [f32; 3] {
+/// What a material's solver is made for: compliances of stretch and shear (m/N), rigidity of bending (N·m).
+pub(super) fn stiffnesses(material: &ClothMaterial) -> [f32; 3] {
     [
         material.stretch_compliance,
         material.shear_compliance,
-        material.bend_compliance,
+        material.bend_rigidity,
     ]
 }

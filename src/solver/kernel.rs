@@ -15,6 +15,10 @@ use super::{
     packet::{Packet, Row, relax_packets},
     predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
+    thread::{
+        Factor, Trio, thread_backward, thread_columns, thread_finish, thread_forward, thread_links,
+        thread_moments, thread_rows,
+    },
     threads::{
         Family, Link, Pull, Rows, clear, column_backward, column_forward, column_heads,
         left_backward, left_forward, left_heads, measure_given, pull_row, right_backward,
@@ -101,27 +105,6 @@ fn across(row: &mut [Block], run: &Run) {
     }
     if let ([first, .., last], Some(softness)) = (row, run.softness.last()) {
         relax(last.view_mut(), first.shifted_mut(), rest, softness);
-    }
-}
-
-/// A row's horizontal bend springs: of every four blocks from the first two, then from the last two, and from the
-/// row's last two blocks into its first two.
-#[inline(always)]
-fn bend_across(row: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    let strip = row.len();
-    for from in [0, 2] {
-        let groups = row[from..].chunks_exact_mut(4);
-        for (group, softness) in groups.zip(run.softness[from..].chunks(4)) {
-            if let ([a, b, c, d], [soft_a, soft_b, ..]) = (group, softness) {
-                relax(a.view_mut(), c.view_mut(), rest, soft_a);
-                relax(b.view_mut(), d.view_mut(), rest, soft_b);
-            }
-        }
-    }
-    if let ([a, b, .., c, d], Some([soft_c, soft_d])) = (row, run.softness[..strip].last_chunk()) {
-        relax(c.view_mut(), a.shifted_mut(), rest, soft_c);
-        relax(d.view_mut(), b.shifted_mut(), rest, soft_d);
     }
 }
 
@@ -336,9 +319,15 @@ kernels! {
     commit(row: &mut [Block], farthest: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),
-    bend_across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),
     diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run),
+    thread_links(from: &[Block], to: &[Block], shift: usize, links: &mut [Trio]),
+    thread_moments(links: [&[Trio]; 2], shift: usize, stiffness: &[Lanes], moments: &mut [Trio]),
+    thread_forward(moments: [&[Trio]; 3], solved: [&[Trio]; 2], factors: &[Factor], shift: usize, out: &mut [Trio]),
+    thread_backward(blocks: &mut [Block], own: &[Factor], solved: [&[Trio]; 2], factors: [&[Factor]; 2], shift: usize, out: &mut [Trio]),
+    thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio]),
+    thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Factor]),
+    thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]),
     tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_square: &[Lanes]),
     measure_within(row: &[Block], run: &Run, longest: &mut Longest),
     measure_down(upper: &[Block], lower: &[Block], run: &Run, longest: &mut Longest),

@@ -5,6 +5,7 @@
 //! instead of many sweeps: Macklin et al. 2019). With one sweep a sub-step no multiplier needs storing.
 
 mod bands;
+mod bending;
 mod envelope;
 mod kernel;
 mod list;
@@ -26,8 +27,10 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod tether;
+mod thread;
 mod threads;
 
+pub use bending::Bending;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]

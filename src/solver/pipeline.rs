@@ -16,9 +16,7 @@ use crate::cloth::{Block, ClothGrid, Compliances, Lanes, Layout};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Work {
     /// The springs within a row.
-    Arrive,
-    /// Vertical bend springs: of every four rows the first two, or the last two.
-    BendDown,
+    Across,
     /// Vertical springs from even rows, or from odd ones.
     Down,
     /// Both diagonals, likewise.
@@ -73,13 +71,11 @@ const fn stage(work: Work, size: usize, first: usize) -> Stage {
     Stage { work, size, first }
 }
 
-const STAGES: usize = 10;
+const STAGES: usize = 8;
 
 /// All stages that can be, in an order in which stiff springs have the last word.
 const ORDER: [Stage; STAGES] = [
-    stage(Work::Arrive, 1, 0),
-    stage(Work::BendDown, 4, 0),
-    stage(Work::BendDown, 4, 2),
+    stage(Work::Across, 1, 0),
     stage(Work::Down, 2, 0),
     stage(Work::Down, 2, 1),
     stage(Work::Diagonal, 2, 0),
@@ -133,12 +129,9 @@ pub(super) struct GridSweep {
     across: [Run; 2],
     down: Run,
     diagonal: Run,
-    bend_across: [Run; 2],
-    bend_down: Run,
     /// Those of [`ORDER`] for which there are springs.
     stages: Vec<Stage>,
     has_shear: bool,
-    has_bend: bool,
     /// The Δt² (s²) that softnesses hold for.
     weight_dt2: f32,
 }
@@ -147,7 +140,6 @@ impl GridSweep {
     pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
         let layout = Layout::new(grid.columns(), grid.rows());
         let has_shear = compliances.shear.is_finite();
-        let has_bend = compliances.bend.is_finite();
         let run = |step, row| Run::new(grid, layout, compliances, step, row);
         // With two rows both are borders, and the second kind is not asked for.
         Self {
@@ -155,18 +147,14 @@ impl GridSweep {
             across: [run((0, 1), 0), run((0, 1), 1)],
             down: run((1, 0), 0),
             diagonal: run((1, 1), 0),
-            bend_across: [run((0, 2), 0), run((0, 2), 1)],
-            bend_down: run((2, 0), 0),
             stages: ORDER
                 .into_iter()
                 .filter(|stage| match stage.work {
-                    Work::BendDown => has_bend,
                     Work::Diagonal => has_shear,
                     _ => true,
                 })
                 .collect(),
             has_shear,
-            has_bend,
             weight_dt2: 0.0,
         }
     }
@@ -195,9 +183,8 @@ impl GridSweep {
         }
         self.weight_dt2 = weight_dt2;
         let inverse_dt2 = 1.0 / weight_dt2;
-        let within = self.across.iter_mut().chain(&mut self.bend_across);
-        let between = [&mut self.down, &mut self.diagonal, &mut self.bend_down];
-        for run in within.chain(between) {
+        let between = [&mut self.down, &mut self.diagonal];
+        for run in self.across.iter_mut().chain(between) {
             run.soften(inverse_dt2);
         }
     }
@@ -303,20 +290,10 @@ impl GridSweep {
         let blocks = &mut blocks[(rows.start - first) * strip..(rows.end - first) * strip];
         let kernels = motion.kernels;
         match work {
-            Work::Arrive => {
+            Work::Across => {
                 let on_border = rows.start == 0 || rows.end == self.layout.rows as usize;
                 let kind = usize::from(!on_border);
-                if self.has_bend {
-                    (kernels.bend_across)(blocks, &self.bend_across[kind]);
-                }
                 (kernels.across)(blocks, &self.across[kind]);
-            }
-            Work::BendDown => {
-                for row in 0..rows.len().saturating_sub(2) {
-                    let three = &mut blocks[row * strip..(row + 3) * strip];
-                    let (upper, lower) = three.split_at_mut(2 * strip);
-                    (kernels.down)(&mut upper[..strip], lower, &self.bend_down);
-                }
             }
             Work::Down => {
                 // A first or last row alone has no partner.

@@ -1,10 +1,10 @@
-//! A tick of sub-steps: Verlet, one sweep over the springs, response.
+//! A tick of sub-steps: Verlet, bending, one sweep over the springs, response.
 
 #[cfg(test)]
 mod tests;
 
 use super::{
-    PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
+    Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
     bands::with_threads_awake,
     list::ListSweep,
     pipeline::GridSweep,
@@ -37,6 +37,7 @@ pub struct Solver {
     /// Of the particles.
     layout: Layout,
     sweep: Box<dyn Sweep>,
+    bending: Option<Bending>,
     tethers: Tethers,
     anchors: Anchors,
     bands: usize,
@@ -51,7 +52,7 @@ impl Default for Solver {
 }
 
 impl Solver {
-    /// Solves `springs` between `particles`. Without tethers, on one thread.
+    /// Solves `springs` between `particles`. Without bending or tethers, on one thread.
     ///
     /// # Panics
     /// If the springs are those of another grid, or between more particles than there are.
@@ -104,11 +105,17 @@ impl Solver {
         Self {
             layout,
             sweep,
+            bending: None,
             tethers: Tethers::default(),
             anchors: Anchors::default(),
             bands: 1,
             simd_level: SimdLevel::default(),
         }
+    }
+
+    /// With this resistance to bending from now on, which must be that of the solver's particles; `None` for none.
+    pub fn set_bending(&mut self, bending: Option<Bending>) {
+        self.bending = bending;
     }
 
     /// With tethers from now on, which must be those of the solver's particles.
@@ -261,6 +268,10 @@ impl Solver {
             match step.order {
                 TimeOrder::First => (kernels.predict_first)(blocks, &prediction),
                 TimeOrder::Second => (kernels.predict)(blocks, past, &prediction),
+            }
+            if let Some(bending) = &mut self.bending {
+                bending.prepare(blocks, weight_dt2);
+                bending.solve(blocks, &kernels);
             }
             self.sweep.set_weight(weight_dt2);
             let motion = Motion {

@@ -112,7 +112,7 @@ fn a_material_that_cannot_be() {
         |material| material.stretch_compliance = -1.0,
         |material| material.stretch_compliance = f32::INFINITY,
         |material| material.shear_compliance = f32::NAN,
-        |material| material.bend_compliance = -0.5,
+        |material| material.bend_rigidity = -0.5,
         |material| material.damping = 1.5,
         |material| material.friction = f32::NAN,
     ];

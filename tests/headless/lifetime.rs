@@ -102,7 +102,8 @@ fn components_may_be_removed() {
     app.world_mut()
         .entity_mut(ball)
         .insert(ClothCollider::default());
-    tick(&mut app, 10);
+    // The cloth has to swing back.
+    tick(&mut app, 60);
     assert!(touches(&app));
     app.world_mut().entity_mut(cloth).remove::<Pins>();
     tick(&mut app, 30);

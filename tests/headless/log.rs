@@ -60,7 +60,7 @@ fn overstretched() -> impl Bundle {
     let settings = ClothSettings {
         tethers: false,
         sleeps: false,
-        ..ClothSettings::substeps(2)
+        ..ClothSettings::substeps(3)
     };
     let pins = Pins::new([Pin::Corner(Corner::TopLeft)]);
     (Cloth::new(32, 32, 0.05), pins, settings)

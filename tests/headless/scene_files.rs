@@ -66,7 +66,7 @@ fn spawn_all(world: &mut World) -> Vec<Entity> {
     ]);
     let material = ClothMaterial {
         stretch_compliance: 1.0e-3 / 3.0,
-        bend_compliance: f32::INFINITY,
+        shear_compliance: f32::INFINITY,
         ..ClothMaterial::RUBBER
     };
     let settings = ClothSettings {

@@ -9,7 +9,7 @@ use bevy_drape::{
     hierarchy::SearchReason,
     plugin::ClothBuilt,
     prelude::*,
-    solver::{Solver, TickStep},
+    solver::{Bending, Solver, TickStep},
 };
 
 use crate::{faults::expect_fault, support::*};
@@ -264,6 +264,7 @@ fn what_snaps_back_is_not_missed() {
             ..default()
         };
         let mut solver = Solver::new(built.springs(), &by_hand);
+        solver.set_bending(Bending::new(built.surface(), &stiff));
         solver.advance(&mut by_hand, step, &[], |particles, substep| {
             detection.respond(particles, &contact_settings, substep, |_| {})
         });

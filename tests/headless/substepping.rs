@@ -176,6 +176,6 @@ fn tethers_do_not_stiffen_rubber() {
     };
     let (with, without) = (run(true), run(false));
     for (with, without) in with.positions().zip(without.positions()) {
-        assert!(with.distance(without) < 1.0e-3, "{with} {without}");
+        assert!(with.distance(without) < 2.0e-3, "{with} {without}");
     }
 }

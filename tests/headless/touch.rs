@@ -8,7 +8,7 @@ use bevy_drape::{
     hierarchy::NodeState,
     plugin::{ClothBuilt, ClothSearch},
     prelude::*,
-    solver::{Solver, Tethers, TickStep},
+    solver::{Bending, Solver, Tethers, TickStep},
 };
 
 use crate::support::*;
@@ -282,6 +282,7 @@ fn the_candidates_are_complete() {
                 .get::<ClothBuilt>(cloth)
                 .expect("what was built");
             let mut solver = Solver::new(built.springs(), &by_hand);
+            solver.set_bending(Bending::new(built.surface(), &material));
             solver.set_tethers(Tethers::new(built.surface(), &material, &by_hand, GRAVITY));
             let contact_settings = ContactSettings {
                 particle_radius: 0.01,

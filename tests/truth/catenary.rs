@@ -55,7 +55,7 @@ fn hang((columns, span): Strip, compliance: f32, tethers: bool) -> (f64, f64) {
     let material = ClothMaterial {
         stretch_compliance: compliance,
         shear_compliance: f32::INFINITY,
-        bend_compliance: f32::INFINITY,
+        bend_rigidity: 0.0,
         damping: 0.05,
         ..ClothMaterial::COTTON
     };

@@ -3,7 +3,7 @@
 use bevy::math::{Quat, Vec3};
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Solver, TickStep},
+    solver::{Bending, Solver, TickStep},
 };
 
 /// A cloth of 17 × 17 particles hung by its top row and released 0.5 rad aside, `distance` m from the origin, after a
@@ -13,8 +13,8 @@ fn swing(spacing: f32, substeps: u32, distance: f32) -> (Vec<Vec3>, f32) {
         .grid(Vec3::ONE)
         .expect("a valid grid");
     let material = ClothMaterial::COTTON;
-    let mut particles =
-        ClothParticles::at_rest(&Surface::of_grid(&grid), &material).expect("a valid material");
+    let surface = Surface::of_grid(&grid);
+    let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
     let place = Vec3::new(0.8, 0.6, 0.2).normalize() * distance;
     for index in 0..particles.len() {
         let rest = particles.position(index).expect("it exists");
@@ -28,6 +28,7 @@ fn swing(spacing: f32, substeps: u32, distance: f32) -> (Vec<Vec3>, f32) {
     }
     let springs = Springs::of_grid(&grid, &material);
     let mut solver = Solver::new(&springs, &particles);
+    solver.set_bending(Bending::new(&surface, &material));
     let step = TickStep {
         substeps,
         acceleration: Vec3::NEG_Y * 9.81,

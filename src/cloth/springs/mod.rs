@@ -80,7 +80,6 @@ impl SpringList {
 pub(crate) struct Compliances {
     pub structural: f32,
     pub shear: f32,
-    pub bend: f32,
 }
 
 impl Compliances {
@@ -98,10 +97,10 @@ impl Compliances {
             (_, 0) => (grid.spacing().x, on_border(column, grid.columns())),
             _ => (grid.step_length((down, across)), false),
         };
-        let compliance = match down.max(across.unsigned_abs()) {
-            2 => self.bend,
-            _ if down > 0 && across != 0 => self.shear,
-            _ => self.structural,
+        let compliance = if down > 0 && across != 0 {
+            self.shear
+        } else {
+            self.structural
         };
         let narrowed = if narrowed { 2.0 } else { 1.0 };
         compliance
@@ -112,14 +111,9 @@ impl Compliances {
 
 /// The springs of a grid, colour by colour: rows down and columns across from one end to the other, and which
 /// of them. Both diagonals of a pair of rows come before those of the next pair.
-const GRID_COLOURS: [((u32, i32), u32); 13] = [
-    ((0, 2), 0),
-    ((0, 2), 1),
-    ((0, 2), 2),
+const GRID_COLOURS: [((u32, i32), u32); 8] = [
     ((0, 1), 0),
     ((0, 1), 1),
-    ((2, 0), 0),
-    ((2, 0), 1),
     ((1, 0), 0),
     ((1, 0), 1),
     ((1, 1), 0),
@@ -129,14 +123,13 @@ const GRID_COLOURS: [((u32, i32), u32); 13] = [
 ];
 
 impl Springs {
-    /// Structural, shear and bend springs of `grid`. A strip's compliance follows from its length over its
+    /// Structural and shear springs of `grid`. A strip's compliance follows from its length over its
     /// width ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are
     /// left out.
     pub fn of_grid(grid: &ClothGrid, material: &ClothMaterial) -> Self {
         let compliances = Compliances {
             structural: material.stretch_compliance,
             shear: material.shear_compliance,
-            bend: material.bend_compliance,
         };
         Self {
             storage: SpringStorage::Grid(*grid, compliances),
@@ -174,15 +167,14 @@ impl Springs {
 
     /// The springs of a surface: those of its [grid](Self::of_grid), if it was made from one.
     ///
-    /// Those of a mesh run along its edges, of the stretch compliance, and across each edge between the corners that face each
-    /// other there, of the bend compliance. Edges run in all directions, so they resist shear as well; where the material's
-    /// shear compliance is less than its stretch compliance, what is lacking is added to the springs across.
+    /// Those of a mesh run along its edges, of the stretch compliance. Edges run in all directions, so they resist shear as well;
+    /// where the material's shear compliance is less than its stretch compliance, springs across each edge, between the corners
+    /// that face each other there, add what is lacking.
     pub fn of_surface(surface: &Surface, material: &ClothMaterial) -> Self {
         if let Some(grid) = surface.as_grid() {
             return Self::of_grid(grid, material);
         }
         let stiffness = |compliance: f32| 1.0 / compliance;
-        let bend = stiffness(material.bend_compliance);
         let shear = stiffness(material.shear_compliance) - stiffness(material.stretch_compliance);
         // Rigid stretch leaves nothing to add, not even to rigid shear.
         let shear = if material.stretch_compliance > 0.0 {
@@ -190,7 +182,7 @@ impl Springs {
         } else {
             0.0
         };
-        let across = stiffness(bend + shear);
+        let across = stiffness(shear);
         let compliance = |kind| match kind {
             SpringKind::Structural => material.stretch_compliance,
             SpringKind::Shear | SpringKind::Bend => across,
@@ -253,14 +245,11 @@ impl Springs {
         match &self.storage {
             SpringStorage::Grid(grid, compliances) => {
                 let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
-                let along = |step: usize| {
-                    columns.saturating_sub(step) * rows + columns * rows.saturating_sub(step)
-                };
+                let along = columns.saturating_sub(1) * rows + columns * rows.saturating_sub(1);
                 let there = |compliance: f32, count: usize| {
                     if compliance.is_finite() { count } else { 0 }
                 };
-                there(compliances.structural, along(1))
-                    + there(compliances.bend, along(2))
+                there(compliances.structural, along)
                     + there(
                         compliances.shear,
                         2 * columns.saturating_sub(1) * rows.saturating_sub(1),
@@ -279,11 +268,10 @@ impl Springs {
     pub fn has(&self, kind: SpringKind) -> bool {
         match &self.storage {
             SpringStorage::Grid(_, compliances) => match kind {
-                SpringKind::Structural => compliances.structural,
-                SpringKind::Shear => compliances.shear,
-                SpringKind::Bend => compliances.bend,
-            }
-            .is_finite(),
+                SpringKind::Structural => compliances.structural.is_finite(),
+                SpringKind::Shear => compliances.shear.is_finite(),
+                SpringKind::Bend => false,
+            },
             SpringStorage::List(list) => list.springs.iter().any(|spring| spring.kind == kind),
         }
     }
@@ -299,15 +287,7 @@ fn part_of((down, across): (u32, i32), (row, column): (u32, u32), strip: u32) ->
     if let Some(group) = row.checked_div(down) {
         return group % 2;
     }
-    let across = across.unsigned_abs();
-    let block = column % strip;
-    // Of a strip that is no multiple of four, the last two blocks' bend springs lead to the first two blocks,
-    // whose own have the first colour.
-    if across == 2 && strip % 4 == 2 && block + 2 >= strip {
-        2
-    } else {
-        block / across % 2
-    }
+    column % strip / across.unsigned_abs() % 2
 }
 
 fn grid_spring(
@@ -324,8 +304,7 @@ fn grid_spring(
     Some(Spring {
         kind: match (down, across) {
             (0, 1) | (1, 0) => SpringKind::Structural,
-            (1, _) => SpringKind::Shear,
-            _ => SpringKind::Bend,
+            _ => SpringKind::Shear,
         },
         ends: [grid.index(cell.0, cell.1), grid.index(row, column)],
         rest_length: grid.step_length(step),

@@ -9,7 +9,7 @@ pub enum SpringKind {
     Structural,
     /// Shear: neighbours along a diagonal.
     Shear,
-    /// Bending: every second particle of a row or column.
+    /// Bending, in lists of the game's own: a cloth's bending is no matter of springs. On a mesh, shear across an edge.
     Bend,
 }
 

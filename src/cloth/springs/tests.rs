@@ -43,8 +43,7 @@ fn colours_share_no_particle_and_no_spring_is_missing_or_twice() {
         let (c, r) = (columns as usize, rows as usize);
         let structural = (c - 1) * r + c * (r - 1);
         let shear = 2 * (c - 1) * (r - 1);
-        let bend = c.saturating_sub(2) * r + c * r.saturating_sub(2);
-        assert_eq!(springs.len(), structural + shear + bend);
+        assert_eq!(springs.len(), structural + shear);
         assert_eq!(seen.len(), springs.len());
     }
 }
@@ -76,12 +75,11 @@ fn an_infinite_compliance_leaves_its_springs_out() {
         .expect("a valid grid");
     let material = ClothMaterial {
         shear_compliance: f32::INFINITY,
-        bend_compliance: f32::INFINITY,
         ..ClothMaterial::COTTON
     };
     let springs = Springs::of_grid(&grid, &material);
     assert!(springs.has(SpringKind::Structural));
-    assert!(!springs.has(SpringKind::Shear) && !springs.has(SpringKind::Bend));
+    assert!(!springs.has(SpringKind::Shear));
 }
 
 /// Springs in any order, all of them at random, and thirty to forty at one particle.

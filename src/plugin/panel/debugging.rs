@@ -157,7 +157,7 @@ fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands)
         std::iter::once(("none".to_string(), String::new(), None)).chain(levels),
     );
     ui.checkbox(&mut shown.springs, "draw springs")
-        .on_hover_text("Threads along rows and columns; diagonals and bend springs fainter");
+        .on_hover_text("Threads along rows and columns; diagonals fainter");
     match &mut cloth.show {
         Some(show) => {
             show.set_if_neq(shown);
@@ -259,25 +259,29 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
         0.01..=5.0,
         |slider| slider.logarithmic(true),
     );
-    for (value, name, tip) in [
+    for (value, range, name, tip) in [
         (
             &mut material.stretch_compliance,
+            0.0..=10.0,
             "stretch, m/N",
             "Compliance along rows and columns (m/N): how far a square patch grows under 1 N. 0 is rigid",
         ),
         (
             &mut material.shear_compliance,
+            0.0..=10.0,
             "shear, m/N",
             "Compliance along both diagonals (m/N). 0 is rigid, infinity is no shear springs",
         ),
         (
-            &mut material.bend_compliance,
-            "bend, m/N",
-            "Compliance between every second particle (m/N). 0 is rigid, infinity is no bend springs",
+            &mut material.bend_rigidity,
+            0.0..=0.01,
+            "bend, N·m",
+            "Flexural rigidity (N·m). 0 bends freely",
         ),
     ] {
-        slide(ui, name, tip, value, 0.0..=10.0, |slider| {
-            slider.logarithmic(true).smallest_positive(1.0e-6)
+        let smallest = *range.end() * 1.0e-7;
+        slide(ui, name, tip, value, range, |slider| {
+            slider.logarithmic(true).smallest_positive(smallest.into())
         });
     }
     let tip = "The part of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";

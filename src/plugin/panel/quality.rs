@@ -12,14 +12,12 @@ pub(super) enum Quality {
     Damped,
 }
 
-/// Where the scales begin and end. Rubber's stretch, silk's bending, and twice what either needs.
+/// Where the scales begin and end. Rubber's stretch, leather's bending, and more than either needs.
 const STRETCH: Logarithmic = Logarithmic([1.0e-6, 1.0e-2]);
-const BEND: Logarithmic = Logarithmic([1.0e1, 1.0e-4]);
+const BEND: Logarithmic = Logarithmic([1.0e-7, 1.0e-2]);
 const DENSITY: Logarithmic = Logarithmic([0.02, 5.0]);
 /// The maximum damping D of the scale.
 const DAMPING: f32 = 0.2;
-/// Shear compliance in parts of bend compliance, where a material has none of its own that is finite.
-const SHEAR_OF_BEND: f32 = 0.01;
 
 impl Quality {
     pub const ALL: [Self; 5] = [
@@ -45,9 +43,8 @@ impl Quality {
         match self {
             Self::Stretchy if material.stretch_compliance == 0.0 => 0.0,
             Self::Stretchy => STRETCH.place(material.stretch_compliance),
-            Self::Stiff if material.bend_compliance.is_infinite() => 0.0,
-            Self::Stiff if material.bend_compliance == 0.0 => 100.0,
-            Self::Stiff => BEND.place(material.bend_compliance),
+            Self::Stiff if material.bend_rigidity == 0.0 => 0.0,
+            Self::Stiff => BEND.place(material.bend_rigidity),
             Self::Heavy => DENSITY.place(material.areal_density),
             Self::Slippery => 100.0 * (1.0 - material.friction),
             Self::Damped => 100.0 * material.damping / DAMPING,
@@ -59,17 +56,8 @@ impl Quality {
         match self {
             Self::Stretchy if place <= 0.0 => material.stretch_compliance = 0.0,
             Self::Stretchy => material.stretch_compliance = STRETCH.value(place),
-            Self::Stiff => {
-                let bend = BEND.value(place);
-                let ratio = material.shear_compliance / material.bend_compliance;
-                let ratio = if ratio.is_finite() && ratio > 0.0 {
-                    ratio
-                } else {
-                    SHEAR_OF_BEND
-                };
-                material.bend_compliance = bend;
-                material.shear_compliance = ratio * bend;
-            }
+            Self::Stiff if place <= 0.0 => material.bend_rigidity = 0.0,
+            Self::Stiff => material.bend_rigidity = BEND.value(place),
             Self::Heavy => material.areal_density = DENSITY.value(place),
             Self::Slippery => material.friction = (1.0 - place / 100.0).max(0.0),
             Self::Damped => material.damping = (DAMPING * place / 100.0).clamp(0.0, 1.0),
@@ -81,10 +69,10 @@ impl Quality {
         let ClothMaterial {
             areal_density,
             stretch_compliance,
-            shear_compliance,
-            bend_compliance,
+            bend_rigidity,
             damping,
             friction,
+            ..
         } = material;
         match self {
             Self::Stretchy => format!(
@@ -96,9 +84,10 @@ impl Quality {
             ),
             Self::Stiff => format!(
                 "How much it resists bends and folds.\n\
-                 Bend compliance: {bend_compliance} m/N; shear compliance, which goes with it: {shear_compliance} m/N.\n\
-                 0 is {} m/N of bend compliance, 100 is {} m/N.",
-                BEND.0[0], BEND.0[1]
+                 Flexural rigidity: {bend_rigidity} N·m. A strip 1 cm wide that is bent to a radius of 1 cm needs {} N·mm.\n\
+                 0 is none, 100 is {} N·m. Silk has 0.000002, denim 0.00006.",
+                1.0e3 * bend_rigidity,
+                BEND.0[1]
             ),
             Self::Heavy => format!(
                 "How much it weighs.\n\
@@ -176,16 +165,13 @@ mod tests {
     fn what_has_no_place_on_a_scale_is_at_its_end() {
         let mut loose = ClothMaterial {
             stretch_compliance: 0.0,
-            shear_compliance: f32::INFINITY,
-            bend_compliance: f32::INFINITY,
+            bend_rigidity: 0.0,
             ..ClothMaterial::COTTON
         };
         assert_eq!(Quality::Stretchy.of(&loose), 0.0);
         assert_eq!(Quality::Stiff.of(&loose), 0.0);
         Quality::Stiff.set(&mut loose, 50.0);
         assert_eq!(loose.validate(), Ok(()));
-        assert!(loose.shear_compliance.is_finite());
-        loose.bend_compliance = 0.0;
-        assert_eq!(Quality::Stiff.of(&loose), 100.0);
+        assert!(loose.bend_rigidity > 0.0);
     }
 }

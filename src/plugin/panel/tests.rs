@@ -80,7 +80,7 @@ fn showing_a_value_does_not_change_it() {
         areal_density: 77.7,
         stretch_compliance: 0.123_456_79,
         shear_compliance: f32::INFINITY,
-        bend_compliance: 3.3e-9,
+        bend_rigidity: 3.3e-9,
         damping: 0.999,
         friction: 7.0,
     };

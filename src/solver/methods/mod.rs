@@ -5,6 +5,7 @@
 //! no collisions, no threads, no culling. Every method is generic over the
 //! precision, so that a converged `f64` run can serve as the reference.
 
+mod drape;
 mod error;
 mod hooke;
 pub mod meshes;
@@ -17,6 +18,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
+pub use drape::Drape;
 pub use error::MethodError;
 use hooke::Hooke;
 pub use method::Method;

@@ -5,7 +5,7 @@ use bevy::math::Vec3;
 use super::{MassSpring, MethodError, Real};
 use crate::{
     cloth::{Cloth, ClothError, ClothGrid, ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Solver, Tethers, TickStep},
+    solver::{Bending, Solver, Tethers, TickStep},
 };
 
 /// Standard gravity (m/s²), along −y.
@@ -41,7 +41,7 @@ impl Scene {
             areal_density: 0.15,
             stretch_compliance: 0.0,
             shear_compliance: 0.0,
-            bend_compliance: f32::INFINITY,
+            bend_rigidity: 0.0,
             damping: 1.0 - 0.99_f32.powf(1.0 / 60.0),
             friction: 0.0,
         };
@@ -68,7 +68,7 @@ impl Scene {
             areal_density: 0.15,
             stretch_compliance: compliance,
             shear_compliance: compliance,
-            bend_compliance: f32::INFINITY,
+            bend_rigidity: 0.0,
             damping: 0.0,
             friction: 0.0,
         };
@@ -109,6 +109,7 @@ impl Scene {
     /// The library's solver for it, on one thread.
     pub fn solver(&self, with_tethers: bool) -> Solver {
         let mut solver = Solver::new(&self.springs, &self.particles);
+        solver.set_bending(Bending::new(&self.surface, &self.material));
         if with_tethers {
             solver.set_tethers(Tethers::new(
                 &self.surface,

@@ -1,0 +1,248 @@
+//! The bending of a mesh, by what the faces beside a face say of its curvature.
+//!
+//! Across an edge, what the two faces' slopes differ by is linear in the four positions, and of a quadratic surface it is linear
+//! in the curvature. Three edges give all three numbers of a face's curvature, exactly on any triangles, so that the energy
+//! `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` does not see how the mesh is made:
+//!
+//! ```text
+//!  ――― o ―――      a face and the three beside it: six particles;
+//!   \ / \ /       κ = P H x, with the slopes' differences H x
+//!    o ― o        and P the inverse of what they are of κ
+//!     \ /
+//!      o
+//! ```
+//! (a rotation-free shell as Oñate and Zárate 2000 have it; quadratic like Bergou et al. 2006, whose one number an edge depends on
+//! the triangles by a factor of three). On a border, where edges have one face, the smallest curvature counts that agrees with the
+//! others. A mesh that is curved at rest has rest curvatures, which turn with each face.
+//!
+//! `(M + s K) e = −s K p` is solved by conjugate gradients; soft cloth needs one or two iterations.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use bevy::math::{DVec3, Vec4};
+
+use super::patch::{Patch, RestFace, faces_beside, frame};
+use crate::cloth::{Block, DX, DY, DZ, Layout, Surface, W, X, Y, Z};
+
+/// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
+const TOLERANCE: f32 = 1.0e-4;
+/// Iterations at most: what is left after them is stiff and small, and the next sub-step goes on with it.
+const MAX_ITERATIONS: usize = 40;
+/// A particle during a solve.
+#[derive(Debug, Default, Clone, Copy)]
+struct Row {
+    place: Vec4,
+    moved: Vec4,
+    /// What is to be added to `moved`, and what is left of the right side.
+    added: Vec4,
+    left: Vec4,
+    /// Conjugate direction, and what the matrix makes of it.
+    direction: Vec4,
+    image: Vec4,
+    /// kg, or 0 of a pinned particle.
+    mass: f32,
+    /// Inverse diagonal of the matrix (1/kg), or 0.
+    inverse: f32,
+}
+
+/// A mesh's bending matrix.
+#[derive(Debug, Clone)]
+pub(super) struct MeshBending {
+    layout: Layout,
+    /// Where each particle's entries begin.
+    first: Arc<[u32]>,
+    /// Column and number (N/m) off the diagonal.
+    entries: Arc<[(u32, f32)]>,
+    /// On it.
+    diagonal: Arc<[f32]>,
+    rest: Arc<[RestFace]>,
+    /// s (s²).
+    weight: f32,
+    rows: Vec<Row>,
+}
+
+impl MeshBending {
+    /// Of a plate of this flexural rigidity (N·m).
+    pub fn new(surface: &Surface, rigidity: f32) -> Self {
+        let places: Vec<DVec3> = surface
+            .rest_positions()
+            .iter()
+            .map(|place| place.as_dvec3())
+            .collect();
+        let faces = surface.triangles();
+        let beside = faces_beside(faces);
+        let mut matrix: BTreeMap<(u32, u32), f64> = BTreeMap::new();
+        let mut rest = Vec::new();
+        for (face, beside) in faces.iter().zip(&beside) {
+            let Some(patch) = Patch::new(*face, *beside, &places) else {
+                continue;
+            };
+            let stiffness = f64::from(rigidity) * patch.area;
+            for (a, &row) in patch.particles.iter().enumerate() {
+                for (b, &column) in patch.particles.iter().enumerate() {
+                    let product: f64 = patch.curvature.iter().map(|of| of[a] * of[b]).sum();
+                    if product != 0.0 {
+                        *matrix.entry((row, column)).or_default() += stiffness * product;
+                    }
+                }
+            }
+            rest.extend(patch.rest(stiffness, &places));
+        }
+        let mut first = vec![0; places.len() + 1];
+        let mut diagonal = vec![0.0; places.len()];
+        let mut entries = Vec::with_capacity(matrix.len());
+        for (&(row, column), &number) in &matrix {
+            if row == column {
+                diagonal[row as usize] = number as f32;
+            } else {
+                entries.push((column, number as f32));
+                first[row as usize + 1] = entries.len() as u32;
+            }
+        }
+        for at in 1..first.len() {
+            first[at] = first[at].max(first[at - 1]);
+        }
+        Self {
+            layout: Layout::of(surface),
+            first: first.into(),
+            entries: entries.into(),
+            diagonal: diagonal.into(),
+            rest: rest.into(),
+            weight: 0.0,
+            rows: vec![Row::default(); places.len()],
+        }
+    }
+
+    pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
+        self.weight = weight;
+        let slots = self.layout.slots();
+        for ((row, slot), diagonal) in self.rows.iter_mut().zip(slots).zip(&*self.diagonal) {
+            let inverse_mass = blocks[slot.block].view()[W + slot.lane];
+            (row.mass, row.inverse) = if inverse_mass > 0.0 {
+                let mass = 1.0 / inverse_mass;
+                (mass, 1.0 / (mass + weight * diagonal))
+            } else {
+                (0.0, 0.0)
+            };
+        }
+    }
+
+    pub fn solve(&mut self, blocks: &mut [Block]) {
+        for (row, slot) in self.rows.iter_mut().zip(self.layout.slots()) {
+            let view = blocks[slot.block].view();
+            let of = |from: usize| view[from + slot.lane];
+            row.place = Vec4::new(of(X), of(Y), of(Z), 0.0);
+            row.moved = Vec4::new(of(DX), of(DY), of(DZ), 0.0);
+            row.added = Vec4::ZERO;
+        }
+        self.set_right_side();
+        if !self.conjugate_gradients() {
+            return;
+        }
+        for (row, slot) in self.rows.iter().zip(self.layout.slots()) {
+            let view = blocks[slot.block].view_mut();
+            view[DX + slot.lane] += row.added.x;
+            view[DY + slot.lane] += row.added.y;
+            view[DZ + slot.lane] += row.added.z;
+        }
+    }
+
+    /// `left` becomes −s K p, less what the rest curvatures want.
+    fn set_right_side(&mut self) {
+        for at in 0..self.rows.len() {
+            let own = self.rows[at];
+            let mut sum = Vec4::ZERO;
+            for &(other, number) in &self.entries[of(&self.first, at)] {
+                let other = &self.rows[other as usize];
+                sum += number * ((other.place - own.place) + (other.moved - own.moved));
+            }
+            self.rows[at].left = -sum;
+        }
+        for face in &*self.rest {
+            let at = |corner: usize| {
+                let row = &self.rows[face.particles[corner] as usize];
+                (row.place + row.moved).truncate()
+            };
+            let Some(frame) = frame(at(0), at(1), at(2)) else {
+                continue;
+            };
+            for (&particle, &force) in face.particles.iter().zip(&face.forces) {
+                let [x, y, z] = frame;
+                let turned = x * force.x + y * force.y + z * force.z;
+                self.rows[particle as usize].left += turned.extend(0.0);
+            }
+        }
+        for row in &mut self.rows {
+            let is_free = row.mass > 0.0;
+            row.left = if is_free {
+                row.left * self.weight
+            } else {
+                Vec4::ZERO
+            };
+        }
+    }
+
+    /// Solves for `added`, preconditioned by the diagonal. Returns whether there was anything to do.
+    fn conjugate_gradients(&mut self) -> bool {
+        let mut norm = 0.0;
+        for row in &mut self.rows {
+            row.direction = row.left * row.inverse;
+            norm += row.direction.dot(row.left);
+        }
+        // Of nothing, or of next to nothing, nothing comes.
+        let is_something = |norm: f32| norm > 1.0e-34;
+        if !is_something(norm) {
+            return norm.is_nan();
+        }
+        let enough = norm * TOLERANCE * TOLERANCE;
+        for _ in 0..MAX_ITERATIONS {
+            let mut energy = 0.0;
+            for at in 0..self.rows.len() {
+                let own = &self.rows[at];
+                let mut sum = self.diagonal[at] * own.direction;
+                for &(other, number) in &self.entries[of(&self.first, at)] {
+                    sum += number * self.rows[other as usize].direction;
+                }
+                let image = own.mass * own.direction + self.weight * sum;
+                energy += own.direction.dot(image);
+                self.rows[at].image = image;
+            }
+            let step = norm / energy;
+            let before = norm;
+            norm = 0.0;
+            for row in &mut self.rows {
+                row.added += step * row.direction;
+                // Nothing pulls at a pinned particle: its inverse is 0.
+                row.left -= step * row.image;
+                norm += row.inverse * row.left.dot(row.left);
+            }
+            if norm <= enough || !is_something(norm) {
+                break;
+            }
+            let kept = norm / before;
+            for row in &mut self.rows {
+                row.direction = row.left * row.inverse + kept * row.direction;
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+impl MeshBending {
+    /// ½ xᵀ K x of one coordinate (J).
+    pub fn energy(&self, places: &[f64]) -> f64 {
+        let of_row = |row: usize| {
+            let beside = self.entries[of(&self.first, row)].iter();
+            let beside = beside.map(|&(other, number)| f64::from(number) * places[other as usize]);
+            f64::from(self.diagonal[row]) * places[row] + beside.sum::<f64>()
+        };
+        let each = places.iter().enumerate();
+        each.map(|(row, place)| place * of_row(row)).sum::<f64>() / 2.0
+    }
+}
+
+/// The entries of a row.
+fn of(first: &[u32], row: usize) -> std::ops::Range<usize> {
+    first[row] as usize..first[row + 1] as usize
+}

@@ -1,0 +1,60 @@
+//! Resistance to bending: that of a plate of the material's flexural rigidity.
+//!
+//! Between its prediction and the sweep over the springs, each sub-step moves the particles from where they would be, p, to the y
+//! that solves `(M + s K) y = M p`: implicit Euler for bending alone, with s = Δt² and K the matrix of the bending energy. That
+//! energy is quadratic in the positions as long as the cloth does not stretch (Bergou et al. 2006), so K is constant, the same for
+//! x, y and z, and stable at any rigidity and sub-step.
+
+mod factor;
+mod mesh;
+mod patch;
+#[cfg(test)]
+mod tests;
+mod threads;
+
+use self::{mesh::MeshBending, threads::ThreadBending};
+use super::kernel::Kernels;
+use crate::cloth::{Block, ClothMaterial, Surface};
+
+/// A surface's resistance to bending.
+#[derive(Debug, Clone)]
+pub struct Bending {
+    of: Kind,
+}
+
+#[derive(Debug, Clone)]
+enum Kind {
+    Grid(ThreadBending),
+    Mesh(MeshBending),
+}
+
+impl Bending {
+    /// That of a surface; `None` if its material bends freely.
+    pub fn new(surface: &Surface, material: &ClothMaterial) -> Option<Self> {
+        let rigidity = material.bend_rigidity;
+        if rigidity <= 0.0 || surface.is_empty() {
+            return None;
+        }
+        let of = match surface.as_grid() {
+            Some(grid) => Kind::Grid(ThreadBending::new(grid, rigidity)),
+            None => Kind::Mesh(MeshBending::new(surface, rigidity)),
+        };
+        Some(Self { of })
+    }
+
+    /// Takes over the masses and the weight s (s²) of the forces, if they are others than before: Δt² for implicit Euler.
+    pub(super) fn prepare(&mut self, blocks: &[Block], weight: f32) {
+        match &mut self.of {
+            Kind::Grid(threads) => threads.prepare(blocks, weight),
+            Kind::Mesh(mesh) => mesh.prepare(blocks, weight),
+        }
+    }
+
+    /// Changes displacements so that position + displacement is bent as it was, less what its bending moments undo.
+    pub(super) fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+        match &mut self.of {
+            Kind::Grid(threads) => threads.solve(blocks, kernels),
+            Kind::Mesh(mesh) => mesh.solve(blocks),
+        }
+    }
+}

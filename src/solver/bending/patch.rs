@@ -1,0 +1,169 @@
+//! What the faces beside a face say of its curvature.
+
+use bevy::math::{DMat3, DVec2, DVec3, Vec3};
+
+/// Edges that say the same of a face's curvature, to this part, don't make it infinite.
+const REGULAR: f64 = 1.0e-3;
+/// Rest curvatures below this, times the size of a face, are none.
+const FLAT: f64 = 1.0e-4;
+
+/// What a face that is curved at rest does.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RestFace {
+    /// Its corners first.
+    pub particles: [u32; 6],
+    /// Force of its rest curvature on each (N), in the face's frame.
+    pub forces: [Vec3; 6],
+}
+
+/// The frame of a face: along its first edge, beside that, and its normal.
+pub(super) fn frame(a: Vec3, b: Vec3, c: Vec3) -> Option<[Vec3; 3]> {
+    let x = (b - a).try_normalize()?;
+    let z = x.cross(c - a).try_normalize()?;
+    Some([x, z.cross(x), z])
+}
+
+/// The corner beyond each edge of each face, in the order of the edges: the first is that from the first corner to the second.
+/// None where an edge does not have two faces.
+pub(super) fn faces_beside(faces: &[[u32; 3]]) -> Vec<[Option<u32>; 3]> {
+    let mut sides = Vec::with_capacity(3 * faces.len());
+    for (face, corners) in faces.iter().enumerate() {
+        for edge in 0..3 {
+            let [a, b, opposite] = [0, 1, 2].map(|on| corners[(edge + on) % 3]);
+            sides.push(([a.min(b), a.max(b)], face, edge, opposite));
+        }
+    }
+    sides.sort_unstable();
+    let mut beside = vec![[None; 3]; faces.len()];
+    for sides in sides.chunk_by(|a, b| a.0 == b.0) {
+        if let [one, other] = sides {
+            // Two faces of the same corners lie on each other.
+            if one.3 != other.3 {
+                beside[one.1][one.2] = Some(other.3);
+                beside[other.1][other.2] = Some(one.3);
+            }
+        }
+    }
+    beside
+}
+
+/// A face and those beside it.
+pub(super) struct Patch {
+    /// Its corners, and what is beyond its edges; where there is nothing, a corner once more, with zeros.
+    pub particles: [u32; 6],
+    /// What each particle's position makes of κ_xx, κ_yy and √2 κ_xy (1/m²).
+    pub curvature: [[f64; 6]; 3],
+    /// m².
+    pub area: f64,
+}
+
+impl Patch {
+    pub fn new(corners: [u32; 3], beside: [Option<u32>; 3], places: &[DVec3]) -> Option<Self> {
+        let place = |particle: u32| places[particle as usize];
+        let [a, b, c] = corners.map(place);
+        let (x, normal) = ((b - a).normalize(), (b - a).cross(c - a));
+        let area = normal.length() / 2.0;
+        let y = normal.normalize().cross(x);
+        let flat = |at: DVec3| DVec2::new((at - a).dot(x), (at - a).dot(y));
+        let flat = [flat(a), flat(b), flat(c)];
+        let mut particles = [corners[0]; 6];
+        particles[..3].copy_from_slice(&corners);
+        // H, and what it is of κ_xx, κ_yy and √2 κ_xy.
+        let mut slopes = [[0.0; 6]; 3];
+        let mut of_curvature = [DVec3::ZERO; 3];
+        for (edge, beyond) in beside.into_iter().enumerate() {
+            let Some(beyond) = beyond else {
+                continue;
+            };
+            let [i, j, k] = [0, 1, 2].map(|on| (edge + on) % 3);
+            let along = flat[j] - flat[i];
+            let length = along.length();
+            let out = -DVec2::new(-along.y, along.x) / length;
+            let height = -(flat[k] - flat[i]).dot(out);
+            let foot = (flat[k] - flat[i]).dot(along) / (length * length);
+            let (from, to) = (place(corners[i]), place(corners[j]));
+            let foot_beyond = (place(beyond) - from).dot(to - from) / (length * length);
+            let height_beyond = place(beyond).distance(from.lerp(to, foot_beyond));
+            // Sliver beside sliver says nothing.
+            if height.min(height_beyond) < 1.0e-4 * length {
+                continue;
+            }
+            // Unfolded into the face's plane.
+            let flat_beyond = flat[i] + along * foot_beyond + out * height_beyond;
+            particles[3 + edge] = beyond;
+            let slope = &mut slopes[edge];
+            slope[3 + edge] = 1.0 / height_beyond;
+            slope[k] = 1.0 / height;
+            slope[i] = -(1.0 - foot) / height - (1.0 - foot_beyond) / height_beyond;
+            slope[j] = -foot / height - foot_beyond / height_beyond;
+            for (at, number) in [
+                (flat[i], slope[i]),
+                (flat[j], slope[j]),
+                (flat[k], slope[k]),
+                (flat_beyond, slope[3 + edge]),
+            ] {
+                let squares = DVec3::new(
+                    at.x * at.x / 2.0,
+                    at.y * at.y / 2.0,
+                    at.x * at.y / std::f64::consts::SQRT_2,
+                );
+                of_curvature[edge] += number * squares;
+            }
+        }
+        // The smallest curvature that fits: Bᵀ (B Bᵀ + ε)⁻¹.
+        let mut gram = [[0.0; 3]; 3];
+        for (row, one) in gram.iter_mut().zip(&of_curvature) {
+            for (number, other) in row.iter_mut().zip(&of_curvature) {
+                *number = one.dot(*other);
+            }
+        }
+        let trace = gram[0][0] + gram[1][1] + gram[2][2];
+        if trace.is_nan() || trace <= 0.0 {
+            return None;
+        }
+        for (at, row) in gram.iter_mut().enumerate() {
+            row[at] += REGULAR * trace / 3.0;
+        }
+        let inverse = DMat3::from_cols_array_2d(&gram).inverse();
+        let mut curvature = [[0.0; 6]; 3];
+        for particle in 0..6 {
+            let of_edges = inverse * DVec3::from_array(slopes.map(|slope| slope[particle]));
+            for (component, of) in curvature.iter_mut().enumerate() {
+                of[particle] = (0..3)
+                    .map(|edge| of_curvature[edge][component] * of_edges[edge])
+                    .sum();
+            }
+        }
+        Some(Self {
+            particles,
+            curvature,
+            area,
+        })
+    }
+
+    /// What it does if it is curved at rest.
+    pub fn rest(&self, stiffness: f64, places: &[DVec3]) -> Option<RestFace> {
+        let at = self.particles.map(|particle| places[particle as usize]);
+        let bent = self.curvature.map(|of| -> DVec3 {
+            let each = of.iter().zip(&at);
+            // From one corner, so that rounding stays below curvatures.
+            each.map(|(number, place)| *number * (*place - at[0])).sum()
+        });
+        let largest = bent.iter().map(|of| of.length()).fold(0.0, f64::max);
+        if largest * self.area.sqrt() < FLAT {
+            return None;
+        }
+        let [x, y, z] = frame(at[0].as_vec3(), at[1].as_vec3(), at[2].as_vec3())?;
+        let forces = std::array::from_fn(|particle| {
+            let force: DVec3 = (0..3)
+                .map(|component| stiffness * self.curvature[component][particle] * bent[component])
+                .sum();
+            let force = force.as_vec3();
+            Vec3::new(force.dot(x), force.dot(y), force.dot(z))
+        });
+        Some(RestFace {
+            particles: self.particles,
+            forces,
+        })
+    }
+}

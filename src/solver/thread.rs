@@ -1,0 +1,329 @@
+//! The arithmetic of bent threads, eight of them side by side, as [`kernel`](super::kernel) does that of springs.
+//!
+//! A thread's moments follow from the differences between neighbours, first of positions, then of displacements, so that no
+//! digit of a displacement is lost to the position. They are the right side of a pentadiagonal system `(M + s K) e = −s K p`,
+//! which is solved for what is added to the displacements, e: forwards with L, backwards with D and Lᵀ.
+
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, X, Y, Z};
+
+/// x, y and z of eight particles.
+pub(super) type Trio = [Lanes; 3];
+
+/// Blocks on either side of a row that repeat its other end, so that each block has its second neighbours beside it.
+pub(super) const GHOSTS: usize = 2;
+
+/// A particle's row of L, and of the inverse of D: to the particle before it, to the one before that, 1/D.
+pub(super) type Factor = [Lanes; 3];
+
+/// Where each quantity of a [`Trio`] is in a block.
+const PLACES: [usize; 3] = [X, Y, Z];
+const MOVES: [usize; 3] = [DX, DY, DZ];
+
+/// Less than this is nothing (kg m, and m): what is far from all that moves would be subnormal numbers, which machines are slow
+/// with.
+const MIN_MOMENT: f32 = 1.0e-25;
+const MIN_MOVE: f32 = 1.0e-18;
+
+#[inline(always)]
+fn flush(number: f32, least: f32) -> f32 {
+    // NaN stays to be seen.
+    if number.abs() < least { 0.0 } else { number }
+}
+
+/// From each particle of `a` to that of `b` in the same lane.
+#[inline(always)]
+fn link(a: &View, b: &View, out: &mut Trio) {
+    for axis in 0..3 {
+        let (place, moved) = (PLACES[axis], MOVES[axis]);
+        for l in 0..LANES {
+            out[axis][l] = (b[place + l] - a[place + l]) + (b[moved + l] - a[moved + l]);
+        }
+    }
+}
+
+/// Each lane's left neighbour, in the lane before.
+#[inline(always)]
+fn to_right<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
+    from.map(|from| std::array::from_fn(|l| if l == 0 { 0.0 } else { from[l - 1] }))
+}
+
+/// Each lane's right neighbour, in the lane after.
+#[inline(always)]
+fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
+    from.map(|from| std::array::from_fn(|l| if l + 1 == LANES { 0.0 } else { from[l + 1] }))
+}
+
+/// Makes the ghosts of a row.
+#[inline(always)]
+pub(super) fn wrap<const N: usize>(row: &mut [[Lanes; N]]) {
+    let end = row.len() - GHOSTS;
+    for ghost in 0..GHOSTS {
+        row[ghost] = to_right(&row[end - GHOSTS + ghost]);
+        row[end + ghost] = to_left(&row[GHOSTS + ghost]);
+    }
+}
+
+/// From each particle of a row to the one of the next row that is `shift` columns further right.
+#[inline(always)]
+pub(super) fn thread_links(from: &[Block], to: &[Block], shift: usize, links: &mut [Trio]) {
+    let last = from.len() - 1;
+    let inner = &mut links[GHOSTS..GHOSTS + from.len()];
+    if shift == 0 {
+        for ((a, b), out) in from.iter().zip(to).zip(inner) {
+            link(a.view(), b.view(), out);
+        }
+        return;
+    }
+    link(from[last].view(), to[0].shifted(), &mut inner[last]);
+    for ((a, b), out) in from.iter().zip(&to[1..]).zip(inner) {
+        link(a.view(), b.view(), out);
+    }
+    wrap(links);
+}
+
+// Each of these makes eight numbers before any is stored: what is stored might else be what is loaded next, for all that the
+// compiler knows.
+
+#[inline(always)]
+fn scaled_difference(scale: &Lanes, a: &Lanes, b: &Lanes) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        out[l] = scale[l] * (a[l] - b[l]);
+    }
+    out
+}
+
+/// A particle's force, less what the two before it carry over.
+#[inline(always)]
+fn forward(
+    [own, before, next]: [&Lanes; 3],
+    lower: &Lanes,
+    first: &Lanes,
+    lowest: &Lanes,
+    second: &Lanes,
+) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        let force = (own[l] - before[l]) + (own[l] - next[l]);
+        let rest = force - lower[l] * first[l];
+        out[l] = flush(rest - lowest[l] * second[l], MIN_MOMENT);
+    }
+    out
+}
+
+/// How far a particle moves, given how far the two after it do.
+#[inline(always)]
+fn backward(
+    solved: &Lanes,
+    inverse: &Lanes,
+    upper: &Lanes,
+    first: &Lanes,
+    uppermost: &Lanes,
+    second: &Lanes,
+) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        let rest = solved[l] * inverse[l] - upper[l] * first[l];
+        out[l] = flush(rest - uppermost[l] * second[l], MIN_MOVE);
+    }
+    out
+}
+
+/// Moments of a row (kg m), from the links that lead to it and away from it.
+#[inline(always)]
+pub(super) fn thread_moments(
+    [before, after]: [&[Trio]; 2],
+    shift: usize,
+    stiffness: &[Lanes],
+    moments: &mut [Trio],
+) {
+    let strip = stiffness.len();
+    let before = &before[GHOSTS - shift..][..strip];
+    let after = &after[GHOSTS..][..strip];
+    let inner = &mut moments[GHOSTS..][..strip];
+    for (((before, after), stiffness), out) in before.iter().zip(after).zip(stiffness).zip(inner) {
+        for axis in 0..3 {
+            out[axis] = scaled_difference(stiffness, &after[axis], &before[axis]);
+        }
+    }
+    if shift > 0 {
+        wrap(moments);
+    }
+}
+
+/// Solves a row forwards: `moments` are those of the row before, of this and of the next one, `solved` the row before and the
+/// one before that.
+#[inline(always)]
+pub(super) fn thread_forward(
+    moments: [&[Trio]; 3],
+    solved: [&[Trio]; 2],
+    factors: &[Factor],
+    shift: usize,
+    out: &mut [Trio],
+) {
+    let strip = out.len() - 2 * GHOSTS;
+    let [before, own, next] = moments;
+    let before = &before[GHOSTS - shift..][..strip];
+    let own = &own[GHOSTS..][..strip];
+    let next = &next[GHOSTS + shift..][..strip];
+    let [first, second] = solved;
+    let first = &first[GHOSTS - shift..][..strip];
+    let second = &second[GHOSTS - 2 * shift..][..strip];
+    let factors = &factors[GHOSTS..][..strip];
+    let inner = &mut out[GHOSTS..][..strip];
+    for j in 0..strip {
+        let [lower, lowest, _] = &factors[j];
+        for axis in 0..3 {
+            let of = [&own[j][axis], &before[j][axis], &next[j][axis]];
+            inner[j][axis] = forward(of, lower, &first[j][axis], lowest, &second[j][axis]);
+        }
+    }
+    if shift > 0 {
+        wrap(out);
+    }
+}
+
+/// Solves a row backwards and moves its particles: `solved` and `factors` are those of the next row and of the one after that.
+#[inline(always)]
+pub(super) fn thread_backward(
+    blocks: &mut [Block],
+    own: &[Factor],
+    solved: [&[Trio]; 2],
+    factors: [&[Factor]; 2],
+    shift: usize,
+    out: &mut [Trio],
+) {
+    let strip = blocks.len();
+    let own = &own[GHOSTS..][..strip];
+    let [first, second] = solved;
+    let first = &first[GHOSTS + shift..][..strip];
+    let second = &second[GHOSTS + 2 * shift..][..strip];
+    let [upper, uppermost] = factors;
+    let upper = &upper[GHOSTS + shift..][..strip];
+    let uppermost = &uppermost[GHOSTS + 2 * shift..][..strip];
+    let inner = &mut out[GHOSTS..][..strip];
+    for (j, block) in blocks.iter_mut().enumerate() {
+        let view = block.view_mut();
+        let (inverse, upper, uppermost) = (&own[j][2], &upper[j][0], &uppermost[j][1]);
+        for axis in 0..3 {
+            let own = inner[j][axis];
+            let moved = backward(
+                &own,
+                inverse,
+                upper,
+                &first[j][axis],
+                uppermost,
+                &second[j][axis],
+            );
+            inner[j][axis] = moved;
+            for l in 0..LANES {
+                view[MOVES[axis] + l] += moved[l];
+            }
+        }
+    }
+    if shift > 0 {
+        wrap(out);
+    }
+}
+
+#[inline(always)]
+fn transpose(from: &[Lanes; LANES]) -> [Lanes; LANES] {
+    let mut to = [[0.0; LANES]; LANES];
+    for (row, from) in from.iter().enumerate() {
+        for (column, to) in to.iter_mut().enumerate() {
+            to[row] = from[column];
+        }
+    }
+    to
+}
+
+/// The links along up to eight rows, column by column: the lanes of a column are the rows.
+#[inline(always)]
+pub(super) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio]) {
+    for j in 0..strip {
+        let mut links = [[[0.0; LANES]; LANES]; 3];
+        for (row, blocks) in rows.chunks_exact(strip).enumerate() {
+            let next = if j + 1 < strip {
+                blocks[j + 1].view()
+            } else {
+                blocks[0].shifted()
+            };
+            let mut of_row = [[0.0; LANES]; 3];
+            link(blocks[j].view(), next, &mut of_row);
+            for axis in 0..3 {
+                links[axis][row] = of_row[axis];
+            }
+        }
+        for (axis, links) in links.iter().enumerate() {
+            for (lane, of_column) in transpose(links).into_iter().enumerate() {
+                columns[lane * strip + j][axis] = of_column;
+            }
+        }
+    }
+}
+
+/// Solves eight rows, each from its first column to its last and back, in place of their links.
+#[inline(always)]
+pub(super) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Factor]) {
+    let none = [[0.0; LANES]; 3];
+    let count = columns.len();
+    let moment = |before: &Trio, after: &Trio| {
+        let mut moment = none;
+        for axis in 0..3 {
+            moment[axis] = scaled_difference(stiffness, &after[axis], &before[axis]);
+        }
+        moment
+    };
+    let (mut before, mut own) = (none, none);
+    let (mut first, mut second) = (none, none);
+    for at in 0..count {
+        let next = if at + 2 < count {
+            moment(&columns[at], &columns[at + 1])
+        } else {
+            none
+        };
+        let [lower, lowest, _] = &factors[at];
+        let solved = &mut columns[at];
+        for axis in 0..3 {
+            let of = [&own[axis], &before[axis], &next[axis]];
+            solved[axis] = forward(of, lower, &first[axis], lowest, &second[axis]);
+        }
+        (before, own) = (own, next);
+        (second, first) = (first, *solved);
+    }
+    (first, second) = (none, none);
+    let (mut upper, mut uppermost) = ([0.0; LANES], [0.0; LANES]);
+    let mut after = [0.0; LANES];
+    for (solved, [lower, lowest, inverse]) in columns.iter_mut().zip(factors).rev() {
+        for axis in 0..3 {
+            let own = solved[axis];
+            solved[axis] = backward(
+                &own,
+                inverse,
+                &upper,
+                &first[axis],
+                &uppermost,
+                &second[axis],
+            );
+        }
+        (second, first) = (first, *solved);
+        (upper, uppermost, after) = (*lower, after, *lowest);
+    }
+}
+
+/// Moves the particles of up to eight rows by what was found for them, column by column.
+#[inline(always)]
+pub(super) fn thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]) {
+    for j in 0..strip {
+        for axis in 0..3 {
+            let of_columns = std::array::from_fn(|lane| columns[lane * strip + j][axis]);
+            let of_rows = transpose(&of_columns);
+            for (blocks, of_row) in rows.chunks_exact_mut(strip).zip(&of_rows) {
+                let view = blocks[j].view_mut();
+                for l in 0..LANES {
+                    view[MOVES[axis] + l] += of_row[l];
+                }
+            }
+        }
+    }
+}
