@@ -60,7 +60,7 @@ pub mod prelude {
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
-    pub use crate::solver::{ClothLimit, ClothSettings, Substepping};
+    pub use crate::solver::{ClothLimit, ClothSettings, Substepping, TimeOrder};
 }
 
 /// The README's snippets, compiled with the doc tests.

@@ -76,7 +76,7 @@ fn a_step_does_not_allocate() {
         let mut ticks = |count: u32| {
             for _ in 0..count {
                 let step = TickStep {
-                    substeps: control.substeps(substepping),
+                    substeps: control.substeps(substepping, 20),
                     acceleration: Vec3::NEG_Y * 9.81,
                     ..Default::default()
                 };

@@ -29,7 +29,7 @@ use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
     contact::{ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothSettings, PinMotion, TickStep},
+    solver::{ClothSettings, PinMotion, Substepping, TickStep},
 };
 
 /// The pins of a cloth from which the game took its [`Pins`].
@@ -211,7 +211,10 @@ impl PreparingItem<'_, '_> {
         state.written = Some(particles.last_changed());
         scratch.step = Some(TickStep {
             seconds,
-            substeps: state.control.substeps(settings.substepping),
+            substeps: state.control.substeps(
+                settings.substepping,
+                Substepping::needed(surface.particles_along(), seconds),
+            ),
             acceleration,
             damping: material.damping,
             order: settings.order,

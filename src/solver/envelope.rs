@@ -158,12 +158,12 @@ impl LimitInputs {
     pub fn exceeded(&self, limit: ClothLimit) -> Option<[f32; 2]> {
         let [lightest, heaviest] = self.masses;
         let quantity = match limit {
-            ClothLimit::Stretch if matches!(self.substepping, Substepping::Fixed(_)) => {
+            ClothLimit::Stretch if !matches!(self.substepping, Substepping::Adaptive { .. }) => {
                 [self.stretch, MAX_STRETCH + self.material_stretch]
             }
             ClothLimit::Tolerance if self.is_beyond => match self.substepping {
                 Substepping::Adaptive { stretch, .. } => [self.stretch, stretch],
-                Substepping::Fixed(_) => return None,
+                Substepping::Automatic | Substepping::Fixed(_) => return None,
             },
             ClothLimit::MassRatio if lightest > 0.0 => [
                 heaviest / lightest,

@@ -16,7 +16,7 @@ use crate::cloth::ClothError;
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSettings {
-    /// How exactly: a number of sub-steps a tick, or as many as hold a tolerance.
+    /// How exactly: as many sub-steps as the cloth needs, a number of them, or as many as hold a tolerance.
     pub substepping: Substepping,
     /// Acceleration in the world (m/s²) for this cloth alone, instead of the resource
     /// [`ClothGravity`](crate::plugin::ClothGravity).
@@ -26,8 +26,8 @@ pub struct ClothSettings {
     /// the particles from sinking into a ball.
     pub particle_radius: f32,
     /// Whether no particle may be farther from the pins than the cloth between them is long, with room for what the
-    /// material gives. That takes most of the stretch out of a fine cloth for a fifth of the cost more: see
-    /// [`Tethers`](super::Tethers).
+    /// material gives and 1 % more. Threads that are solved need none; a fine cloth that hangs by single points and has to do
+    /// with fewer sub-steps than it needs stretches less with them: see [`Tethers`](super::Tethers).
     pub tethers: bool,
     /// How the error of its motion falls with the sub-steps: in proportion to their length squared, or, as in the paper, to
     /// their length.
@@ -38,7 +38,8 @@ pub struct ClothSettings {
 }
 
 impl Default for ClothSettings {
-    /// 20 sub-steps, the resource's gravity, particles of 1 cm radius; tethers, and sleep.
+    /// As many sub-steps as the cloth needs, of second order, the resource's gravity, particles of 1 cm radius; sleep, and no
+    /// tethers.
     fn default() -> Self {
         Self {
             substepping: Substepping::default(),
@@ -80,6 +81,7 @@ impl ClothSettings {
     /// [`ClothError::Quantity`] for the first that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         let substeps = match self.substepping {
+            Substepping::Automatic => 1,
             Substepping::Fixed(substeps) => substeps,
             Substepping::Adaptive {
                 stretch,

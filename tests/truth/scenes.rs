@@ -28,7 +28,10 @@ fn run(scene: &Scene, substepping: Substepping) -> Run {
     let (mut squares, mut count, mut before) = (0.0, 0_u32, 0);
     let mut backup = particles.clone();
     for frame in 0..180 {
-        let mut substeps = control.substeps(substepping);
+        let mut substeps = control.substeps(
+            substepping,
+            Substepping::needed(scene.surface.particles_along(), scene.seconds),
+        );
         backup.clone_from(&particles);
         let stretch = loop {
             let stretch = solver.advance(&mut particles, scene.step(substeps), &[], |_, _| false);

@@ -72,7 +72,10 @@ pub fn play(pinned: Pinned, substepping: Substepping, start: u32) -> Outcome {
     let (mut largest, mut squares, mut count) = (0.0, 0.0, 0.0);
     for tick in 0..TICKS {
         let clock = Instant::now();
-        sheet.step.substeps = control.substeps(substepping);
+        sheet.step.substeps = control.substeps(
+            substepping,
+            Substepping::needed(SIDE as usize, sheet.step.seconds),
+        );
         if matches!(substepping, Substepping::Adaptive { .. }) {
             backup.clone_from(&sheet.particles);
         }

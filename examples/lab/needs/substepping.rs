@@ -72,7 +72,10 @@ fn play(substepping: Substepping) -> (f64, f32) {
     let mut largest = 0.0_f32;
     let time = seconds(|| {
         for tick in 0..TICKS {
-            let mut substeps = control.substeps(substepping);
+            let mut substeps = control.substeps(
+                substepping,
+                Substepping::needed(scene.surface.particles_along(), scene.seconds),
+            );
             if matches!(substepping, Substepping::Adaptive { .. }) {
                 before.clone_from(&particles);
             }

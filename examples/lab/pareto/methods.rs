@@ -349,7 +349,10 @@ impl<'a> Ours<'a> {
         if matches!(self.substepping, Substepping::Adaptive { .. }) {
             self.backup.clone_from(&self.particles);
         }
-        let mut substeps = self.control.substeps(self.substepping);
+        let mut substeps = self.control.substeps(
+            self.substepping,
+            Substepping::needed(scene.surface.particles_along(), scene.seconds),
+        );
         loop {
             let step = scene.step(substeps);
             let detection = &mut self.detection;

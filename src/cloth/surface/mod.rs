@@ -172,6 +172,17 @@ impl Surface {
         self.extent.particles_across
     }
 
+    /// Particles side by side where it is long: of a mesh, as many as a square of its diagonal would have.
+    pub fn particles_along(&self) -> usize {
+        match &self.grid {
+            Some(grid) => grid.columns().max(grid.rows()) as usize,
+            None => {
+                let side = self.diagonal() * std::f32::consts::FRAC_1_SQRT_2;
+                (side / self.spacing().typical) as usize + 1
+            }
+        }
+    }
+
     /// From a particle to the farthest corner of the faces that it stands for, along stretch springs at most (m).
     pub(crate) fn face_reach(&self) -> f32 {
         self.extent.face_reach

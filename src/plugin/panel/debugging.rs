@@ -1,5 +1,7 @@
 //! What a game developer seldom needs: how contacts are searched for, how springs are solved, and what it cost.
 
+use std::mem::discriminant;
+
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
     ecs::{change_detection::DetectChangesMut, system::Commands},
@@ -15,7 +17,7 @@ use crate::{
     contact::NarrowPhase,
     hierarchy::{SearchMethod, SearchReason},
     plugin::{ClothDiagnosticsPlugin, ClothStats, ShowClothGizmos},
-    solver::{ClothSettings, Substepping},
+    solver::{ClothSettings, Substepping, TimeOrder},
 };
 
 /// Means of the last second or so, of all cloths together (ms).
@@ -200,23 +202,33 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
 
 fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
     let substepping = &mut settings.substepping;
-    let fixed = matches!(substepping, Substepping::Fixed(_));
+    let choices = [
+        (
+            "automatic",
+            "As many sub-steps as a cloth of so many particles needs, the same in each tick",
+            Substepping::Automatic,
+        ),
+        (
+            "fixed",
+            "A number of sub-steps, the same in each tick: it costs the same each time",
+            Substepping::Fixed(20),
+        ),
+        (
+            "tolerance",
+            "As many sub-steps as keep the stretch below a limit, at least as many as the cloth needs",
+            ClothSettings::tolerance(0.01).substepping,
+        ),
+    ];
     ui.horizontal(|ui| {
-        let is_fixed = ui.radio(fixed, "fixed sub-steps").on_hover_text(
-            "The same number in each tick. Recommended: a cloth that comes to rest stays there, and each tick costs the same",
-        );
-        if is_fixed.clicked() && !fixed {
-            *substepping = Substepping::default();
-        }
-        let is_tolerance = ui.radio(!fixed, "tolerance").on_hover_text(
-            "As many sub-steps as keep the stretch below a limit. Their number changes from tick to tick, and that alone \
-             can keep a resting cloth moving",
-        );
-        if is_tolerance.clicked() && fixed {
-            *substepping = ClothSettings::tolerance(0.01).substepping;
+        for (name, tip, choice) in choices {
+            let is_chosen = discriminant(substepping) == discriminant(&choice);
+            if ui.radio(is_chosen, name).on_hover_text(tip).clicked() && !is_chosen {
+                *substepping = choice;
+            }
         }
     });
     match substepping {
+        Substepping::Automatic => {}
         Substepping::Fixed(substeps) => {
             let tip = "Sub-steps of each fixed tick, 1 to 80: more hold the threads' lengths better, and each costs the same time";
             slide(ui, "sub-steps", tip, substeps, 1..=80, |slider| slider);
@@ -235,6 +247,18 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
             let tip = "The maximum of sub-steps that a tick may take, 1 to 400";
             slide(ui, "at most", tip, max_substeps, 1..=400, |slider| slider);
         }
+    }
+    let mut is_first = settings.order == TimeOrder::First;
+    ui.checkbox(&mut is_first, "Verlet as in the paper").on_hover_text(
+        "Of first order in time, equation (2): swings lose energy, the more the fewer the sub-steps. Otherwise of second order",
+    );
+    let order = if is_first {
+        TimeOrder::First
+    } else {
+        TimeOrder::Second
+    };
+    if settings.order != order {
+        settings.order = order;
     }
     ui.checkbox(&mut settings.tethers, "tethers").on_hover_text(
         "No particle gets farther from the pins than the cloth between them is long: less stretch for the same sub-steps",
