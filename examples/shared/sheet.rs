@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs, Surface},
-    solver::{Solver, Stretch, SubStep, Tethers, TickStep},
+    solver::{Bending, Solver, Stretch, SubStep, Tethers, TickStep},
 };
 
 /// Standard gravity (m/s²), along −y.
@@ -16,7 +16,7 @@ pub fn threads(stretch: f32, shear: f32) -> ClothMaterial {
         areal_density: 0.15,
         stretch_compliance: stretch,
         shear_compliance: shear,
-        bend_compliance: f32::INFINITY,
+        bend_rigidity: 0.0,
         damping: 0.0,
         friction: 0.0,
     }
@@ -71,8 +71,10 @@ impl Sheet {
                 0.0
             }
         };
+        let mut solver = Solver::of_surface(&surface, &springs);
+        solver.set_bending(Bending::new(&surface, &material));
         Self {
-            solver: Solver::of_surface(&surface, &springs),
+            solver,
             masses: particles.inverse_masses().map(mass).collect(),
             springs: springs.to_vec(),
             grid,

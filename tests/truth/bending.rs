@@ -72,6 +72,7 @@ impl Strip {
             substeps,
             acceleration: Vec3::new(0.0, -gravity, 0.0),
             damping: self.material.damping,
+            ..TickStep::default()
         };
         self.solver
             .advance(&mut self.particles, step, &[], |_, _| false);

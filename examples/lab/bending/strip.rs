@@ -22,11 +22,11 @@ pub fn rigidity(gamma: f64) -> f64 {
 }
 
 /// What a strip of this rigidity (N·m) is made of.
-fn strip_material(_rigidity: f32) -> ClothMaterial {
+fn strip_material(rigidity: f32) -> ClothMaterial {
     ClothMaterial {
         areal_density: DENSITY,
         damping: 0.05,
-        bend_compliance: ClothMaterial::COTTON.bend_compliance,
+        bend_rigidity: rigidity,
         ..threads(0.0, 1.0e-3)
     }
 }

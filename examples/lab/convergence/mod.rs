@@ -2,7 +2,7 @@
 //!
 //! Errors are RMS distances after half a second to the same springs in f64, by explicit steps of 1/30,720 s.
 
-use bevy_drape::solver::TickStep;
+use bevy_drape::solver::{TickStep, TimeOrder};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -23,6 +23,7 @@ const METHODS: [(&str, fn(u32) -> TickStep); 2] = [
     }),
     (FIRST, |substeps| TickStep {
         substeps,
+        order: TimeOrder::First,
         ..TickStep::default()
     }),
 ];

@@ -2,7 +2,7 @@
 
 use super::{
     Row,
-    methods::{EXPLICIT, OURS, PROJECTIVE, SMALL_STEPS, TOLERANCE, UNTETHERED},
+    methods::{EXPLICIT, ONE_SWEEP, OURS, PROJECTIVE, SMALL_STEPS, TOLERANCE},
     scenes::{BALL, STIFF_HANGING, STIFF_SWINGING},
 };
 use crate::measure::median;
@@ -121,7 +121,7 @@ impl<'a> Group<'a> {
 }
 
 pub fn is_ours(method: &str) -> bool {
-    [OURS, UNTETHERED, TOLERANCE].contains(&method)
+    [OURS, ONE_SWEEP, TOLERANCE].contains(&method)
 }
 
 /// Whether it is another method than ours, and not ours in other code.
@@ -204,17 +204,17 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
 fn implementation(rows: &[Row]) -> Option<String> {
     let (mut faster, mut apart, mut tethered) = (Vec::new(), Vec::new(), Vec::new());
     for group in Group::largest(rows) {
-        for (ours, plain) in group.of(UNTETHERED).zip(group.of(SMALL_STEPS)) {
+        for (ours, plain) in group.of(ONE_SWEEP).zip(group.of(SMALL_STEPS)) {
             faster.push(plain.ms_per_second / ours.ms_per_second);
             apart.push(100.0 * (ours.error() / plain.error() - 1.0).abs());
         }
-        for (with, without) in group.of(OURS).zip(group.of(UNTETHERED)) {
+        for (with, without) in group.of(OURS).zip(group.of(ONE_SWEEP)) {
             tethered.push(with.ms_per_second / without.ms_per_second);
         }
     }
     (!faster.is_empty()).then(|| {
         format!(
-            "Plain small steps are our method in scalar code: with as many sub-steps ours without tethers is {:.1} × as fast, and its error differs from theirs by {:.1} % in the middle and {:.0} % at most. So much is implementation, the rest is method. Tethers make a tick {:.2} × as long.",
+            "Plain small steps are our method in scalar code: with as many sub-steps our one sweep is {:.1} × as fast, and its error differs from theirs by {:.1} % in the middle and {:.0} % at most. So much is implementation, the rest is method. Threads solved exactly make a sub-step {:.2} × as long.",
             median(&faster),
             median(&apart),
             apart.iter().copied().fold(0.0, f64::max),

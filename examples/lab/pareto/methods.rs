@@ -23,13 +23,16 @@ use super::scenes::{Ball, Case};
 pub enum Way {
     /// This many steps a tick.
     Peer(Method, u32),
-    Ours(Substepping, Tethers),
+    Ours(Substepping, Springs),
 }
 
+/// How the library's solver takes the springs of a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Tethers {
-    On,
-    Off,
+pub enum Springs {
+    /// Thread by thread, each solved exactly; of second order in time.
+    Threads,
+    /// One sweep, spring by spring; of first order.
+    OneSweep,
 }
 
 pub const EXPLICIT: &str = "explicit forces";
@@ -37,14 +40,14 @@ pub const POSITION_BASED: &str = "position-based";
 pub const SMALL_STEPS: &str = "small steps, plain";
 pub const PROJECTIVE: &str = "projective dynamics";
 pub const OURS: &str = "ours";
-pub const UNTETHERED: &str = "ours, no tethers";
+pub const ONE_SWEEP: &str = "one sweep";
 pub const TOLERANCE: &str = "ours, by tolerance";
 
 /// In the order in which they are shown.
 pub const METHODS: [&str; 7] = [
     OURS,
     TOLERANCE,
-    UNTETHERED,
+    ONE_SWEEP,
     SMALL_STEPS,
     POSITION_BASED,
     PROJECTIVE,
@@ -59,10 +62,10 @@ impl Way {
         } else {
             &[5, 7, 10, 14, 20, 28, 40, 57, 80, 113, 160]
         };
-        let fixed = |tethers| {
+        let fixed = |springs| {
             substeps
                 .iter()
-                .map(move |&count| Self::Ours(Substepping::Fixed(count), tethers))
+                .map(move |&count| Self::Ours(Substepping::Fixed(count), springs))
         };
         let tolerances: &[f32] = if is_quick {
             &[0.02, 0.005]
@@ -75,7 +78,7 @@ impl Way {
                 stretch,
                 max_substeps,
             };
-            Self::Ours(substepping, Tethers::On)
+            Self::Ours(substepping, Springs::Threads)
         };
         let small = |&substeps: &u32| Self::Peer(Method::SmallSteps { substeps }, 1);
         let position_based =
@@ -119,9 +122,9 @@ impl Way {
             (false, false) => &[1.1, 2.0, 4.0],
         };
         let explicit = |factor: &f64| Self::Peer(Method::Hooke, (factor * limit).ceil() as u32);
-        let mut all: Vec<Self> = fixed(Tethers::On).collect();
+        let mut all: Vec<Self> = fixed(Springs::Threads).collect();
         all.extend(tolerances.iter().map(tolerance));
-        all.extend(fixed(Tethers::Off));
+        all.extend(fixed(Springs::OneSweep));
         all.extend(substeps.iter().map(small));
         all.extend(swept.iter().copied().map(position_based));
         all.extend(solved.iter().copied().map(projective));
@@ -136,8 +139,8 @@ impl Way {
             Self::Peer(Method::SmallSteps { .. }, _) => SMALL_STEPS,
             Self::Peer(Method::ProjectiveDynamics { .. }, _) => PROJECTIVE,
             Self::Ours(Substepping::Adaptive { .. }, _) => TOLERANCE,
-            Self::Ours(_, Tethers::On) => OURS,
-            Self::Ours(_, Tethers::Off) => UNTETHERED,
+            Self::Ours(_, Springs::Threads) => OURS,
+            Self::Ours(_, Springs::OneSweep) => ONE_SWEEP,
         }
     }
 
@@ -157,6 +160,7 @@ impl Way {
             }
             Self::Peer(Method::SmallSteps { substeps }, _)
             | Self::Ours(Substepping::Fixed(substeps), _) => format!("{substeps} sub-steps"),
+            Self::Ours(Substepping::Automatic, _) => "automatic".into(),
             Self::Ours(Substepping::Adaptive { stretch, .. }, _) => {
                 format!("{} % of stretch", (1.0e5 * stretch).round() / 1.0e3)
             }
@@ -295,8 +299,11 @@ pub struct Ours<'a> {
 }
 
 impl<'a> Ours<'a> {
-    fn new(case: &'a Case, substepping: Substepping, tethers: Tethers) -> Self {
-        let solver = case.scene.solver(tethers == Tethers::On);
+    fn new(case: &'a Case, substepping: Substepping, springs: Springs) -> Self {
+        let solver = match springs {
+            Springs::Threads => case.scene.solver(false),
+            Springs::OneSweep => case.scene.one_sweep(),
+        };
         Self {
             case,
             surface: Arc::new(case.scene.surface.clone()),

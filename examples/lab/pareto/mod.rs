@@ -23,7 +23,7 @@ use crate::{
     measure::Spread,
 };
 use frontier::Group;
-use methods::{METHODS, OURS, Player, SMALL_STEPS, UNTETHERED, Way};
+use methods::{METHODS, ONE_SWEEP, OURS, Player, SMALL_STEPS, Way};
 use reference::Reference;
 use scenes::{Ball, Case, STIFF_SWINGING, TICKS};
 
@@ -168,7 +168,7 @@ impl Experiment for Pareto {
                     "{name}: ours is off by {first} m with the fewest sub-steps and by {last} m with the most"
                 ));
             }
-            for method in [OURS, UNTETHERED, SMALL_STEPS] {
+            for method in [OURS, ONE_SWEEP, SMALL_STEPS] {
                 let known: Vec<&Row> = group.of(method).collect();
                 let rises = |pair: &&[&Row]| {
                     pair[1].rms_error_m > 1.1 * pair[0].rms_error_m
@@ -340,7 +340,7 @@ mod tests {
         }
         // The plain small steps are the same method as ours.
         for group in Group::all(&rows) {
-            for (ours, plain) in group.of(UNTETHERED).zip(group.of(SMALL_STEPS)) {
+            for (ours, plain) in group.of(ONE_SWEEP).zip(group.of(SMALL_STEPS)) {
                 let apart = (ours.rms_error_m - plain.rms_error_m).abs();
                 assert!(
                     apart < 0.05 * plain.rms_error_m + plain.reference_error_m,

@@ -121,6 +121,13 @@ impl Scene {
         solver
     }
 
+    /// The library's former solver for it: one sweep over the springs in each sub-step, of first order.
+    pub fn one_sweep(&self) -> Solver {
+        let mut solver = Solver::of_one_sweep(&self.springs, &self.particles);
+        solver.set_bending(Bending::new(&self.surface, &self.material));
+        solver
+    }
+
     /// A tick of it in this many sub-steps.
     pub fn step(&self, substeps: u32) -> TickStep {
         TickStep {
