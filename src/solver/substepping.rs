@@ -111,9 +111,11 @@ impl Control {
         let unsolved = found - stretch.material.min(found);
         self.is_beyond = found > tolerance;
         if self.is_beyond && unsolved > AIM * tolerance {
-            let more = wanted(unsolved).clamp(self.substeps * 1.25, self.substeps * 2.0);
+            let least = (self.substeps * 1.25).ceil();
+            let more = wanted(unsolved).clamp(least, self.substeps * 2.0);
             let left = max - self.spent - self.substeps;
-            if more.ceil() <= left {
+            if left >= least {
+                let more = more.min(left);
                 self.spent += self.substeps;
                 self.substeps = more.ceil();
                 self.calm = 0;

@@ -12,10 +12,10 @@ fn a_copy_has_its_own_touches() {
     let cloth = app.world_mut().spawn(Cloth::default()).id();
     let place = Transform::from_xyz(0.7, -0.7, 0.95);
     app.world_mut().spawn((ClothCollider::default(), place));
-    tick(&mut app, 10);
+    tick(&mut app, 2);
     messages::<ClothTouchStarted>(&mut app);
     let copy = app.world_mut().entity_mut(cloth).clone_and_spawn();
-    tick(&mut app, 10);
+    tick(&mut app, 60);
     let started = messages::<ClothTouchStarted>(&mut app);
     assert!(
         started.iter().any(|reported| reported.cloth == copy),
@@ -92,7 +92,7 @@ fn components_may_be_removed() {
         let contacts = app.world().get::<ClothContacts>(cloth);
         contacts.expect("contacts").with(ball).is_some()
     };
-    tick(&mut app, 10);
+    tick(&mut app, 2);
     assert!(touches(&app));
     app.world_mut().entity_mut(ball).remove::<ClothCollider>();
     tick(&mut app, 2);

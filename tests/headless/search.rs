@@ -259,6 +259,7 @@ fn what_snaps_back_is_not_missed() {
             );
         }
         let step = TickStep {
+            substeps: Substepping::needed(16, TICK),
             acceleration: Vec3::NEG_Y * GRAVITY,
             damping: stiff.damping,
             ..default()

@@ -33,7 +33,7 @@ fn a_flag_a_sheet_and_a_falling_cloth_leave_their_plane() {
     let width = cloth.width();
     for (name, pins, least) in [
         ("flag", Pins::new([Pin::Column(0)]), 0.1),
-        ("two corners", two_corners(), 0.03),
+        ("two corners", two_corners(), 0.02),
         ("falling", Pins::none(), 0.1),
     ] {
         let found = after_two_seconds(cloth.clone(), pins.clone());

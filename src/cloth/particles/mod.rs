@@ -149,9 +149,13 @@ impl ClothParticles {
             .map(|Slot { block, lane }| self.blocks[block].displacement(lane))
     }
 
-    /// Displacement over the sub-step that it spans (m/s).
+    /// Velocity (m/s): displacement over the sub-step that it spans and, where the displacement before is known, what
+    /// half a sub-step of the same acceleration adds to that.
     pub fn velocity(&self, id: impl Into<ParticleId>) -> Option<Vec3> {
-        self.displacement(id).map(|moved| moved / self.substep)
+        let slot = self.slot(id)?;
+        let moved = self.blocks[slot.block].displacement(slot.lane);
+        let before = self.past.before(slot).unwrap_or(moved);
+        Some((moved + 0.5 * (moved - before)) / self.substep)
     }
 
     /// Inverse mass (1/kg); 0 for a pinned particle.

@@ -1,6 +1,8 @@
 //! What particles remember of their motion, for a method of second order.
 
-use crate::cloth::{Block, LANES, Lanes};
+use bevy::math::Vec3;
+
+use crate::cloth::{Block, LANES, Lanes, Slot};
 
 /// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the one before, then of the one
 /// before that.
@@ -109,18 +111,19 @@ impl Past {
         }
     }
 
+    /// The displacement of a particle in the sub-step before the last (m), if it is known.
+    pub fn before(&self, slot: Slot) -> Option<Vec3> {
+        let Earlier(earlier) = self.blocks.get(slot.block).filter(|_| self.is_known)?;
+        Some(Vec3::from([0, 1, 2].map(|axis| earlier[axis][slot.lane])))
+    }
+
     /// Applies `f` to the earlier displacements of a particle.
-    pub fn change(
-        &mut self,
-        block: usize,
-        lane: usize,
-        f: impl Fn(bevy::math::Vec3) -> bevy::math::Vec3,
-    ) {
+    pub fn change(&mut self, block: usize, lane: usize, f: impl Fn(Vec3) -> Vec3) {
         let Some(Earlier(earlier)) = self.blocks.get_mut(block) else {
             return;
         };
         for from in [0, 3] {
-            let was = bevy::math::Vec3::from([0, 1, 2].map(|axis| earlier[from + axis][lane]));
+            let was = Vec3::from([0, 1, 2].map(|axis| earlier[from + axis][lane]));
             let is = f(was).to_array();
             for axis in 0..3 {
                 earlier[from + axis][lane] = is[axis];
@@ -147,13 +150,10 @@ mod tests {
         past.blocks[0].0[0][3] = 1.0;
         past.blocks[0].0[4][3] = 1.0;
         let mut blocks = [Block::EMPTY];
-        blocks[0].set_displacement(3, bevy::math::Vec3::new(2.0, 1.0, 0.0));
+        blocks[0].set_displacement(3, Vec3::new(2.0, 1.0, 0.0));
         past.restart(&mut blocks, 0.5);
         // Along x it is 1 faster in each sub-step, 2.5 at the end of the last; along y it goes to and fro.
-        assert_eq!(
-            blocks[0].displacement(3),
-            bevy::math::Vec3::new(1.25, 0.5, 0.0)
-        );
+        assert_eq!(blocks[0].displacement(3), Vec3::new(1.25, 0.5, 0.0));
         assert_eq!(past.next(1), StepKind::Start);
     }
 
