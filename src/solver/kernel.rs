@@ -16,7 +16,7 @@ use super::{
     predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
     threads::{
-        Family, Link, Pull, Rows, clear, column_backward, column_forward, column_heads,
+        Family, Link, Pull, Rows, Solved, Step, bundle_backward, bundle_forward, clear, column_backward, column_forward, column_heads,
         left_backward, left_forward, left_heads, pull_row, right_backward, right_forward,
         row_equations, solve_turned, turn_back, turn_terms,
     },
@@ -332,6 +332,8 @@ kernels! {
     solve_turned(unknowns: &mut [[Rows; 3]], springs: usize),
     turn_back(unknowns: &[[Rows; 3]], terms: &mut [[Lanes; 3]], strip: usize),
     pull_row(row: &mut [Block], ways: &mut [[Lanes; 3]], multipliers: &[[Lanes; 3]]),
+    bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], solved: &mut [Solved], inverse_weight: f32),
+    bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], solved: &[Solved]),
     commit(row: &mut [Block], farthest: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),

@@ -9,6 +9,7 @@ use super::{
     kernel::Kernels,
     packet::{Packet, Row, SPRINGS},
     sweep::{Motion, Sweep, Swept},
+    threads::Bundles,
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringList, W, X, Y, Z};
 
@@ -16,7 +17,9 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringL
 #[derive(Debug, Default, Clone)]
 pub(super) struct ListSweep {
     springs: Arc<SpringList>,
+    /// Those on no thread.
     packets: Arc<[Packet]>,
+    threads: Bundles,
     layout: Layout,
     /// 1/Δt² (1/s²).
     inverse_dt2: f32,
@@ -34,8 +37,8 @@ impl ListSweep {
         };
         // What is no spring moves the row behind all others.
         let none = (layout.blocks() * LANES) as u32;
-        let packet = |springs: &[Spring]| {
-            let of = |at: usize| springs.get(at);
+        let packet = |springs: &[usize], list: &[Spring]| {
+            let of = |at: usize| springs.get(at).map(|&spring| &list[spring]);
             let end =
                 |at: usize, which: usize| of(at).map_or(none, |spring| row_of(spring.ends[which]));
             let numbers = |number: &dyn Fn(&Spring) -> f32, without: f32| {
@@ -48,16 +51,20 @@ impl ListSweep {
                 compliance: numbers(&|spring| spring.compliance, f32::INFINITY),
             }
         };
-        let colours = springs
-            .colours
-            .iter()
-            .map(|colour| &springs.springs[colour.clone()]);
-        let packets = colours
-            .flat_map(|colour| colour.chunks(SPRINGS))
-            .map(packet);
+        let mut is_solved = vec![false; springs.springs.len()];
+        for edge in springs.threads.iter().flat_map(|thread| &thread.edges) {
+            is_solved[*edge as usize] = true;
+        }
+        let mut packets = Vec::new();
+        for colour in &springs.colours {
+            let swept: Vec<usize> = colour.clone().filter(|at| !is_solved[*at]).collect();
+            let each = swept.chunks(SPRINGS);
+            packets.extend(each.map(|swept| packet(swept, &springs.springs)));
+        }
         Self {
             springs: springs.clone(),
-            packets: packets.collect(),
+            packets: packets.into(),
+            threads: Bundles::new(springs, row_of, none),
             layout,
             inverse_dt2: 0.0,
             rows: vec![Row::default(); layout.blocks() * LANES + 1],
@@ -136,6 +143,8 @@ impl Sweep for ListSweep {
         let kernels = motion.kernels;
         self.load(blocks);
         (kernels.relax_packets)(&mut self.rows, &self.packets, self.inverse_dt2);
+        self.threads
+            .solve(&mut self.rows, self.inverse_dt2, kernels);
         self.store(blocks);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];

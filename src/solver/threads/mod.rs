@@ -1,5 +1,6 @@
-//! Threads of a grid solved exactly.
+//! Threads of a grid, and of a mesh, solved exactly.
 
+mod bundle;
 mod down;
 mod link;
 mod rows;
@@ -14,6 +15,7 @@ use super::{
 };
 use crate::cloth::{Block, ClothGrid, Compliances, Layout};
 
+pub(super) use bundle::{Bundles, Solved, Step, bundle_backward, bundle_forward};
 pub(super) use down::{
     Pull, clear, column_backward, column_forward, column_heads, left_backward, left_forward,
     left_heads, right_backward, right_forward,
