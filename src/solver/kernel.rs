@@ -9,10 +9,11 @@
 //! spring at 2.8 GHz. Memory is no limit: a sub-step reads and writes each block of 256 bytes once, 32 bytes a
 //! particle, since all stages follow each other down the rows while these are in the first cache.
 
+use bevy::math::Vec4;
 use multiversion::{inherit_target, multiversion};
 
 use super::{
-    packet::{Packet, Row, relax_packets},
+    packet::{Packet, Row, relax_packets, relax_packets_back, relax_packets_there},
     predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
     threads::{
@@ -332,10 +333,12 @@ kernels! {
     solve_turned(unknowns: &mut [[Rows; 3]], springs: usize),
     turn_back(unknowns: &[[Rows; 3]], terms: &mut [[Lanes; 3]], strip: usize),
     pull_row(row: &mut [Block], ways: &mut [[Lanes; 3]], multipliers: &[[Lanes; 3]]),
-    bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], solved: &mut [Solved], inverse_weight: f32),
-    bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], solved: &[Solved]),
+    bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], inverse_weight: f32),
+    bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),
     commit(row: &mut [Block], farthest: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
+    relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], inverse_dt2: f32),
+    relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &[Vec4], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),
     bend_across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),

@@ -5,13 +5,13 @@
 //! and two divisions for eight. What one pivot waits for of the one before is a division and three multiplications: some 25
 //! cycles for eight springs, while the particles of the next are on their way.
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use bevy::math::{Mat4, Vec4};
 
 use super::link::{HOLD, terms};
 use crate::{
-    cloth::{LANES, Lanes, SpringList, Thread},
+    cloth::{LANES, Lanes, Spring, SpringList},
     solver::{kernel::Kernels, packet::Row},
 };
 
@@ -29,6 +29,27 @@ pub(crate) struct Step {
     compliance: Lanes,
     /// 0, or infinity where there is no spring (1/kg).
     hold: Lanes,
+}
+
+impl Step {
+    /// No springs, to row `none`.
+    fn none(none: u32) -> Self {
+        Self {
+            to: [none; LANES],
+            rest: [1.0; LANES],
+            inverse_rest: [1.0; LANES],
+            compliance: [0.0; LANES],
+            hold: [f32::INFINITY; LANES],
+        }
+    }
+
+    fn set(&mut self, lane: usize, to: u32, spring: &Spring) {
+        self.to[lane] = to;
+        self.rest[lane] = spring.rest_length;
+        self.inverse_rest[lane] = 1.0 / spring.rest_length;
+        self.compliance[lane] = spring.compliance;
+        self.hold[lane] = HOLD;
+    }
 }
 
 /// What is known of a step between the forward and the backward pass.
@@ -57,76 +78,83 @@ struct Bundle {
     /// The rows of the particles that they begin at.
     heads: [u32; LANES],
     /// As many as the longest has springs.
-    steps: Vec<Step>,
+    steps: Range<usize>,
 }
 
 /// All threads of a list of springs, colour by colour.
 #[derive(Debug, Default, Clone)]
 pub(in crate::solver) struct Bundles {
-    all: Arc<[Bundle]>,
-    /// Room for the longest.
+    bundles: Arc<[Bundle]>,
+    steps: Arc<[Step]>,
+    /// What the springs of each step have pulled with on the way there: their multipliers (kg).
+    pulled: Vec<Lanes>,
+    /// Of one bundle.
     solved: Vec<Solved>,
 }
 
 impl Bundles {
     /// Of the threads in `list`. `row_of` says in which row a particle is; in row `none` there is no particle.
     pub fn new(list: &SpringList, row_of: impl Fn(u32) -> u32, none: u32) -> Self {
-        let bundle = |threads: &[Thread]| {
-            let mut at = threads.iter().map(|thread| thread.first);
-            let mut at: [u32; LANES] = std::array::from_fn(|_| at.next().unwrap_or(u32::MAX));
-            let row = |particle: u32| if particle == u32::MAX { none } else { row_of(particle) };
-            let heads = at.map(row);
-            let steps = (0..threads.iter().map(|thread| thread.edges.len()).max().unwrap_or(0)).map(|index| {
-                let mut step = Step {
-                    to: [none; LANES],
-                    rest: [1.0; LANES],
-                    inverse_rest: [1.0; LANES],
-                    compliance: [0.0; LANES],
-                    hold: [f32::INFINITY; LANES],
-                };
-                for (lane, thread) in threads.iter().enumerate() {
-                    let Some(&edge) = thread.edges.get(index) else {
-                        continue;
-                    };
-                    let spring = &list.springs[edge as usize];
+        let (mut bundles, mut steps) = (Vec::new(), Vec::new());
+        let colours = list.threads.colours.iter();
+        for threads in colours.flat_map(|colour| colour.chunks(LANES)) {
+            let begin = steps.len();
+            let mut heads = [none; LANES];
+            for (lane, thread) in threads.iter().enumerate() {
+                let mut at = thread.first;
+                heads[lane] = row_of(at);
+                // In a colour the longest are first, but that is not relied on.
+                let missing = (begin + thread.edges.len()).saturating_sub(steps.len());
+                steps.extend(std::iter::repeat_n(Step::none(none), missing));
+                for (edge, step) in thread.edges.iter().zip(&mut steps[begin..]) {
+                    let spring = &list.springs[*edge as usize];
                     let [a, b] = spring.ends;
-                    at[lane] = if a == at[lane] { b } else { a };
-                    step.to[lane] = row_of(at[lane]);
-                    step.rest[lane] = spring.rest_length;
-                    step.inverse_rest[lane] = 1.0 / spring.rest_length;
-                    step.compliance[lane] = spring.compliance;
-                    step.hold[lane] = HOLD;
+                    at = if a == at { b } else { a };
+                    step.set(lane, row_of(at), spring);
                 }
-                step
+            }
+            bundles.push(Bundle {
+                heads,
+                steps: begin..steps.len(),
             });
-            Bundle { heads, steps: steps.collect() }
-        };
-        let all: Arc<[Bundle]> = list
-            .threads
-            .colours
-            .iter()
-            .rev()
-            .flat_map(|threads| threads.chunks(LANES))
-            .map(bundle)
-            .collect();
-        let longest = all.iter().map(|bundle| bundle.steps.len()).max();
+        }
+        let longest = bundles.iter().map(|bundle| bundle.steps.len()).max();
         Self {
-            all,
+            bundles: bundles.into(),
+            pulled: vec![[0.0; LANES]; steps.len()],
+            steps: steps.into(),
             solved: vec![Solved::NONE; longest.unwrap_or(0)],
         }
     }
 
     /// Whether there is no thread.
     pub fn is_empty(&self) -> bool {
-        self.all.is_empty()
+        self.bundles.is_empty()
     }
 
     /// Solves thread after thread. `inverse_weight` is 1/(c Δt²) (1/s²).
-    pub fn solve(&mut self, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
-        for Bundle { heads, steps } in self.all.iter() {
-            (kernels.bundle_forward)(rows, heads, steps, &mut self.solved, inverse_weight);
-            (kernels.bundle_backward)(rows, heads, steps, &self.solved);
+    pub fn solve_there(&mut self, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+        self.pulled.fill([0.0; LANES]);
+        for index in 0..self.bundles.len() {
+            self.solve(index, rows, inverse_weight, kernels);
         }
+    }
+
+    /// The same from the last to the first, after [`solve_there`](Self::solve_there): springs that give go on from what they
+    /// have pulled with.
+    pub fn solve_back(&mut self, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+        for index in (0..self.bundles.len()).rev() {
+            self.solve(index, rows, inverse_weight, kernels);
+        }
+    }
+
+    fn solve(&mut self, index: usize, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+        let Bundle { heads, steps } = &self.bundles[index];
+        let pulled = &mut self.pulled[steps.clone()];
+        let steps = &self.steps[steps.clone()];
+        let solved = &mut self.solved;
+        (kernels.bundle_forward)(rows, heads, steps, pulled, solved, inverse_weight);
+        (kernels.bundle_backward)(rows, heads, steps, pulled, solved);
     }
 }
 
@@ -160,6 +188,7 @@ pub(crate) fn bundle_forward(
     rows: &[Row],
     heads: &[u32; LANES],
     steps: &[Step],
+    pulled: &[Lanes],
     solved: &mut [Solved],
     inverse_weight: f32,
 ) {
@@ -167,7 +196,7 @@ pub(crate) fn bundle_forward(
     let mut from = heads;
     let mut weight_a = heads.map(|head| rows[head as usize].place.w);
     let mut previous = Solved::NONE;
-    for (step, solved) in steps.iter().zip(solved) {
+    for ((step, pulled), solved) in steps.iter().zip(pulled).zip(solved) {
         let offsets: [Vec4; LANES] = std::array::from_fn(|l| {
             let (a, b) = (&rows[from[l] as usize], &rows[step.to[l] as usize]);
             let offset = (b.place - a.place) + (b.moved - a.moved);
@@ -180,6 +209,8 @@ pub(crate) fn bundle_forward(
             let both = weight_a[l] + weight[l];
             let softness = step.compliance[l] * inverse_weight;
             let [diagonal, right] = terms([x, y, z], both, softness, step.hold[l], step.rest[l]);
+            // What gives has pulled already.
+            let right = right - softness * (x * x + y * y + z * z) * pulled[l];
             let before = &previous.way;
             let along = before[0][l] * x + before[1][l] * y + before[2][l] * z;
             let off = -weight_a[l] * along;
@@ -201,24 +232,26 @@ pub(crate) fn bundle_backward(
     rows: &mut [Row],
     heads: &[u32; LANES],
     steps: &[Step],
+    pulled: &mut [Lanes],
     solved: &[Solved],
 ) {
     let mut next = [[0.0; LANES]; 3];
-    for (step, link) in steps.iter().zip(solved).rev() {
-        let mut change = [[0.0; LANES]; 3];
+    for ((step, pulled), link) in steps.iter().zip(pulled).zip(solved).rev() {
+        let (mut own, mut change) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         for l in 0..LANES {
-            let way = [0, 1, 2].map(|axis| link.way[axis][l]);
-            let along = way[0] * next[0][l] + way[1] * next[1][l] + way[2] * next[2][l];
+            let [x, y, z] = [link.way[0][l], link.way[1][l], link.way[2][l]];
+            let along = x * next[0][l] + y * next[1][l] + z * next[2][l];
             let multiplier = link.right[l] + link.pivot[l] * (link.weight[l] * along);
-            for axis in 0..3 {
-                let own = way[axis] * multiplier;
-                change[axis][l] = link.weight[l] * (own - next[axis][l]);
-                next[axis][l] = own;
-            }
+            pulled[l] += multiplier;
+            [own[0][l], own[1][l], own[2][l]] = [x * multiplier, y * multiplier, z * multiplier];
+            change[0][l] = link.weight[l] * (own[0][l] - next[0][l]);
+            change[1][l] = link.weight[l] * (own[1][l] - next[1][l]);
+            change[2][l] = link.weight[l] * (own[2][l] - next[2][l]);
         }
         for (to, change) in step.to.iter().zip(vectors(&change)) {
             rows[*to as usize].moved += change;
         }
+        next = own;
     }
     for (head, pull) in heads.iter().zip(vectors(&next)) {
         let row = &mut rows[*head as usize];
