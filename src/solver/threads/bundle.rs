@@ -5,6 +5,9 @@
 //! and two divisions for eight. What one pivot waits for of the one before is a division and three multiplications: some 25
 //! cycles for eight springs, while the particles of the next are on their way.
 
+#[cfg(test)]
+mod tests;
+
 use std::{ops::Range, sync::Arc};
 
 use bevy::math::{Mat4, Vec4};

@@ -131,7 +131,7 @@ pub(super) fn terms([x, y, z]: [f32; 3], weight: f32, softness: f32, hold: f32, 
     let least = REGULARISATION * weight;
     let soft = if soft > least { soft } else { least };
     // Halley's step for the root, as in a sweep.
-    let right = -rest * p * (p - 1.0) / (1.5 * p + 0.5);
+    let right = -rest * p * ((p - 1.0) / (1.5 * p + 0.5));
     [weight * p + (soft + hold), right]
 }
 
