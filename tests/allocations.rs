@@ -115,8 +115,34 @@ fn a_step_does_not_allocate() {
         );
         assert!(pushed > 0.0, "the ball was touched");
     }
+    a_mesh_does_not_allocate();
     attachments_and_what_is_animated_allocate_nothing_more();
     cloths_made_alike_share_all_but_their_particles();
+}
+
+fn a_mesh_does_not_allocate() {
+    let material = ClothMaterial::COTTON;
+    let mesh = meshes::irregular(1.0, 1.0, 1.0 / 30.0, 0.3);
+    let surface = Surface::of_mesh(&mesh, 0.0, Vec3::ONE).expect("a surface");
+    let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
+    particles.set_inverse_mass(0, 0.0).expect("it exists");
+    let springs = Springs::of_surface(&surface, &material);
+    let mut solver = Solver::of_surface(&surface, &springs);
+    let step = TickStep {
+        acceleration: Vec3::NEG_Y * 9.81,
+        ..TickStep::default()
+    };
+    let mut ticks = |count: u32| {
+        for _ in 0..count {
+            solver.advance(&mut particles, step, &[], |_, _| false);
+        }
+    };
+    // The first tick makes room.
+    ticks(1);
+    let region = Region::new(ALLOCATOR);
+    ticks(30);
+    let change = region.change();
+    assert_eq!((change.allocations, change.reallocations), (0, 0));
 }
 
 /// Allocations of 20 ticks of an app on one thread: Bevy's own, whatever they are, and ours.
@@ -167,15 +193,15 @@ fn attachments_and_what_is_animated_allocate_nothing_more() {
 /// prints them.
 ///
 /// A particle has 32 bytes of state in blocks that may be a tenth empty, and as much again to see whether it rests; for tethers
-/// 6 to 24, the more the less blocks have pins in common; where a list of springs is swept 32 more. That is 90 to 140 in all, and
-/// 8 kB for the cloth.
+/// 6 to 24, the more the less blocks have pins in common; for a motion of second order 48. Where a list of springs is solved 32
+/// more, and some 30 for what they have pulled with. That is 130 to 230 in all, and 16 kB for the cloth.
 fn cloths_made_alike_share_all_but_their_particles() {
     let mesh = meshes::irregular(1.0, 1.0, 1.0 / 30.0, 0.3);
     let upper_edge = Pins::new([Pin::at_rest(|place| place.y > -1.0e-3)]);
     let of_mesh = Cloth::triangles(mesh.positions, mesh.triangles);
     for (name, cloth, pins, a_particle) in [
-        ("grid", Cloth::new(31, 31, 1.0 / 30.0), Pins::default(), 90),
-        ("mesh", of_mesh, upper_edge, 140),
+        ("grid", Cloth::new(31, 31, 1.0 / 30.0), Pins::default(), 130),
+        ("mesh", of_mesh, upper_edge, 230),
     ] {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
@@ -198,7 +224,7 @@ fn cloths_made_alike_share_all_but_their_particles() {
             "a {name} of 961 particles: {first} bytes, and {other} each of a hundred more: {:.0} a particle",
             other as f64 / 961.0
         );
-        assert!(other < 961 * a_particle + 8192, "{name}: {other}");
+        assert!(other < 961 * a_particle + 16_384, "{name}: {other}");
         assert!(first > other, "{name}: {first} of the first");
     }
 }

@@ -17,9 +17,10 @@ use super::{
     predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
     threads::{
-        Family, Link, Pull, Rows, Solved, Step, bundle_backward, bundle_forward, clear, column_backward, column_forward, column_heads,
-        left_backward, left_forward, left_heads, pull_row, right_backward, right_forward,
-        row_equations, solve_turned, turn_back, turn_terms,
+        Family, Link, Pull, Rows, Solved, Step, bundle_backward, bundle_forward, clear,
+        column_backward, column_forward, column_heads, left_backward, left_forward, left_heads,
+        pull_row, right_backward, right_forward, row_equations, solve_turned, turn_back,
+        turn_terms,
     },
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, W, X, Y, Z};

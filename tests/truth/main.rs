@@ -5,6 +5,7 @@ mod catenary;
 mod compliance;
 mod distance;
 mod energy;
+mod mesh;
 mod precision;
 mod scenes;
 mod strip;

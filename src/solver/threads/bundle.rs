@@ -206,7 +206,11 @@ pub(crate) fn bundle_forward(
             Vec4::select(is_weight, b.place, offset)
         });
         let [x, y, z, weight] = turned(&offsets);
-        let mut link = Solved { way: [x, y, z], weight, ..Solved::NONE };
+        let mut link = Solved {
+            way: [x, y, z],
+            weight,
+            ..Solved::NONE
+        };
         for l in 0..LANES {
             let [x, y, z] = [0, 1, 2].map(|axis| link.way[axis][l] * step.inverse_rest[l]);
             let both = weight_a[l] + weight[l];

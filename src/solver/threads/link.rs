@@ -125,13 +125,20 @@ pub(super) struct Equation {
 
 /// Diagonal (1/kg) and right side (m) of a spring with this way, between particles of these inverse masses together (1/kg).
 #[inline(always)]
-pub(super) fn terms([x, y, z]: [f32; 3], weight: f32, softness: f32, hold: f32, rest: f32) -> [f32; 2] {
+pub(super) fn terms(
+    [x, y, z]: [f32; 3],
+    weight: f32,
+    softness: f32,
+    hold: f32,
+    rest: f32,
+) -> [f32; 2] {
     let p = x * x + y * y + z * z;
     let soft = softness * p;
     let least = REGULARISATION * weight;
     let soft = if soft > least { soft } else { least };
-    // Halley's step for the root, as in a sweep.
+    // Halley's step for the root, as in a sweep. Between two pins, however far apart, nothing is to be done.
     let right = -rest * p * ((p - 1.0) / (1.5 * p + 0.5));
+    let right = if weight > 0.0 { right } else { 0.0 };
     [weight * p + (soft + hold), right]
 }
 
@@ -150,7 +157,8 @@ pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equ
         let z = ((b[Z + l] - a[Z + l]) + (b[DZ + l] - a[DZ + l])) * family.inverse_rest;
         let weight = a[W + l] + b[W + l];
         [row.way[0][l], row.way[1][l], row.way[2][l]] = [x, y, z];
-        [row.diagonal[l], row.right[l]] = terms([x, y, z], weight, softness[l], hold[l], family.rest);
+        [row.diagonal[l], row.right[l]] =
+            terms([x, y, z], weight, softness[l], hold[l], family.rest);
     }
     row
 }

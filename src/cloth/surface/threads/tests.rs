@@ -89,10 +89,20 @@ fn threads_of_a_grid_are_its_rows_columns_and_diagonals() {
         let edges = edges(&surface);
         let way = |edge: &u32| {
             let [a, b] = edges[*edge as usize].map(|end| rest[end as usize]);
-            (b - a) * if a.y + 0.1 * a.x > b.y + 0.1 * b.x { 1.0 } else { -1.0 }
+            (b - a)
+                * if a.y + 0.1 * a.x > b.y + 0.1 * b.x {
+                    1.0
+                } else {
+                    -1.0
+                }
         };
         let first = way(&thread.edges[0]);
-        assert!(thread.edges.iter().all(|edge| way(edge).distance(first) < 1.0e-5));
+        assert!(
+            thread
+                .edges
+                .iter()
+                .all(|edge| way(edge).distance(first) < 1.0e-5)
+        );
     }
 }
 
@@ -102,7 +112,10 @@ fn nearly_all_edges_of_an_irregular_mesh_are_on_threads() {
     for (part, part_on_threads) in [(0.05, 98), (0.1, 95), (0.2, 88), (0.3, 75)] {
         let surface = grid(23, 17, false, jittered(part));
         let (all, on_threads) = (edges(&surface).len(), check(&surface));
-        assert!(on_threads * 100 > all * part_on_threads, "{on_threads} of {all} at {part}");
+        assert!(
+            on_threads * 100 > all * part_on_threads,
+            "{on_threads} of {all} at {part}"
+        );
         let again = grid(23, 17, false, jittered(part));
         assert_eq!(surface.threads(), again.threads());
     }

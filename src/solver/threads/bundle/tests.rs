@@ -93,7 +93,8 @@ fn solve_thread(
             (matrix[i][i + 1], matrix[i + 1][i]) = (off, off);
         }
         let rest = f64::from(spring(i).rest_length);
-        right[i] = -rest * p * (p - 1.0) / (1.5 * p + 0.5) - soft * pulled[thread.edges[i] as usize];
+        right[i] =
+            -rest * p * (p - 1.0) / (1.5 * p + 0.5) - soft * pulled[thread.edges[i] as usize];
     }
     for (i, multiplier) in solved(matrix, right).into_iter().enumerate() {
         let [a, b] = [particles[i], particles[i + 1]];
@@ -151,10 +152,11 @@ fn threads_without_a_solution_are_no_nan() {
     let list = threads_of(&springs);
     let kernels = SimdLevel::Auto.kernels();
     type Case = fn(usize, Vec3) -> Vec4;
-    let cases: [Case; 5] = [
+    let cases: [Case; 6] = [
         |index, place| place.extend(if index.is_multiple_of(2) { 0.0 } else { 500.0 }),
         |_, place| place.extend(0.0),
         |_, place| (place * 1.01).extend(0.0),
+        |index, place| (place * 1.0e15).extend(if index < 40 { 0.0 } else { 500.0 }),
         |_, _| Vec4::new(0.3, 0.2, 0.1, 500.0),
         |_, _| Vec4::new(0.0, 0.0, 0.0, 500.0),
     ];
