@@ -35,7 +35,7 @@ pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
-pub(crate) use threads::{Thread, Threads};
+pub(crate) use threads::Threads;
 
 /// A cloth's surface at rest: its particles, the triangles between them, their areas, what is next to what. In the cloth's
 /// own frame, in metres, with the transform's scale multiplied in.

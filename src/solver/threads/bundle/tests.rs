@@ -4,7 +4,7 @@ use bevy::math::{DVec3, Vec3, Vec4};
 
 use super::{Bundles, Row};
 use crate::{
-    cloth::{ClothMaterial, ClothParticles, SpringList, SpringStorage, Springs, Surface, Thread},
+    cloth::{ClothMaterial, ClothParticles, SpringList, SpringStorage, Springs, Surface},
     solver::{
         SimdLevel, Solver, TickStep,
         methods::meshes,
@@ -59,7 +59,7 @@ fn crumpled(surface: &Surface, noise: f32) -> Vec<Row> {
 
 /// What one thread's springs do to displacements, in f64, by the equations of [`super`], after they have pulled with `pulled`.
 fn solve_thread(
-    thread: &Thread,
+    (first, edges): (u32, &[u32]),
     list: &SpringList,
     rows: &[Row],
     moved: &mut [DVec3],
@@ -69,15 +69,15 @@ fn solve_thread(
         rows[at as usize].place.truncate().as_dvec3() + moved[at as usize]
     };
     let weight = |at: u32| f64::from(rows[at as usize].place.w);
-    let n = thread.edges.len();
-    let mut particles = vec![thread.first];
-    for edge in &thread.edges {
+    let n = edges.len();
+    let mut particles = vec![first];
+    for edge in edges {
         let [a, b] = list.springs[*edge as usize].ends;
         let at = particles[particles.len() - 1];
         particles.push(if at == a { b } else { a });
     }
     let (mut matrix, mut right) = (vec![vec![0.0; n]; n], vec![0.0; n]);
-    let spring = |i: usize| &list.springs[thread.edges[i] as usize];
+    let spring = |i: usize| &list.springs[edges[i] as usize];
     let way = |i: usize| {
         let [a, b] = [particles[i], particles[i + 1]].map(|at| place(at, moved));
         (b - a) / f64::from(spring(i).rest_length)
@@ -93,14 +93,13 @@ fn solve_thread(
             (matrix[i][i + 1], matrix[i + 1][i]) = (off, off);
         }
         let rest = f64::from(spring(i).rest_length);
-        right[i] =
-            -rest * p * (p - 1.0) / (1.5 * p + 0.5) - soft * pulled[thread.edges[i] as usize];
+        right[i] = -rest * p * (p - 1.0) / (1.5 * p + 0.5) - soft * pulled[edges[i] as usize];
     }
     for (i, multiplier) in solved(matrix, right).into_iter().enumerate() {
         let [a, b] = [particles[i], particles[i + 1]];
         moved[a as usize] -= weight(a) * multiplier * ways[i];
         moved[b as usize] += weight(b) * multiplier * ways[i];
-        pulled[thread.edges[i] as usize] += multiplier;
+        pulled[edges[i] as usize] += multiplier;
     }
 }
 
@@ -117,9 +116,12 @@ fn threads_are_solved_as_by_elimination_in_f64() {
             .map(|row| row.moved.truncate().as_dvec3())
             .collect();
         let mut pulled = vec![0.0; list.springs.len()];
-        let all: Vec<&Thread> = list.threads.iter().collect();
+        let threads = list.threads.iter();
+        let all: Vec<(u32, &[u32])> = threads
+            .map(|thread| (thread.first, thread.edges.as_slice()))
+            .collect();
         for thread in all.iter().chain(all.iter().rev()) {
-            solve_thread(thread, list, &start, &mut moved, &mut pulled);
+            solve_thread(*thread, list, &start, &mut moved, &mut pulled);
         }
         let results = [SimdLevel::Auto, SimdLevel::Baseline].map(|level| {
             let kernels = level.kernels();
