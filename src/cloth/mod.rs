@@ -26,4 +26,4 @@ pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X
 pub(crate) use particles::{Earlier, StepKind};
 pub(crate) use presence::ClothPresence;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};
-pub(crate) use surface::{Flat, Graph, ShortestPaths};
+pub(crate) use surface::{Flat, Graph, Link, ShortestPaths, Threads};

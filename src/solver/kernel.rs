@@ -9,10 +9,11 @@
 //! spring at 2.8 GHz. Memory is no limit: a sub-step reads and writes each block of 256 bytes once, 32 bytes a
 //! particle, since all stages follow each other down the rows while these are in the first cache.
 
+use bevy::math::Vec4;
 use multiversion::{inherit_target, multiversion};
 
 use super::{
-    packet::{Packet, Row, relax_packets},
+    packet::{Packet, Row, relax_packets, relax_packets_back, relax_packets_there},
     predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
     thread::{
@@ -20,9 +21,10 @@ use super::{
         thread_moments, thread_rows,
     },
     threads::{
-        Family, Link, Pull, Rows, clear, column_backward, column_forward, column_heads,
-        left_backward, left_forward, left_heads, measure_given, pull_row, right_backward,
-        right_forward, row_equations, solve_turned, turn_back, turn_terms,
+        Family, Link, Pull, Rows, Solved, Step, bundle_backward, bundle_forward, clear,
+        column_backward, column_forward, column_heads, left_backward, left_forward, left_heads,
+        measure_given, pull_row, right_backward, right_forward, row_equations, solve_turned,
+        turn_back, turn_terms,
     },
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, W, X, Y, Z};
@@ -316,8 +318,12 @@ kernels! {
     turn_back(unknowns: &[[Rows; 3]], terms: &mut [[Lanes; 3]], strip: usize),
     measure_given(pulls: &[Pull], family: &Family, largest: &mut Lanes),
     pull_row(row: &mut [Block], ways: &mut [[Lanes; 3]], multipliers: &[[Lanes; 3]]),
+    bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], inverse_weight: f32),
+    bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),
     commit(row: &mut [Block], farthest: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
+    relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], inverse_dt2: f32),
+    relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &[Vec4], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),
     diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run),

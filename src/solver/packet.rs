@@ -33,7 +33,7 @@ pub(super) struct Packet {
     pub to: [u32; SPRINGS],
     /// Squared length at rest (m²).
     pub rest_square: Vec4,
-    /// m/N; infinite where there is no spring.
+    /// m/N; 0 where there is no spring, between no particles.
     pub compliance: Vec4,
 }
 
@@ -41,26 +41,64 @@ pub(super) struct Packet {
 #[inline(always)]
 pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32) {
     for packet in packets {
-        let a = packet.from.map(|end| rows[end as usize]);
-        let b = packet.to.map(|end| rows[end as usize]);
-        let offsets: [Vec4; SPRINGS] =
-            std::array::from_fn(|at| (b[at].place - a[at].place) + (b[at].moved - a[at].moved));
-        let [x, y, z] = coordinates(offsets);
-        let (weight_a, weight_b) = (weights(&a), weights(&b));
-        let q = x * x + y * y + z * z;
-        let r2 = packet.rest_square;
-        let softness = packet.compliance * inverse_dt2 + MIN_SOFTNESS;
-        let weight = weight_a + weight_b + softness;
-        let share = (q - r2) / ((1.5 * q + 0.5 * r2) * weight);
-        let share_a = (share * weight_a).to_array();
-        let share_b = (share * weight_b).to_array();
-        for at in 0..SPRINGS {
-            // What is beside a displacement stays 0.
-            let offset = offsets[at] * Vec4::new(1.0, 1.0, 1.0, 0.0);
-            rows[packet.from[at] as usize].moved = a[at].moved + offset * share_a[at];
-            rows[packet.to[at] as usize].moved = b[at].moved - offset * share_b[at];
-        }
+        relax(rows, packet, inverse_dt2, None);
     }
+}
+
+/// The same on the way there, of which the way back is to know what each spring has pulled with, as a part of its length.
+#[inline(always)]
+pub(super) fn relax_packets_there(
+    rows: &mut [Row],
+    packets: &[Packet],
+    pulls: &mut [Vec4],
+    inverse_dt2: f32,
+) {
+    for (packet, pull) in packets.iter().zip(pulls) {
+        *pull = relax(rows, packet, inverse_dt2, None);
+    }
+}
+
+/// The way back: the last packet first. A spring that gives has pulled already, which it does not do twice.
+#[inline(always)]
+pub(super) fn relax_packets_back(
+    rows: &mut [Row],
+    packets: &[Packet],
+    pulls: &[Vec4],
+    inverse_dt2: f32,
+) {
+    for (packet, pull) in packets.iter().zip(pulls).rev() {
+        relax(rows, packet, inverse_dt2, Some(*pull));
+    }
+}
+
+/// Moves the ends of a packet's springs. Returns what they pull with: what moves their ends over inverse mass and length (kg).
+#[inline(always)]
+fn relax(rows: &mut [Row], packet: &Packet, inverse_dt2: f32, pulled: Option<Vec4>) -> Vec4 {
+    let a = packet.from.map(|end| rows[end as usize]);
+    let b = packet.to.map(|end| rows[end as usize]);
+    let offsets: [Vec4; SPRINGS] =
+        std::array::from_fn(|at| (b[at].place - a[at].place) + (b[at].moved - a[at].moved));
+    let [x, y, z] = coordinates(offsets);
+    let (weight_a, weight_b) = (weights(&a), weights(&b));
+    let q = x * x + y * y + z * z;
+    let r2 = packet.rest_square;
+    let softness = packet.compliance * inverse_dt2 + MIN_SOFTNESS;
+    let weight = weight_a + weight_b + softness;
+    let scale = 1.5 * q + 0.5 * r2;
+    let beyond = match pulled {
+        None => q - r2,
+        Some(pulled) => (q - r2) - softness * pulled * scale,
+    };
+    let share = beyond / (scale * weight);
+    let share_a = (share * weight_a).to_array();
+    let share_b = (share * weight_b).to_array();
+    for at in 0..SPRINGS {
+        // What is beside a displacement stays 0.
+        let offset = offsets[at] * Vec4::new(1.0, 1.0, 1.0, 0.0);
+        rows[packet.from[at] as usize].moved = a[at].moved + offset * share_a[at];
+        rows[packet.to[at] as usize].moved = b[at].moved - offset * share_b[at];
+    }
+    share
 }
 
 /// The three coordinates of four vectors.

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use super::{
     Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
     bands::with_threads_awake,
@@ -72,7 +74,12 @@ impl Solver {
                 let sweep = Box::new(GridSweep::new(grid, compliances));
                 Self::of(particles.layout(), sweep)
             }
-            _ => Self::new(springs, particles),
+            SpringStorage::List(list) => {
+                let list = Arc::new(list.without_threads());
+                let sweep = Box::new(ListSweep::new(&list, particles.layout()));
+                Self::of(particles.layout(), sweep)
+            }
+            SpringStorage::Grid(..) => Self::new(springs, particles),
         }
     }
 

@@ -10,6 +10,7 @@ mod drops;
 mod energy;
 #[path = "../../examples/shared/exact.rs"]
 mod exact;
+mod mesh;
 #[path = "../../examples/shared/modes.rs"]
 mod modes;
 mod motion;

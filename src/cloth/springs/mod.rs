@@ -8,7 +8,7 @@ use std::{ops::Range, sync::Arc};
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
-use super::{ClothError, ClothGrid, ClothMaterial, Layout, Surface};
+use super::{ClothError, ClothGrid, ClothMaterial, Layout, Link, Surface, Threads};
 
 pub use spring::{Spring, SpringKind};
 
@@ -44,12 +44,23 @@ impl Default for SpringStorage {
 pub(crate) struct SpringList {
     pub springs: Vec<Spring>,
     pub colours: Vec<Range<usize>>,
+    /// Those that are solved together; the others are swept colour by colour before.
+    pub threads: Threads,
 }
 
 impl SpringList {
+    /// The same springs, all swept one by one.
+    pub fn without_threads(&self) -> Self {
+        Self {
+            springs: self.springs.clone(),
+            colours: self.colours.clone(),
+            threads: Threads::default(),
+        }
+    }
+
     /// Adds springs between `particles` particles, in colours of their own. Each gets the first that neither of its ends
-    /// has yet.
-    fn add(&mut self, springs: &[Spring], particles: usize) {
+    /// has yet. Returns the place of each.
+    fn add(&mut self, springs: &[Spring], particles: usize) -> Vec<u32> {
         let mut taken: Vec<u64> = vec![0; particles];
         let mut colour_of = Vec::with_capacity(springs.len());
         for (index, spring) in springs.iter().enumerate() {
@@ -66,12 +77,17 @@ impl SpringList {
             colour_of.push((colour, index));
         }
         colour_of.sort_unstable();
+        let mut places = vec![0; springs.len()];
+        for (place, (_, index)) in (self.springs.len()..).zip(&colour_of) {
+            places[*index] = place as u32;
+        }
         for group in colour_of.chunk_by(|(a, _), (b, _)| a == b) {
             let start = self.springs.len();
             self.springs
                 .extend(group.iter().map(|&(_, index)| springs[index]));
             self.colours.push(start..self.springs.len());
         }
+        places
     }
 }
 
@@ -189,7 +205,7 @@ impl Springs {
         };
         let mut list = SpringList::default();
         // Those along edges come last: what is stiffer has the last word.
-        for kind in [SpringKind::Bend, SpringKind::Structural] {
+        let [_, places] = [SpringKind::Bend, SpringKind::Structural].map(|kind| {
             let links = surface.links().iter().filter(|link| link.kind == kind);
             let springs: Vec<Spring> = links
                 .map(|link| Spring {
@@ -200,7 +216,12 @@ impl Springs {
                 })
                 .filter(|spring| spring.compliance.is_finite())
                 .collect();
-            list.add(&springs, surface.len());
+            list.add(&springs, surface.len())
+        });
+        let is_edge = |link: &&Link| link.kind == SpringKind::Structural;
+        // Whoever gives no stretch springs has no threads.
+        if places.len() == surface.links().iter().filter(is_edge).count() {
+            list.threads = surface.threads().renamed(|edge| places[edge as usize]);
         }
         Self {
             storage: SpringStorage::List(Arc::new(list)),

@@ -45,6 +45,7 @@ impl Surface {
             uvs: OnceLock::new(),
             faces: OnceLock::new(),
             graph: OnceLock::new(),
+            threads: OnceLock::new(),
             flat: OnceLock::new(),
         }
     }

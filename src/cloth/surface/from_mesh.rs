@@ -273,6 +273,7 @@ impl Welded {
             uvs: OnceLock::from(uvs),
             faces: OnceLock::from(faces),
             graph: OnceLock::new(),
+            threads: OnceLock::new(),
             flat: OnceLock::new(),
         }
     }

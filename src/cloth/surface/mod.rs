@@ -17,6 +17,7 @@ mod paths;
 mod springs;
 #[cfg(test)]
 mod tests;
+mod threads;
 mod triangles;
 mod weld;
 
@@ -34,6 +35,7 @@ pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
+pub(crate) use threads::Threads;
 
 /// A cloth's surface at rest: its particles, the triangles between them, their areas, what is next to what. In the cloth's
 /// own frame, in metres, with the transform's scale multiplied in.
@@ -60,6 +62,7 @@ pub struct Surface {
     uvs: OnceLock<Vec<Vec2>>,
     faces: OnceLock<Faces>,
     graph: OnceLock<Graph>,
+    threads: OnceLock<Threads>,
     flat: OnceLock<Option<Flat>>,
 }
 
@@ -241,6 +244,18 @@ impl Surface {
         })
     }
 
+    /// The threads of a mesh, along its structural links, which are numbered from the first of them.
+    pub(crate) fn threads(&self) -> &Threads {
+        self.threads.get_or_init(|| {
+            let links = self.links.iter();
+            let links = links.filter(|link| link.kind == SpringKind::Structural);
+            let edges: Vec<[u32; 2]> = links.map(|link| link.ends).collect();
+            Threads::trace(&edges, &self.rest, |particle| {
+                self.normal_of(particle as usize)
+            })
+        })
+    }
+
     /// Its plane, if it is flat and convex: then the shortest path between two particles is a straight line.
     pub(crate) fn flat(&self) -> Option<&Flat> {
         let flat = self.flat.get_or_init(|| match &self.grid {
@@ -275,6 +290,7 @@ impl Default for Surface {
             uvs: OnceLock::new(),
             faces: OnceLock::new(),
             graph: OnceLock::new(),
+            threads: OnceLock::new(),
             flat: OnceLock::new(),
         }
     }

@@ -3,7 +3,7 @@
 use crate::cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z};
 
 /// What keeps a spring between two pins from dividing by zero (1/kg).
-const HOLD: f32 = 1.0e-18;
+pub(super) const HOLD: f32 = 1.0e-18;
 
 /// ε: what is added to a thread that is rigid, as a part of its diagonal. Straight between two pins it would have no solution.
 const REGULARISATION: f32 = 1.0e-3;
@@ -131,9 +131,29 @@ pub(super) struct Equation {
 const FARTHEST: f32 = 1.0e4;
 
 #[inline(always)]
-fn clamped(way: f32) -> f32 {
+pub(super) fn clamped(way: f32) -> f32 {
     let way = if way > FARTHEST { FARTHEST } else { way };
     if way < -FARTHEST { -FARTHEST } else { way }
+}
+
+/// Diagonal (1/kg) and right side (m) of a spring with this way, between particles of these inverse masses together (1/kg).
+#[inline(always)]
+pub(super) fn terms(
+    [x, y, z]: [f32; 3],
+    weight: f32,
+    softness: f32,
+    hold: f32,
+    rest: f32,
+) -> [f32; 2] {
+    let p = x * x + y * y + z * z;
+    let soft = softness * p;
+    let off = if p > 1.0 { p - 1.0 } else { 1.0 - p };
+    let least = (REGULARISATION + STRAINED * off) * weight;
+    let soft = if soft > least { soft } else { least };
+    // Halley's step for the root, as in a sweep. Between two pins, however far apart, nothing is to be done.
+    let right = -rest * p * ((p - 1.0) / (1.5 * p + 0.5));
+    let right = if weight > 0.0 { right } else { 0.0 };
+    [weight * p + (soft + hold), right]
 }
 
 /// From views of the first and the second particles.
@@ -149,16 +169,10 @@ pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equ
         let x = clamped(((b[X + l] - a[X + l]) + (b[DX + l] - a[DX + l])) * family.inverse_rest);
         let y = clamped(((b[Y + l] - a[Y + l]) + (b[DY + l] - a[DY + l])) * family.inverse_rest);
         let z = clamped(((b[Z + l] - a[Z + l]) + (b[DZ + l] - a[DZ + l])) * family.inverse_rest);
-        let p = x * x + y * y + z * z;
         let weight = a[W + l] + b[W + l];
-        let soft = softness[l] * p;
-        let off = if p > 1.0 { p - 1.0 } else { 1.0 - p };
-        let least = (REGULARISATION + STRAINED * off) * weight;
-        let soft = if soft > least { soft } else { least };
         [row.way[0][l], row.way[1][l], row.way[2][l]] = [x, y, z];
-        row.diagonal[l] = weight * p + (soft + hold[l]);
-        // Halley's step for the root, as in a sweep.
-        row.right[l] = -family.rest * p * ((p - 1.0) / (1.5 * p + 0.5));
+        [row.diagonal[l], row.right[l]] =
+            terms([x, y, z], weight, softness[l], hold[l], family.rest);
     }
     row
 }

@@ -1,5 +1,7 @@
-//! Threads of a grid solved exactly.
+//! Threads of a grid, and of a mesh, solved exactly.
 
+mod bundle;
+mod bundles;
 mod down;
 mod link;
 mod rows;
@@ -14,6 +16,8 @@ use super::{
 };
 use crate::cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout};
 
+pub(super) use bundle::{Solved, Step, bundle_backward, bundle_forward};
+pub(super) use bundles::Bundles;
 pub(super) use down::{
     Pull, clear, column_backward, column_forward, column_heads, left_backward, left_forward,
     left_heads, right_backward, right_forward,

@@ -1,0 +1,186 @@
+//! Threads of a mesh: paths along its edges that go straight on, as rows, columns and diagonals of a grid do.
+//!
+//! What one spring pulls with reaches the others of its thread at once, since they are solved together. At each particle the
+//! edges that continue each other best are joined first; what is left over, or alone, is on no thread.
+//!
+//! "Straight on" is meant on the surface, unfolded there: edges are seen from the side that the surface faces at their
+//! particle, so that a line around a cylinder is straight.
+
+#[cfg(test)]
+mod tests;
+
+use bevy::math::{Vec2, Vec3};
+
+/// The cosine of the smallest angle between two edges that continue each other: 135°.
+const STRAIGHT: f32 = -std::f32::consts::FRAC_1_SQRT_2;
+
+/// As many colours as a particle's mask has bits.
+const MAX_COLOURS: u32 = 64;
+
+/// Stands for no edge.
+const NONE: u32 = u32::MAX;
+
+/// A path along edges that meets no particle twice.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Thread {
+    /// The particle that it begins at.
+    pub first: u32,
+    /// Two or more edges, or the springs along them.
+    pub edges: Vec<u32>,
+}
+
+/// The threads of a surface, sorted by colour: no two of one colour share a particle, so that they are solved side by side. In
+/// a colour longer ones are first.
+#[derive(Debug, Default, Clone, PartialEq, Eq)]
+pub(crate) struct Threads {
+    /// Colour by colour.
+    pub colours: Vec<Vec<Thread>>,
+}
+
+impl Threads {
+    /// Finds them along `edges`, between particles with these places at rest (m) and normals of length 1. No two edges have
+    /// the same ends.
+    pub fn trace(edges: &[[u32; 2]], rest: &[Vec3], normals: impl Fn(u32) -> Vec3) -> Self {
+        let next = continuations(edges, rest, normals);
+        let mut walk = Walk {
+            edges,
+            next: &next,
+            is_passed: vec![false; edges.len()],
+            seen: vec![NONE; rest.len()],
+            threads: Vec::new(),
+        };
+        // Open paths from their ends; what is left then is closed.
+        for edge in 0..edges.len() {
+            for end in 0..2 {
+                if next[edge][end] == NONE {
+                    walk.from(edge as u32, end);
+                }
+            }
+        }
+        for edge in 0..edges.len() {
+            walk.from(edge as u32, 0);
+        }
+        let mut threads = walk.threads;
+        threads.retain(|thread| thread.edges.len() > 1);
+        Self {
+            colours: colours(threads, edges, rest.len()),
+        }
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Thread> {
+        self.colours.iter().flatten()
+    }
+
+    /// The same with other numbers for the edges.
+    pub fn renamed(&self, name: impl Fn(u32) -> u32) -> Self {
+        let mut threads = self.clone();
+        for thread in threads.colours.iter_mut().flatten() {
+            for edge in &mut thread.edges {
+                *edge = name(*edge);
+            }
+        }
+        threads
+    }
+}
+
+/// The edge that continues each edge beyond its first and its second end.
+fn continuations(
+    edges: &[[u32; 2]],
+    rest: &[Vec3],
+    normals: impl Fn(u32) -> Vec3,
+) -> Vec<[u32; 2]> {
+    let mut ends: Vec<(u32, u32, usize)> = Vec::with_capacity(2 * edges.len());
+    for (edge, [a, b]) in edges.iter().enumerate() {
+        ends.extend([(*a, edge as u32, 0), (*b, edge as u32, 1)]);
+    }
+    ends.sort_unstable();
+    let mut next = vec![[NONE; 2]; edges.len()];
+    let mut directions = Vec::new();
+    let mut pairs = Vec::new();
+    for around in ends.chunk_by(|a, b| a.0 == b.0) {
+        let particle = around[0].0;
+        let (u, v) = normals(particle).any_orthonormal_pair();
+        directions.clear();
+        directions.extend(around.iter().map(|&(_, edge, end)| {
+            let other = edges[edge as usize][1 - end];
+            let way = rest[other as usize] - rest[particle as usize];
+            Vec2::new(way.dot(u), way.dot(v)).normalize_or_zero()
+        }));
+        pairs.clear();
+        for (i, a) in directions.iter().enumerate() {
+            for (j, b) in directions.iter().enumerate().skip(i + 1) {
+                let cosine = a.dot(*b);
+                if cosine <= STRAIGHT {
+                    pairs.push((cosine, i, j));
+                }
+            }
+        }
+        pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        for &(_, i, j) in &pairs {
+            let [(_, a, end_a), (_, b, end_b)] = [around[i], around[j]];
+            if next[a as usize][end_a] == NONE && next[b as usize][end_b] == NONE {
+                next[a as usize][end_a] = b;
+                next[b as usize][end_b] = a;
+            }
+        }
+    }
+    next
+}
+
+/// What is found on the way along edges.
+struct Walk<'a> {
+    edges: &'a [[u32; 2]],
+    next: &'a [[u32; 2]],
+    is_passed: Vec<bool>,
+    /// The last thread that came by each particle.
+    seen: Vec<u32>,
+    threads: Vec<Thread>,
+}
+
+impl Walk<'_> {
+    /// Goes from one end of an edge to its other, and on, until there is no edge that has not been passed. Where it meets
+    /// itself a new thread begins.
+    fn from(&mut self, mut edge: u32, mut end: usize) {
+        let mut thread = NONE;
+        while edge != NONE && !std::mem::replace(&mut self.is_passed[edge as usize], true) {
+            let ends = self.edges[edge as usize];
+            let [from, to] = [ends[end], ends[1 - end]];
+            if thread == NONE || self.seen[to as usize] == thread {
+                thread = self.threads.len() as u32;
+                self.threads.push(Thread {
+                    first: from,
+                    edges: Vec::new(),
+                });
+                self.seen[from as usize] = thread;
+            }
+            self.threads[thread as usize].edges.push(edge);
+            self.seen[to as usize] = thread;
+            let following = self.next[edge as usize][1 - end];
+            if following != NONE {
+                end = usize::from(self.edges[following as usize][0] != to);
+            }
+            edge = following;
+        }
+    }
+}
+
+/// Gives each thread the first colour that none of its particles has, the longest first. What there is no colour for is on no
+/// thread.
+fn colours(mut threads: Vec<Thread>, edges: &[[u32; 2]], particles: usize) -> Vec<Vec<Thread>> {
+    threads.sort_by_key(|thread| std::cmp::Reverse(thread.edges.len()));
+    let mut taken: Vec<u64> = vec![0; particles];
+    let mut colours: Vec<Vec<Thread>> = Vec::new();
+    for thread in threads {
+        let ends = || thread.edges.iter().flat_map(|edge| edges[*edge as usize]);
+        let all = ends().fold(0, |all, end| all | taken[end as usize]);
+        let free = (!all).trailing_zeros();
+        if free == MAX_COLOURS {
+            continue;
+        }
+        ends().for_each(|end| taken[end as usize] |= 1 << free);
+        colours.resize_with(colours.len().max(free as usize + 1), Vec::new);
+        colours[free as usize].push(thread);
+    }
+    colours
+}

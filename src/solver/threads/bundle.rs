@@ -1,0 +1,177 @@
+//! Threads that lead anywhere, as those of a mesh: eight at a time, each in a lane.
+//!
+//! # The floor
+//! A spring is three loads and one store of a particle's four numbers, two turns of four by four numbers for four of them,
+//! and two divisions for eight. What one pivot waits for of the one before is a division and three multiplications: some 25
+//! cycles for eight springs, while the particles of the next are on their way.
+
+use bevy::math::{Mat4, Vec4};
+
+use super::link::{HOLD, clamped, terms};
+use crate::{
+    cloth::{LANES, Lanes, Spring},
+    solver::packet::Row,
+};
+
+/// The next spring of each thread of a bundle.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct Step {
+    /// The row of the particle that it leads to.
+    to: [u32; LANES],
+    /// Length at rest (m).
+    rest: Lanes,
+    /// One over it.
+    inverse_rest: Lanes,
+    /// m/N.
+    compliance: Lanes,
+    /// 0, or infinity where there is no spring (1/kg).
+    hold: Lanes,
+}
+
+impl Step {
+    /// No springs, to row `none`.
+    pub fn none(none: u32) -> Self {
+        Self {
+            to: [none; LANES],
+            rest: [1.0; LANES],
+            inverse_rest: [1.0; LANES],
+            compliance: [0.0; LANES],
+            hold: [f32::INFINITY; LANES],
+        }
+    }
+
+    /// The spring in one lane, to the particle in row `to`.
+    pub fn set(&mut self, lane: usize, to: u32, spring: &Spring) {
+        self.to[lane] = to;
+        self.rest[lane] = spring.rest_length;
+        self.inverse_rest[lane] = 1.0 / spring.rest_length;
+        self.compliance[lane] = spring.compliance;
+        self.hold[lane] = HOLD;
+    }
+}
+
+/// What is known of a step between the forward and the backward pass.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct Solved {
+    way: [Lanes; 3],
+    /// Inverse mass of the second particle (1/kg).
+    weight: Lanes,
+    pivot: Lanes,
+    right: Lanes,
+}
+
+impl Solved {
+    pub const NONE: Self = Self {
+        way: [[0.0; LANES]; 3],
+        weight: [0.0; LANES],
+        pivot: [0.0; LANES],
+        right: [0.0; LANES],
+    };
+}
+
+/// The coordinates of eight vectors.
+#[inline(always)]
+fn turned(vectors: &[Vec4; LANES]) -> [Lanes; 4] {
+    let [a, b, c, d, e, f, g, h] = *vectors;
+    let low = Mat4::from_cols(a, b, c, d).transpose().to_cols_array_2d();
+    let high = Mat4::from_cols(e, f, g, h).transpose().to_cols_array_2d();
+    std::array::from_fn(|axis| {
+        let ([a, b, c, d], [e, f, g, h]) = (low[axis], high[axis]);
+        [a, b, c, d, e, f, g, h]
+    })
+}
+
+/// Eight vectors of these coordinates, and 0.
+#[inline(always)]
+fn vectors(coordinates: &[Lanes; 3]) -> [Vec4; LANES] {
+    let of = |from: usize| {
+        let [x, y, z] = [0, 1, 2].map(|axis| Vec4::from_slice(&coordinates[axis][from..from + 4]));
+        let turned = Mat4::from_cols(x, y, z, Vec4::ZERO).transpose();
+        [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
+    };
+    let ([a, b, c, d], [e, f, g, h]) = (of(0), of(4));
+    [a, b, c, d, e, f, g, h]
+}
+
+/// Forward over the springs of a bundle: eliminates each spring before.
+#[inline(always)]
+pub(crate) fn bundle_forward(
+    rows: &[Row],
+    heads: &[u32; LANES],
+    steps: &[Step],
+    pulled: &[Lanes],
+    solved: &mut [Solved],
+    inverse_weight: f32,
+) {
+    let is_weight = Vec4::W.cmpgt(Vec4::ZERO);
+    let mut from = heads;
+    let mut weight_a = heads.map(|head| rows[head as usize].place.w);
+    let mut previous = Solved::NONE;
+    for ((step, pulled), solved) in steps.iter().zip(pulled).zip(solved) {
+        let offsets: [Vec4; LANES] = std::array::from_fn(|l| {
+            let (a, b) = (&rows[from[l] as usize], &rows[step.to[l] as usize]);
+            let offset = (b.place - a.place) + (b.moved - a.moved);
+            Vec4::select(is_weight, b.place, offset)
+        });
+        let [x, y, z, weight] = turned(&offsets);
+        let mut link = Solved {
+            way: [x, y, z],
+            weight,
+            ..Solved::NONE
+        };
+        for l in 0..LANES {
+            let [x, y, z] = [0, 1, 2].map(|axis| clamped(link.way[axis][l] * step.inverse_rest[l]));
+            let both = weight_a[l] + weight[l];
+            let softness = step.compliance[l] * inverse_weight;
+            let [diagonal, right] = terms([x, y, z], both, softness, step.hold[l], step.rest[l]);
+            // What gives has pulled already.
+            let right = right - softness * (x * x + y * y + z * z) * pulled[l];
+            let before = &previous.way;
+            let along = before[0][l] * x + before[1][l] * y + before[2][l] * z;
+            let off = -weight_a[l] * along;
+            let pivot = 1.0 / (diagonal - off * (off * previous.pivot[l]));
+            [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
+            link.pivot[l] = pivot;
+            link.right[l] = (right - off * previous.right[l]) * pivot;
+        }
+        *solved = link;
+        previous = link;
+        weight_a = weight;
+        from = &step.to;
+    }
+}
+
+/// Backward: puts in the spring after each, and moves the particle between them.
+#[inline(always)]
+pub(crate) fn bundle_backward(
+    rows: &mut [Row],
+    heads: &[u32; LANES],
+    steps: &[Step],
+    pulled: &mut [Lanes],
+    solved: &[Solved],
+) {
+    let mut next = [[0.0; LANES]; 3];
+    for ((step, pulled), link) in steps.iter().zip(pulled).zip(solved).rev() {
+        let (mut own, mut change) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        for l in 0..LANES {
+            let [x, y, z] = [link.way[0][l], link.way[1][l], link.way[2][l]];
+            let along = x * next[0][l] + y * next[1][l] + z * next[2][l];
+            let multiplier = link.right[l] + link.pivot[l] * (link.weight[l] * along);
+            pulled[l] += multiplier;
+            [own[0][l], own[1][l], own[2][l]] = [x * multiplier, y * multiplier, z * multiplier];
+            change[0][l] = link.weight[l] * (own[0][l] - next[0][l]);
+            change[1][l] = link.weight[l] * (own[1][l] - next[1][l]);
+            change[2][l] = link.weight[l] * (own[2][l] - next[2][l]);
+        }
+        for (to, change) in step.to.iter().zip(vectors(&change)) {
+            rows[*to as usize].moved += change;
+        }
+        next = own;
+    }
+    for (head, pull) in heads.iter().zip(vectors(&next)) {
+        let row = &mut rows[*head as usize];
+        row.moved -= pull * row.place.w;
+    }
+}

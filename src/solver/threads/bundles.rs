@@ -1,0 +1,98 @@
+//! All threads of a list of springs, eight at a time.
+
+#[cfg(test)]
+mod tests;
+
+use std::{ops::Range, sync::Arc};
+
+use super::bundle::{Solved, Step};
+use crate::{
+    cloth::{LANES, Lanes, SpringList},
+    solver::{kernel::Kernels, packet::Row},
+};
+
+/// Up to eight threads that share no particle.
+#[derive(Debug)]
+struct Bundle {
+    /// The rows of the particles that they begin at.
+    heads: [u32; LANES],
+    /// As many as the longest has springs.
+    steps: Range<usize>,
+}
+
+/// All threads of a list of springs, colour by colour.
+#[derive(Debug, Default, Clone)]
+pub(in crate::solver) struct Bundles {
+    bundles: Arc<[Bundle]>,
+    steps: Arc<[Step]>,
+    /// What the springs of each step have pulled with on the way there: their multipliers (kg).
+    pulled: Vec<Lanes>,
+    /// Of one bundle.
+    solved: Vec<Solved>,
+}
+
+impl Bundles {
+    /// Of the threads in `list`. `row_of` says in which row a particle is; in row `none` there is no particle.
+    pub fn new(list: &SpringList, row_of: impl Fn(u32) -> u32, none: u32) -> Self {
+        let (mut bundles, mut steps) = (Vec::new(), Vec::new());
+        let colours = list.threads.colours.iter();
+        for threads in colours.flat_map(|colour| colour.chunks(LANES)) {
+            let begin = steps.len();
+            let mut heads = [none; LANES];
+            for (lane, thread) in threads.iter().enumerate() {
+                let mut at = thread.first;
+                heads[lane] = row_of(at);
+                // In a colour the longest are first, but that is not relied on.
+                let missing = (begin + thread.edges.len()).saturating_sub(steps.len());
+                steps.extend(std::iter::repeat_n(Step::none(none), missing));
+                for (edge, step) in thread.edges.iter().zip(&mut steps[begin..]) {
+                    let spring = &list.springs[*edge as usize];
+                    let [a, b] = spring.ends;
+                    at = if a == at { b } else { a };
+                    step.set(lane, row_of(at), spring);
+                }
+            }
+            bundles.push(Bundle {
+                heads,
+                steps: begin..steps.len(),
+            });
+        }
+        let longest = bundles.iter().map(|bundle| bundle.steps.len()).max();
+        Self {
+            bundles: bundles.into(),
+            pulled: vec![[0.0; LANES]; steps.len()],
+            steps: steps.into(),
+            solved: vec![Solved::NONE; longest.unwrap_or(0)],
+        }
+    }
+
+    /// Whether there is no thread.
+    pub fn is_empty(&self) -> bool {
+        self.bundles.is_empty()
+    }
+
+    /// Solves thread after thread. `inverse_weight` is 1/(c Δt²) (1/s²).
+    pub fn solve_there(&mut self, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+        self.pulled.fill([0.0; LANES]);
+        for index in 0..self.bundles.len() {
+            self.solve(index, rows, inverse_weight, kernels);
+        }
+    }
+
+    /// The same from the last to the first, after [`solve_there`](Self::solve_there): springs that give go on from what they
+    /// have pulled with.
+    pub fn solve_back(&mut self, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+        for index in (0..self.bundles.len()).rev() {
+            self.solve(index, rows, inverse_weight, kernels);
+        }
+    }
+
+    fn solve(&mut self, index: usize, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+        let Bundle { heads, steps } = &self.bundles[index];
+        let pulled = &mut self.pulled[steps.clone()];
+        let steps = &self.steps[steps.clone()];
+        let solved = &mut self.solved;
+        (kernels.bundle_forward)(rows, heads, steps, pulled, solved, inverse_weight);
+        (kernels.bundle_backward)(rows, heads, steps, pulled, solved);
+    }
+}
