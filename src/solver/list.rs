@@ -3,8 +3,8 @@
 //! A list without threads is swept once, colour by colour. One with threads is solved there and back: thread after thread, then
 //! the springs on none one by one, then those again from the last to the first, and the threads from the last to the first.
 //! What one such pass leaves of the springs' errors is symmetric: it has no part that swings or changes its sign
-//! (the symmetric Gauss-Seidel iteration, Axelsson 1994, chapter 5). That is what a motion of second order needs, which goes on
-//! from what is left: there and back it gained no energy in any mesh tried, where one way gained up to 10 times what there was.
+//! (the symmetric Gauss-Seidel iteration; Saad 2003, section 4.1). That is what a motion of second order needs, which goes on
+//! from what is left: there and back it gained no energy in any mesh tried, where one way gained ten times what there was.
 
 use std::sync::Arc;
 
