@@ -14,6 +14,7 @@ use multiversion::{inherit_target, multiversion};
 
 use super::{
     packet::{Packet, Row, relax_packets, relax_packets_back, relax_packets_there},
+    plate::{Moments, Stiffness, plate_moments, plate_places, plate_push},
     predict::{Prediction, begin_past, predict, predict_first},
     run::Run,
     thread::{
@@ -327,6 +328,9 @@ kernels! {
     across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),
     diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run),
+    plate_places(row: &[Block], origin: &[f32; 3], places: &mut [Trio]),
+    plate_moments(places: [&[Trio]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
+    plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),
     thread_links(from: &[Block], to: &[Block], shift: usize, links: &mut [Trio]),
     thread_moments(links: [&[Trio]; 2], shift: usize, stiffness: &[Lanes], moments: &mut [Trio]),
     thread_forward(moments: [&[Trio]; 3], solved: [&[Trio]; 2], factors: &[Factor], shift: usize, out: &mut [Trio]),

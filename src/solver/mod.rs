@@ -14,6 +14,7 @@ mod list;
 pub mod methods;
 mod packet;
 mod pipeline;
+mod plate;
 mod predict;
 mod rest;
 mod run;

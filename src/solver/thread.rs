@@ -16,16 +16,16 @@ pub(super) const GHOSTS: usize = 2;
 pub(super) type Factor = [Lanes; 3];
 
 /// Where each quantity of a [`Trio`] is in a block.
-const PLACES: [usize; 3] = [X, Y, Z];
-const MOVES: [usize; 3] = [DX, DY, DZ];
+pub(super) const PLACES: [usize; 3] = [X, Y, Z];
+pub(super) const MOVES: [usize; 3] = [DX, DY, DZ];
 
 /// Less than this is nothing (kg m, and m): what is far from all that moves would be subnormal numbers, which machines are slow
 /// with.
 const MIN_MOMENT: f32 = 1.0e-25;
-const MIN_MOVE: f32 = 1.0e-18;
+pub(super) const MIN_MOVE: f32 = 1.0e-18;
 
 #[inline(always)]
-fn flush(number: f32, least: f32) -> f32 {
+pub(super) fn flush(number: f32, least: f32) -> f32 {
     // NaN stays to be seen.
     if number.abs() < least { 0.0 } else { number }
 }
@@ -43,13 +43,13 @@ fn link(a: &View, b: &View, out: &mut Trio) {
 
 /// Each lane's left neighbour, in the lane before.
 #[inline(always)]
-fn to_right<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
+pub(super) fn to_right<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
     from.map(|from| std::array::from_fn(|l| if l == 0 { 0.0 } else { from[l - 1] }))
 }
 
 /// Each lane's right neighbour, in the lane after.
 #[inline(always)]
-fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
+pub(super) fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
     from.map(|from| std::array::from_fn(|l| if l + 1 == LANES { 0.0 } else { from[l + 1] }))
 }
 

@@ -45,7 +45,7 @@ fn swing(spacing: f32, substeps: u32, distance: f32) -> (Vec<Vec3>, f32) {
 }
 
 /// At the limits of the envelope, 1,000 m at 20 sub-steps in 1/60 s, half of it at twice as many, and 40,000 spacings, a
-/// swing is off by less than a millimetre and stretched by less than half a per cent more; within 11 m, as far as one
+/// swing is off by less than two millimetres and stretched by less than half a per cent more; within 11 m, as far as one
 /// walks, by less than half of one: no more than any other rounding does to folds that begin as nothing.
 #[test]
 fn a_cloth_far_away_moves_as_near_its_origin() {
@@ -66,7 +66,7 @@ fn a_cloth_far_away_moves_as_near_its_origin() {
             };
             let limit = (18_750.0 / substeps as f32).min(40_000.0 * spacing);
             let (rms, more) = off(limit);
-            assert!(rms < 1.0e-3 && more < 0.005, "{rms} {more}");
+            assert!(rms < 2.0e-3 && more < 0.005, "{rms} {more}");
             let (rms, _) = off(11.0);
             assert!(rms < 0.5e-3, "{rms}");
         }

@@ -18,11 +18,11 @@ fn surface(side: u32, is_regular: bool) -> Surface {
 }
 
 /// Without damping, of the same compliance along edges and in shear, and another across edges (m/N).
-fn material(compliance: f32, across: f32) -> ClothMaterial {
+fn material(compliance: f32, shear: f32) -> ClothMaterial {
     ClothMaterial {
         areal_density: 0.15,
         stretch_compliance: compliance,
-        shear_compliance: compliance,
+        shear_compliance: shear,
         bend_rigidity: 0.0,
         damping: 0.0,
         friction: 0.0,

@@ -1,21 +1,15 @@
-//! The bending of a grid: threads along its rows, columns and both diagonals.
+//! The bending of a stiff grid: its threads solved, one direction after the other.
 //!
-//! A thread's energy is `½ Σ k |x_{i−1} − 2 x_i + x_{i+1}|²`, with `k = a A ⁄ l⁴` of its rigidity a, the area A that a particle
-//! stands for in it and its spacing l: a constant pentadiagonal matrix, factored once into L D Lᵀ and solved exactly, eight
-//! threads at a time.
-//!
-//! ```text
-//! \ | /    κ along a diagonal of a square is (κ_xx + κ_yy) ⁄ 2 ± κ_xy: with ⅔ of the rigidity in each direction
-//! ― o ―    the energy is that of an isotropic plate whose Poisson's ratio is a third,
-//! / | \    and that of a cylinder of any direction is ½ D κ² an area.
-//! ```
-//! Only what lies between particles on all sides has diagonals: a strip along a border, half a spacing wide, has all of the
-//! rigidity in its thread. The four directions are solved one after the other, which is as exact as the sub-step is small beside
-//! the period of a bend; each by itself takes energy away, however stiff it is.
+//! A thread's matrix is constant and pentadiagonal, factored once into L D Lᵀ and solved exactly, eight threads at a time. The four
+//! directions are solved one after the other, which is as exact as the sub-step is small beside the period of a bend; each by
+//! itself takes energy away, however stiff it is.
 
-use super::factor::{factor_thread, set};
+use super::{
+    factor::{factor_thread, set},
+    plate::Plate,
+};
 use crate::{
-    cloth::{Block, ClothGrid, LANES, Lanes, Layout, W},
+    cloth::{Block, LANES, Lanes, Layout, W},
     solver::{
         kernel::Kernels,
         thread::{Factor, GHOSTS, Trio, wrap},
@@ -60,9 +54,8 @@ pub(super) struct ThreadBending {
     families: Vec<Family>,
     /// Inverse masses that the factors are of (1/kg).
     inverse_masses: Vec<Lanes>,
-    /// Those of two weights: methods that start otherwise than they go on take turns.
-    factors: [Factors; 2],
-    current: usize,
+    /// Those of the weights in use, the last one first.
+    factors: [Factors; WEIGHTS],
     links: [Vec<Trio>; 2],
     moments: [Vec<Trio>; 3],
     solved: Vec<Trio>,
@@ -70,58 +63,20 @@ pub(super) struct ThreadBending {
     none: (Vec<Trio>, Vec<Factor>),
 }
 
+/// Weights that take turns: a method that starts otherwise than it goes on has three.
+const WEIGHTS: usize = 3;
+
 const NOTHING: [Lanes; 3] = [[0.0; LANES]; 3];
 
 impl ThreadBending {
-    /// Of a plate of this flexural rigidity (N·m).
-    pub fn new(grid: &ClothGrid, rigidity: f32) -> Self {
-        let layout = Layout::new(grid.columns(), grid.rows());
+    pub fn new(plate: &Plate) -> Self {
+        let layout = plate.layout;
         let (rows, columns) = (layout.rows, layout.columns);
-        let (wide, high) = (f64::from(grid.spacing().x), f64::from(grid.spacing().y));
-        let square = wide * wide + high * high;
-        // Cosine and sine, squared, of a diagonal's direction.
-        let (along, beside) = (wide * wide / square, high * high / square);
-        let rigidity = f64::from(rigidity);
-        // Of very long cells the diagonals can't be all that they should: no thread is weaker than none.
-        let isotropic = rigidity / (6.0 * along * beside);
-        let diagonal = isotropic
-            .min(rigidity / (2.0 * along * along))
-            .min(rigidity / (2.0 * beside * beside));
-        let k = |inside: f64, is_border: bool, width: f64, spacing: f64| {
-            let (rigidity, width) = if is_border {
-                (rigidity, width / 2.0)
-            } else {
-                (inside, width)
-            };
-            (rigidity * width / spacing.powi(3)) as f32
-        };
-        let is_inside = |index: u32, count: u32| index > 0 && index + 1 < count;
-        let of_columns = |stiffness: &dyn Fn(u32) -> f32| -> Vec<Lanes> {
-            let of = |block: usize, lane: usize| layout.column(block, lane).map_or(0.0, stiffness);
-            let lanes = |block: usize| std::array::from_fn(|lane| of(block, lane));
-            (0..layout.strip as usize).map(lanes).collect()
-        };
-        let across = |row: u32| {
-            let inside = rigidity - 2.0 * diagonal * along * along;
-            k(inside, !is_inside(row, rows), high, wide)
-        };
-        let down = |column: u32| {
-            let inside = rigidity - 2.0 * diagonal * beside * beside;
-            k(inside, !is_inside(column, columns), wide, high)
-        };
-        let oblique = |column: u32| {
-            let k = diagonal * wide * high / (square * square);
-            if is_inside(column, columns) {
-                k as f32
-            } else {
-                0.0
-            }
-        };
         let of_rows = |group: usize| -> Lanes {
-            let row = |lane: usize| (group * LANES + lane) as u32;
             std::array::from_fn(|lane| {
-                if row(lane) < rows {
-                    across(row(lane))
+                let row = (group * LANES + lane) as u32;
+                if row < rows {
+                    plate.across(row, 1)
                 } else {
                     0.0
                 }
@@ -131,11 +86,14 @@ impl ThreadBending {
         let mut families = Vec::new();
         let mut add = |way, stiffness| families.push(Family { way, stiffness });
         if rows > 2 && columns > 2 {
-            add(Way::Falling, of_columns(&oblique));
-            add(Way::Rising, of_columns(&oblique));
+            for way in [Way::Falling, Way::Rising] {
+                let stiffness = plate.of_columns(|column| plate.oblique(1, column));
+                add(way, stiffness.collect());
+            }
         }
         if rows > 2 {
-            add(Way::Down, of_columns(&down));
+            let stiffness = plate.of_columns(|column| plate.down(1, column));
+            add(Way::Down, stiffness.collect());
         }
         if columns > 2 {
             add(Way::Across, (0..groups).map(of_rows).collect());
@@ -148,14 +106,14 @@ impl ThreadBending {
             families,
             inverse_masses: vec![[f32::NAN; LANES]; layout.blocks()],
             factors: Default::default(),
-            current: 0,
             links: [row(), row()],
             moments: [row(), row(), row()],
             solved: vec![NOTHING; stride * rows as usize],
             columns: vec![NOTHING; LANES * strip],
             none: (row(), row()),
         };
-        new.factors[0] = new.no_factors();
+        // Room for all at once: no later step may ask for it.
+        new.factors = std::array::from_fn(|_| new.no_factors());
         new
     }
 
@@ -196,21 +154,14 @@ impl ThreadBending {
                 factors.weight = f32::NAN;
             }
         }
-        if self.factors[self.current].weight == weight {
+        let place = |of: &dyn Fn(f32) -> bool| self.factors.iter().position(|own| of(own.weight));
+        if let Some(known) = place(&|own| own == weight) {
+            self.factors[..=known].rotate_right(1);
             return;
         }
-        let other = 1 - self.current;
-        if self.factors[other].weight == weight {
-            self.current = other;
-            return;
-        }
-        if !self.factors[self.current].weight.is_nan() {
-            self.current = other;
-        }
-        if self.factors[self.current].factors.is_empty() {
-            self.factors[self.current] = self.no_factors();
-        }
-        let mut factors = std::mem::take(&mut self.factors[self.current]);
+        let unused = place(&|own| own.is_nan()).unwrap_or(WEIGHTS - 1);
+        self.factors[..=unused].rotate_right(1);
+        let mut factors = std::mem::take(&mut self.factors[0]);
         factors.weight = weight;
         for (at, family) in self.families.iter().enumerate() {
             for (scaled, stiffness) in factors.stiffness[at].iter_mut().zip(&family.stiffness) {
@@ -218,7 +169,7 @@ impl ThreadBending {
             }
             self.factor(family, &factors.stiffness[at], &mut factors.factors[at]);
         }
-        self.factors[self.current] = factors;
+        self.factors[0] = factors;
     }
 
     /// Factors all threads of a family.
@@ -299,7 +250,7 @@ impl ThreadBending {
         let strip = self.layout.strip as usize;
         let Factors {
             stiffness, factors, ..
-        } = &self.factors[self.current];
+        } = &self.factors[0];
         let factors = factors[at].chunks_exact(self.columns.len());
         let groups = blocks.chunks_mut(LANES * strip);
         let count = self.layout.columns as usize;
@@ -318,7 +269,7 @@ impl ThreadBending {
         let shift = way.shift();
         let Factors {
             stiffness, factors, ..
-        } = &self.factors[self.current];
+        } = &self.factors[0];
         let (stiffness, factors) = (&stiffness[at], &factors[at]);
         let factors_of = |row: usize| {
             factors

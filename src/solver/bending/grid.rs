@@ -1,0 +1,73 @@
+//! The bending of a grid: pushed by its forces where it is soft, solved where it is stiff.
+
+use super::{
+    plate::Plate,
+    push::{LIMIT, Push},
+    threads::ThreadBending,
+};
+use crate::{
+    cloth::{Block, ClothGrid},
+    solver::kernel::Kernels,
+};
+
+/// The largest of the weights that take turns, over the smallest: where one of them needs factors, room for them is made at once.
+const SPREAD: f32 = 9.0 / 4.0;
+
+/// A grid's resistance to bending.
+#[derive(Debug, Clone)]
+pub(super) struct GridBending {
+    plate: Plate,
+    push: Push,
+    /// From when it first may be needed.
+    threads: Option<Box<ThreadBending>>,
+    weight: f32,
+    is_soft: bool,
+}
+
+impl GridBending {
+    /// Of a plate of this flexural rigidity (N·m).
+    pub fn new(grid: &ClothGrid, rigidity: f32) -> Self {
+        let plate = Plate::new(grid, rigidity);
+        Self {
+            push: Push::new(&plate),
+            plate,
+            threads: None,
+            weight: 0.0,
+            is_soft: true,
+        }
+    }
+
+    pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
+        self.weight = weight;
+        let bound = self.push.bound(blocks, weight);
+        self.is_soft = bound < LIMIT;
+        if bound * SPREAD < LIMIT {
+            return;
+        }
+        let threads = self
+            .threads
+            .get_or_insert_with(|| Box::new(ThreadBending::new(&self.plate)));
+        if !self.is_soft {
+            threads.prepare(blocks, weight);
+        }
+    }
+
+    pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+        match &mut self.threads {
+            Some(threads) if !self.is_soft => threads.solve(blocks, kernels),
+            _ => self.push.apply(blocks, self.weight, kernels),
+        }
+    }
+
+    /// Whether forces push it, as it was prepared.
+    #[cfg(test)]
+    pub fn is_soft(&self) -> bool {
+        self.is_soft
+    }
+
+    /// Whether it has room for factors.
+    #[cfg(test)]
+    pub fn has_factors(&self) -> bool {
+        self.threads.is_some()
+    }
+}

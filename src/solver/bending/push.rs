@@ -1,0 +1,135 @@
+//! The bending forces of a grid that is soft enough to be pushed by them.
+//!
+//! The solution of `(M + s K) (p + e) = M p` is the series `e = −A p + A² p − …` with `A = s M⁻¹ K`. Where A is small its first
+//! term is enough: what it leaves out is, of each ripple, a part of e that is not larger than A's eigenvalue for it, which falls
+//! with the fourth power of its length. It takes energy away as the solution does, and is stable as long as A is below one.
+
+use super::plate::Plate;
+use crate::{
+    cloth::{Block, LANES, Lanes, W},
+    solver::{
+        kernel::Kernels,
+        plate::{EDGE, Moments, Stiffness},
+        thread::Trio,
+    },
+};
+
+/// Where A is below this, forces push: what bends fastest, a ripple from particle to particle, gets at most a tenth too much.
+pub(super) const LIMIT: f32 = 0.1;
+
+/// Rows of each end that differ from those further inside.
+const ENDS: usize = 3;
+
+/// All forces of a grid.
+#[derive(Debug, Clone)]
+pub(super) struct Push {
+    rows: usize,
+    strip: usize,
+    /// Of the first row and the last, and of those between.
+    stiffness: [Vec<Stiffness>; 2],
+    /// What bounds a row's sum of K (N/m), of the first or last row, the second from there, and others.
+    bounds: [Vec<Lanes>; ENDS],
+    places: [Vec<Trio>; 3],
+    moments: [Vec<Moments>; 3],
+}
+
+impl Push {
+    pub fn new(plate: &Plate) -> Self {
+        let layout = plate.layout;
+        let (rows, strip) = (layout.rows as usize, layout.strip as usize);
+        let stiffness = [0, 1].map(|row| {
+            let of = |number: &dyn Fn(u32) -> f32| plate.of_columns(number).collect::<Vec<_>>();
+            let across = of(&|column| plate.across(row, column));
+            let down = of(&|column| plate.down(row, column));
+            let oblique = of(&|column| plate.oblique(row, column));
+            let all = across.into_iter().zip(down).zip(oblique);
+            all.map(|((across, down), oblique)| [across, down, oblique])
+                .collect()
+        });
+        let bounds = [0, 1, 2].map(|row| {
+            plate
+                .of_columns(|column| bound(plate, row, column))
+                .collect()
+        });
+        let row = || vec![[[0.0; LANES]; 3]; strip + 2 * EDGE];
+        let moments = || vec![Moments::default(); strip + 2 * EDGE];
+        Self {
+            rows,
+            strip,
+            stiffness,
+            bounds,
+            places: [row(), row(), row()],
+            moments: [moments(), moments(), moments()],
+        }
+    }
+
+    /// A bound of A's largest eigenvalue, with this weight s (s²).
+    pub fn bound(&self, blocks: &[Block], weight: f32) -> f32 {
+        let mut largest = [0.0; LANES];
+        for (row, blocks) in blocks.chunks_exact(self.strip).enumerate() {
+            let end = row.min(self.rows - 1 - row).min(ENDS - 1);
+            for (block, bound) in blocks.iter().zip(&self.bounds[end]) {
+                let view = block.view();
+                for l in 0..LANES {
+                    let own = view[W + l] * bound[l];
+                    largest[l] = if own > largest[l] { own } else { largest[l] };
+                }
+            }
+        }
+        weight * largest.into_iter().fold(0.0, f32::max)
+    }
+
+    /// Adds the forces' share to displacements.
+    pub fn apply(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
+        let (rows, strip) = (self.rows, self.strip);
+        let Some(first) = blocks.first() else {
+            return;
+        };
+        let origin = first.position(0).to_array();
+        let row = |row: usize| row * strip..(row + 1) * strip;
+        // Beyond the first row.
+        self.moments[2].fill(Moments::default());
+        (kernels.plate_places)(&blocks[row(0)], &origin, &mut self.places[0]);
+        for next in 0..=rows {
+            if next + 1 < rows {
+                let places = &mut self.places[(next + 1) % 3];
+                (kernels.plate_places)(&blocks[row(next + 1)], &origin, places);
+            }
+            let moments = &mut self.moments[next % 3];
+            if next < rows {
+                // A row at the end has no moments but along it.
+                let above = next.saturating_sub(1);
+                let below = (next + 1).min(rows - 1);
+                let places = [above, next, below].map(|row| &*self.places[row % 3]);
+                let is_inside = next > 0 && next + 1 < rows;
+                let stiffness = &self.stiffness[usize::from(is_inside)];
+                (kernels.plate_moments)(places, stiffness, moments);
+            } else {
+                moments.fill(Moments::default());
+            }
+            if let Some(own) = next.checked_sub(1) {
+                let moments = [own + 2, own, own + 1].map(|row| &*self.moments[row % 3]);
+                (kernels.plate_push)(moments, weight, &mut blocks[row(own)]);
+            }
+        }
+    }
+}
+
+/// What K's row of a particle sums up to at most, each number taken as positive (N/m).
+fn bound(plate: &Plate, row: u32, column: u32) -> f32 {
+    let of = |k: &dyn Fn(u32, u32) -> f32, down: i64, right: i64| {
+        let k = |way: i64| {
+            let row = u32::try_from(i64::from(row) + way * down);
+            let column = u32::try_from(i64::from(column) + way * right);
+            match (row, column) {
+                (Ok(row), Ok(column)) => k(row, column),
+                _ => 0.0,
+            }
+        };
+        4.0 * k(-1) + 8.0 * k(0) + 4.0 * k(1)
+    };
+    of(&|row, column| plate.across(row, column), 0, 1)
+        + of(&|row, column| plate.down(row, column), 1, 0)
+        + of(&|row, column| plate.oblique(row, column), 1, 1)
+        + of(&|row, column| plate.oblique(row, column), -1, 1)
+}

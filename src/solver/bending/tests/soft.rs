@@ -1,0 +1,158 @@
+//! What is pushed instead of solved.
+
+use super::{dense::pushes, *};
+use crate::cloth::ClothGrid;
+
+/// The largest weight (s²) with which it is pushed, or one.
+fn softest(bending: &mut Bending, particles: &ClothParticles) -> f32 {
+    let (mut soft, mut stiff) = (0.0_f32, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (soft + stiff);
+        bending.prepare(particles.blocks(), middle);
+        if is_soft(bending) {
+            soft = middle;
+        } else {
+            stiff = middle;
+        }
+    }
+    soft
+}
+
+fn grids() -> impl Iterator<Item = (ClothGrid, Surface)> {
+    let sides = [
+        (2, 2),
+        (3, 2),
+        (2, 3),
+        (3, 3),
+        (4, 9),
+        (9, 5),
+        (8, 6),
+        (16, 5),
+        (17, 11),
+        (33, 10),
+    ];
+    sides.into_iter().map(|(columns, rows)| {
+        let cloth = Cloth::new(columns, rows, 0.02);
+        let grid = cloth.grid(Vec3::new(1.0, 1.3, 1.0)).expect("valid");
+        let surface = Surface::of_grid(&grid);
+        (grid, surface)
+    })
+}
+
+/// Forces to rounding, and of the solution no more is missing than is derived.
+#[test]
+fn forces_are_the_first_term_of_the_solution() {
+    for (grid, surface) in grids() {
+        for pins in [0, 1, 2, 7] {
+            let particles = disturbed(&surface, pins, 0.005);
+            let mut bending = Bending::new(&surface, &material()).expect("it is stiff");
+            let limit = softest(&mut bending, &particles);
+            for weight in [limit.min(1.0e-5), limit.min(1.0e-5) / 10.0] {
+                let found = added(&mut bending, &particles, weight, SimdLevel::Auto);
+                assert!(is_soft(&bending));
+                let weight = f64::from(weight);
+                let families = pushes(&grid, &particles, weight);
+                let solution = expected(&grid, &particles, weight);
+                // The norm in which A is symmetric.
+                let norm = |moved: &[DVec3]| -> f64 {
+                    let masses = particles.inverse_masses().map(f64::from);
+                    let of = masses
+                        .zip(moved)
+                        .filter(|(inverse_mass, _)| *inverse_mass > 0.0);
+                    of.map(|(inverse_mass, moved)| moved.length_squared() / inverse_mass)
+                        .sum::<f64>()
+                        .sqrt()
+                };
+                let mut missing = Vec::new();
+                for (at, found) in found.iter().enumerate() {
+                    let pushed: DVec3 = families.iter().map(|family| family[at]).sum();
+                    let off = found.as_dvec3().distance(pushed);
+                    assert!(off < 1.0e-7, "{at} of {grid:?}: {found} for {pushed}");
+                    let is_pinned = particles.is_pinned(at).expect("it exists");
+                    assert!(!is_pinned || *found == Vec3::ZERO);
+                    missing.push(pushed - solution[at]);
+                }
+                let part = f64::from(push::LIMIT) * weight / f64::from(limit);
+                let all: f64 = families.iter().map(|family| norm(family)).sum();
+                assert!(
+                    norm(&missing) <= part * all + 1.0e-9,
+                    "{grid:?}, pins {pins}: {} of {all}",
+                    norm(&missing)
+                );
+            }
+        }
+    }
+}
+
+/// What is soft has no factors; a longer sub-step needs them, and pins may do without again.
+#[test]
+fn the_limit_is_seen_in_weights_and_masses() {
+    let grid = Cloth::new(12, 10, 0.02).grid(Vec3::ONE).expect("valid");
+    let surface = Surface::of_grid(&grid);
+    let mut particles = ClothParticles::at_rest(&surface, &material()).expect("valid");
+    let mut bending = Bending::new(&surface, &material()).expect("it is stiff");
+    let has_factors =
+        |bending: &Bending| matches!(&bending.of, Kind::Grid(grid) if grid.has_factors());
+    // Inside, all families: 16 k ⁄ m.
+    let mass = f64::from(ClothMaterial::COTTON.areal_density) * 0.02 * 0.02;
+    let k = f64::from(RIGIDITY) / (0.02 * 0.02) * (2.0 / 3.0 + 2.0 / 3.0 + 1.0 / 6.0 + 1.0 / 6.0);
+    let limit = (f64::from(push::LIMIT) * mass / (16.0 * k)) as f32;
+    bending.prepare(particles.blocks(), 0.4 * limit);
+    assert!(is_soft(&bending) && !has_factors(&bending));
+    bending.prepare(particles.blocks(), 0.999 * limit);
+    assert!(is_soft(&bending));
+    bending.prepare(particles.blocks(), 1.001 * limit);
+    assert!(!is_soft(&bending) && has_factors(&bending));
+    bending.prepare(particles.blocks(), 0.999 * limit);
+    assert!(is_soft(&bending));
+    particles.set_inverse_mass(50, 1.0e6).expect("it exists");
+    bending.prepare(particles.blocks(), 0.999 * limit);
+    assert!(!is_soft(&bending));
+    for index in 0..particles.len() {
+        particles.set_inverse_mass(index, 0.0).expect("it exists");
+    }
+    bending.prepare(particles.blocks(), 1.0);
+    assert!(is_soft(&bending));
+}
+
+/// Forces have neither a sum nor a moment.
+#[test]
+fn forces_keep_momentum() {
+    for (_, surface) in grids() {
+        let particles = disturbed(&surface, 0, 0.005);
+        let mut bending = Bending::new(&surface, &material()).expect("it is stiff");
+        let weight = softest(&mut bending, &particles).min(1.0e-6);
+        let added = added(&mut bending, &particles, weight, SimdLevel::Auto);
+        let (mut impulse, mut moment, mut scale) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        for (at, added) in added.iter().enumerate() {
+            let inverse_mass = particles.inverse_mass(at).expect("it exists");
+            let moved = added.as_dvec3() / f64::from(inverse_mass);
+            let place = particles.position(at).expect("it exists").as_dvec3();
+            let place = place + particles.displacement(at).expect("it exists").as_dvec3();
+            impulse += moved;
+            moment += place.cross(moved);
+            scale += moved.length();
+        }
+        let size = f64::from(surface.diagonal()) + 0.01;
+        assert!(impulse.length() <= 1.0e-4 * scale, "{impulse} of {scale}");
+        assert!(moment.length() <= 1.0e-4 * scale * size, "{moment}");
+    }
+}
+
+#[test]
+fn all_instructions_push_alike() {
+    for (columns, rows) in [(5, 4), (37, 19), (64, 20)] {
+        let grid = Cloth::new(columns, rows, 0.02).grid(Vec3::ONE);
+        let surface = Surface::of_grid(&grid.expect("valid"));
+        let particles = disturbed(&surface, 9, 0.01);
+        let mut bending = Bending::new(&surface, &material()).expect("it is stiff");
+        let weight = softest(&mut bending, &particles);
+        let mut bits = |level| {
+            let added = added(&mut bending, &particles, weight, level);
+            let bits = added.iter().map(|of| of.to_array().map(f32::to_bits));
+            bits.collect::<Vec<_>>()
+        };
+        assert_eq!(bits(SimdLevel::Auto), bits(SimdLevel::Baseline));
+        assert!(is_soft(&bending));
+    }
+}
