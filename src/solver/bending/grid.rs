@@ -19,7 +19,7 @@ pub(super) struct GridBending {
     plate: Plate,
     push: Push,
     /// From when it first may be needed.
-    threads: Option<Box<ThreadBending>>,
+    threads: Option<ThreadBending>,
     weight: f32,
     is_soft: bool,
 }
@@ -46,7 +46,7 @@ impl GridBending {
         }
         let threads = self
             .threads
-            .get_or_insert_with(|| Box::new(ThreadBending::new(&self.plate)));
+            .get_or_insert_with(|| ThreadBending::new(&self.plate));
         if !self.is_soft {
             threads.prepare(blocks, weight);
         }

@@ -28,7 +28,7 @@ pub struct Bending {
 
 #[derive(Debug, Clone)]
 enum Kind {
-    Grid(GridBending),
+    Grid(Box<GridBending>),
     Mesh(MeshBending),
 }
 
@@ -40,7 +40,7 @@ impl Bending {
             return None;
         }
         let of = match surface.as_grid() {
-            Some(grid) => Kind::Grid(GridBending::new(grid, rigidity)),
+            Some(grid) => Kind::Grid(Box::new(GridBending::new(grid, rigidity))),
             None => Kind::Mesh(MeshBending::new(surface, rigidity)),
         };
         Some(Self { of })
