@@ -9,6 +9,24 @@ pub(super) fn pool() -> &'static TaskPool {
     ComputeTaskPool::get_or_init(TaskPool::default)
 }
 
+/// More bands than this find no work worth a task.
+pub(super) const MAX_BANDS: usize = 16;
+
+/// Does `work` on each part: the last on this thread, each of the others in a task of its own.
+pub(super) fn in_bands<T: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
+    let work = &work;
+    pool().scope(|scope| {
+        let mut parts = parts.into_iter().peekable();
+        while let Some(part) = parts.next() {
+            if parts.peek().is_none() {
+                work(part);
+            } else {
+                scope.spawn(async move { work(part) });
+            }
+        }
+    });
+}
+
 /// Runs `work` with a thread of the pool awake for each band but the caller's own. A sub-step's bands are ready
 /// within microseconds of each other; a thread that fell asleep in between would take a hundred to come back.
 pub(super) fn with_threads_awake<R>(bands: usize, work: impl FnOnce() -> R) -> R {
@@ -39,4 +57,9 @@ impl Drop for Release<'_> {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Release);
     }
+}
+
+/// Takes this many from the front of a slice.
+pub(super) fn take<'a, T>(from: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    from.split_off_mut(..count).expect("as many")
 }

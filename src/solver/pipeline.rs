@@ -5,7 +5,7 @@
 
 use super::{
     Stretch,
-    bands::pool,
+    bands::{MAX_BANDS, pool},
     kernel::{Kernels, Longest},
     run::Run,
     sweep::{Motion, Sweep, Swept},
@@ -366,6 +366,3 @@ impl Sweep for GridSweep {
 
 /// Fewer rows a band than this, and what is left between two bands would be more than they hold.
 const MIN_ROWS: usize = 32;
-
-/// More bands than this find no work worth a task.
-const MAX_BANDS: usize = 16;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::{
     Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
-    bands::with_threads_awake,
+    bands::{in_bands, with_threads_awake},
     list::ListSweep,
     pipeline::GridSweep,
     predict::{Prediction, weight},
@@ -146,6 +146,11 @@ impl Solver {
         self.bands = bands;
     }
 
+    /// How many bands there are: fewer than wanted where there is too little to do.
+    pub(super) fn bands(&self) -> usize {
+        self.sweep.bands(self.bands)
+    }
+
     /// With this SIMD level from now on.
     #[doc(hidden)]
     pub fn set_simd_level(&mut self, simd_level: SimdLevel) {
@@ -181,7 +186,7 @@ impl Solver {
         if ratio < MUCH_SHORTER && step.order == TimeOrder::Second {
             self.settle(particles, dt);
         }
-        let bands = self.sweep.bands(self.bands);
+        let bands = self.bands();
         // What else turns the cloth, or carries it in another way, is not known here.
         let spin = Spin::of(particles, &step, pins);
         let mut is_pushed = false;
@@ -252,6 +257,7 @@ impl Solver {
         let dt = step.seconds / count as f32;
         let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
         let kernels = self.simd_level.kernels();
+        let bands = self.bands();
         let mut measured = None;
         for index in 0..count {
             let mut substep = SubStep {
@@ -274,6 +280,13 @@ impl Solver {
             let (blocks, past) = particles.blocks_and_past();
             match step.order {
                 TimeOrder::First => (kernels.predict_first)(blocks, &prediction),
+                TimeOrder::Second if bands > 1 => {
+                    let size = blocks.len().div_ceil(bands);
+                    let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
+                    in_bands(parts, |(blocks, past)| {
+                        (kernels.predict)(blocks, past, &prediction);
+                    });
+                }
                 TimeOrder::Second => (kernels.predict)(blocks, past, &prediction),
             }
             if let Some(bending) = &mut self.bending {

@@ -55,7 +55,7 @@ fn pull_lane(a: &mut Block, pull: &Pull, lane: usize) {
     }
 }
 
-/// Forward over the springs of columns between two rows.
+/// Forward over springs of columns between two rows, those of the family from number `first` on.
 #[inline(always)]
 pub(crate) fn column_forward(
     upper: &[Block],
@@ -63,6 +63,7 @@ pub(crate) fn column_forward(
     previous: &[Link],
     links: &mut [Link],
     family: &Family,
+    first: usize,
 ) {
     for (j, ((a, b), (before, link))) in upper
         .iter()
@@ -70,7 +71,7 @@ pub(crate) fn column_forward(
         .zip(previous.iter().zip(links))
         .enumerate()
     {
-        let row = equation(a.view(), b.view(), family, j);
+        let row = equation(a.view(), b.view(), family, first + j);
         eliminate(a.view(), &row, before, link);
     }
 }

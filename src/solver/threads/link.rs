@@ -179,8 +179,8 @@ pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equ
 
 /// Raises `largest` to the squares of what springs give at their pull (m²).
 #[inline(always)]
-pub(crate) fn measure_given(pulls: &[[Lanes; 3]], family: &Family, largest: &mut Lanes) {
-    for ([x, y, z], softness) in pulls.iter().zip(&family.softness) {
+pub(crate) fn measure_given(pulls: &[[Lanes; 3]], softness: &[Lanes], largest: &mut Lanes) {
+    for ([x, y, z], softness) in pulls.iter().zip(softness) {
         for l in 0..LANES {
             let pull = x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
             let given = pull * softness[l] * softness[l];

@@ -1,5 +1,7 @@
 //! Threads of a grid, and of a mesh, solved exactly.
 
+mod bands;
+mod beside;
 mod bundle;
 mod bundles;
 mod down;
@@ -10,6 +12,7 @@ mod tests;
 
 use super::{
     Stretch,
+    bands::MAX_BANDS,
     kernel::{Kernels, Longest},
     run::Run,
     sweep::{Motion, Sweep, Swept},
@@ -25,7 +28,13 @@ pub(super) use down::{
 pub(super) use link::{Family, Link, measure_given};
 pub(super) use rows::{Rows, pull_row, row_equations, solve_turned, turn_back, turn_terms};
 
-use rows::{GROUP, RowSystems};
+use bands::Part;
+use rows::RowSystems;
+use std::ops::Range;
+
+/// Fewer rows a band than this, or fewer blocks of a row, and waiting for the others would take longer than the work.
+const MIN_ROWS: usize = 32;
+const MIN_BLOCKS: usize = 2;
 
 /// Where threads lead that go from row to row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +59,8 @@ pub(super) struct ThreadSweep {
     links: Vec<Link>,
     /// Of two rows.
     pulls: [Vec<Pull>; 2],
-    systems: RowSystems,
+    /// One for each band.
+    systems: Vec<RowSystems>,
     /// c Δt² (s²).
     weight_dt2: f32,
 }
@@ -73,7 +83,7 @@ impl ThreadSweep {
             runs: run,
             links: vec![Link::NONE; layout.blocks()],
             pulls: [0, 1].map(|_| vec![[[0.0; _]; 3]; strip]),
-            systems: RowSystems::new(strip),
+            systems: vec![RowSystems::new(strip)],
             weight_dt2: 0.0,
         }
     }
@@ -89,17 +99,16 @@ impl ThreadSweep {
     ) {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
-        let family = match direction {
-            Direction::Down => &self.down,
-            Direction::Right | Direction::Left => match &self.diagonal {
-                Some(family) => family,
-                None => return,
-            },
+        let Some(family) = (match direction {
+            Direction::Down => Some(&self.down),
+            Direction::Right | Direction::Left => self.diagonal.as_ref(),
+        }) else {
+            return;
         };
-        let (forward, backward) = match direction {
-            Direction::Down => (kernels.column_forward, kernels.column_backward),
-            Direction::Right => (kernels.right_forward, kernels.right_backward),
-            Direction::Left => (kernels.left_forward, kernels.left_backward),
+        let backward = match direction {
+            Direction::Down => kernels.column_backward,
+            Direction::Right => kernels.right_backward,
+            Direction::Left => kernels.left_backward,
         };
         // The links before the first row's are none: so are those of the last row, where no spring begins.
         let none = (rows - 1) * strip;
@@ -113,14 +122,19 @@ impl ThreadSweep {
             } else {
                 &before[(row - 1) * strip..]
             };
-            forward(upper, lower, before, &mut own[..strip], family);
+            let own = &mut own[..strip];
+            match direction {
+                Direction::Down => (kernels.column_forward)(upper, lower, before, own, family, 0),
+                Direction::Right => (kernels.right_forward)(upper, lower, before, own, family),
+                Direction::Left => (kernels.left_forward)(upper, lower, before, own, family),
+            }
         }
         let [next, pulls] = &mut self.pulls;
         for row in (0..rows - 1).rev() {
             let lower = &mut blocks[(row + 1) * strip..(row + 2) * strip];
             backward(lower, &links[row * strip..(row + 1) * strip], next, pulls);
             if let Some(given) = &mut given {
-                (kernels.measure_given)(pulls, family, given);
+                (kernels.measure_given)(pulls, &family.softness, given);
             }
             std::mem::swap(next, pulls);
         }
@@ -132,29 +146,34 @@ impl ThreadSweep {
         heads(&mut blocks[..strip], next);
     }
 
-    fn solve_across(
-        &mut self,
-        blocks: &mut [Block],
-        kernels: &Kernels,
-        mut given: Option<&mut Lanes>,
-    ) {
+    /// Solves all threads within rows, likewise.
+    fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels, given: Option<&mut Lanes>) {
+        let part = Part {
+            blocks,
+            first_row: 0,
+            systems: &mut self.systems[0],
+            given,
+        };
+        part.solve(self.layout, &self.across, kernels);
+    }
+
+    /// The lengths of the springs that begin in these rows.
+    fn measure_rows(&self, blocks: &[Block], rows: Range<usize>, kernels: &Kernels) -> Longest {
+        let mut longest = Longest::default();
         let strip = self.layout.strip as usize;
-        let rows = self.layout.rows as usize;
-        let springs = self.layout.columns as usize - 1;
-        for (group, blocks) in blocks.chunks_mut(strip * GROUP).enumerate() {
-            let is_border = [group == 0, (group + 1) * GROUP >= rows];
-            self.systems
-                .solve(blocks, &self.across, is_border, springs, kernels);
-            if let Some(given) = &mut given {
-                self.systems.measure_given(
-                    &self.across,
-                    is_border,
-                    blocks.len() / strip,
-                    kernels,
-                    given,
-                );
+        let [across, down, diagonal] = &self.runs;
+        for row in rows {
+            let (upper, lower) = blocks[row * strip..].split_at(strip);
+            (kernels.measure_within)(upper, across, &mut longest);
+            if let Some(lower) = lower.get(..strip) {
+                (kernels.measure_down)(upper, lower, down, &mut longest);
+                if self.diagonal.is_some() {
+                    (kernels.measure_diagonal)(upper, lower, diagonal, &mut longest);
+                    (kernels.measure_diagonal)(lower, upper, diagonal, &mut longest);
+                }
             }
         }
+        longest
     }
 
     fn stretch(&self, longest: &Longest) -> Stretch {
@@ -187,11 +206,17 @@ impl Sweep for ThreadSweep {
         true
     }
 
-    fn bands(&self, _: usize) -> usize {
-        1
+    fn bands(&self, wanted: usize) -> usize {
+        let (strip, rows) = (self.layout.strip as usize, self.layout.rows as usize);
+        let most = (rows / MIN_ROWS).min(strip / MIN_BLOCKS);
+        wanted.min(most).clamp(1, MAX_BANDS)
     }
 
-    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> Swept {
+    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
+        let bands = self.bands(bands);
+        if bands > 1 {
+            return self.substep_in_bands(blocks, motion, bands);
+        }
         let kernels = motion.kernels;
         self.solve_down(blocks, Direction::Right, kernels, None);
         self.solve_down(blocks, Direction::Left, kernels, None);
@@ -213,20 +238,8 @@ impl Sweep for ThreadSweep {
     }
 
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {
-        let mut longest = Longest::default();
-        let strip = self.layout.strip as usize;
-        let [across, down, diagonal] = &self.runs;
-        for (row, upper) in blocks.chunks_exact(strip).enumerate() {
-            (kernels.measure_within)(upper, across, &mut longest);
-            if let Some(lower) = blocks.get((row + 1) * strip..(row + 2) * strip) {
-                (kernels.measure_down)(upper, lower, down, &mut longest);
-                if self.diagonal.is_some() {
-                    (kernels.measure_diagonal)(upper, lower, diagonal, &mut longest);
-                    (kernels.measure_diagonal)(lower, upper, diagonal, &mut longest);
-                }
-            }
-        }
-        self.stretch(&longest)
+        let rows = 0..self.layout.rows as usize;
+        self.stretch(&self.measure_rows(blocks, rows, kernels))
     }
 
     fn boxed(&self) -> Box<dyn Sweep> {

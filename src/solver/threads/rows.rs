@@ -84,7 +84,8 @@ impl RowSystems {
         let strip = families[0].hold.len();
         for (row, pulls) in self.ways.chunks_exact(strip).take(count).enumerate() {
             let is_border = (row == 0 && is_border[0]) || (row + 1 == count && is_border[1]);
-            (kernels.measure_given)(pulls, &families[usize::from(!is_border)], largest);
+            let family = &families[usize::from(!is_border)];
+            (kernels.measure_given)(pulls, &family.softness, largest);
         }
     }
 }
