@@ -99,12 +99,15 @@ impl<'a> Beside<'a> {
     /// Its blocks of each row, with the number of the first.
     pub fn pieces(&mut self) -> impl Iterator<Item = (usize, &mut [Block])> {
         let (direction, strip, from) = (self.direction, self.strip, self.from);
-        self.rows.iter_mut().enumerate().flat_map(move |(row, pieces)| {
-            let first = (from + direction.shift(row, strip)) % strip;
-            let [high, low] = pieces;
-            let firsts = [row * strip + first, row * strip];
-            firsts.into_iter().zip([&mut **high, &mut **low])
-        })
+        self.rows
+            .iter_mut()
+            .enumerate()
+            .flat_map(move |(row, pieces)| {
+                let first = (from + direction.shift(row, strip)) % strip;
+                let [high, low] = pieces;
+                let firsts = [row * strip + first, row * strip];
+                firsts.into_iter().zip([&mut **high, &mut **low])
+            })
     }
 
     /// The block of a row in which its thread is.

@@ -8,6 +8,8 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use super::{
     Stretch,
     bands::MAX_BANDS,
@@ -26,7 +28,6 @@ pub(super) use rows::{Rows, pull_row, row_equations, solve_turned, turn_back, tu
 
 use bands::Part;
 use rows::RowSystems;
-use std::ops::Range;
 
 /// Fewer rows a band than this, or fewer blocks of a row, and waiting for the others would take longer than the work.
 const MIN_ROWS: usize = 32;
@@ -143,12 +144,7 @@ impl ThreadSweep {
     }
 
     /// Solves all threads within rows, likewise.
-    fn solve_across(
-        &mut self,
-        blocks: &mut [Block],
-        kernels: &Kernels,
-        given: Option<&mut Lanes>,
-    ) {
+    fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels, given: Option<&mut Lanes>) {
         let part = Part {
             blocks,
             first_row: 0,
