@@ -35,7 +35,7 @@ fn sweeps(criterion: &mut Criterion) {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    for side in [16, 32, 64, 128, 256, 512] {
+    for side in [8, 16, 32, 64, 128, 256, 512] {
         let scene = in_motion(side);
         group.throughput(Throughput::Elements(
             scene.springs.len() as u64 * u64::from(SUBSTEPS),

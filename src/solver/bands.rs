@@ -1,8 +1,15 @@
 //! Bands of rows on several threads.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    hint,
+    sync::atomic::{AtomicBool, AtomicUsize, Ordering},
+    time::Duration,
+};
 
-use bevy::tasks::{ComputeTaskPool, TaskPool, futures_lite::future::yield_now};
+use bevy::{
+    platform::time::Instant,
+    tasks::{ComputeTaskPool, TaskPool, futures_lite::future::yield_now},
+};
 
 /// The pool that bands are tasks of.
 pub(super) fn pool() -> &'static TaskPool {
@@ -12,17 +19,29 @@ pub(super) fn pool() -> &'static TaskPool {
 /// More bands than this find no work worth a task.
 pub(super) const MAX_BANDS: usize = 16;
 
+/// So long a band that is done looks out for the others before its thread may sleep, which would take as long to wake.
+const PATIENCE: Duration = Duration::from_micros(100);
+
 /// Does `work` on each part: the last on this thread, each of the others in a task of its own.
 pub(super) fn in_bands<T: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
     let work = &work;
+    let left = &AtomicUsize::new(0);
     pool().scope(|scope| {
         let mut parts = parts.into_iter().peekable();
         while let Some(part) = parts.next() {
-            if parts.peek().is_none() {
-                work(part);
+            if parts.peek().is_some() {
+                left.fetch_add(1, Ordering::Relaxed);
+                scope.spawn(async move {
+                    work(part);
+                    left.fetch_sub(1, Ordering::Release);
+                });
             } else {
-                scope.spawn(async move { work(part) });
+                work(part);
             }
+        }
+        let since = Instant::now();
+        while left.load(Ordering::Acquire) > 0 && since.elapsed() < PATIENCE {
+            hint::spin_loop();
         }
     });
 }

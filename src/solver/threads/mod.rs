@@ -10,6 +10,8 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use super::{
     Stretch,
     bands::MAX_BANDS,
@@ -30,7 +32,6 @@ pub(super) use rows::{Rows, pull_row, row_equations, solve_turned, turn_back, tu
 
 use bands::Part;
 use rows::RowSystems;
-use std::ops::Range;
 
 /// Fewer rows a band than this, or fewer blocks of a row, and waiting for the others would take longer than the work.
 const MIN_ROWS: usize = 32;
