@@ -5,7 +5,7 @@ use bevy_drape::solver::TickStep;
 use crate::smooth::Smooth;
 
 /// Below this, rounding counts (m).
-const ROUNDING: f64 = 2.0e-6;
+const ROUNDING: f64 = 4.0e-6;
 
 /// Slope of ln error over ln sub-step, by least squares.
 fn order(motion: &Smooth) -> f64 {
