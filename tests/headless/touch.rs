@@ -8,7 +8,7 @@ use bevy_drape::{
     hierarchy::NodeState,
     plugin::{ClothBuilt, ClothSearch},
     prelude::*,
-    solver::{Bending, Solver, Tethers, TickStep},
+    solver::{Bending, Solver, TickStep},
 };
 
 use crate::support::*;

@@ -10,7 +10,7 @@ use crate::shared::sheet::{GRAVITY, Sheet, threads};
 
 /// Free length (m), rows of particles across, and mass per area (kg/m²).
 const LENGTH: f32 = 0.3;
-pub const ROWS: u32 = 3;
+pub const ROWS: u32 = 2;
 const DENSITY: f32 = 0.15;
 
 /// Ticks of 1/60 s until it hangs still, losing 5 % of its velocity in each.

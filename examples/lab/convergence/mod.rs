@@ -28,11 +28,13 @@ const METHODS: [(&str, fn(u32) -> TickStep); 2] = [
     }),
 ];
 
-/// What our errors fall with, at least.
+/// What our errors fall with, at least; and where all directions of threads pull at the same time: they are solved one after the
+/// other, and what each leaves to the next is of first order.
 const MIN_ORDER: f64 = 1.7;
+const MIN_ORDER_OF_FALLS: f64 = 0.9;
 
 /// Below this, rounding counts (mm).
-const ROUNDING: f64 = 2.0e-3;
+const ROUNDING: f64 = 4.0e-3;
 
 pub struct Convergence;
 
@@ -96,7 +98,12 @@ impl Experiment for Convergence {
         for scene in scenes(rows) {
             let order = order(rows, scene, OURS);
             // NaN is not.
-            let is_high = order >= MIN_ORDER;
+            let least = if scene.starts_with("fall") {
+                MIN_ORDER_OF_FALLS
+            } else {
+                MIN_ORDER
+            };
+            let is_high = order >= least;
             if !is_high {
                 return Err(format!("{scene}: ours is of order {order:.2}"));
             }
