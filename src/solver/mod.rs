@@ -1,8 +1,9 @@
-//! Floor 1: how a cloth *moves*: Verlet integration and distance constraints in small sub-steps.
+//! Floor 1: how a cloth *moves*: threads solved exactly, and a motion of second order in time, in small sub-steps.
 //!
-//! A tick is cut into sub-steps of Δt. Each moves every particle by the paper's equation (2) and then sweeps
-//! once over the springs, which as XPBD constraints hold their rest lengths (Macklin et al. 2016; small steps
-//! instead of many sweeps: Macklin et al. 2019). With one sweep a sub-step no multiplier needs storing.
+//! A tick is cut into sub-steps of Δt (small steps instead of many sweeps: Macklin et al. 2019). Each predicts where every
+//! particle would be by itself, by backward differences of second order or by the paper's equation (2), bends it back as a plate
+//! would, and then holds the rest lengths of the springs, which are XPBD constraints (Macklin et al. 2016): thread by thread,
+//! each solved as one system of equations.
 
 mod bands;
 mod bending;
