@@ -13,6 +13,7 @@ use bevy::math::Vec4;
 use multiversion::{inherit_target, multiversion};
 
 use super::{
+    barrier::one_block_at_a_time,
     packet::{Packet, Row, relax_packets, relax_packets_back, relax_packets_there},
     plate::{Moments, Stiffness, plate_moments, plate_places, plate_push},
     predict::{Prediction, begin_past, predict, predict_first},
@@ -58,12 +59,6 @@ fn relax(a: &mut View, b: &mut View, rest_square: impl Fn(usize) -> f32, softnes
         b[DY + l] -= share_b * y;
         b[DZ + l] -= share_b * z;
     }
-}
-
-/// Keeps the compiler from gathering the lanes of several blocks: a block's own are side by side.
-#[inline(always)]
-pub(super) fn one_block_at_a_time() {
-    std::hint::black_box(());
 }
 
 /// A displacement in a sub-step that is none (m): what is far from all that moves moves by as little as that.

@@ -6,6 +6,7 @@
 //! each solved as one system of equations.
 
 mod bands;
+mod barrier;
 mod bending;
 mod envelope;
 mod kernel;

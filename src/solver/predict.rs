@@ -9,7 +9,7 @@
 //! what a constant acceleration would have made them. A sub-step of first order in its place would leave a velocity that is
 //! off by a Δt/2, and all that follows of first order.
 
-use super::kernel::one_block_at_a_time;
+use super::barrier::one_block_at_a_time;
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
 
 /// What a displacement becomes: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.

@@ -7,7 +7,7 @@
 use std::{ops::Range, slice};
 
 use super::{
-    Direction,
+    direction::Direction,
     down::Pull,
     link::{Family, Link, from_left},
 };

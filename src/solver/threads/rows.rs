@@ -3,10 +3,7 @@
 use bevy::math::{Mat4, Vec4};
 
 use super::link::{Family, equation, from_left};
-use crate::{
-    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
-    solver::kernel::Kernels,
-};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
 /// Rows that are solved at once.
 pub(crate) const GROUP: usize = 16;
@@ -18,77 +15,6 @@ const RIGHT: usize = 2;
 
 /// One number of each row.
 pub(crate) type Rows = [f32; GROUP];
-
-/// The systems of a group of rows.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct RowSystems {
-    /// Row by row, block by block.
-    ways: Vec<[Lanes; 3]>,
-    /// Row by row, block by block: diagonal, off, right.
-    terms: Vec<[Lanes; 3]>,
-    /// Column by column, of all rows: the same.
-    unknowns: Vec<[Rows; 3]>,
-}
-
-/// A row where there is none: nothing pulls.
-const NO_TERMS: [Lanes; 3] = [[1.0; LANES], [0.0; LANES], [0.0; LANES]];
-
-impl RowSystems {
-    pub fn new(strip: usize) -> Self {
-        let columns = strip * LANES;
-        Self {
-            ways: vec![[[0.0; LANES]; 3]; strip * GROUP],
-            terms: vec![NO_TERMS; strip * GROUP],
-            unknowns: vec![[[0.0; GROUP]; 3]; columns],
-        }
-    }
-
-    /// Solves the rows in `blocks`, up to [`GROUP`] of them, of `springs` springs each; with the family of a border for the
-    /// first and the last of them where they are on one.
-    pub fn solve(
-        &mut self,
-        blocks: &mut [Block],
-        [border, inner]: &[Family; 2],
-        is_border: [bool; 2],
-        springs: usize,
-        kernels: &Kernels,
-    ) {
-        let strip = border.hold.len();
-        let count = blocks.len() / strip;
-        for (row, blocks) in blocks.chunks_exact(strip).enumerate() {
-            let is_border = (row == 0 && is_border[0]) || (row + 1 == count && is_border[1]);
-            let family = if is_border { border } else { inner };
-            let range = row * strip..(row + 1) * strip;
-            let (ways, terms) = (&mut self.ways[range.clone()], &mut self.terms[range]);
-            (kernels.row_equations)(blocks, family, ways, terms);
-        }
-        self.terms[count * strip..].fill(NO_TERMS);
-        (kernels.turn_terms)(&self.terms, &mut self.unknowns, strip);
-        (kernels.solve_turned)(&mut self.unknowns, springs);
-        (kernels.turn_back)(&self.unknowns, &mut self.terms, strip);
-        for (row, blocks) in blocks.chunks_exact_mut(strip).enumerate() {
-            let range = row * strip..(row + 1) * strip;
-            (kernels.pull_row)(blocks, &mut self.ways[range.clone()], &self.terms[range]);
-        }
-    }
-
-    /// Raises `largest` to the squares of what the springs of the rows solved last, this many, give at their tension (m²).
-    pub fn measure_given(
-        &self,
-        families: &[Family; 2],
-        is_border: [bool; 2],
-        count: usize,
-        kernels: &Kernels,
-        largest: &mut Lanes,
-    ) {
-        let strip = families[0].hold.len();
-        for (row, pulls) in self.ways.chunks_exact(strip).take(count).enumerate() {
-            let is_border = (row == 0 && is_border[0]) || (row + 1 == count && is_border[1]);
-            let family = &families[usize::from(!is_border)];
-            (kernels.measure_given)(pulls, &family.softness, largest);
-        }
-    }
-}
 
 /// Transposes four by four numbers.
 #[inline(always)]

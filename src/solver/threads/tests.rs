@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::{Direction, ThreadSweep};
+use super::{direction::Direction, grid::ThreadSweep};
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Compliances, Surface},
     solver::{SimdLevel, sweep::Sweep},

@@ -1,0 +1,329 @@
+//! The springs of a grid, thread by thread: in one band, or in several, of blocks side by side where threads lead from row to row,
+//! of rows where they lead within them.
+
+use std::ops::Range;
+
+use super::{
+    beside::Beside,
+    direction::Direction,
+    down::Pull,
+    link::{Family, Link},
+    rows::GROUP,
+    systems::{Part, RowSystems},
+};
+use crate::{
+    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout},
+    solver::{
+        Stretch,
+        bands::{MAX_BANDS, in_bands, take},
+        kernel::{Kernels, Longest},
+        run::Run,
+        sweep::{Motion, Sweep, Swept},
+    },
+};
+
+/// Fewer rows a band than this, or fewer blocks of a row, and waiting for the others would take longer than the work.
+const MIN_ROWS: usize = 32;
+const MIN_BLOCKS: usize = 2;
+
+/// The springs of a grid, thread by thread.
+#[derive(Debug, Clone)]
+pub(in crate::solver) struct ThreadSweep {
+    layout: Layout,
+    /// Within a row: one on a border, one that is not.
+    across: [Family; 2],
+    down: Family,
+    /// If there are any.
+    diagonal: Option<Family>,
+    /// For measuring: within a row, down, diagonal.
+    runs: [Run; 3],
+    /// Row by row.
+    links: Vec<Link>,
+    /// Of two rows.
+    pulls: [Vec<Pull>; 2],
+    /// One for each band.
+    systems: Vec<RowSystems>,
+    /// c Δt² (s²).
+    weight_dt2: f32,
+}
+
+/// What a band found.
+#[derive(Default, Clone, Copy)]
+struct Found {
+    given: Lanes,
+    moved: Lanes,
+    longest: Longest,
+}
+
+impl ThreadSweep {
+    pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
+        let layout = Layout::new(grid.columns(), grid.rows());
+        let strip = layout.strip as usize;
+        let family = |step, row| Family::new(grid, layout, compliances, step, row);
+        let mut run =
+            [(0, 1), (1, 0), (1, 1)].map(|step| Run::new(grid, layout, compliances, step, 0));
+        for run in &mut run {
+            run.soften(1.0);
+        }
+        Self {
+            layout,
+            across: [family((0, 1), 0), family((0, 1), 1)],
+            down: family((1, 0), 0),
+            diagonal: compliances.shear.is_finite().then(|| family((1, 1), 0)),
+            runs: run,
+            links: vec![Link::NONE; layout.blocks()],
+            pulls: [0, 1].map(|_| vec![[[0.0; _]; 3]; strip]),
+            systems: vec![RowSystems::new(strip)],
+            weight_dt2: 0.0,
+        }
+    }
+
+    /// Solves all threads that lead from row to row in one direction. Raises `given` to the squares of what their springs give
+    /// at their tension (m²).
+    pub(super) fn solve_down(
+        &mut self,
+        blocks: &mut [Block],
+        direction: Direction,
+        kernels: &Kernels,
+        mut given: Option<&mut Lanes>,
+    ) {
+        let strip = self.layout.strip as usize;
+        let rows = self.layout.rows as usize;
+        let Some(family) = (match direction {
+            Direction::Down => Some(&self.down),
+            Direction::Right | Direction::Left => self.diagonal.as_ref(),
+        }) else {
+            return;
+        };
+        let backward = match direction {
+            Direction::Down => kernels.column_backward,
+            Direction::Right => kernels.right_backward,
+            Direction::Left => kernels.left_backward,
+        };
+        // The links before the first row's are none: so are those of the last row, where no spring begins.
+        let none = (rows - 1) * strip;
+        (kernels.clear)(&mut self.links[none..], &mut self.pulls[0]);
+        let (links, none) = self.links.split_at_mut(none);
+        for row in 0..rows - 1 {
+            let (upper, lower) = blocks[row * strip..(row + 2) * strip].split_at(strip);
+            let (before, own) = links.split_at_mut(row * strip);
+            let before = if row == 0 {
+                &*none
+            } else {
+                &before[(row - 1) * strip..]
+            };
+            let own = &mut own[..strip];
+            match direction {
+                Direction::Down => (kernels.column_forward)(upper, lower, before, own, family, 0),
+                Direction::Right => (kernels.right_forward)(upper, lower, before, own, family),
+                Direction::Left => (kernels.left_forward)(upper, lower, before, own, family),
+            }
+        }
+        let [next, pulls] = &mut self.pulls;
+        for row in (0..rows - 1).rev() {
+            let lower = &mut blocks[(row + 1) * strip..(row + 2) * strip];
+            backward(lower, &links[row * strip..(row + 1) * strip], next, pulls);
+            if let Some(given) = &mut given {
+                (kernels.measure_given)(pulls, &family.softness, given);
+            }
+            std::mem::swap(next, pulls);
+        }
+        let heads = if direction == Direction::Left {
+            kernels.left_heads
+        } else {
+            kernels.column_heads
+        };
+        heads(&mut blocks[..strip], next);
+    }
+
+    /// Solves all threads within rows, likewise.
+    pub(super) fn solve_across(
+        &mut self,
+        blocks: &mut [Block],
+        kernels: &Kernels,
+        given: Option<&mut Lanes>,
+    ) {
+        let part = Part {
+            blocks,
+            first_row: 0,
+            systems: &mut self.systems[0],
+            given,
+        };
+        part.solve(self.layout, &self.across, kernels);
+    }
+
+    /// The lengths of the springs that begin in these rows.
+    fn measure_rows(&self, blocks: &[Block], rows: Range<usize>, kernels: &Kernels) -> Longest {
+        let mut longest = Longest::default();
+        let strip = self.layout.strip as usize;
+        let [across, down, diagonal] = &self.runs;
+        for row in rows {
+            let (upper, lower) = blocks[row * strip..].split_at(strip);
+            (kernels.measure_within)(upper, across, &mut longest);
+            if let Some(lower) = lower.get(..strip) {
+                (kernels.measure_down)(upper, lower, down, &mut longest);
+                if self.diagonal.is_some() {
+                    (kernels.measure_diagonal)(upper, lower, diagonal, &mut longest);
+                    (kernels.measure_diagonal)(lower, upper, diagonal, &mut longest);
+                }
+            }
+        }
+        longest
+    }
+
+    fn stretch(&self, longest: &Longest) -> Stretch {
+        let ratio = |lanes: &Lanes, run: &Run| {
+            (lanes.iter().copied().fold(0.0, f32::max) / run.rest_square).sqrt()
+        };
+        let structural =
+            ratio(&longest.across, &self.runs[0]).max(ratio(&longest.down, &self.runs[1]));
+        let bound = structural.max(ratio(&longest.diagonal, &self.runs[2]));
+        Stretch::of_ratios(structural, bound)
+    }
+
+    /// A sub-step in this many bands, more than one.
+    fn substep_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
+        let (kernels, measures) = (motion.kernels, motion.measures);
+        if let Some(family) = &self.diagonal {
+            for direction in [Direction::Right, Direction::Left] {
+                let strip = self.layout.strip as usize;
+                let (links, pulls) = (&mut self.links[..], &mut self.pulls);
+                let all = Beside::split(direction, (strip, bands), blocks, links, pulls);
+                in_bands(all, |mut band| band.solve(family, kernels, None));
+            }
+        }
+        let across = self.across_in_bands(blocks, motion, bands) / self.across[0].rest;
+        let mut found = [Found::default(); MAX_BANDS];
+        let (strip, down) = (self.layout.strip as usize, &self.down);
+        let (links, pulls) = (&mut self.links[..], &mut self.pulls);
+        let all = Beside::split(Direction::Down, (strip, bands), blocks, links, pulls);
+        in_bands(all.into_iter().zip(&mut found), |(mut band, found)| {
+            band.solve(down, kernels, measures.then_some(&mut found.given));
+            for (first, blocks) in band.pieces() {
+                let (tethers, anchors) = (motion.tethers, motion.anchors);
+                tethers.pull(anchors, blocks, first, kernels);
+                (kernels.commit)(blocks, &mut found.moved);
+            }
+        });
+        let rows = self.layout.rows as usize;
+        let stretch = measures.then(|| {
+            let down = merged(&found, |found| &found.given);
+            let border = |band| rows * band / bands;
+            let parts = (0..bands).zip(&mut found);
+            let blocks = &*blocks;
+            in_bands(parts, |(band, found)| {
+                let rows = border(band)..border(band + 1);
+                found.longest = self.measure_rows(blocks, rows, kernels);
+            });
+            let mut longest = Longest::default();
+            for found in &found[..bands] {
+                longest.merge(&found.longest);
+            }
+            Stretch {
+                material: across.max(largest(&down) / self.down.rest),
+                ..self.stretch(&longest)
+            }
+        });
+        let moved = merged(&found, |found| &found.moved);
+        Swept { moved, stretch }
+    }
+
+    /// Solves the threads within rows. Returns the most that a spring gives (m), if that is to be measured.
+    fn across_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> f32 {
+        let strip = self.layout.strip as usize;
+        let rows = self.layout.rows as usize;
+        let groups = rows.div_ceil(GROUP);
+        let border = |band: usize| (groups * band / bands * GROUP).min(rows);
+        if self.systems.len() < bands {
+            self.systems.resize(bands, RowSystems::new(strip));
+        }
+        let mut found = [Found::default(); MAX_BANDS];
+        let mut rest = blocks;
+        let each = self.systems.iter_mut().zip(&mut found).take(bands);
+        let parts = each.enumerate().map(|(band, (systems, found))| Part {
+            blocks: take(&mut rest, (border(band + 1) - border(band)) * strip),
+            first_row: border(band),
+            systems,
+            given: motion.measures.then_some(&mut found.given),
+        });
+        let (layout, families) = (self.layout, &self.across);
+        in_bands(parts, |part| part.solve(layout, families, motion.kernels));
+        largest(&merged(&found, |found| &found.given))
+    }
+}
+
+impl Sweep for ThreadSweep {
+    fn set_weight(&mut self, weight_dt2: f32) {
+        if self.weight_dt2 != weight_dt2 {
+            self.weight_dt2 = weight_dt2;
+            for family in self
+                .across
+                .iter_mut()
+                .chain([&mut self.down])
+                .chain(&mut self.diagonal)
+            {
+                family.soften(weight_dt2);
+            }
+        }
+    }
+
+    fn is_exact(&self) -> bool {
+        true
+    }
+
+    fn bands(&self, wanted: usize) -> usize {
+        let (strip, rows) = (self.layout.strip as usize, self.layout.rows as usize);
+        let most = (rows / MIN_ROWS).min(strip / MIN_BLOCKS);
+        wanted.min(most).clamp(1, MAX_BANDS)
+    }
+
+    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
+        let bands = self.bands(bands);
+        if bands > 1 {
+            return self.substep_in_bands(blocks, motion, bands);
+        }
+        let kernels = motion.kernels;
+        self.solve_down(blocks, Direction::Right, kernels, None);
+        self.solve_down(blocks, Direction::Left, kernels, None);
+        let mut given = [0.0; LANES];
+        self.solve_across(blocks, kernels, motion.measures.then_some(&mut given));
+        let across = largest(&given) / self.across[0].rest;
+        given = [0.0; LANES];
+        let measured = motion.measures.then_some(&mut given);
+        self.solve_down(blocks, Direction::Down, kernels, measured);
+        let down = largest(&given) / self.down.rest;
+        motion.tethers.pull(motion.anchors, blocks, 0, kernels);
+        let mut moved = [0.0; LANES];
+        (kernels.commit)(blocks, &mut moved);
+        let stretch = motion.measures.then(|| Stretch {
+            material: across.max(down),
+            ..self.measure(blocks, kernels)
+        });
+        Swept { moved, stretch }
+    }
+
+    fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {
+        let rows = 0..self.layout.rows as usize;
+        self.stretch(&self.measure_rows(blocks, rows, kernels))
+    }
+
+    fn boxed(&self) -> Box<dyn Sweep> {
+        Box::new(self.clone())
+    }
+}
+
+/// The root of the largest of squares.
+fn largest(squares: &Lanes) -> f32 {
+    squares.iter().copied().fold(0.0, f32::max).sqrt()
+}
+
+/// The largest number of each lane.
+fn merged(all: &[Found], lanes: impl Fn(&Found) -> &Lanes) -> Lanes {
+    let larger = |mut largest: Lanes, found: &Found| {
+        for (largest, own) in largest.iter_mut().zip(lanes(found)) {
+            *largest = largest.max(*own);
+        }
+        largest
+    };
+    all.iter().fold([0.0; LANES], larger)
+}
