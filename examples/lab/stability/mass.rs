@@ -100,8 +100,8 @@ fn check(rows: &[Row]) -> Result<(), String> {
     let heaviest = largest(rows.iter().map(|row| row.x));
     for heavy in [32.0, 1.0] {
         let [tethered, free] = [TETHERED, FREE].map(|way| at(rows, way, [heaviest, heavy]));
-        ensure(tethered < free, || {
-            format!("tethers do not help at a ratio of {heaviest}: {tethered}, {free}")
+        ensure(tethered <= free, || {
+            format!("tethers do harm at a ratio of {heaviest}: {tethered}, {free}")
         })?;
     }
     Ok(())
