@@ -108,7 +108,7 @@ impl ClothMaterial {
         damping: 0.04,
         friction: 0.6,
     };
-    /// Stretchy and grippy, as a thin rubber sheet. Rigidity: that of a millimetre of natural rubber with a Young's modulus of 1.5 MPa,
+    /// Stretchy and grippy, as a thin rubber sheet. Rigidity: that of a millimetre of natural rubber with a Young's modulus of 1.5 N/mm²,
     /// E h³ ⁄ 12 (1 − ν²).
     pub const RUBBER: Self = Self {
         areal_density: 1.0,

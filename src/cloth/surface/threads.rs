@@ -50,9 +50,9 @@ impl Threads {
             threads: Vec::new(),
         };
         // Open paths from their ends; what is left then is closed.
-        for edge in 0..edges.len() {
-            for end in 0..2 {
-                if next[edge][end] == NONE {
+        for (edge, ends) in next.iter().enumerate() {
+            for (end, &after) in ends.iter().enumerate() {
+                if after == NONE {
                     walk.from(edge as u32, end);
                 }
             }

@@ -51,7 +51,7 @@ pub(super) fn faces_beside(faces: &[[u32; 3]]) -> Vec<[Option<u32>; 3]> {
 pub(super) struct Patch {
     /// Its corners, and what is beyond its edges; where there is nothing, a corner once more, with zeros.
     pub particles: [u32; 6],
-    /// What each particle's position makes of κ_xx, κ_yy and √2 κ_xy (1/m²).
+    /// What each particle's position makes of `κ_xx`, `κ_yy` and `√2 κ_xy` (1/m²).
     pub curvature: [[f64; 6]; 3],
     /// m².
     pub area: f64,

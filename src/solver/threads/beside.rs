@@ -124,9 +124,8 @@ impl<'a> Beside<'a> {
             // As far as both ends are side by side.
             let count = match direction {
                 Direction::Down => width,
-                Direction::Right if block == last => 1,
-                Direction::Right if block == 0 => 1,
-                Direction::Right => last - block,
+                Direction::Right if block > 0 && block < last => last - block,
+                Direction::Right => 1,
                 Direction::Left if block == 0 => 1,
                 Direction::Left => strip - block,
             };
@@ -149,13 +148,13 @@ impl<'a> Beside<'a> {
                     forward(upper, lower, before, links, family, last);
                 }
                 Direction::Right if block == 0 => {
-                    let wrapped = before[0].from_left();
+                    let wrapped = before[0].moved_right();
                     let before = slice::from_ref(&wrapped);
                     forward(upper, lower, before, links, family, 0);
                 }
                 Direction::Left if block == 0 => {
                     let shifted = upper[0].to_shifted();
-                    let wrapped = before[0].from_right();
+                    let wrapped = before[0].moved_left();
                     let (upper, before) = (slice::from_ref(&shifted), slice::from_ref(&wrapped));
                     forward(upper, lower, before, links, family, last);
                 }

@@ -107,7 +107,7 @@ pub(crate) fn right_forward(
     family: &Family,
 ) {
     let last = links.len() - 1;
-    let wrapped = previous[last].from_left();
+    let wrapped = previous[last].moved_right();
     if last == 0 {
         let row = equation(upper[0].view(), lower[0].shifted(), family, 0);
         eliminate(upper[0].view(), &row, &wrapped, &mut links[0]);
@@ -176,7 +176,7 @@ pub(crate) fn left_forward(
     eliminate(
         upper[0].shifted(),
         &row,
-        &previous[0].from_right(),
+        &previous[0].moved_left(),
         &mut links[last],
     );
 }

@@ -34,13 +34,13 @@ impl Link {
 
     /// Each lane holds what its left neighbour did.
     #[inline(always)]
-    pub fn from_left(&self) -> Self {
+    pub fn moved_right(&self) -> Self {
         self.each(from_left)
     }
 
     /// Each lane holds what its right neighbour did.
     #[inline(always)]
-    pub fn from_right(&self) -> Self {
+    pub fn moved_left(&self) -> Self {
         self.each(from_right)
     }
 

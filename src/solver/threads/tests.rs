@@ -54,7 +54,7 @@ fn threads(grid: &ClothGrid, (down, across): (u32, i32)) -> Vec<Vec<(u32, u32)>>
         let before = row
             .checked_sub(down)
             .zip(column.checked_add_signed(-across));
-        !before.is_some_and(|(_, column)| column < grid.columns())
+        before.is_none_or(|(_, column)| column >= grid.columns())
     };
     let thread = |first| std::iter::successors(Some(first), |&cell| next(cell)).collect();
     grid.cells().filter(is_first).map(thread).collect()
@@ -71,8 +71,9 @@ pub(super) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64>
         right.swap(at, best);
         for below in at + 1..n {
             let factor = matrix[below][at] / matrix[at][at];
-            for column in at..n {
-                matrix[below][column] -= factor * matrix[at][column];
+            let (upper, lower) = matrix.split_at_mut(below);
+            for (own, other) in lower[0].iter_mut().zip(&upper[at]).skip(at) {
+                *own -= factor * other;
             }
             right[below] -= factor * right[at];
         }

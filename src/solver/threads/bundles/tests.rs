@@ -203,5 +203,5 @@ fn a_mesh_has_the_same_bits_on_every_instruction_set() {
     };
     let particles = run(SimdLevel::Auto);
     assert!(particles == run(SimdLevel::Baseline));
-    assert!(particles.positions().all(|position| position.is_finite()));
+    assert!(particles.positions().all(Vec3::is_finite));
 }
