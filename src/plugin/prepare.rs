@@ -29,7 +29,7 @@ use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
     contact::{ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothSettings, PinMotion, Substepping, TickStep},
+    solver::{ClothSettings, PinMotion, TickStep},
 };
 
 /// The pins of a cloth from which the game took its [`Pins`].
@@ -213,7 +213,9 @@ impl PreparingItem<'_, '_> {
             seconds,
             substeps: state.control.substeps(
                 settings.substepping,
-                Substepping::needed(surface.particles_along(), seconds),
+                built
+                    .solver
+                    .needed(particles, surface.particles_along(), seconds),
             ),
             acceleration,
             damping: material.damping,

@@ -14,6 +14,8 @@ use multiversion::{inherit_target, multiversion};
 
 use super::{
     barrier::one_block_at_a_time,
+    commit::commit,
+    forces::{ElasticGrid, Force, Kick, kick},
     packet::{Packet, Row, relax_packets, relax_packets_back, relax_packets_there},
     plate::{Moments, Stiffness, plate_moments, plate_places, plate_push},
     predict::{Prediction, begin_past, predict, predict_first},
@@ -58,34 +60,6 @@ fn relax(a: &mut View, b: &mut View, rest_square: impl Fn(usize) -> f32, softnes
         b[DX + l] -= share_b * x;
         b[DY + l] -= share_b * y;
         b[DZ + l] -= share_b * z;
-    }
-}
-
-/// A displacement in a sub-step that is none (m): what is far from all that moves moves by as little as that.
-///
-/// Its square, and what is left of it some springs farther, would be subnormal numbers, which machines are slow with:
-/// a second of a flat cloth of 64² particles that a ball pushes took 90 ms with them, and takes 39 ms without, in 20
-/// sub-steps a tick.
-pub(super) const MIN_MOVE: f32 = 1.0e-15;
-
-/// Ends a sub-step: displacements become positions. Raises `farthest` to the largest squared displacements (m²).
-#[inline(always)]
-fn commit(row: &mut [Block], farthest: &mut Lanes) {
-    for block in row {
-        let view = block.view_mut();
-        for at in X..W {
-            let moved = view[DX + at];
-            // NaN stays to be seen.
-            let moved = if moved.abs() < MIN_MOVE { 0.0 } else { moved };
-            view[DX + at] = moved;
-            view[at] += moved;
-        }
-        for l in 0..LANES {
-            let (x, y, z) = (view[DX + l], view[DY + l], view[DZ + l]);
-            let q = x * x + y * y + z * z;
-            farthest[l] = if q > farthest[l] { q } else { farthest[l] };
-        }
-        one_block_at_a_time();
     }
 }
 
@@ -317,13 +291,14 @@ kernels! {
     bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], inverse_weight: f32),
     bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),
     commit(row: &mut [Block], farthest: &mut Lanes),
+    kick(blocks: &mut [Block], around: [&[Block]; 2], springs: &ElasticGrid, kick: &Kick, forces: &mut [Vec<Force>; 2], moved: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32),
     relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], inverse_dt2: f32),
     relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &[Vec4], inverse_dt2: f32),
     across(row: &mut [Block], run: &Run),
     down(upper: &mut [Block], lower: &mut [Block], run: &Run),
     diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run),
-    plate_places(row: &[Block], origin: &[f32; 3], places: &mut [Trio]),
+    plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Trio]),
     plate_moments(places: [&[Trio]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
     plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),
     thread_links(from: &[Block], to: &[Block], shift: usize, links: &mut [Trio]),

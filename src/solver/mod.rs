@@ -41,7 +41,9 @@
 mod bands;
 mod barrier;
 mod bending;
+mod commit;
 mod envelope;
+mod forces;
 mod kernel;
 mod list;
 #[cfg(feature = "methods")]

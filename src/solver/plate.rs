@@ -24,16 +24,17 @@ const SUM: usize = 4;
 /// k (N/m) of eight particles along the rows, down the columns and along each diagonal.
 pub(super) type Stiffness = [Lanes; 3];
 
-/// Where a row's particles will be, seen from `origin`: next to the cloth, so that no digit of a displacement is lost to its
-/// distance from the world's origin.
+/// Where a row's particles will be after this part of their displacements, seen from `origin`: next to the cloth, so that no digit
+/// of a displacement is lost to its distance from the world's origin.
 #[inline(always)]
-pub(super) fn plate_places(row: &[Block], origin: &[f32; 3], places: &mut [Trio]) {
+pub(super) fn plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Trio]) {
     for (block, out) in row.iter().zip(&mut places[EDGE..]) {
         let view = block.view();
         for axis in 0..3 {
             let mut place = [0.0; LANES];
             for l in 0..LANES {
-                place[l] = (view[PLACES[axis] + l] - origin[axis]) + view[MOVES[axis] + l];
+                let moved = part * view[MOVES[axis] + l];
+                place[l] = (view[PLACES[axis] + l] - origin[axis]) + moved;
             }
             out[axis] = place;
         }

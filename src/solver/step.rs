@@ -5,6 +5,8 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
+use crate::cloth::ClothParticles;
+
 /// The time step for which the paper's damping D is given (s).
 pub(super) const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
 
@@ -80,4 +82,17 @@ pub struct PinMotion {
     pub from: Vec3,
     /// Where it is as the tick ends (m).
     pub to: Vec3,
+}
+
+/// Those of particles that exist.
+pub(super) fn existing(pins: &[PinMotion], particles: usize) -> impl Iterator<Item = &PinMotion> {
+    pins.iter()
+        .filter(move |pin| (pin.particle as usize) < particles)
+}
+
+/// Puts pinned particles where they are at the end of a tick: not a rounding beside it.
+pub(super) fn put_pins(particles: &mut ClothParticles, pins: &[PinMotion]) {
+    for pin in existing(pins, particles.len()) {
+        particles.put(pin.particle as usize, pin.to);
+    }
 }

@@ -6,13 +6,15 @@ mod tests;
 use std::sync::Arc;
 
 use super::{
-    Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
+    Bending, PinMotion, SimdLevel, Stretch, SubStep, Substepping, Tethers, TickStep, TimeOrder,
     bands::{in_bands, with_threads_awake},
+    forces::Forces,
     list::ListSweep,
     pipeline::GridSweep,
     predict::{Prediction, weight},
     spin::Spin,
-    step::DAMPING_REFERENCE,
+    step::{DAMPING_REFERENCE, existing, put_pins},
+    substepping::FEWEST,
     sweep::{Motion, Sweep},
     tether::Anchors,
     threads::ThreadSweep,
@@ -30,6 +32,12 @@ const AFTER_CONTACT: u32 = 3;
 /// A stretch beyond the material's own that has not been solved: to go on from it would feed in energy.
 const UNSOLVED: f32 = 0.5;
 
+/// A sub-step of forces takes less than this part of one in which threads are solved.
+const CHEAPER: u32 = 2;
+
+/// What a quotient may be off by.
+const ROUNDING: f32 = 1.0 + 1.0e-6;
+
 /// Ticks of first order after a tick that ended so.
 const WARY_TICKS: u32 = 15;
 
@@ -39,6 +47,8 @@ pub struct Solver {
     /// Of the particles.
     layout: Layout,
     sweep: Box<dyn Sweep>,
+    /// Of a grid without rigid springs.
+    forces: Option<Box<Forces>>,
     bending: Option<Bending>,
     tethers: Tethers,
     anchors: Anchors,
@@ -105,13 +115,21 @@ impl Solver {
                 Box::new(ListSweep::new(list, layout))
             }
         };
-        Self::of(layout, sweep)
+        let forces = match springs.storage() {
+            SpringStorage::Grid(grid, compliances) => Forces::new(grid, compliances).map(Box::new),
+            SpringStorage::List(_) => None,
+        };
+        Self {
+            forces,
+            ..Self::of(layout, sweep)
+        }
     }
 
     fn of(layout: Layout, sweep: Box<dyn Sweep>) -> Self {
         Self {
             layout,
             sweep,
+            forces: None,
             bending: None,
             tethers: Tethers::default(),
             anchors: Anchors::default(),
@@ -144,11 +162,20 @@ impl Solver {
     /// last bit. Springs on no grid are always one band.
     pub fn set_bands(&mut self, bands: usize) {
         self.bands = bands;
+        if let Some(forces) = &mut self.forces {
+            forces.set_bands(bands);
+        }
     }
 
     /// How many bands there are: fewer than wanted where there is too little to do.
     pub(super) fn bands(&self) -> usize {
         self.sweep.bands(self.bands)
+    }
+
+    /// And those of a tick of forces.
+    #[cfg(test)]
+    pub(super) fn forces_bands(&self) -> usize {
+        self.forces.as_ref().map_or(1, |forces| forces.bands())
     }
 
     /// With this SIMD level from now on.
@@ -183,6 +210,9 @@ impl Solver {
         if step.order == TimeOrder::First {
             particles.past_mut().forget(0);
         }
+        if self.is_explicit(particles, &step) {
+            return self.kicks(particles, step, pins, &mut respond);
+        }
         if ratio < MUCH_SHORTER && step.order == TimeOrder::Second {
             self.settle(particles, dt);
         }
@@ -203,15 +233,68 @@ impl Solver {
             let kept = (1.0 - step.damping).powf(step.seconds / DAMPING_REFERENCE);
             spin.restore(particles, kept);
         }
-        for pin in existing(pins, particles.len()) {
-            // Not a rounding beside it.
-            particles.put(pin.particle as usize, pin.to);
-        }
+        put_pins(particles, pins);
         let stretch = measured.unwrap_or_else(|| self.measure(particles));
         if stretch.structural > step.material_stretch + UNSOLVED {
             particles.past_mut().forget(WARY_TICKS * step.substeps);
         }
         stretch
+    }
+
+    /// Whether the springs of the coming tick push by their forces.
+    pub(super) fn is_explicit(&self, particles: &ClothParticles, step: &TickStep) -> bool {
+        step.order == TimeOrder::Second
+            && self.is_soft(particles, step.seconds / step.substeps.max(1) as f32)
+    }
+
+    /// Whether a sub-step of `dt` (s) is short enough for forces.
+    fn is_soft(&self, particles: &ClothParticles, dt: f32) -> bool {
+        let blocks = particles.blocks();
+        let may_push = |bending: &Bending| bending.may_push(blocks, dt * dt);
+        let forces = self.forces.as_deref();
+        let is_short = |forces: &Forces| dt <= forces.longest_substep(blocks);
+        self.tethers.is_empty()
+            && forces.is_some_and(is_short)
+            && self.bending.as_ref().is_none_or(may_push)
+    }
+
+    /// Sub-steps in a tick of `seconds` that hold the cloth, whose longer side has `along` particles:
+    /// [`Substepping::needed`], or those from which its springs push by their forces, where these cost no more.
+    pub fn needed(&self, particles: &ClothParticles, along: usize, seconds: f32) -> u32 {
+        let needed = Substepping::needed(along, seconds);
+        let Some(forces) = &self.forces else {
+            return needed;
+        };
+        let longest = forces.longest_substep(particles.blocks());
+        // Division may round to a step that is too long.
+        let from = ((seconds / longest * ROUNDING).ceil() as u32).max(FEWEST);
+        if from <= CHEAPER * needed && self.is_soft(particles, seconds / from as f32) {
+            from
+        } else {
+            needed
+        }
+    }
+
+    /// A tick of forces.
+    fn kicks(
+        &mut self,
+        particles: &mut ClothParticles,
+        step: TickStep,
+        pins: &[PinMotion],
+        respond: &mut impl FnMut(&mut ClothParticles, SubStep) -> bool,
+    ) -> Stretch {
+        let kernels = self.simd_level.kernels();
+        let forces = self.forces.as_mut().expect("forces");
+        let bending = self.bending.as_mut();
+        with_threads_awake(forces.bands(), || {
+            forces.advance(particles, &step, pins, bending, &kernels, respond);
+        });
+        put_pins(particles, pins);
+        let stretch = self.measure(particles);
+        Stretch {
+            material: stretch.structural,
+            ..stretch
+        }
     }
 
     /// Moves particles to where the springs want them, at the velocities that they have: what longer sub-steps left of stretch
@@ -319,10 +402,4 @@ impl Solver {
         let kernels = self.simd_level.kernels();
         self.sweep.measure(particles.blocks(), &kernels)
     }
-}
-
-/// Those of particles that exist.
-fn existing(pins: &[PinMotion], particles: usize) -> impl Iterator<Item = &PinMotion> {
-    pins.iter()
-        .filter(move |pin| (pin.particle as usize) < particles)
 }

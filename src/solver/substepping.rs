@@ -19,7 +19,7 @@ const CALM_TICKS: u32 = 20;
 const FEWER: f32 = 0.8;
 
 /// Fewer than this, and what moves within a tick is missed.
-const FEWEST: u32 = 4;
+pub(super) const FEWEST: u32 = 4;
 
 /// Sub-steps in 1/60 s for each particle along a cloth's longer side: with fewer, threads that carry others stretch by more than
 /// a few per cent (the lab's chart `hung`).

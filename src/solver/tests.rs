@@ -3,7 +3,7 @@
 use bevy::math::{DVec3, Vec3};
 
 use super::{
-    Bending, PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, TimeOrder, kernel::MIN_MOVE,
+    Bending, PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, TimeOrder, commit::MIN_MOVE,
 };
 use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs, Surface};
 

@@ -21,5 +21,6 @@ mod sheet;
 mod singular;
 #[path = "../../examples/shared/smooth.rs"]
 mod smooth;
+mod soft;
 mod strip;
 mod swings;

@@ -37,6 +37,12 @@ pub(crate) enum StepKind {
 }
 
 impl Past {
+    /// Forgets all but the velocity, and waits for nothing.
+    pub fn end(&mut self, now: &mut [Block]) {
+        self.restart(now, 1.0);
+        self.wait = 0;
+    }
+
     /// Forgets all, and lets this many sub-steps of first order pass first.
     pub fn forget(&mut self, wait: u32) {
         self.is_known = false;

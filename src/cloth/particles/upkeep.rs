@@ -335,6 +335,11 @@ impl ClothParticles {
         ratio
     }
 
+    /// Has displacements be the velocity times the sub-step, and nothing else be remembered of the past.
+    pub(crate) fn end_past(&mut self) {
+        self.past.end(&mut self.blocks);
+    }
+
     /// Sets displacements aside, in place of a past that is forgotten, so that all stand still.
     pub(crate) fn stop(&mut self) {
         self.past.put_aside(&mut self.blocks);

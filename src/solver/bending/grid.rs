@@ -55,8 +55,18 @@ impl GridBending {
     pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         match &mut self.threads {
             Some(threads) if !self.is_soft => threads.solve(blocks, kernels),
-            _ => self.push.apply(blocks, self.weight, kernels),
+            _ => self.push.apply(blocks, 1.0, self.weight, kernels),
         }
+    }
+
+    /// Whether it is soft enough to be pushed, with this weight (s²).
+    pub fn may_push(&self, blocks: &[Block], weight: f32) -> bool {
+        self.push.bound(blocks, weight) < LIMIT
+    }
+
+    /// Adds what the forces at the positions make of displacements with this weight (s²).
+    pub fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
+        self.push.apply(blocks, 0.0, weight, kernels);
     }
 
     /// Whether forces push it, as it was prepared.

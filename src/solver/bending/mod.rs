@@ -61,4 +61,19 @@ impl Bending {
             Kind::Mesh(mesh) => mesh.solve(blocks),
         }
     }
+
+    /// Whether it may [push](Self::push) with this weight (s²).
+    pub(super) fn may_push(&self, blocks: &[Block], weight: f32) -> bool {
+        match &self.of {
+            Kind::Grid(grid) => grid.may_push(blocks, weight),
+            Kind::Mesh(_) => false,
+        }
+    }
+
+    /// Adds to displacements what the forces at the positions, not beyond them, make with this weight (s²).
+    pub(super) fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
+        if let Kind::Grid(grid) = &mut self.of {
+            grid.push(blocks, weight, kernels);
+        }
+    }
 }

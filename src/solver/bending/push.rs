@@ -79,8 +79,8 @@ impl Push {
         weight * largest.into_iter().fold(0.0, f32::max)
     }
 
-    /// Adds the forces' share to displacements.
-    pub fn apply(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
+    /// Adds the forces' share to displacements: of the forces where this part of the displacements leads to.
+    pub fn apply(&mut self, blocks: &mut [Block], part: f32, weight: f32, kernels: &Kernels) {
         let (rows, strip) = (self.rows, self.strip);
         let Some(first) = blocks.first() else {
             return;
@@ -89,11 +89,11 @@ impl Push {
         let row = |row: usize| row * strip..(row + 1) * strip;
         // Beyond the first row.
         self.moments[2].fill(Moments::default());
-        (kernels.plate_places)(&blocks[row(0)], &origin, &mut self.places[0]);
+        (kernels.plate_places)(&blocks[row(0)], &origin, part, &mut self.places[0]);
         for next in 0..=rows {
             if next + 1 < rows {
                 let places = &mut self.places[(next + 1) % 3];
-                (kernels.plate_places)(&blocks[row(next + 1)], &origin, places);
+                (kernels.plate_places)(&blocks[row(next + 1)], &origin, part, places);
             }
             let moments = &mut self.moments[next % 3];
             if next < rows {

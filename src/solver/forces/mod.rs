@@ -1,0 +1,231 @@
+//! Soft springs, explicitly: the paper's own way, forces and Verlet.
+//!
+//! Where a sub-step is short beside the fastest swing of a cloth, nothing has to be solved: the springs' forces say how each
+//! particle is accelerated, and velocity Verlet moves it,
+//!
+//! ```text
+//!   v += a Δt/2,   x += v Δt,   v += a Δt/2         a = g + w Σ k (1 − L/ℓ) (x_j − x_i)
+//! ```
+//!
+//! which is of second order, keeps momentum to the last bits, and energy for ever but for a ripple: it is symplectic. What ends a
+//! sub-step and what begins the next are one kick; only the first and the last of a tick are halves, so that a tick ends with
+//! positions and velocities of the same instant.
+//!
+//! # The limit
+//! It is stable as long as ω Δt < 2 for all that swings. However a cloth is folded or stretched, a spring's tangent stiffness is at
+//! most k in any direction, and of the two particles that it moves each takes at most the double: so no ω² is more than
+//! `2 max_i w_i Σ_j k_ij`. That is twice what a flat lattice has; it holds for a crumpled one, where springs lie side by side.
+//!
+//! # What it costs
+//! 9 µs a sub-step of 64² (16,000 springs), where solving threads takes 24. So where it needs no more than twice the sub-steps, it is
+//! as cheap, and far more exact: a 64² of 1 mm/N that falls, hung by its upper row, is 0.01 mm off after half a second with 92
+//! sub-steps in 1/60 s, threads 0.05 mm with 80.
+
+mod pass;
+#[cfg(test)]
+mod tests;
+
+use std::array;
+
+pub(crate) use self::pass::{ElasticGrid, Force, Kick, kick};
+use super::{
+    Bending, PinMotion, SubStep, TickStep,
+    bands::{MAX_BANDS, in_bands, take},
+    kernel::Kernels,
+    step::{DAMPING_REFERENCE, existing},
+};
+use crate::cloth::{Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, W};
+
+/// Of the largest stable sub-step. The rest is for bending, which pushes with them.
+const MARGIN: f32 = 0.95;
+
+/// Fewer rows a band than this, and waiting for the others would take longer than the work.
+const MIN_ROWS: usize = 32;
+
+/// The springs of a grid, none of them rigid.
+#[derive(Debug, Clone)]
+pub(super) struct Forces {
+    springs: ElasticGrid,
+    /// Of all springs of a particle together (N/m), in a row at an end and in others.
+    sums: [Vec<Lanes>; 2],
+    /// Of two rows, for each band.
+    scratch: Vec<[Vec<Force>; 2]>,
+    /// The rows on either side of each border between bands.
+    borders: Vec<Block>,
+    bands: usize,
+}
+
+impl Forces {
+    /// `None` if a spring is rigid.
+    pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Option<Self> {
+        let springs = ElasticGrid::new(grid, compliances)?;
+        let strip = springs.layout.strip as usize;
+        Some(Self {
+            sums: sums(&springs),
+            springs,
+            scratch: vec![array::from_fn(|_| vec![Force::default(); strip])],
+            borders: Vec::new(),
+            bands: 1,
+        })
+    }
+
+    /// With this many bands of rows from now on, or fewer where there is too little to do.
+    pub fn set_bands(&mut self, wanted: usize) {
+        let most = self.springs.layout.rows as usize / MIN_ROWS;
+        self.bands = wanted.min(most).clamp(1, MAX_BANDS);
+    }
+
+    /// How many bands there are.
+    pub fn bands(&self) -> usize {
+        self.bands
+    }
+
+    /// The longest sub-step that is safe for particles of these masses (s).
+    pub fn longest_substep(&self, blocks: &[Block]) -> f32 {
+        let rows = self.springs.layout.rows as usize;
+        let mut largest = [0.0_f32; LANES];
+        let each = blocks.chunks_exact(self.springs.layout.strip as usize);
+        for (row, blocks) in each.enumerate() {
+            let is_end = row == 0 || row + 1 == rows;
+            for (block, sum) in blocks.iter().zip(&self.sums[usize::from(!is_end)]) {
+                let view = block.view();
+                for l in 0..LANES {
+                    let own = view[W + l] * sum[l];
+                    largest[l] = if own > largest[l] { own } else { largest[l] };
+                }
+            }
+        }
+        let square = 2.0 * largest.into_iter().fold(0.0, f32::max);
+        MARGIN * 2.0 / square.sqrt()
+    }
+
+    /// A tick: sub-steps of forces alone, and of what bends. `respond` is called at the end of each, as by
+    /// [`Solver::advance`](super::Solver::advance).
+    pub fn advance(
+        &mut self,
+        particles: &mut ClothParticles,
+        step: &TickStep,
+        pins: &[PinMotion],
+        mut bending: Option<&mut Bending>,
+        kernels: &Kernels,
+        respond: &mut impl FnMut(&mut ClothParticles, SubStep) -> bool,
+    ) {
+        let count = step.substeps.max(1);
+        let dt = step.seconds / count as f32;
+        let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
+        particles.end_past();
+        for index in 0..=count {
+            // The end of one sub-step is the beginning of the next.
+            let (part, kept) = match index == 0 || index == count {
+                true => (0.5, kept.sqrt()),
+                false => (1.0, kept),
+            };
+            let weight = part * dt * dt;
+            let kick = Kick {
+                kept,
+                weight,
+                pull: (step.acceleration * weight).to_array(),
+                moves: index < count,
+            };
+            let mut substep = SubStep {
+                index,
+                count,
+                farthest_move: 0.0,
+            };
+            if kick.moves {
+                for pin in existing(pins, particles.len()) {
+                    let target = pin.from.lerp(pin.to, substep.end());
+                    particles.set_pin_target(pin.particle as usize, target);
+                }
+            }
+            let blocks = particles.blocks_mut();
+            if let Some(bending) = &mut bending {
+                bending.push(blocks, weight, kernels);
+            }
+            let moved = self.kick(blocks, &kick, kernels);
+            if kick.moves {
+                substep.farthest_move = moved.into_iter().fold(0.0, f32::max).sqrt();
+                respond(particles, substep);
+            }
+        }
+    }
+
+    /// Has forces act, and moves the particles. Returns their squared displacements (m²), the largest of each lane.
+    fn kick(&mut self, blocks: &mut [Block], kick: &Kick, kernels: &Kernels) -> Lanes {
+        let mut moved = [[0.0; LANES]; MAX_BANDS];
+        let Self {
+            springs,
+            scratch,
+            borders,
+            bands,
+            ..
+        } = self;
+        let bands = *bands;
+        if bands == 1 {
+            let around: [&[Block]; 2] = [&[], &[]];
+            (kernels.kick)(
+                blocks,
+                around,
+                springs,
+                kick,
+                &mut scratch[0],
+                &mut moved[0],
+            );
+            return moved[0];
+        }
+        let (rows, strip) = (springs.layout.rows as usize, springs.layout.strip as usize);
+        if scratch.len() < bands {
+            scratch.resize(bands, scratch[0].clone());
+        }
+        // What another band moves in the meantime is read from a copy.
+        borders.clear();
+        let first_row = |band: usize| rows * band / bands;
+        for band in 1..bands {
+            let at = first_row(band) * strip;
+            borders.extend_from_slice(&blocks[at - strip..at + strip]);
+        }
+        let borders = &*borders;
+        let mut rest = blocks;
+        let each = scratch.iter_mut().zip(&mut moved).take(bands).enumerate();
+        let parts = each.map(|(band, (scratch, moved))| {
+            let own = take(&mut rest, (first_row(band + 1) - first_row(band)) * strip);
+            // Of each border, the row above it and the row below it.
+            let row = |at: usize| borders.get(at * strip..(at + 1) * strip).unwrap_or(&[]);
+            let above: &[Block] = band.checked_sub(1).map_or(&[], |border| row(2 * border));
+            (own, [above, row(2 * band + 1)], scratch, moved)
+        });
+        in_bands(parts, |(own, around, scratch, moved)| {
+            (kernels.kick)(own, around, springs, kick, scratch, moved);
+        });
+        array::from_fn(|l| moved.iter().fold(0.0, |most, own| own[l].max(most)))
+    }
+}
+
+/// The stiffness of all springs of each particle of a row, at an end of the grid and elsewhere (N/m).
+fn sums(springs: &ElasticGrid) -> [Vec<Lanes>; 2] {
+    let layout = springs.layout;
+    let of = |is_inside: bool| {
+        let stiffness = |of: &[Lanes], column: u32| {
+            let slot = layout.slot(0, column);
+            of[slot.block][slot.lane]
+        };
+        // A spring's own column, and the one that it leads to.
+        let ends = |of: &[Lanes], column: u32| {
+            stiffness(of, column)
+                + column
+                    .checked_sub(1)
+                    .map_or(0.0, |from| stiffness(of, from))
+        };
+        let times = if is_inside { 2.0 } else { 1.0 };
+        let sum = |column: u32| {
+            let across = ends(&springs.across[usize::from(is_inside)].stiffness, column);
+            let down = times * stiffness(&springs.down.stiffness, column);
+            let diagonal = times * ends(&springs.diagonal.stiffness, column);
+            across + down + diagonal
+        };
+        let lane = |block, lane| layout.column(block, lane).map_or(0.0, sum);
+        let lanes = |block| array::from_fn(|l| lane(block, l));
+        (0..layout.strip as usize).map(lanes).collect()
+    };
+    [of(false), of(true)]
+}
