@@ -241,34 +241,35 @@ impl Solver {
         stretch
     }
 
+    /// The longest sub-step (s) in which the springs push by their forces, in a motion of second order; 0 where they never do: on a
+    /// mesh, with tethers, and where one of them is rigid.
+    pub fn longest_explicit_substep(&self, particles: &ClothParticles) -> f32 {
+        let blocks = particles.blocks();
+        match &self.forces {
+            Some(forces) if self.tethers.is_empty() => {
+                let bent = self.bending.as_ref();
+                let bent = bent.map_or(f32::INFINITY, |bending| bending.longest_push(blocks));
+                forces.longest_substep(blocks).min(bent)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Whether the springs of the coming tick push by their forces.
     pub(super) fn is_explicit(&self, particles: &ClothParticles, step: &TickStep) -> bool {
         step.order == TimeOrder::Second
-            && self.is_soft(particles, step.seconds / step.substeps.max(1) as f32)
-    }
-
-    /// Whether a sub-step of `dt` (s) is short enough for forces.
-    fn is_soft(&self, particles: &ClothParticles, dt: f32) -> bool {
-        let blocks = particles.blocks();
-        let may_push = |bending: &Bending| bending.may_push(blocks, dt * dt);
-        let forces = self.forces.as_deref();
-        let is_short = |forces: &Forces| dt <= forces.longest_substep(blocks);
-        self.tethers.is_empty()
-            && forces.is_some_and(is_short)
-            && self.bending.as_ref().is_none_or(may_push)
+            && step.seconds / step.substeps.max(1) as f32
+                <= self.longest_explicit_substep(particles)
     }
 
     /// Sub-steps in a tick of `seconds` that hold the cloth, whose longer side has `along` particles:
     /// [`Substepping::needed`], or those from which its springs push by their forces, where these cost no more.
     pub fn needed(&self, particles: &ClothParticles, along: usize, seconds: f32) -> u32 {
         let needed = Substepping::needed(along, seconds);
-        let Some(forces) = &self.forces else {
-            return needed;
-        };
-        let longest = forces.longest_substep(particles.blocks());
+        let longest = self.longest_explicit_substep(particles);
         // Division may round to a step that is too long.
         let from = ((seconds / longest * ROUNDING).ceil() as u32).max(FEWEST);
-        if from <= CHEAPER * needed && self.is_soft(particles, seconds / from as f32) {
+        if from <= CHEAPER * needed {
             from
         } else {
             needed

@@ -36,12 +36,13 @@ impl Way {
         Self::Peer(Method::ProjectiveDynamics { iterations }, 1)
     }
 
-    pub fn ours(substeps: u32) -> Self {
+    pub fn tethered(substeps: u32) -> Self {
         let tethers = true;
         Self::Ours { substeps, tethers }
     }
 
-    pub fn without_tethers(substeps: u32) -> Self {
+    /// As by default.
+    pub fn ours(substeps: u32) -> Self {
         let tethers = false;
         Self::Ours { substeps, tethers }
     }

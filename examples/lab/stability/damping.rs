@@ -137,7 +137,7 @@ fn kept_findings(rows: &[Row]) -> Vec<String> {
 fn fall(damping: f64, substeps: u32) -> Row {
     let mut scene = free(damping as f32, 0.0);
     scene.acceleration = bevy_drape::solver::methods::GRAVITY;
-    let mut moving = Moving::new(&scene, Way::without_tethers(substeps), scene.seconds.into());
+    let mut moving = Moving::new(&scene, Way::ours(substeps), scene.seconds.into());
     for _ in 0..60 {
         moving.step();
     }

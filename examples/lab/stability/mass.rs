@@ -18,15 +18,15 @@ pub const MASS_RATIO: Map = Map {
 };
 
 const SIDE: u32 = 32;
-const TETHERED: &str = "bevy_drape, 20 sub-steps";
+const TETHERED: &str = "with tethers, 20 sub-steps";
 const PEER: &str = "position-based, 20 sweeps";
-const FREE: &str = "no tethers, 20 sub-steps";
+const FREE: &str = "bevy_drape, 20 sub-steps";
 
 const WAYS: [(&str, fn() -> Way); 6] = [
-    (TETHERED, || Way::ours(20)),
+    (TETHERED, || Way::tethered(20)),
+    ("with tethers, 80 sub-steps", || Way::tethered(80)),
+    (FREE, || Way::ours(20)),
     ("bevy_drape, 80 sub-steps", || Way::ours(80)),
-    (FREE, || Way::without_tethers(20)),
-    ("no tethers, 80 sub-steps", || Way::without_tethers(80)),
     (PEER, || Way::position_based(20)),
     ("projective dynamics, 10", || Way::projective(10)),
 ];

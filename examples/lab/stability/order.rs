@@ -25,7 +25,7 @@ const ROWS: &str = "row by row";
 const ALTERNATING: &str = "rows, to and fro";
 const SHUFFLED: &str = "shuffled";
 const ORDERS: [&str; 4] = [COLOURS, ROWS, ALTERNATING, SHUFFLED];
-const TETHERED: &str = "bevy_drape, tethers";
+const OURS: &str = "bevy_drape";
 /// Sweeps in a tick.
 const SWEEPS: u32 = 20;
 
@@ -80,7 +80,7 @@ fn cell(order: &'static str, side: u32, sweeps: u32) -> Row {
     )
 }
 
-fn tethered(side: u32) -> Row {
+fn ours(side: u32) -> Row {
     let scene = scene(side);
     let mut moving = Moving::new(&scene, Way::ours(SWEEPS), scene.seconds.into());
     let mut stretch = 0.0;
@@ -90,7 +90,7 @@ fn tethered(side: u32) -> Row {
             stretch = largest([stretch, moving.stretch()]);
         }
     }
-    Row::new(&SWEEP_ORDER, TETHERED, [1.0, side.into()]).found(
+    Row::new(&SWEEP_ORDER, OURS, [1.0, side.into()]).found(
         outcome_of(stretch),
         stretch,
         SWEEPS.into(),
@@ -102,7 +102,7 @@ fn jobs(quick: bool) -> Vec<Job> {
     let sweeps: &[u32] = if quick { &[1, 20] } else { &[1, 2, 4, 10, 20] };
     let mut jobs: Vec<Job> = Vec::new();
     for &side in sides {
-        jobs.push(Box::new(move || vec![tethered(side)]));
+        jobs.push(Box::new(move || vec![ours(side)]));
         for order in ORDERS {
             for &sweeps in sweeps {
                 jobs.push(Box::new(move || vec![cell(order, side, sweeps)]));
@@ -126,10 +126,8 @@ fn check(rows: &[Row]) -> Result<(), String> {
     ensure(by_row > 1.0 || by_row.is_nan(), || {
         format!("row by row: {by_row}")
     })?;
-    let tethered = with_one(rows, TETHERED, 32.0);
-    ensure(tethered < colours, || {
-        format!("tethers make it worse: {tethered}")
-    })
+    let ours = with_one(rows, OURS, 32.0);
+    ensure(ours < colours, || format!("threads make it worse: {ours}"))
 }
 
 fn findings(rows: &[Row]) -> Vec<String> {
@@ -138,19 +136,19 @@ fn findings(rows: &[Row]) -> Vec<String> {
         let orders =
             ORDERS.map(|order| format!("{order} {}", percent(with_one(rows, order, side))));
         format!(
-            "At {side}² with one sweep in each of 20 sub-steps the largest stretch is: {}; with tethers {}.",
+            "At {side}² with one sweep in each of 20 sub-steps the largest stretch is: {}; with threads solved {}.",
             orders.join(", "),
-            percent(with_one(rows, TETHERED, side))
+            percent(with_one(rows, OURS, side))
         )
     };
     let mut found: Vec<String> = sides.iter().map(|&side| of(side)).collect();
     let best = rows
         .iter()
-        .filter(|row| row.method != TETHERED && row.y == sides[0])
+        .filter(|row| row.method != OURS && row.y == sides[0])
         .min_by(|a, b| a.measure.total_cmp(&b.measure));
     if let Some(best) = best {
         found.push(format!(
-            "Of 20 sweeps a tick at {}², {} sub-steps of {} are best without tethers: {}, {}.",
+            "Of 20 sweeps a tick at {}², {} sub-steps of {} are the best of sweeps: {}, {}.",
             sides[0],
             best.also,
             best.x,
@@ -184,7 +182,7 @@ pub fn chart(rows: &[Row]) -> Chart {
                 .named(names),
             Axis::log("largest stretch, %").between(ENDS[0], ENDS[1]),
         );
-        for (style, method) in ORDERS.into_iter().chain([TETHERED]).enumerate() {
+        for (style, method) in ORDERS.into_iter().chain([OURS]).enumerate() {
             let cells = by(rows, method).into_iter().filter(|row| row.y == side);
             let points = cells.map(|row| [row.x, between(100.0 * row.measure, ENDS)]);
             panel = panel.with(Series::new(

@@ -18,7 +18,7 @@ use crate::{
 
 pub const SUBSTEP_SIZE: Map = Map {
     name: "substep_size",
-    columns: "x: length of a sub-step (ms), y: particles a side, measure: largest stretch of the last of 3 s, also: the same in very short sub-steps, the material's own, to which the outcome is held; 1/64 s a tick, cotton with tethers, hung by two corners",
+    columns: "x: length of a sub-step (ms), y: particles a side, measure: largest stretch of the last of 3 s, also: the same in very short sub-steps, the material's own, to which the outcome is held; 1/64 s a tick, cotton hung by two corners",
     jobs: size_jobs,
     check: size_check,
     findings: size_findings,
@@ -26,7 +26,7 @@ pub const SUBSTEP_SIZE: Map = Map {
 
 pub const FALL: Map = Map {
     name: "fall",
-    columns: "x: length of a tick (s), y: sub-steps in it, measure: largest stretch of the last third, also: of all; 32 × 32 particles of cotton with tethers, 2 m wide, hung by two corners, 3 s or 30 ticks",
+    columns: "x: length of a tick (s), y: sub-steps in it, measure: largest stretch of the last third, also: of all; 32 × 32 particles of cotton, 2 m wide, hung by two corners, 3 s or 30 ticks",
     jobs: fall_jobs,
     check: fall_check,
     findings: fall_findings,
@@ -277,7 +277,11 @@ fn pull(tethers: bool, speed: f32) -> Row {
         ever = largest([ever, end]);
     }
     let way = speed * scene.seconds / 20.0 / scene.grid.spacing().x;
-    let name = if tethers { "bevy_drape" } else { "no tethers" };
+    let name = if tethers {
+        "with tethers"
+    } else {
+        "bevy_drape"
+    };
     Row::new(&PULLED, name, [way.into(), speed.into()]).found(outcome_of(ever), ever, end)
 }
 
@@ -311,12 +315,12 @@ fn pull_findings(rows: &[Row]) -> Vec<String> {
         let held = cells.iter().take_while(|row| row.measure <= ALLOWED);
         held.last().map_or([0.0; 2], |row| [row.y, row.x])
     };
-    let ([speed, way], [free, _]) = (held("bevy_drape"), held("no tethers"));
+    let ([speed, way], [tethered, _]) = (held("bevy_drape"), held("with tethers"));
     let worst = by(rows, "bevy_drape")
         .into_iter()
         .max_by(|a, b| a.measure.total_cmp(&b.measure));
     vec![format!(
-        "Pins that start at once hold 5 % up to {speed} m/s, {way:.3} spacings a sub-step, without tethers up to {free} m/s; at {} m/s the stretch is {}, and {} two seconds after they stand.",
+        "Pins that start at once hold 5 % up to {speed} m/s, {way:.3} spacings a sub-step, with tethers up to {tethered} m/s; at {} m/s the stretch is {}, and {} two seconds after they stand.",
         worst.map_or(0.0, |row| row.y),
         percent(worst.map_or(f64::NAN, |row| row.measure)),
         percent(worst.map_or(f64::NAN, |row| row.also)),
@@ -334,7 +338,7 @@ pub fn chart(rows: &[Row]) -> Chart {
     let mut chart = Chart::new(
         "stability-size",
         format!("Finer cloth needs more sub-steps: {needs}"),
-        "Largest stretch in the third second of a cotton cloth hung by two corners, with tethers, beyond what it gives in very short sub-steps: holds up to 5 %. The line is the power law nearest to where 5 % are crossed.",
+        "Largest stretch in the third second of a cotton cloth hung by two corners, beyond what it gives in very short sub-steps: holds up to 5 %. The line is the power law nearest to where 5 % are crossed.",
     )
     .sized([960, 520])
     .columns(methods.len());
@@ -421,7 +425,7 @@ pub fn chart_of_steps(falls: &[Row], pulls: &[Row]) -> Chart {
                     .map(|row| row.measure)
             ))
         ),
-        "32 × 32 particles of cotton, 2 m wide. Left: hung by two corners with tethers, last third of 3 s or 30 ticks. Right: the pinned row starts at once and runs for 1/4 s, 20 sub-steps in 1/64 s.",
+        "32 × 32 particles of cotton, 2 m wide. Left: hung by two corners, last third of 3 s or 30 ticks. Right: the pinned row starts at once and runs for 1/4 s, 20 sub-steps in 1/64 s.",
     )
     .sized([960, 520])
     .columns(2)

@@ -39,13 +39,13 @@ const KINDS: [&str; 9] = [
     "inverted",
 ];
 
-const TETHERED: &str = "bevy_drape";
-const WITHOUT: &str = "no tethers";
+const TETHERED: &str = "with tethers";
+const WITHOUT: &str = "bevy_drape";
 const EXPLICIT: &str = "explicit forces";
 
 const WAYS: [(&str, fn(&Scene) -> Way); 6] = [
-    (TETHERED, |_| Way::ours(20)),
-    (WITHOUT, |_| Way::without_tethers(20)),
+    (TETHERED, |_| Way::tethered(20)),
+    (WITHOUT, |_| Way::ours(20)),
     ("small steps, 20", |_| Way::small_steps(20)),
     ("position-based, 20", |_| Way::position_based(20)),
     ("projective dynamics, 10", |_| Way::projective(10)),
@@ -230,7 +230,7 @@ pub fn chart(rows: &[Row]) -> Chart {
             (found + usize::from(is_found), all + 1)
         })
     };
-    let ((ours, all), (explicit, _)) = (of_bad(TETHERED), of_bad(EXPLICIT));
+    let ((ours, all), (explicit, _)) = (of_bad(WITHOUT), of_bad(EXPLICIT));
     Chart::new(
         "stability-starts",
         format!(

@@ -21,6 +21,7 @@ const EXPLICIT: &str = "explicit forces";
 const OURS: &str = "bevy_drape";
 const NEAR: &str = "explicit forces, near the limit";
 const LIMIT: &str = "2/ω";
+const FORCES: &str = "bevy_drape, forces below";
 
 /// What a method takes a step with.
 const WAYS: [(&str, fn() -> Way); 5] = [
@@ -56,6 +57,12 @@ fn scene(stiffness: f64) -> Scene {
 
 fn limit(scene: &Scene) -> f64 {
     2.0 / largest_frequency(&scene.network().expect("a valid network"))
+}
+
+/// The longest sub-step in which our springs push by their forces (s).
+fn forces_below(scene: &Scene) -> f64 {
+    let solver = scene.solver(false);
+    solver.longest_explicit_substep(&scene.particles).into()
 }
 
 fn cell(name: &str, way: Way, step: f64, stiffness: f64) -> Row {
@@ -97,6 +104,9 @@ fn jobs(quick: bool) -> Vec<Job> {
             let limit = limit(&scene(stiffness));
             let row = Row::new(&STEP_STIFFNESS, LIMIT, [limit, stiffness]);
             let mut rows = vec![row.found("limit", 2.0 / limit, 0.0)];
+            let forces = forces_below(&scene(stiffness));
+            let row = Row::new(&STEP_STIFFNESS, FORCES, [forces, stiffness]);
+            rows.push(row.found("limit", 2.0 / forces, 0.0));
             for part in [0.9, 1.1] {
                 rows.push(cell(NEAR, Way::explicit(1), part * limit, stiffness));
             }
@@ -228,6 +238,12 @@ pub fn chart(rows: &[Row]) -> Chart {
         panel.x = panel.x.between(1.0e3 * low, 1.0e3 * high);
         let [low, high] = range(by(rows, name).iter().map(|row| row.y));
         panel.y = panel.y.between(low, high);
+        if name == OURS {
+            let border = by(rows, FORCES).into_iter();
+            let border = border.map(|row| [1.0e3 * row.x, row.y]);
+            let label = "forces to the left, threads to the right";
+            panel = panel.with(Series::new(label, Look::Ink, Kind::Line, border));
+        }
         if name == EXPLICIT {
             let limit = by(rows, LIMIT)
                 .into_iter()

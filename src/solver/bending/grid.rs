@@ -59,9 +59,9 @@ impl GridBending {
         }
     }
 
-    /// Whether it is soft enough to be pushed, with this weight (s²).
-    pub fn may_push(&self, blocks: &[Block], weight: f32) -> bool {
-        self.push.bound(blocks, weight) < LIMIT
+    /// The longest sub-step in which it is soft enough to be pushed (s).
+    pub fn longest_push(&self, blocks: &[Block]) -> f32 {
+        (LIMIT / self.push.bound(blocks, 1.0)).sqrt()
     }
 
     /// Adds what the forces at the positions make of displacements with this weight (s²).

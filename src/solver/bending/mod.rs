@@ -62,11 +62,11 @@ impl Bending {
         }
     }
 
-    /// Whether it may [push](Self::push) with this weight (s²).
-    pub(super) fn may_push(&self, blocks: &[Block], weight: f32) -> bool {
+    /// The longest sub-step (s) in which it may [push](Self::push).
+    pub(super) fn longest_push(&self, blocks: &[Block]) -> f32 {
         match &self.of {
-            Kind::Grid(grid) => grid.may_push(blocks, weight),
-            Kind::Mesh(_) => false,
+            Kind::Grid(grid) => grid.longest_push(blocks),
+            Kind::Mesh(_) => 0.0,
         }
     }
 
