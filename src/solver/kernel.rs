@@ -15,19 +15,20 @@ use multiversion::{inherit_target, multiversion};
 use super::{
     barrier::one_block_at_a_time,
     packet::{Packet, Row, relax_packets, relax_packets_back, relax_packets_there},
-    plate::{Moments, Stiffness, plate_moments, plate_places, plate_push},
-    predict::{Prediction, begin_past, predict, predict_first},
-    run::Run,
-    thread::{
+    pentadiagonal::{
         Factor, Trio, thread_backward, thread_columns, thread_finish, thread_forward, thread_links,
         thread_moments, thread_rows,
     },
+    plate::{Moments, Stiffness, plate_moments, plate_places, plate_push},
+    predict::{Prediction, begin_past, predict, predict_first},
+    run::Run,
     threads::{
         Family, Link, Pull, Rows, Solved, Step, bundle_backward, bundle_forward, clear,
         column_backward, column_forward, column_heads, left_backward, left_forward, left_heads,
         measure_given, pull_row, right_backward, right_forward, row_equations, solve_turned,
         turn_back, turn_terms,
     },
+    twist::{twist_backward, twist_forward, twist_links},
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, W, X, Y, Z};
 
@@ -326,13 +327,16 @@ kernels! {
     plate_places(row: &[Block], origin: &[f32; 3], places: &mut [Trio]),
     plate_moments(places: [&[Trio]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
     plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),
-    thread_links(from: &[Block], to: &[Block], shift: usize, links: &mut [Trio]),
-    thread_moments(links: [&[Trio]; 2], shift: usize, stiffness: &[Lanes], moments: &mut [Trio]),
-    thread_forward(moments: [&[Trio]; 3], solved: [&[Trio]; 2], factors: &[Factor], shift: usize, out: &mut [Trio]),
-    thread_backward(blocks: &mut [Block], own: &[Factor], solved: [&[Trio]; 2], factors: [&[Factor]; 2], shift: usize, out: &mut [Trio]),
+    thread_links(from: &[Block], to: &[Block], links: &mut [Trio]),
+    thread_moments(links: [&[Trio]; 2], stiffness: &[Lanes], moments: &mut [Trio]),
+    thread_forward(moments: [&[Trio]; 3], solved: [&[Trio]; 2], factors: &[Factor], out: &mut [Trio]),
+    thread_backward(blocks: &mut [Block], own: &[Factor], solved: [&[Trio]; 2], factors: [&[Factor]; 2], out: &mut [Trio]),
     thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio]),
     thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Factor]),
     thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]),
+    twist_links(row: &[Block], is_odd: bool, links: &mut [Trio]),
+    twist_forward(links: [&[Trio]; 2], stiffness: &[Lanes], moments: &mut [Trio], before: &[Trio], factors: &[Factor], out: &mut [Trio]),
+    twist_backward(row: &mut [Block], is_odd: bool, factors: [&[Factor]; 2], next: &[Trio], out: &mut [Trio]),
     tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_square: &[Lanes]),
     measure_within(row: &[Block], run: &Run, longest: &mut Longest),
     measure_down(upper: &[Block], lower: &[Block], run: &Run, longest: &mut Longest),

@@ -48,6 +48,7 @@ mod list;
 #[doc(hidden)]
 pub mod methods;
 mod packet;
+mod pentadiagonal;
 mod pipeline;
 mod plate;
 mod predict;
@@ -63,8 +64,8 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod tether;
-mod thread;
 mod threads;
+mod twist;
 
 pub use bending::Bending;
 pub use envelope::ClothLimit;
