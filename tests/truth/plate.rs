@@ -84,7 +84,7 @@ fn a_round_plate_sags_alike_in_all_directions() {
     }
 }
 
-/// ½ D ∫ κ_xx² + κ_yy² + 2 κ_xy² dA (J), of places of a square grid.
+/// `½ D ∫ κ_xx² + κ_yy² + 2 κ_xy² dA` (J), of places of a square grid.
 fn bent(places: &[DVec3], columns: usize, rigidity: f64) -> f64 {
     let rows = places.len() / columns;
     let at = |row: usize, column: usize| places[row * columns + column];

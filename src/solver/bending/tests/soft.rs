@@ -157,8 +157,8 @@ fn all_instructions_push_alike() {
     }
 }
 
-/// A grid bent to a cylinder of any direction, or to a saddle, has the energy ½ D ∫ κ_xx² + κ_yy² + 2 κ_xy² dA to rounding: κ_xx
-/// counts but for half a spacing at both ends of each row, κ_yy likewise, and κ_xy everywhere. What is pushed by −s K p takes
+/// A grid bent to a cylinder of any direction, or to a saddle, has the energy `½ D ∫ κ_xx² + κ_yy² + 2 κ_xy² dA` to rounding: `κ_xx`
+/// counts but for half a spacing at both ends of each row, `κ_yy` likewise, and `κ_xy` everywhere. What is pushed by −s K p takes
 /// the energy ½ pᵀ K p.
 #[test]
 fn bent_grids_have_the_energy_of_a_plate() {
