@@ -212,39 +212,55 @@ fn chart(rows: &[Row]) -> Chart {
             100.0 * low,
             100.0 * high
         ),
-        "0.3 m, clamped level. Markers of one kind: one resolution or width, in every number of sub-steps.",
+        "0.3 m, clamped level. Markers of one kind: one resolution, or all widths, in every number of sub-steps.",
     )
     .sized([1200, 520])
     .columns(3);
-    let narrow = |method: &'static str| {
-        move |row: &Row| (row.is_narrow() && row.method == method).then(|| row.along())
+    let by_resolution = |method: &str| {
+        let of_method = || {
+            rows.iter()
+                .filter(|row| row.is_narrow() && row.method == method)
+        };
+        let numbers = distinct(of_method().map(Row::along));
+        let each = numbers.iter().map(|&along| {
+            let of = of_method().filter(|row| row.along() == along);
+            (format!("{along} along it"), points(of))
+        });
+        each.collect::<Vec<_>>()
     };
+    let resolutions = by_resolution(OURS).len();
     let finest = rows.iter().map(Row::along).max();
-    let of_width = |row: &Row| {
-        let is_one = row.method == OURS && Some(row.along()) == finest;
-        is_one.then_some(row.rows as usize)
-    };
+    let of_finest = rows
+        .iter()
+        .filter(|row| row.method == OURS && Some(row.along()) == finest);
+    let widths = distinct(of_finest.clone().map(|row| row.rows));
+    let widths: Vec<String> = widths.iter().map(ToString::to_string).collect();
+    let by_width = (
+        format!("{} across it", widths.join(", ")),
+        points(of_finest),
+    );
     chart
-        .with(panel("Ours", rows, narrow(OURS), "along it"))
-        .with(panel("Ours, by width", rows, of_width, "across it"))
-        .with(panel("Rigid chords", rows, narrow(CHORDS), "along it"))
+        .with(panel("Ours", 0, by_resolution(OURS)))
+        .with(panel("Ours, of any width", resolutions, vec![by_width]))
+        .with(panel("Rigid chords", 0, by_resolution(CHORDS)))
 }
 
-/// The elastica, and markers of a kind for each number that rows have.
-fn panel(title: &str, rows: &[Row], number: impl Fn(&Row) -> Option<usize>, name: &str) -> Panel {
+fn points<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<[f64; 2]> {
+    rows.map(|row| [row.gamma, row.drop]).collect()
+}
+
+/// The elastica, and markers by name, of one style after the other.
+fn panel(title: &str, first_style: usize, markers: Vec<(String, Vec<[f64; 2]>)>) -> Panel {
     let panel = Panel::new(
         title,
         Axis::log("weight against rigidity, Γ, log"),
         Axis::linear("drop over length").between(0.0, 1.2),
     )
     .with(Series::new("elastica", Look::Ink, Kind::Line, TRUTH));
-    let numbers = distinct(rows.iter().filter_map(&number));
-    let each = numbers.iter().enumerate();
-    each.fold(panel, |panel, (style, own)| {
-        let of = rows.iter().filter(|row| number(row) == Some(*own));
-        let points = of.map(|row| [row.gamma, row.drop]);
-        let name = format!("{own} {name}");
-        panel.with(Series::new(name, Look::Style(style), Kind::Points, points))
+    let each = markers.into_iter().enumerate();
+    each.fold(panel, |panel, (style, (name, points))| {
+        let look = Look::Style(first_style + style);
+        panel.with(Series::new(name, look, Kind::Points, points))
     })
 }
 
