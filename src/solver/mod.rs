@@ -50,6 +50,7 @@ mod list;
 #[doc(hidden)]
 pub mod methods;
 mod packet;
+mod pentadiagonal;
 mod pipeline;
 mod plate;
 mod predict;
@@ -65,8 +66,8 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod tether;
-mod thread;
 mod threads;
+mod twist;
 
 pub use bending::Bending;
 pub use envelope::ClothLimit;

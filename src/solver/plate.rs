@@ -1,28 +1,40 @@
-//! The arithmetic of a bent grid's forces, all four directions at once, as [`thread`](super::thread) solves them one by one.
+//! The arithmetic of a bent grid's forces, all at once, as [`pentadiagonal`](super::pentadiagonal) and [`twist`](super::twist) solve
+//! them one by one.
 //!
-//! In each direction a particle has the moment `k (x_{i−1} − 2 x_i + x_{i+1})`, and is pushed by twice its own less those of the
-//! particles beside it. Three stages follow each other down the rows: where the particles are, their moments, their forces.
-//! Eight particles ask for some 90 additions and multiplications; what the stages hand on stays in the caches next to the core.
+//! Along its row and its column a particle has the moment `k (x_{i−1} − 2 x_i + x_{i+1})`, and is pushed by twice its own less those
+//! of the particles beside it. A cell has the moment `k (x₀₀ − x₀₁ − x₁₀ + x₁₁)`, and pushes its corners by it, with the signs as
+//! they stand there turned round. Three stages follow each other down the rows: where the particles are, their moments, their
+//! forces. What the stages hand on stays in the caches next to the core.
 
-use super::thread::{MIN_MOVE, MOVES, PLACES, Trio, flush, to_left, to_right};
+use super::pentadiagonal::{MIN_MOVE, MOVES, PLACES, Trio, flush};
 use crate::cloth::{Block, LANES, Lanes, W};
 
 /// Blocks on either side of a row that repeat its other end, so that each block has its neighbours beside it.
 pub(super) const EDGE: usize = 1;
 
-/// Of eight particles on an axis the moments (N m ⁄ m²) down the columns, along the rows, down to the right and up to the
-/// right; and twice their sum.
+/// Of eight particles on an axis the moments (N m ⁄ m²) down the columns, along the rows, and of the cells below and to the right
+/// of them.
 pub(super) type Moments = [[Lanes; 3]; KINDS];
 /// Numbers of [`Moments`] on an axis.
-const KINDS: usize = 5;
+const KINDS: usize = 3;
 const DOWN: usize = 0;
 const ACROSS: usize = 1;
-const FALLING: usize = 2;
-const RISING: usize = 3;
-const SUM: usize = 4;
+const TWIST: usize = 2;
 
-/// k (N/m) of eight particles along the rows, down the columns and along each diagonal.
+/// k (N/m) of eight particles along the rows, down the columns and of their cells.
 pub(super) type Stiffness = [Lanes; 3];
+
+/// Each lane's left neighbour, in the lane before.
+#[inline(always)]
+fn to_right<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
+    from.map(|from| std::array::from_fn(|l| if l == 0 { 0.0 } else { from[l - 1] }))
+}
+
+/// Each lane's right neighbour, in the lane after.
+#[inline(always)]
+fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
+    from.map(|from| std::array::from_fn(|l| if l + 1 == LANES { 0.0 } else { from[l + 1] }))
+}
 
 /// Where a row's particles will be after this part of their displacements, seen from `origin`: next to the cloth, so that no digit
 /// of a displacement is lost to its distance from the world's origin.
@@ -45,19 +57,19 @@ pub(super) fn plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: 
 }
 
 #[inline(always)]
-fn moment(stiffness: &Lanes, twice: &Lanes, a: &Lanes, b: &Lanes) -> Lanes {
+fn bend(stiffness: &Lanes, own: &Lanes, a: &Lanes, b: &Lanes) -> Lanes {
     let mut out = [0.0; LANES];
     for l in 0..LANES {
-        out[l] = stiffness[l] * ((a[l] + b[l]) - twice[l]);
+        out[l] = stiffness[l] * ((a[l] + b[l]) - (own[l] + own[l]));
     }
     out
 }
 
 #[inline(always)]
-fn sum(a: &Lanes, b: &Lanes) -> Lanes {
+fn twist(stiffness: &Lanes, [a, b]: [&Lanes; 2], [c, d]: [&Lanes; 2]) -> Lanes {
     let mut out = [0.0; LANES];
     for l in 0..LANES {
-        out[l] = a[l] + b[l];
+        out[l] = stiffness[l] * ((a[l] - b[l]) - (c[l] - d[l]));
     }
     out
 }
@@ -74,39 +86,42 @@ pub(super) fn plate_moments(
     let below = &below[..strip + 2 * EDGE];
     let inner = &mut moments[EDGE..][..strip];
     for j in 0..strip {
-        let [across, down, oblique] = &stiffness[j];
+        let [across, down, cell] = &stiffness[j];
         let (left, at, right) = (j, j + 1, j + 2);
         for axis in 0..3 {
-            let twice = sum(&own[at][axis], &own[at][axis]);
-            let of_down = moment(down, &twice, &above[at][axis], &below[at][axis]);
-            let of_across = moment(across, &twice, &own[left][axis], &own[right][axis]);
-            let falling = moment(oblique, &twice, &above[left][axis], &below[right][axis]);
-            let rising = moment(oblique, &twice, &below[left][axis], &above[right][axis]);
-            let all = sum(&sum(&of_down, &of_across), &sum(&falling, &rising));
+            let middle = &own[at][axis];
+            let of_down = bend(down, middle, &above[at][axis], &below[at][axis]);
+            let of_across = bend(across, middle, &own[left][axis], &own[right][axis]);
+            let upper = [middle, &own[right][axis]];
+            let of_cell = twist(cell, upper, [&below[at][axis], &below[right][axis]]);
             inner[j][DOWN][axis] = of_down;
             inner[j][ACROSS][axis] = of_across;
-            inner[j][FALLING][axis] = falling;
-            inner[j][RISING][axis] = rising;
-            inner[j][SUM][axis] = sum(&all, &all);
+            inner[j][TWIST][axis] = of_cell;
         }
     }
-    // Those down the columns, and the sum, concern nobody beside.
+    // Those down the columns concern nobody beside.
     let end = strip + EDGE;
-    for kind in [ACROSS, FALLING, RISING] {
+    for kind in [ACROSS, TWIST] {
         moments[0][kind] = to_right(&moments[end - EDGE][kind]);
         moments[end][kind] = to_left(&moments[EDGE][kind]);
     }
 }
 
-/// How far a force moves particles: that of twice their own moments less those beside them.
+/// How far a force moves particles: that of twice their own moments less those beside them, and of the four cells around them.
 #[inline(always)]
-fn pushed(weight: &Lanes, twice: &Lanes, beside: [&Lanes; 8]) -> Lanes {
-    let [a, b, c, d, e, f, g, h] = beside;
+fn pushed(
+    weight: &Lanes,
+    own: [&Lanes; 2],
+    beside: [&Lanes; 4],
+    [above_left, above, left, cell]: [&Lanes; 4],
+) -> Lanes {
+    let [a, b, c, d] = beside;
     let mut out = [0.0; LANES];
     for l in 0..LANES {
-        let direct = (a[l] + b[l]) + (c[l] + d[l]);
-        let oblique = (e[l] + f[l]) + (g[l] + h[l]);
-        out[l] = flush(weight[l] * (twice[l] - (direct + oblique)), MIN_MOVE);
+        let own = own[0][l] + own[1][l];
+        let bent = (own + own) - ((a[l] + b[l]) + (c[l] + d[l]));
+        let twisted = (above[l] - above_left[l]) + (left[l] - cell[l]);
+        out[l] = flush(weight[l] * (bent + twisted), MIN_MOVE);
     }
     out
 }
@@ -125,17 +140,20 @@ pub(super) fn plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block
             weights[l] = weight * view[W + l];
         }
         for axis in 0..3 {
+            let bent = [&own[at][DOWN][axis], &own[at][ACROSS][axis]];
             let beside = [
                 &above[at][DOWN][axis],
                 &below[at][DOWN][axis],
                 &own[left][ACROSS][axis],
                 &own[right][ACROSS][axis],
-                &above[left][FALLING][axis],
-                &below[right][FALLING][axis],
-                &below[left][RISING][axis],
-                &above[right][RISING][axis],
             ];
-            let moved = pushed(&weights, &own[at][SUM][axis], beside);
+            let cells = [
+                &above[left][TWIST][axis],
+                &above[at][TWIST][axis],
+                &own[left][TWIST][axis],
+                &own[at][TWIST][axis],
+            ];
+            let moved = pushed(&weights, bent, beside, cells);
             for l in 0..LANES {
                 view[MOVES[axis] + l] += moved[l];
             }

@@ -1,7 +1,9 @@
 //! The solver against what is true: closed forms, conservation, a converged run in f64. `-- --nocapture` prints
 //! the figures.
 
+mod awning;
 mod bending;
+mod capstan;
 mod catenary;
 mod compliance;
 mod convergence;
@@ -14,6 +16,7 @@ mod mesh;
 #[path = "../../examples/shared/modes.rs"]
 mod modes;
 mod motion;
+mod plate;
 mod precision;
 mod scenes;
 #[path = "../../examples/shared/sheet.rs"]

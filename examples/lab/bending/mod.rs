@@ -1,13 +1,14 @@
 //! A strip that is clamped level at one end, against the heavy elastica.
 //!
 //! How far it droops depends on Γ = w L³ ⁄ D alone: its weight per area, free length and rigidity. It must not depend on how many
-//! particles it has and into how many sub-steps a tick is cut. Drawn beside it: what springs between every second particle do.
+//! particles it has, how wide it is and into how many sub-steps a tick is cut. Drawn beside it: what springs between every second
+//! particle do.
 
 mod strip;
 
 use serde::{Deserialize, Serialize};
 
-use self::strip::{ROWS, drop_of, drop_of_chords};
+use self::strip::{drop_of, drop_of_chords};
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
     experiment::{Experiment, Run, Table},
@@ -24,6 +25,10 @@ const TRUTH: [[f64; 2]; 7] = [
     [50.0, 0.9079],
     [100.0, 0.9375],
 ];
+
+/// Particles across, and of how many of those along wider ones are.
+const ROWS: u32 = 2;
+const WIDER: [u32; 4] = [3, 5, 9, 17];
 
 const OURS: &str = "ours";
 const CHORDS: &str = "rigid chords";
@@ -46,6 +51,20 @@ pub struct Row {
     truth: f64,
     /// Ours, or chords, which know of no Γ.
     method: String,
+    /// Particles across.
+    rows: u32,
+}
+
+impl Row {
+    /// Particles along it.
+    fn along(&self) -> usize {
+        self.particles / self.rows as usize
+    }
+
+    /// Whether it is one of those that are compared by resolution.
+    fn is_narrow(&self) -> bool {
+        self.rows == ROWS
+    }
 }
 
 impl Experiment for Bending {
@@ -54,7 +73,7 @@ impl Experiment for Bending {
     const NAME: &'static str = "bending";
 
     fn run(run: &mut Run) -> Vec<Row> {
-        run.set("scene", format!("a strip of 0.3 m, 0.15 kg/m2, {ROWS} rows, its threads rigid, clamped level by two columns; still after 8 s at 60 ticks a second, damping 0.05"));
+        run.set("scene", format!("a strip of 0.3 m, 0.15 kg/m2, {ROWS} or more rows, its threads rigid, clamped level by two columns; still after 8 s at 60 ticks a second, damping 0.05"));
         run.set("gamma", "weight per area x length^3 / rigidity");
         run.set("drop", "of the free end, over the length");
         run.set(
@@ -63,21 +82,29 @@ impl Experiment for Bending {
         );
         let columns = run.either(vec![17], vec![9, 17, 33, 65]);
         let substeps = run.either(vec![10, 20], vec![5, 10, 20, 40]);
-        run.begin(Self::NAME, columns.len() * substeps.len());
+        let wider = run.either(&WIDER[1..2], &WIDER);
+        let finest = columns[columns.len() - 1];
+        let all_narrow = columns.iter().map(|&columns| [columns, ROWS]);
+        let sizes: Vec<[u32; 2]> = all_narrow
+            .chain(wider.iter().map(|&rows| [finest, rows]))
+            .collect();
+        run.begin(Self::NAME, sizes.len() * substeps.len());
         let mut rows = Vec::new();
-        for &columns in &columns {
+        for &size in &sizes {
             for &substeps in &substeps {
-                let chords = drop_of_chords(columns, substeps);
+                let chords = (size[1] == ROWS).then(|| drop_of_chords(size, substeps));
                 for [gamma, truth] in TRUTH {
-                    let ours = drop_of(gamma, columns, substeps);
-                    for (method, drop) in [(OURS, ours), (CHORDS, chords)] {
+                    let ours = (OURS, drop_of(gamma, size, substeps));
+                    let chords = chords.map(|drop| (CHORDS, drop));
+                    for (method, drop) in std::iter::once(ours).chain(chords) {
                         rows.push(Row {
                             gamma,
-                            particles: (columns * ROWS) as usize,
+                            particles: (size[0] * size[1]) as usize,
                             substeps,
                             drop,
                             truth,
                             method: method.into(),
+                            rows: size[1],
                         });
                     }
                 }
@@ -91,14 +118,14 @@ impl Experiment for Bending {
         if let Some(row) = rows.iter().find(|row| !row.drop.is_finite()) {
             return Err(format!("{}, gamma {}: NaN", row.method, row.gamma));
         }
-        let finest = rows.iter().map(|row| row.particles).max();
+        let finest = rows.iter().map(Row::along).max();
         let mut wrong = Vec::new();
         for row in rows.iter().filter(|row| row.method == OURS) {
             let name = format!(
                 "gamma {}, {} particles, {} sub-steps",
                 row.gamma, row.particles, row.substeps
             );
-            if Some(row.particles) == finest && (row.drop - row.truth).abs() > WITHIN {
+            if Some(row.along()) == finest && (row.drop - row.truth).abs() > WITHIN {
                 wrong.push(format!("{name}: {:.4} of {:.4}", row.drop, row.truth));
             }
             let others = rows.iter().filter(|other| {
@@ -117,14 +144,15 @@ impl Experiment for Bending {
     }
 
     fn findings(rows: &[Row]) -> Vec<String> {
-        let finest = rows.iter().map(|row| row.particles).max();
+        let finest = rows.iter().map(Row::along).max();
         let ours = rows.iter().filter(|row| row.method == OURS);
-        let of_finest = ours.filter(|row| Some(row.particles) == finest);
+        let of_finest = ours.filter(|row| Some(row.along()) == finest);
+        let widest = rows.iter().map(|row| row.rows).max().unwrap_or(ROWS);
         let off = of_finest.map(|row| (row.drop - row.truth).abs());
         let [low, high] = chords(rows);
         vec![
             format!(
-                "The finest strip is at most {:.2} % of its length beside the elastica, over two decades of weight against rigidity.",
+                "The finest strip, {ROWS} to {widest} rows wide, is at most {:.2} % of its length beside the elastica, over two decades of weight against rigidity.",
                 100.0 * off.fold(0.0, f64::max)
             ),
             format!(
@@ -174,38 +202,66 @@ fn chords(rows: &[Row]) -> [f64; 2] {
     ]
 }
 
-/// Ours by resolution on the left, chords on the right.
+/// Ours by resolution on the left and by width in the middle, chords on the right.
 fn chart(rows: &[Row]) -> Chart {
     let [low, high] = chords(rows);
-    let mut chart = Chart::new(
+    let chart = Chart::new(
         "bending",
         format!(
             "A clamped strip droops as the elastica; with chords in place of bending, by {:.0} to {:.0} % of its length whatever it is made of",
             100.0 * low,
             100.0 * high
         ),
-        "0.3 m, clamped level. Markers of one kind: one resolution, in every number of sub-steps.",
+        "0.3 m, clamped level. Markers of one kind: one resolution, or all widths, in every number of sub-steps.",
     )
-    .sized([960, 520])
-    .columns(2);
-    let particles = distinct(rows.iter().map(|row| row.particles));
-    for (method, title) in [(OURS, "Ours"), (CHORDS, "Rigid chords")] {
-        let mut panel = Panel::new(
-            title,
-            Axis::log("weight against rigidity, Γ, log"),
-            Axis::linear("drop over length").between(0.0, 1.2),
-        )
-        .with(Series::new("elastica", Look::Ink, Kind::Line, TRUTH));
-        for (style, &particles) in particles.iter().enumerate() {
-            let of = rows.iter();
-            let of = of.filter(|row| row.method == method && row.particles == particles);
-            let points = of.map(|row| [row.gamma, row.drop]);
-            let name = format!("{} along it", particles / ROWS as usize);
-            panel = panel.with(Series::new(name, Look::Style(style), Kind::Points, points));
-        }
-        chart = chart.with(panel);
-    }
+    .sized([1200, 520])
+    .columns(3);
+    let by_resolution = |method: &str| {
+        let of_method = || {
+            rows.iter()
+                .filter(|row| row.is_narrow() && row.method == method)
+        };
+        let numbers = distinct(of_method().map(Row::along));
+        let each = numbers.iter().map(|&along| {
+            let of = of_method().filter(|row| row.along() == along);
+            (format!("{along} along it"), points(of))
+        });
+        each.collect::<Vec<_>>()
+    };
+    let resolutions = by_resolution(OURS).len();
+    let finest = rows.iter().map(Row::along).max();
+    let of_finest = rows
+        .iter()
+        .filter(|row| row.method == OURS && Some(row.along()) == finest);
+    let widths = distinct(of_finest.clone().map(|row| row.rows));
+    let widths: Vec<String> = widths.iter().map(ToString::to_string).collect();
+    let by_width = (
+        format!("{} across it", widths.join(", ")),
+        points(of_finest),
+    );
     chart
+        .with(panel("Ours", 0, by_resolution(OURS)))
+        .with(panel("Ours, of any width", resolutions, vec![by_width]))
+        .with(panel("Rigid chords", 0, by_resolution(CHORDS)))
+}
+
+fn points<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<[f64; 2]> {
+    rows.map(|row| [row.gamma, row.drop]).collect()
+}
+
+/// The elastica, and markers by name, of one style after the other.
+fn panel(title: &str, first_style: usize, markers: Vec<(String, Vec<[f64; 2]>)>) -> Panel {
+    let panel = Panel::new(
+        title,
+        Axis::log("weight against rigidity, Γ, log"),
+        Axis::linear("drop over length").between(0.0, 1.2),
+    )
+    .with(Series::new("elastica", Look::Ink, Kind::Line, TRUTH));
+    let each = markers.into_iter().enumerate();
+    each.fold(panel, |panel, (style, (name, points))| {
+        let look = Look::Style(first_style + style);
+        panel.with(Series::new(name, look, Kind::Points, points))
+    })
 }
 
 #[cfg(test)]
@@ -216,6 +272,7 @@ mod tests {
     #[test]
     fn strips_droop_as_the_elastica() {
         let rows = quick::<Bending>(View::Nothing, "gamma,particles,substeps,drop,truth");
-        assert_eq!(rows.len(), 2 * TRUTH.len() * 2);
+        // Two ways of one width, and one of another.
+        assert_eq!(rows.len(), 3 * TRUTH.len() * 2);
     }
 }

@@ -8,9 +8,8 @@ use bevy_drape::{
 
 use crate::shared::sheet::{GRAVITY, Sheet, threads};
 
-/// Free length (m), rows of particles across, and mass per area (kg/m²).
+/// Free length (m), and mass per area (kg/m²).
 const LENGTH: f32 = 0.3;
-pub const ROWS: u32 = 2;
 const DENSITY: f32 = 0.15;
 
 /// Ticks of 1/60 s until it hangs still, losing 5 % of its velocity in each.
@@ -31,19 +30,19 @@ fn strip_material(rigidity: f32) -> ClothMaterial {
     }
 }
 
-/// How far its free end is below its clamped one, as a part of its length, with `columns` particles along it.
-pub fn drop_of(gamma: f64, columns: u32, substeps: u32) -> f64 {
+/// How far its free end is below its clamped one, as a part of its length, with `columns` particles along it and `rows` across.
+pub fn drop_of(gamma: f64, [columns, rows]: [u32; 2], substeps: u32) -> f64 {
     let material = strip_material(rigidity(gamma) as f32);
-    settle(strip(columns, substeps, material))
+    settle(strip([columns, rows], substeps, material))
 }
 
 /// The same with rigid springs between every second particle of a row in place of what the material says: they know of no Γ.
-pub fn drop_of_chords(columns: u32, substeps: u32) -> f64 {
+pub fn drop_of_chords([columns, rows]: [u32; 2], substeps: u32) -> f64 {
     let material = ClothMaterial {
         damping: 0.05,
         ..threads(0.0, 1.0e-3)
     };
-    let mut sheet = strip(columns, substeps, material);
+    let mut sheet = strip([columns, rows], substeps, material);
     let spacing = sheet.grid.spacing().x;
     let mut springs = Vec::new();
     for (row, column) in sheet.grid.cells() {
@@ -64,7 +63,7 @@ pub fn drop_of_chords(columns: u32, substeps: u32) -> f64 {
 }
 
 /// The first two columns are clamped: the strip is level halfway between them, where its free length begins.
-fn strip(columns: u32, substeps: u32, material: ClothMaterial) -> Sheet {
+fn strip([columns, rows]: [u32; 2], substeps: u32, material: ClothMaterial) -> Sheet {
     let spacing = LENGTH / (columns as f32 - 1.5);
     let step = TickStep {
         seconds: 1.0 / 60.0,
@@ -73,14 +72,14 @@ fn strip(columns: u32, substeps: u32, material: ClothMaterial) -> Sheet {
     };
     let place = |row: u32, column: u32| spacing * Vec3::new(column as f32, 0.0, row as f32);
     let clamped = |_, column| column < 2;
-    Sheet::new((columns, ROWS), spacing, material, step, place, clamped)
+    Sheet::new((columns, rows), spacing, material, step, place, clamped)
 }
 
 fn settle(mut sheet: Sheet) -> f64 {
     for _ in 0..TICKS {
         sheet.tick(|_, _| {});
     }
-    let end = sheet.grid.columns() - 1;
-    let heights = (0..ROWS).map(|row| sheet.particles.position((row, end)).expect("it exists").y);
-    -f64::from(heights.sum::<f32>() / ROWS as f32 / LENGTH)
+    let (rows, end) = (sheet.grid.rows(), sheet.grid.columns() - 1);
+    let heights = (0..rows).map(|row| sheet.particles.position((row, end)).expect("it exists").y);
+    -f64::from(heights.sum::<f32>() / rows as f32 / LENGTH)
 }

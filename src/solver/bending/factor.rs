@@ -1,6 +1,6 @@
-//! A thread's pentadiagonal system, factored.
+//! A thread's pentadiagonal system and a strip's tridiagonal one, factored.
 
-use crate::solver::thread::Factor;
+use crate::solver::pentadiagonal::Factor;
 
 /// Puts a thread's numbers into its lane.
 pub(super) fn set(factors: &mut Factor, lane: usize, factor: [f32; 3]) {
@@ -9,17 +9,17 @@ pub(super) fn set(factors: &mut Factor, lane: usize, factor: [f32; 3]) {
     }
 }
 
-/// Factors M + s K of a thread of `count` particles into L D Lᵀ, in f64: given inverse masses (1/kg), and s k (kg) of each
-/// particle that has two neighbours. A pinned particle is coupled to none, and keeps its place: its 1/D is 0.
+/// Factors M + s K of a thread of `count` particles into L D Lᵀ, in f64: given inverse masses (1/kg) and s k (kg), which each
+/// particle has that has two neighbours. A pinned particle is coupled to none, and keeps its place: its 1/D is 0.
 pub(super) fn factor_thread(
     count: u32,
     inverse_mass: impl Fn(u32) -> f64,
-    stiffness: impl Fn(u32) -> f64,
+    stiffness: f64,
     mut put: impl FnMut(u32, [f32; 3]),
 ) {
     let k = |at: u32| {
         if at > 0 && at + 1 < count {
-            stiffness(at)
+            stiffness
         } else {
             0.0
         }
@@ -46,5 +46,30 @@ pub(super) fn factor_thread(
         put(at, [lower, lowest, inverse].map(|number| number as f32));
         (two, one) = (one, (pivot, inverse));
         lower_of_one = lower;
+    }
+}
+
+/// Factors a strip of cells of the twisting stiffness s k (kg) between two columns, in f64: of each row the number of L, 1/D and
+/// the mass that resists a change of the difference between both columns, given what their inverse masses add up to (1/kg). Where
+/// both are pinned the difference stays: all three are 0.
+pub(super) fn factor_strip(
+    rows: u32,
+    stiffness: f64,
+    inverse_masses: impl Fn(u32) -> f64,
+    mut put: impl FnMut(u32, [f32; 3]),
+) {
+    let mut inverse_before = 0.0;
+    for row in 0..rows {
+        let inverse_mass = inverse_masses(row);
+        let lower = -stiffness * inverse_before;
+        let [inverse, mass] = if inverse_mass > 0.0 {
+            let cells = f64::from(u8::from(row > 0) + u8::from(row + 1 < rows));
+            let mass = 1.0 / inverse_mass;
+            [1.0 / (mass + stiffness * (cells + lower)), mass]
+        } else {
+            [0.0; 2]
+        };
+        put(row, [lower, inverse, mass].map(|number| number as f32));
+        inverse_before = inverse;
     }
 }

@@ -1,4 +1,4 @@
-//! What dense matrices in f64 make of a grid's threads.
+//! What dense matrices in f64 make of a grid's threads and cells.
 
 use bevy::math::DVec3;
 
@@ -31,46 +31,51 @@ fn solve_dense(matrix: &mut [Vec<f64>], right: &mut [DVec3]) {
     }
 }
 
-/// Threads in the order in which they are solved: of each, the k of three particles in a row (N/m).
-pub(super) fn threads(grid: &ClothGrid) -> [Vec<([usize; 3], f64)>; 4] {
-    let (rows, columns) = (grid.rows() as i64, grid.columns() as i64);
+/// Particles and their shares of what is bent or twisted.
+type Stencil = Vec<(usize, f64)>;
+
+/// Families in the order in which they are solved: what of each is bent or twisted, and its k (N/m).
+pub(super) fn families(grid: &ClothGrid) -> [Vec<(Stencil, f64)>; 4] {
+    let (rows, columns) = (grid.rows() as usize, grid.columns() as usize);
     let (wide, high) = (f64::from(grid.spacing().x), f64::from(grid.spacing().y));
     let rigidity = f64::from(RIGIDITY);
-    let index = |row: i64, column: i64| (row * columns + column) as usize;
-    [(1, 1), (-1, 1), (1, 0), (0, 1)].map(|(down, right): (i64, i64)| {
-        let mut threads = Vec::new();
-        for row in 0..rows {
-            for column in 0..columns {
-                let ends = [-1, 1].map(|way| (row + way * down, column + way * right));
-                let exists = |(row, column): (i64, i64)| {
-                    (0..rows).contains(&row) && (0..columns).contains(&column)
-                };
-                if !ends.into_iter().all(exists) {
-                    continue;
-                }
-                let square = wide * wide + high * high;
-                let oblique = rigidity * square * square / (6.0 * wide * wide * high * high);
-                let k = match (down, right) {
-                    (0, _) if row == 0 || row + 1 == rows => rigidity * high / 2.0 / wide.powi(3),
-                    (0, _) => {
-                        (rigidity - 2.0 * oblique * (wide * wide / square).powi(2)) * high
-                            / wide.powi(3)
-                    }
-                    (_, 0) if column == 0 || column + 1 == columns => {
-                        rigidity * wide / 2.0 / high.powi(3)
-                    }
-                    (_, 0) => {
-                        (rigidity - 2.0 * oblique * (high * high / square).powi(2)) * wide
-                            / high.powi(3)
-                    }
-                    _ => oblique * wide * high / (square * square),
-                };
-                let [before, after] = ends.map(|(row, column)| index(row, column));
-                threads.push(([before, index(row, column), after], k));
+    let index = |row: usize, column: usize| row * columns + column;
+    let [mut even, mut odd, mut down, mut across] = [const { Vec::new() }; 4];
+    for row in 0..rows {
+        for column in 0..columns {
+            let (has_sides, has_ends) = (
+                (1..columns - 1).contains(&column),
+                (1..rows - 1).contains(&row),
+            );
+            let thread = |width: f64, spacing: f64, beside: usize| {
+                let own = index(row, column);
+                let bent = vec![(own - beside, 1.0), (own, -2.0), (own + beside, 1.0)];
+                (bent, rigidity * width / spacing.powi(3))
+            };
+            if has_sides {
+                across.push(thread(if has_ends { high } else { high / 2.0 }, wide, 1));
+            }
+            if has_ends {
+                down.push(thread(
+                    if has_sides { wide } else { wide / 2.0 },
+                    high,
+                    columns,
+                ));
+            }
+            if row + 1 < rows && column + 1 < columns {
+                let corners = [(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)];
+                let twisted = corners
+                    .map(|(below, right, share)| (index(row + below, column + right), share));
+                let family = if column % 2 == 0 { &mut even } else { &mut odd };
+                family.push((twisted.to_vec(), 2.0 * rigidity / (wide * high)));
             }
         }
-        threads
-    })
+    }
+    [even, odd, down, across]
+}
+
+fn deviation(stencil: &Stencil, places: &[DVec3]) -> DVec3 {
+    stencil.iter().map(|&(at, share)| share * places[at]).sum()
 }
 
 /// Masses (kg), and where particles will be.
@@ -84,35 +89,35 @@ fn start(particles: &ClothParticles) -> (Vec<f64>, Vec<DVec3>) {
     (masses, places.collect())
 }
 
-/// How far the forces of each family of threads move particles.
+/// How far the forces of each family move particles.
 pub(super) fn pushes(grid: &ClothGrid, particles: &ClothParticles, weight: f64) -> [Vec<DVec3>; 4] {
     let (masses, places) = start(particles);
-    threads(grid).map(|threads| {
+    families(grid).map(|family| {
         let mut moved = vec![DVec3::ZERO; places.len()];
-        for (ends, k) in threads {
-            let bent = places[ends[0]] - 2.0 * places[ends[1]] + places[ends[2]];
-            for (&end, share) in ends.iter().zip([1.0, -2.0, 1.0]) {
-                moved[end] -= weight * k * share / masses[end] * bent;
+        for (stencil, k) in family {
+            let bent = deviation(&stencil, &places);
+            for (at, share) in stencil {
+                moved[at] -= weight * k * share / masses[at] * bent;
             }
         }
         moved
     })
 }
 
-/// What all families of threads add, one after the other.
+/// What all families add, one after the other.
 pub(super) fn expected(grid: &ClothGrid, particles: &ClothParticles, weight: f64) -> Vec<DVec3> {
     let (masses, start) = start(particles);
     let mut place = start.clone();
     let count = place.len();
-    for threads in threads(grid) {
+    for family in families(grid) {
         let mut matrix = vec![vec![0.0; count]; count];
         let mut right = vec![DVec3::ZERO; count];
-        for (ends, k) in threads {
-            let bent = place[ends[0]] - 2.0 * place[ends[1]] + place[ends[2]];
-            for (&a, of_a) in ends.iter().zip([1.0, -2.0, 1.0]) {
+        for (stencil, k) in family {
+            let bent = deviation(&stencil, &place);
+            for &(a, of_a) in &stencil {
                 if masses[a].is_finite() {
                     right[a] -= weight * k * of_a * bent;
-                    for (&b, of_b) in ends.iter().zip([1.0, -2.0, 1.0]) {
+                    for &(b, of_b) in &stencil {
                         if masses[b].is_finite() {
                             matrix[a][b] += weight * k * of_a * of_b;
                         }

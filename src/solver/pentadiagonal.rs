@@ -9,9 +9,6 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, X, Y, Z};
 /// x, y and z of eight particles.
 pub(super) type Trio = [Lanes; 3];
 
-/// Blocks on either side of a row that repeat its other end, so that each block has its second neighbours beside it.
-pub(super) const GHOSTS: usize = 2;
-
 /// A particle's row of L, and of the inverse of D: to the particle before it, to the one before that, 1/D.
 pub(super) type Factor = [Lanes; 3];
 
@@ -21,7 +18,7 @@ pub(super) const MOVES: [usize; 3] = [DX, DY, DZ];
 
 /// Less than this is nothing (kg m, and m): what is far from all that moves would be subnormal numbers, which machines are slow
 /// with.
-const MIN_MOMENT: f32 = 1.0e-25;
+pub(super) const MIN_MOMENT: f32 = 1.0e-25;
 pub(super) const MIN_MOVE: f32 = 1.0e-18;
 
 #[inline(always)]
@@ -32,7 +29,7 @@ pub(super) fn flush(number: f32, least: f32) -> f32 {
 
 /// From each particle of `a` to that of `b` in the same lane.
 #[inline(always)]
-fn link(a: &View, b: &View, out: &mut Trio) {
+pub(super) fn link(a: &View, b: &View, out: &mut Trio) {
     for axis in 0..3 {
         let (place, moved) = (PLACES[axis], MOVES[axis]);
         for l in 0..LANES {
@@ -41,44 +38,12 @@ fn link(a: &View, b: &View, out: &mut Trio) {
     }
 }
 
-/// Each lane's left neighbour, in the lane before.
+/// From each particle of a row to the one below it.
 #[inline(always)]
-pub(super) fn to_right<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
-    from.map(|from| std::array::from_fn(|l| if l == 0 { 0.0 } else { from[l - 1] }))
-}
-
-/// Each lane's right neighbour, in the lane after.
-#[inline(always)]
-pub(super) fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
-    from.map(|from| std::array::from_fn(|l| if l + 1 == LANES { 0.0 } else { from[l + 1] }))
-}
-
-/// Makes the ghosts of a row.
-#[inline(always)]
-pub(super) fn wrap<const N: usize>(row: &mut [[Lanes; N]]) {
-    let end = row.len() - GHOSTS;
-    for ghost in 0..GHOSTS {
-        row[ghost] = to_right(&row[end - GHOSTS + ghost]);
-        row[end + ghost] = to_left(&row[GHOSTS + ghost]);
-    }
-}
-
-/// From each particle of a row to the one of the next row that is `shift` columns further right.
-#[inline(always)]
-pub(super) fn thread_links(from: &[Block], to: &[Block], shift: usize, links: &mut [Trio]) {
-    let last = from.len() - 1;
-    let inner = &mut links[GHOSTS..GHOSTS + from.len()];
-    if shift == 0 {
-        for ((a, b), out) in from.iter().zip(to).zip(inner) {
-            link(a.view(), b.view(), out);
-        }
-        return;
-    }
-    link(from[last].view(), to[0].shifted(), &mut inner[last]);
-    for ((a, b), out) in from.iter().zip(&to[1..]).zip(inner) {
+pub(super) fn thread_links(from: &[Block], to: &[Block], links: &mut [Trio]) {
+    for ((a, b), out) in from.iter().zip(to).zip(links) {
         link(a.view(), b.view(), out);
     }
-    wrap(links);
 }
 
 // Each of these makes eight numbers before any is stored: what is stored might else be what is loaded next, for all that the
@@ -133,21 +98,14 @@ fn backward(
 #[inline(always)]
 pub(super) fn thread_moments(
     [before, after]: [&[Trio]; 2],
-    shift: usize,
     stiffness: &[Lanes],
     moments: &mut [Trio],
 ) {
-    let strip = stiffness.len();
-    let before = &before[GHOSTS - shift..][..strip];
-    let after = &after[GHOSTS..][..strip];
-    let inner = &mut moments[GHOSTS..][..strip];
-    for (((before, after), stiffness), out) in before.iter().zip(after).zip(stiffness).zip(inner) {
+    for (((before, after), stiffness), out) in before.iter().zip(after).zip(stiffness).zip(moments)
+    {
         for axis in 0..3 {
             out[axis] = scaled_difference(stiffness, &after[axis], &before[axis]);
         }
-    }
-    if shift > 0 {
-        wrap(moments);
     }
 }
 
@@ -158,28 +116,18 @@ pub(super) fn thread_forward(
     moments: [&[Trio]; 3],
     solved: [&[Trio]; 2],
     factors: &[Factor],
-    shift: usize,
     out: &mut [Trio],
 ) {
-    let strip = out.len() - 2 * GHOSTS;
-    let [before, own, next] = moments;
-    let before = &before[GHOSTS - shift..][..strip];
-    let own = &own[GHOSTS..][..strip];
-    let next = &next[GHOSTS + shift..][..strip];
-    let [first, second] = solved;
-    let first = &first[GHOSTS - shift..][..strip];
-    let second = &second[GHOSTS - 2 * shift..][..strip];
-    let factors = &factors[GHOSTS..][..strip];
-    let inner = &mut out[GHOSTS..][..strip];
+    let strip = out.len();
+    let [before, own, next] = moments.map(|of| &of[..strip]);
+    let [first, second] = solved.map(|of| &of[..strip]);
+    let factors = &factors[..strip];
     for j in 0..strip {
         let [lower, lowest, _] = &factors[j];
         for axis in 0..3 {
             let of = [&own[j][axis], &before[j][axis], &next[j][axis]];
-            inner[j][axis] = forward(of, lower, &first[j][axis], lowest, &second[j][axis]);
+            out[j][axis] = forward(of, lower, &first[j][axis], lowest, &second[j][axis]);
         }
-    }
-    if shift > 0 {
-        wrap(out);
     }
 }
 
@@ -190,23 +138,17 @@ pub(super) fn thread_backward(
     own: &[Factor],
     solved: [&[Trio]; 2],
     factors: [&[Factor]; 2],
-    shift: usize,
     out: &mut [Trio],
 ) {
     let strip = blocks.len();
-    let own = &own[GHOSTS..][..strip];
-    let [first, second] = solved;
-    let first = &first[GHOSTS + shift..][..strip];
-    let second = &second[GHOSTS + 2 * shift..][..strip];
-    let [upper, uppermost] = factors;
-    let upper = &upper[GHOSTS + shift..][..strip];
-    let uppermost = &uppermost[GHOSTS + 2 * shift..][..strip];
-    let inner = &mut out[GHOSTS..][..strip];
+    let (own, out) = (&own[..strip], &mut out[..strip]);
+    let [first, second] = solved.map(|of| &of[..strip]);
+    let [upper, uppermost] = factors.map(|of| &of[..strip]);
     for (j, block) in blocks.iter_mut().enumerate() {
         let view = block.view_mut();
         let (inverse, upper, uppermost) = (&own[j][2], &upper[j][0], &uppermost[j][1]);
         for axis in 0..3 {
-            let own = inner[j][axis];
+            let own = out[j][axis];
             let moved = backward(
                 &own,
                 inverse,
@@ -215,14 +157,11 @@ pub(super) fn thread_backward(
                 uppermost,
                 &second[j][axis],
             );
-            inner[j][axis] = moved;
+            out[j][axis] = moved;
             for l in 0..LANES {
                 view[MOVES[axis] + l] += moved[l];
             }
         }
-    }
-    if shift > 0 {
-        wrap(out);
     }
 }
 
