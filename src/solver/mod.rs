@@ -41,6 +41,7 @@
 mod bands;
 mod barrier;
 mod bending;
+mod energy;
 mod envelope;
 mod kernel;
 mod list;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::{
     Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
     bands::{in_bands, with_threads_awake},
+    energy::Energy,
     list::ListSweep,
     pipeline::GridSweep,
     predict::{Prediction, weight},
@@ -19,10 +20,8 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, StepKind, Surface};
 
-/// Sub-steps shorter than this part of those before hold springs better at once, and in how many sweeps they are brought to
-/// where they will be held.
-const MUCH_SHORTER: f32 = 0.95;
-const SETTLING: u32 = 4;
+/// Ticks after a change to shorter sub-steps in which no energy is gained. What was left stretched comes back within a few.
+const WATCHED_TICKS: u32 = 20;
 
 /// Sub-steps of first order after one that ended with a push.
 const AFTER_CONTACT: u32 = 3;
@@ -178,13 +177,15 @@ impl Solver {
             return self.measure(particles);
         }
         let dt = step.seconds / step.substeps.max(1) as f32;
-        let ratio = particles.set_substep(dt);
+        if dt < particles.substep() {
+            particles.past_mut().watch(WATCHED_TICKS);
+        }
+        let lost = particles.past_mut().next_watched();
+        let watched = lost.map(|lost| (Energy::of(particles, step.acceleration), lost));
+        particles.set_substep(dt);
         particles.zero_pin_displacements();
         if step.order == TimeOrder::First {
             particles.past_mut().forget(0);
-        }
-        if ratio < MUCH_SHORTER && step.order == TimeOrder::Second {
-            self.settle(particles, dt);
         }
         let bands = self.bands();
         // What else turns the cloth, or carries it in another way, is not known here.
@@ -197,6 +198,19 @@ impl Solver {
         };
         let measured =
             with_threads_awake(bands, || self.substeps(particles, step, pins, &mut respond));
+        let stretch = measured.unwrap_or_else(|| self.measure(particles));
+        let is_still = pins.iter().all(|pin| pin.from == pin.to);
+        // What the material gives comes back by itself, and what pushes or carries a cloth gives it energy.
+        let given = step.material_stretch.max(stretch.material);
+        let is_unsolved = stretch.structural > 2.0 * given;
+        if let Some((before, lost)) = watched
+            && is_unsolved
+            && is_still
+            && !is_pushed
+        {
+            let lost = before.limit(particles, step.acceleration, lost);
+            particles.past_mut().set_lost(lost);
+        }
         if let Some(spin) = spin
             && !is_pushed
         {
@@ -207,32 +221,10 @@ impl Solver {
             // Not a rounding beside it.
             particles.put(pin.particle as usize, pin.to);
         }
-        let stretch = measured.unwrap_or_else(|| self.measure(particles));
         if stretch.structural > step.material_stretch + UNSOLVED {
             particles.past_mut().forget(WARY_TICKS * step.substeps);
         }
         stretch
-    }
-
-    /// Moves particles to where the springs want them, at the velocities that they have: what longer sub-steps left of stretch
-    /// would otherwise snap back.
-    fn settle(&mut self, particles: &mut ClothParticles, dt: f32) {
-        let kernels = self.simd_level.kernels();
-        particles.stop();
-        self.sweep.set_weight(dt * dt);
-        self.tethers.locate(particles.blocks(), &mut self.anchors);
-        let motion = Motion {
-            kernels: &kernels,
-            tethers: &self.tethers,
-            anchors: &self.anchors,
-            measures: false,
-        };
-        for _ in 0..SETTLING {
-            self.sweep
-                .substep(particles.blocks_mut(), &motion, self.bands);
-            particles.zero_displacements();
-        }
-        particles.go_on();
     }
 
     /// A step of the order that is safe with what solves the springs.

@@ -13,10 +13,9 @@ const SLACK: f32 = 0.3;
 const AIM: f32 = 0.5;
 const TIGHT: f32 = 0.8;
 
-/// Ticks in a row that have to be below before sub-steps become fewer, and the part that is left of them then: a change of
-/// step is a small blow, and a cloth at rest has none.
-const CALM_TICKS: u32 = 20;
-const FEWER: f32 = 0.8;
+/// Ticks in a row that have to be below before sub-steps become fewer, and the part that is left of them then.
+const CALM_TICKS: u32 = 3;
+const FEWER: f32 = 0.9;
 
 /// Fewer than this, and what moves within a tick is missed.
 const FEWEST: u32 = 4;
@@ -83,7 +82,7 @@ impl Control {
                 substeps
             }
             Substepping::Adaptive { max_substeps, .. } => {
-                // With fewer and a change to more, what was unsolved would snap back: energy from nowhere.
+                // With fewer much is left unsolved, which comes back in the change to more.
                 let fewest = needed.min(max_substeps) as f32;
                 self.substeps = self.substeps.clamp(fewest, max_substeps as f32).ceil();
                 self.spent = 0.0;

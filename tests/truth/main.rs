@@ -3,6 +3,7 @@
 
 mod bending;
 mod catenary;
+mod changes;
 mod compliance;
 mod convergence;
 mod distance;
