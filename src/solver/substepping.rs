@@ -17,6 +17,13 @@ const TIGHT: f32 = 0.8;
 const CALM_TICKS: u32 = 3;
 const FEWER: f32 = 0.9;
 
+/// More than ripples ask for, so that what grows a little changes nothing; the part of them that asks for less, if it does for so many
+/// ticks; and so many times what the particles need at most.
+const TAUT_MARGIN: f32 = 1.05;
+const SLACKER: f32 = 0.75;
+const SLACK_TICKS: u32 = 30;
+const MOST_FOR_TAUT: u32 = 4;
+
 /// Fewer than this, and what moves within a tick is missed.
 const FEWEST: u32 = 4;
 
@@ -28,7 +35,8 @@ const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 /// square; stretch that is passed on from thread to thread shrinks faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 pub enum Substepping {
-    /// As many as a cloth of so many particles needs, the same in each tick: [`Substepping::needed`].
+    /// As many as a cloth of so many particles needs, [`Substepping::needed`], the same in each tick; more where it is taut as a
+    /// membrane, until ripples across its threads are resolved: [`Stretch::ripple_substeps`].
     #[default]
     Automatic,
     /// This many sub-steps a tick, from 1 to 10,000.
@@ -67,13 +75,55 @@ pub struct Control {
     calm: u32,
     /// Whether the last tick ended beyond the tolerance.
     is_beyond: bool,
+    /// For the tension of the ticks before.
+    taut: Taut,
+}
+
+/// Sub-steps that ripples ask for.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+struct Taut {
+    substeps: f32,
+    /// Ticks in a row that asked for much less.
+    slack: u32,
+}
+
+impl Taut {
+    fn observe(&mut self, wanted: f32) {
+        if wanted > self.substeps {
+            *self = Self {
+                substeps: (TAUT_MARGIN * wanted).ceil(),
+                slack: 0,
+            };
+        } else if wanted < SLACKER * self.substeps {
+            self.slack += 1;
+            if self.slack == SLACK_TICKS {
+                *self = Self {
+                    substeps: (TAUT_MARGIN * wanted).ceil(),
+                    slack: 0,
+                };
+            }
+        } else {
+            self.slack = 0;
+        }
+    }
+
+    /// With so many where nothing is taut.
+    fn needed(self, needed: u32) -> u32 {
+        let most = needed.saturating_mul(MOST_FOR_TAUT).min(MAX_SUBSTEPS);
+        needed.max((self.substeps as u32).min(most))
+    }
 }
 
 impl Control {
     /// Sub-steps for the coming tick of a cloth that [needs](Substepping::needed) so many at least.
     pub fn substeps(&mut self, substepping: Substepping, needed: u32) -> u32 {
         match substepping {
-            Substepping::Automatic => self.substeps(Substepping::Fixed(needed), needed),
+            Substepping::Automatic => {
+                let taut = self.taut;
+                let substeps = self.substeps(Substepping::Fixed(taut.needed(needed)), needed);
+                self.taut = taut;
+                substeps
+            }
             Substepping::Fixed(substeps) => {
                 *self = Self {
                     substeps: substeps as f32,
@@ -83,7 +133,7 @@ impl Control {
             }
             Substepping::Adaptive { max_substeps, .. } => {
                 // With fewer much is left unsolved, which comes back in the change to more.
-                let fewest = needed.min(max_substeps) as f32;
+                let fewest = self.taut.needed(needed).min(max_substeps) as f32;
                 self.substeps = self.substeps.clamp(fewest, max_substeps as f32).ceil();
                 self.spent = 0.0;
                 self.substeps as u32
@@ -99,6 +149,7 @@ impl Control {
             max_substeps,
         } = substepping
         else {
+            self.taut.observe(stretch.ripple_substeps);
             return None;
         };
         let max = max_substeps as f32;
@@ -137,6 +188,7 @@ impl Control {
             self.calm = 0;
         }
         self.before = unsolved;
+        self.taut.observe(stretch.ripple_substeps);
         None
     }
 
@@ -167,7 +219,7 @@ mod tests {
                 let stretch = Stretch {
                     structural,
                     bound: structural,
-                    material: 0.0,
+                    ..Stretch::default()
                 };
                 match control.observe(PERCENT, stretch) {
                     Some(more) => {
@@ -236,6 +288,7 @@ mod tests {
             structural: 0.05,
             bound: 0.05,
             material: 0.049,
+            ..Stretch::default()
         };
         assert_eq!(control.observe(PERCENT, stretch), None);
         assert!(control.is_beyond());
@@ -259,7 +312,7 @@ mod tests {
         let stretched = Stretch {
             structural: 9.0,
             bound: 9.0,
-            material: 0.0,
+            ..Stretch::default()
         };
         assert_eq!(control.observe(Substepping::Fixed(7), stretched), None);
         assert_eq!(control.substeps(Substepping::Fixed(7), 9), 7);
