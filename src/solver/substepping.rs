@@ -317,4 +317,39 @@ mod tests {
         assert_eq!(control.observe(Substepping::Fixed(7), stretched), None);
         assert_eq!(control.substeps(Substepping::Fixed(7), 9), 7);
     }
+
+    /// Up at once, down after half a second, by a little not at all, and never beyond what is sensible.
+    #[test]
+    fn ripples_of_tension_are_given_what_they_ask_for() {
+        let mut control = Control::default();
+        let mut next = |ripple_substeps: f32| {
+            let stretch = Stretch {
+                ripple_substeps,
+                ..Stretch::default()
+            };
+            assert_eq!(control.observe(Substepping::Automatic, stretch), None);
+            control.substeps(Substepping::Automatic, 20)
+        };
+        assert_eq!(
+            [0.0, 5.0, 19.0, 36.0, 37.0].map(&mut next),
+            [20, 20, 20, 38, 38]
+        );
+        for _ in 0..100 {
+            assert_eq!(next(30.0), 38);
+        }
+        for _ in 1..SLACK_TICKS {
+            assert_eq!(next(22.0), 38);
+        }
+        assert_eq!([22.0, f32::NAN, f32::INFINITY].map(&mut next), [24, 24, 80]);
+        let mut held = Control::default();
+        let taut = Stretch {
+            ripple_substeps: 38.0,
+            ..Stretch::default()
+        };
+        held.substeps(PERCENT, 20);
+        assert_eq!(held.observe(PERCENT, taut), None);
+        assert_eq!(held.substeps(PERCENT, 20), 40);
+        assert_eq!(held.substeps(Substepping::Fixed(7), 20), 7);
+        assert_eq!(held.substeps(Substepping::Automatic, 20), 20);
+    }
 }

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_drape::{
-    cloth::ClothParticles,
+    cloth::{ClothMaterial, ClothParticles},
     solver::{Control, PinMotion, Substepping, TickStep},
 };
 
@@ -197,4 +197,47 @@ fn what_the_material_holds_comes_back() {
         (higher - high).abs() < 0.05 * (high - low),
         "{high} {higher}"
     );
+}
+
+/// Sub-steps by themselves: what hangs, swings and falls into its pins is no membrane, and is given no more for its tension.
+#[test]
+fn what_hangs_is_given_no_more_for_its_tension() {
+    type Pinned = fn(u32, u32) -> bool;
+    const PINS: [(&str, Pinned); 4] = [
+        ("two corners", |row, column| {
+            row == 0 && [0, 63].contains(&column)
+        }),
+        ("one corner", |row, column| row == 0 && column == 0),
+        ("top row", |row, _| row == 0),
+        ("centre", |row, column| row == 32 && column == 32),
+    ];
+    for (name, pinned) in PINS {
+        let spacing = 2.0 / 63.0;
+        let place = |row: u32, column: u32| Vec3::new(column as f32, 0.0, row as f32) * spacing;
+        let step = TickStep {
+            seconds: SECONDS,
+            ..TickStep::default()
+        };
+        let mut sheet = Sheet::new(
+            (64, 64),
+            spacing,
+            ClothMaterial::COTTON,
+            step,
+            place,
+            pinned,
+        );
+        let needed = Substepping::needed(64, SECONDS);
+        let mut control = Control::default();
+        let mut taken = Vec::new();
+        for _ in 0..180 {
+            sheet.step.substeps = control.substeps(Substepping::Automatic, needed);
+            taken.push(sheet.step.substeps);
+            let stretch = sheet.tick(|_, _| {});
+            control.observe(Substepping::Automatic, stretch);
+        }
+        assert!(
+            taken.iter().all(|count| *count == needed),
+            "{name}: {taken:?}"
+        );
+    }
 }
