@@ -145,9 +145,9 @@ mod tests {
             let (blocks, past) = particles.blocks_and_past();
             for lane in 0..5 {
                 let moved = blocks[0].displacement(lane).to_array();
-                for axis in 0..3 {
-                    past[0].0[axis][lane] = 0.9 * moved[axis];
-                    past[0].0[axis + 3][lane] = 0.8 * moved[axis];
+                for (axis, moved) in moved.into_iter().enumerate() {
+                    past[0].0[axis][lane] = 0.9 * moved;
+                    past[0].0[axis + 3][lane] = 0.8 * moved;
                 }
             }
         }
