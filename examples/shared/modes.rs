@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles},
-    solver::TickStep,
+    solver::{Control, Substepping, TickStep},
 };
 
 use super::sheet::{GRAVITY, Sheet};
@@ -85,6 +85,7 @@ pub fn hanging_found(
         sheet.tethered(tethers),
         &weights,
         hanging_period(length, mode),
+        None,
     )
 }
 
@@ -100,8 +101,15 @@ pub fn membrane_period(material: &ClothMaterial) -> f64 {
     1.0 / (0.5 * (2.0 * square).sqrt())
 }
 
-/// The same as it is found by the solver, with `side`² particles. It is let go in the mode's shape, 1 mm high.
-pub fn membrane_found(side: u32, material: &ClothMaterial, step: TickStep, tethers: bool) -> f64 {
+/// The same as it is found by the solver, with `side`² particles. It is let go in the mode's shape, 1 mm high. Sub-steps are those
+/// of `step`, or with a `control` as many as it finds to be needed.
+pub fn membrane_found(
+    side: u32,
+    material: &ClothMaterial,
+    step: TickStep,
+    tethers: bool,
+    control: Option<Control>,
+) -> f64 {
     let spacing = 1.0 / f64::from(side - 1);
     let wave = |index: u32| (std::f64::consts::PI * f64::from(index) * spacing).sin();
     let place = |row: u32, column: u32| {
@@ -117,12 +125,14 @@ pub fn membrane_found(side: u32, material: &ClothMaterial, step: TickStep, tethe
     let weights: Vec<f64> = cells
         .map(|(row, column)| wave(row) * wave(column))
         .collect();
-    period(sheet.tethered(tethers), &weights, membrane_period(material))
+    let truth = membrane_period(material);
+    period(sheet.tethered(tethers), &weights, truth, control)
 }
 
 /// Mean of several periods (s) of the part of the motion along z that has a shape, from where it passes zero between two
 /// sub-steps. Infinite if it does not within four times as long as it should take.
-fn period(mut sheet: Sheet, shape: &[f64], truth: f64) -> f64 {
+fn period(mut sheet: Sheet, shape: &[f64], truth: f64, mut control: Option<Control>) -> f64 {
+    let needed = Substepping::needed(sheet.grid.columns() as usize, sheet.step.seconds);
     let weights: Vec<f64> = sheet
         .masses()
         .iter()
@@ -138,7 +148,10 @@ fn period(mut sheet: Sheet, shape: &[f64], truth: f64) -> f64 {
     let tick = f64::from(sheet.step.seconds);
     let mut start = 0.0;
     while start < PATIENCE * PERIODS as f64 * truth && crossings.len() <= 2 * PERIODS {
-        sheet.tick(|particles, substep| {
+        if let Some(control) = &mut control {
+            sheet.step.substeps = control.substeps(Substepping::Automatic, needed);
+        }
+        let stretch = sheet.tick(|particles, substep| {
             let now = part(particles);
             if before.signum() != now.signum() {
                 let passed = before / (before - now);
@@ -147,6 +160,9 @@ fn period(mut sheet: Sheet, shape: &[f64], truth: f64) -> f64 {
             }
             before = now;
         });
+        if let Some(control) = &mut control {
+            control.observe(Substepping::Automatic, stretch);
+        }
         start += tick;
     }
     match (crossings.first(), crossings.last()) {

@@ -165,7 +165,11 @@ impl Sweep for ListSweep {
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
         let stretch = motion.measures.then(|| self.measure(blocks, kernels));
-        Swept { moved, stretch }
+        Swept {
+            moved,
+            stretch,
+            ripple: 0.0,
+        }
     }
 
     fn measure(&self, blocks: &[Block], _: &Kernels) -> Stretch {

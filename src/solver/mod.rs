@@ -42,6 +42,7 @@ mod bands;
 mod barrier;
 mod bending;
 mod commit;
+mod energy;
 mod envelope;
 mod forces;
 mod kernel;

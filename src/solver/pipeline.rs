@@ -344,6 +344,7 @@ impl Sweep for GridSweep {
         Swept {
             moved: longest.moved,
             stretch: motion.measures.then(|| self.stretch(&longest)),
+            ripple: 0.0,
         }
     }
 

@@ -14,6 +14,9 @@ pub struct Stretch {
     /// What the material gives at the largest tension of its structural springs, where they were solved for it; else 0. A
     /// stretch beyond it is what the sub-steps left unsolved.
     pub material: f32,
+    /// Sub-steps in a tick as long as the last for which ripples across its threads are resolved, at the tension of half of its
+    /// width: those of a membrane that is taut in a frame. Of grids whose threads give; else 0.
+    pub ripple_substeps: f32,
 }
 
 impl Stretch {
@@ -39,6 +42,7 @@ impl Stretch {
             structural: structural.max(1.0) - 1.0,
             bound: bound.max(1.0) - 1.0,
             material: 0.0,
+            ripple_substeps: 0.0,
         }
     }
 }

@@ -13,10 +13,16 @@ const SLACK: f32 = 0.3;
 const AIM: f32 = 0.5;
 const TIGHT: f32 = 0.8;
 
-/// Ticks in a row that have to be below before sub-steps become fewer, and the part that is left of them then: a change of
-/// step is a small blow, and a cloth at rest has none.
-const CALM_TICKS: u32 = 20;
-const FEWER: f32 = 0.8;
+/// Ticks in a row that have to be below before sub-steps become fewer, and the part that is left of them then.
+const CALM_TICKS: u32 = 3;
+const FEWER: f32 = 0.9;
+
+/// More than ripples ask for, so that what grows a little changes nothing; the part of them that asks for less, if it does for so many
+/// ticks; and so many times what the particles need at most.
+const TAUT_MARGIN: f32 = 1.05;
+const SLACKER: f32 = 0.75;
+const SLACK_TICKS: u32 = 30;
+const MOST_FOR_TAUT: u32 = 4;
 
 /// Fewer than this, and what moves within a tick is missed.
 pub(super) const FEWEST: u32 = 4;
@@ -29,7 +35,8 @@ const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 /// square; stretch that is passed on from thread to thread shrinks faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 pub enum Substepping {
-    /// As many as a cloth of so many particles needs, the same in each tick: [`Substepping::needed`].
+    /// As many as a cloth of so many particles needs, [`Substepping::needed`], the same in each tick; more where it is taut as a
+    /// membrane, until ripples across its threads are resolved: [`Stretch::ripple_substeps`].
     #[default]
     Automatic,
     /// This many sub-steps a tick, from 1 to 10,000.
@@ -68,13 +75,55 @@ pub struct Control {
     calm: u32,
     /// Whether the last tick ended beyond the tolerance.
     is_beyond: bool,
+    /// For the tension of the ticks before.
+    taut: Taut,
+}
+
+/// Sub-steps that ripples ask for.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+struct Taut {
+    substeps: f32,
+    /// Ticks in a row that asked for much less.
+    slack: u32,
+}
+
+impl Taut {
+    fn observe(&mut self, wanted: f32) {
+        if wanted > self.substeps {
+            *self = Self {
+                substeps: (TAUT_MARGIN * wanted).ceil(),
+                slack: 0,
+            };
+        } else if wanted < SLACKER * self.substeps {
+            self.slack += 1;
+            if self.slack == SLACK_TICKS {
+                *self = Self {
+                    substeps: (TAUT_MARGIN * wanted).ceil(),
+                    slack: 0,
+                };
+            }
+        } else {
+            self.slack = 0;
+        }
+    }
+
+    /// With so many where nothing is taut.
+    fn needed(self, needed: u32) -> u32 {
+        let most = needed.saturating_mul(MOST_FOR_TAUT).min(MAX_SUBSTEPS);
+        needed.max((self.substeps as u32).min(most))
+    }
 }
 
 impl Control {
     /// Sub-steps for the coming tick of a cloth that [needs](Substepping::needed) so many at least.
     pub fn substeps(&mut self, substepping: Substepping, needed: u32) -> u32 {
         match substepping {
-            Substepping::Automatic => self.substeps(Substepping::Fixed(needed), needed),
+            Substepping::Automatic => {
+                let taut = self.taut;
+                let substeps = self.substeps(Substepping::Fixed(taut.needed(needed)), needed);
+                self.taut = taut;
+                substeps
+            }
             Substepping::Fixed(substeps) => {
                 *self = Self {
                     substeps: substeps as f32,
@@ -83,8 +132,8 @@ impl Control {
                 substeps
             }
             Substepping::Adaptive { max_substeps, .. } => {
-                // With fewer and a change to more, what was unsolved would snap back: energy from nowhere.
-                let fewest = needed.min(max_substeps) as f32;
+                // With fewer much is left unsolved, which comes back in the change to more.
+                let fewest = self.taut.needed(needed).min(max_substeps) as f32;
                 self.substeps = self.substeps.clamp(fewest, max_substeps as f32).ceil();
                 self.spent = 0.0;
                 self.substeps as u32
@@ -100,6 +149,7 @@ impl Control {
             max_substeps,
         } = substepping
         else {
+            self.taut.observe(stretch.ripple_substeps);
             return None;
         };
         let max = max_substeps as f32;
@@ -138,6 +188,7 @@ impl Control {
             self.calm = 0;
         }
         self.before = unsolved;
+        self.taut.observe(stretch.ripple_substeps);
         None
     }
 
@@ -168,7 +219,7 @@ mod tests {
                 let stretch = Stretch {
                     structural,
                     bound: structural,
-                    material: 0.0,
+                    ..Stretch::default()
                 };
                 match control.observe(PERCENT, stretch) {
                     Some(more) => {
@@ -237,6 +288,7 @@ mod tests {
             structural: 0.05,
             bound: 0.05,
             material: 0.049,
+            ..Stretch::default()
         };
         assert_eq!(control.observe(PERCENT, stretch), None);
         assert!(control.is_beyond());
@@ -260,9 +312,44 @@ mod tests {
         let stretched = Stretch {
             structural: 9.0,
             bound: 9.0,
-            material: 0.0,
+            ..Stretch::default()
         };
         assert_eq!(control.observe(Substepping::Fixed(7), stretched), None);
         assert_eq!(control.substeps(Substepping::Fixed(7), 9), 7);
+    }
+
+    /// Up at once, down after half a second, by a little not at all, and never beyond what is sensible.
+    #[test]
+    fn ripples_of_tension_are_given_what_they_ask_for() {
+        let mut control = Control::default();
+        let mut next = |ripple_substeps: f32| {
+            let stretch = Stretch {
+                ripple_substeps,
+                ..Stretch::default()
+            };
+            assert_eq!(control.observe(Substepping::Automatic, stretch), None);
+            control.substeps(Substepping::Automatic, 20)
+        };
+        assert_eq!(
+            [0.0, 5.0, 19.0, 36.0, 37.0].map(&mut next),
+            [20, 20, 20, 38, 38]
+        );
+        for _ in 0..100 {
+            assert_eq!(next(30.0), 38);
+        }
+        for _ in 1..SLACK_TICKS {
+            assert_eq!(next(22.0), 38);
+        }
+        assert_eq!([22.0, f32::NAN, f32::INFINITY].map(&mut next), [24, 24, 80]);
+        let mut held = Control::default();
+        let taut = Stretch {
+            ripple_substeps: 38.0,
+            ..Stretch::default()
+        };
+        held.substeps(PERCENT, 20);
+        assert_eq!(held.observe(PERCENT, taut), None);
+        assert_eq!(held.substeps(PERCENT, 20), 40);
+        assert_eq!(held.substeps(Substepping::Fixed(7), 20), 7);
+        assert_eq!(held.substeps(Substepping::Automatic, 20), 20);
     }
 }

@@ -26,6 +26,9 @@ pub(super) struct Swept {
     pub moved: Lanes,
     /// The stretch, if it was to be measured.
     pub stretch: Option<Stretch>,
+    /// The angular frequency of the fastest ripples across threads that tension makes in half of the cloth's width, if that was
+    /// to be measured and is known, else 0 (rad/s).
+    pub ripple: f32,
 }
 
 /// A solver of springs that are known, and of tethers, for particles where they would be without: made once for them, and for

@@ -5,6 +5,7 @@ mod awning;
 mod bending;
 mod capstan;
 mod catenary;
+mod changes;
 mod compliance;
 mod convergence;
 mod distance;

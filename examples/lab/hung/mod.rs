@@ -119,9 +119,8 @@ impl Experiment for Hung {
             if !is_valid {
                 return Err(format!("{name}: stretched by {}", row.max_stretch));
             }
-            // NaN is not. Where a tolerance changes the sub-steps in a shock, what was unsolved snaps back: said, not hidden.
-            let is_fixed = row.choice.parse::<u32>().is_ok();
-            let is_kept = row.energy_gain <= MAX_GAIN || !is_fixed && row.energy_gain.is_finite();
+            // NaN is not.
+            let is_kept = row.energy_gain <= MAX_GAIN;
             if !is_kept {
                 return Err(format!(
                     "{name}: gains {} of what its weight can do",

@@ -162,7 +162,7 @@ impl Experiment for Waves {
                     period,
                     truth,
                 };
-                let found = membrane_found(side, &material, step, tethers);
+                let found = membrane_found(side, &material, step, tethers, None);
                 rows.push(first(
                     MEMBRANE,
                     side * side,

@@ -154,7 +154,8 @@ impl ClothParticles {
     pub fn velocity(&self, id: impl Into<ParticleId>) -> Option<Vec3> {
         let slot = self.slot(id)?;
         let moved = self.blocks[slot.block].displacement(slot.lane);
-        let before = self.past.before(slot).unwrap_or(moved);
+        let known = self.past.known();
+        let before = known.map_or(moved, |past| past[slot.block].before(slot.lane));
         Some((moved + 0.5 * (moved - before)) / self.substep)
     }
 

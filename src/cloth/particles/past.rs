@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::{Block, LANES, Lanes, Slot};
+use crate::cloth::{Block, LANES, Lanes};
 
 /// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the one before, then of the one
 /// before that.
@@ -12,6 +12,11 @@ pub(crate) struct Earlier(pub [Lanes; 6]);
 
 impl Earlier {
     const NONE: Self = Self([[0.0; LANES]; 6]);
+
+    /// The displacement of a particle in the sub-step before the last (m).
+    pub fn before(&self, lane: usize) -> Vec3 {
+        Vec3::from([0, 1, 2].map(|axis| self.0[axis][lane]))
+    }
 }
 
 /// Displacements in earlier sub-steps.
@@ -23,6 +28,17 @@ pub(crate) struct Past {
     is_known: bool,
     /// For how many sub-steps to come the past says nothing of the future.
     wait: u32,
+    /// After a change to shorter sub-steps.
+    watch: Watch,
+}
+
+/// Ticks in which springs that were left stretched pull back.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+struct Watch {
+    /// How many are still to come.
+    ticks: u32,
+    /// Energy that was lost in those before, and may come back (J).
+    lost: f64,
 }
 
 /// Of which order a sub-step is.
@@ -96,31 +112,31 @@ impl Past {
         }
     }
 
-    /// Keeps displacements and makes them zero; what was known is forgotten.
-    pub fn put_aside(&mut self, now: &mut [Block]) {
-        self.is_known = false;
-        self.blocks.resize(now.len(), Earlier::NONE);
-        for (block, Earlier(kept)) in now.iter_mut().zip(&mut self.blocks) {
-            for (moved, kept) in block.displacements_mut().chunks_exact_mut(LANES).zip(kept) {
-                kept.copy_from_slice(moved);
-                moved.fill(0.0);
-            }
+    /// Block by block, if displacements are known.
+    pub fn known(&self) -> Option<&[Earlier]> {
+        self.is_known.then_some(&self.blocks)
+    }
+
+    /// Watches this many ticks from the coming one on, if there was motion before.
+    pub fn watch(&mut self, ticks: u32) {
+        if !self.blocks.is_empty() {
+            self.watch.ticks = ticks;
         }
     }
 
-    /// Has displacements be what was kept of them.
-    pub fn take_back(&mut self, now: &mut [Block]) {
-        for (block, Earlier(kept)) in now.iter_mut().zip(&self.blocks) {
-            for (moved, kept) in block.displacements_mut().chunks_exact_mut(LANES).zip(kept) {
-                moved.copy_from_slice(kept);
-            }
+    /// Energy that may come back in the coming tick (J), if it is watched; what comes after it has one tick less.
+    pub fn next_watched(&mut self) -> Option<f64> {
+        if self.watch.ticks == 0 {
+            self.watch.lost = 0.0;
+            return None;
         }
+        self.watch.ticks -= 1;
+        Some(self.watch.lost)
     }
 
-    /// The displacement of a particle in the sub-step before the last (m), if it is known.
-    pub fn before(&self, slot: Slot) -> Option<Vec3> {
-        let Earlier(earlier) = self.blocks.get(slot.block).filter(|_| self.is_known)?;
-        Some(Vec3::from([0, 1, 2].map(|axis| earlier[axis][slot.lane])))
+    /// Has this much energy be what may come back (J).
+    pub fn set_lost(&mut self, lost: f64) {
+        self.watch.lost = lost;
     }
 
     /// Applies `f` to the earlier displacements of a particle.
@@ -141,6 +157,7 @@ impl Past {
     pub fn copy_from(&mut self, other: &Self) {
         self.blocks.clone_from(&other.blocks);
         (self.is_known, self.wait) = (other.is_known, other.wait);
+        self.watch = other.watch;
     }
 }
 
@@ -180,5 +197,22 @@ mod tests {
         );
         past.forget(0);
         assert_eq!(past.next(1), StepKind::Start);
+    }
+
+    #[test]
+    fn what_never_moved_is_not_watched() {
+        let mut past = Past::default();
+        past.watch(2);
+        assert_eq!(past.next_watched(), None);
+        past.next(1);
+        past.watch(2);
+        assert_eq!(past.next_watched(), Some(0.0));
+        past.set_lost(3.0);
+        assert_eq!(
+            [past.next_watched(), past.next_watched()],
+            [Some(3.0), None]
+        );
+        past.watch(1);
+        assert_eq!(past.next_watched(), Some(0.0), "another change");
     }
 }

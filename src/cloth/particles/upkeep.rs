@@ -147,6 +147,11 @@ impl ClothParticles {
         (&mut self.blocks, &mut self.past.blocks)
     }
 
+    /// The displacements before the last, block by block, if they are known.
+    pub(crate) fn known_past(&self) -> Option<&[Earlier]> {
+        self.past.known()
+    }
+
     /// What they remember of their motion.
     pub(crate) fn past_mut(&mut self) -> &mut Past {
         &mut self.past
@@ -325,36 +330,23 @@ impl ClothParticles {
         self.blocks[block].set_position(lane, position);
     }
 
-    /// Has displacements span `substep` seconds from now on, at the same velocities. Returns how many times as long that is.
-    pub(crate) fn set_substep(&mut self, substep: f32) -> f32 {
-        let ratio = substep / self.substep;
+    /// The sub-step that displacements span (s).
+    pub(crate) fn substep(&self) -> f32 {
+        self.substep
+    }
+
+    /// Has displacements span `substep` seconds from now on, at the same velocities.
+    pub(crate) fn set_substep(&mut self, substep: f32) {
         if substep != self.substep {
+            let ratio = substep / self.substep;
             self.substep = substep;
             self.past.restart(&mut self.blocks, ratio);
         }
-        ratio
     }
 
     /// Has displacements be the velocity times the sub-step, and nothing else be remembered of the past.
     pub(crate) fn end_past(&mut self) {
         self.past.end(&mut self.blocks);
-    }
-
-    /// Sets displacements aside, in place of a past that is forgotten, so that all stand still.
-    pub(crate) fn stop(&mut self) {
-        self.past.put_aside(&mut self.blocks);
-    }
-
-    /// Makes all displacements zero.
-    pub(crate) fn zero_displacements(&mut self) {
-        for block in &mut self.blocks {
-            block.displacements_mut().fill(0.0);
-        }
-    }
-
-    /// Takes back the displacements that were set aside.
-    pub(crate) fn go_on(&mut self) {
-        self.past.take_back(&mut self.blocks);
     }
 }
 

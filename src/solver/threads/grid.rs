@@ -12,7 +12,7 @@ use super::{
     systems::{Part, RowSystems},
 };
 use crate::{
-    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout},
+    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
     solver::{
         Stretch,
         bands::{MAX_BANDS, in_bands, take},
@@ -45,6 +45,8 @@ pub(in crate::solver) struct ThreadSweep {
     systems: Vec<RowSystems>,
     /// c Δt² (s²).
     weight_dt2: f32,
+    /// Largest stiffness over length of springs across and down (N/m²), 0 of those that don't give.
+    ripple_stiffness: [f32; 2],
 }
 
 /// What a band found.
@@ -65,10 +67,15 @@ impl ThreadSweep {
         for run in &mut run {
             run.soften(1.0);
         }
+        let across = [family((0, 1), 0), family((0, 1), 1)];
+        let down = family((1, 0), 0);
+        let ripple_stiffness =
+            [&across[1], &down].map(|family| family.stiffness() * family.inverse_rest);
         Self {
             layout,
-            across: [family((0, 1), 0), family((0, 1), 1)],
-            down: family((1, 0), 0),
+            across,
+            down,
+            ripple_stiffness,
             diagonal: compliances.shear.is_finite().then(|| family((1, 1), 0)),
             runs: run,
             links: vec![Link::NONE; layout.blocks()],
@@ -181,6 +188,34 @@ impl ThreadSweep {
         Stretch::of_ratios(structural, bound)
     }
 
+    /// What the material gives, as a part of its length, from the squares of the most that springs give (m²).
+    fn material(&self, across: &Lanes, down: &Lanes) -> f32 {
+        (largest(across) / self.across[0].rest).max(largest(down) / self.down.rest)
+    }
+
+    /// The angular frequency of the fastest ripples (rad/s), in which neighbours swing against each other: ω² = 4 Σ F/(m l) over
+    /// a thread across and one down, with tensions F in springs of length l. That of the fourth of the eight strips of columns: a
+    /// membrane has it everywhere, and what hangs by a corner is not a membrane.
+    fn ripple(&self, blocks: &[Block], across: &Lanes, down: &Lanes) -> f32 {
+        let mut strips = [0.0; LANES];
+        for (lane, strip) in strips.iter_mut().enumerate() {
+            for (given, stiffness) in [across, down].into_iter().zip(self.ripple_stiffness) {
+                *strip += given[lane].sqrt() * stiffness;
+            }
+        }
+        strips.sort_by(|a, b| b.total_cmp(a));
+        let pull = strips[LANES / 2 - 1];
+        if pull == 0.0 {
+            return 0.0;
+        }
+        // Within the cloth, where no pin and no border is.
+        let weights = blocks.iter().flat_map(|block| &block.view()[W..W + LANES]);
+        let heaviest = weights
+            .filter(|weight| **weight > 0.0)
+            .fold(f32::INFINITY, |least, weight| least.min(*weight));
+        2.0 * (pull * heaviest).sqrt()
+    }
+
     /// A sub-step in this many bands, more than one.
     fn substep_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
         let (kernels, measures) = (motion.kernels, motion.measures);
@@ -192,7 +227,7 @@ impl ThreadSweep {
                 in_bands(all, |mut band| band.solve(family, kernels, None));
             }
         }
-        let across = self.across_in_bands(blocks, motion, bands) / self.across[0].rest;
+        let across = self.across_in_bands(blocks, motion, bands);
         let mut found = [Found::default(); MAX_BANDS];
         let (strip, down) = (self.layout.strip as usize, &self.down);
         let (links, pulls) = (&mut self.links[..], &mut self.pulls);
@@ -206,8 +241,8 @@ impl ThreadSweep {
             }
         });
         let rows = self.layout.rows as usize;
+        let down = merged(&found, |found| &found.given);
         let stretch = measures.then(|| {
-            let down = merged(&found, |found| &found.given);
             let border = |band| rows * band / bands;
             let parts = (0..bands).zip(&mut found);
             let blocks = &*blocks;
@@ -220,16 +255,19 @@ impl ThreadSweep {
                 longest.merge(&found.longest);
             }
             Stretch {
-                material: across.max(largest(&down) / self.down.rest),
+                material: self.material(&across, &down),
                 ..self.stretch(&longest)
             }
         });
-        let moved = merged(&found, |found| &found.moved);
-        Swept { moved, stretch }
+        Swept {
+            moved: merged(&found, |found| &found.moved),
+            stretch,
+            ripple: self.ripple(blocks, &across, &down),
+        }
     }
 
-    /// Solves the threads within rows. Returns the most that a spring gives (m), if that is to be measured.
-    fn across_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> f32 {
+    /// Solves the threads within rows. Returns the squares of the most that their springs give (m²), if that is to be measured.
+    fn across_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Lanes {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
         let groups = rows.div_ceil(GROUP);
@@ -248,7 +286,7 @@ impl ThreadSweep {
         });
         let (layout, families) = (self.layout, &self.across);
         in_bands(parts, |part| part.solve(layout, families, motion.kernels));
-        largest(&merged(&found, |found| &found.given))
+        merged(&found, |found| &found.given)
     }
 }
 
@@ -287,19 +325,22 @@ impl Sweep for ThreadSweep {
         self.solve_down(blocks, Direction::Left, kernels, None);
         let mut given = [0.0; LANES];
         self.solve_across(blocks, kernels, motion.measures.then_some(&mut given));
-        let across = largest(&given) / self.across[0].rest;
+        let across = given;
         given = [0.0; LANES];
         let measured = motion.measures.then_some(&mut given);
         self.solve_down(blocks, Direction::Down, kernels, measured);
-        let down = largest(&given) / self.down.rest;
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
         let stretch = motion.measures.then(|| Stretch {
-            material: across.max(down),
+            material: self.material(&across, &given),
             ..self.measure(blocks, kernels)
         });
-        Swept { moved, stretch }
+        Swept {
+            moved,
+            stretch,
+            ripple: self.ripple(blocks, &across, &given),
+        }
     }
 
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {

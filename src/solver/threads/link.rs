@@ -110,6 +110,15 @@ impl Family {
         }
     }
 
+    /// The largest of its springs (N/m), where they give; else 0.
+    pub fn stiffness(&self) -> f32 {
+        let all = self.compliance.iter().flatten();
+        let least = all
+            .filter(|compliance| **compliance > 0.0)
+            .fold(f32::INFINITY, |least, compliance| least.min(*compliance));
+        1.0 / least
+    }
+
     /// Takes over c Δt² (s²).
     pub fn soften(&mut self, weight_dt2: f32) {
         let inverse = 1.0 / weight_dt2;
