@@ -74,11 +74,16 @@ fn a_tolerance_out_of_reach_is_not_tried_for() {
         },
         ..default()
     };
-    let cloth = (Cloth::default(), ClothMaterial::RUBBER, settings);
-    let cloth = app.world_mut().spawn(cloth).id();
+    let mut spawn = |settings| {
+        let cloth = (Cloth::default(), ClothMaterial::RUBBER, settings);
+        app.world_mut().spawn(cloth).id()
+    };
+    let (cloth, by_default) = (spawn(settings), spawn(ClothSettings::default()));
     tick(&mut app, 64);
-    let stats = app.world().get::<ClothStats>(cloth).expect("figures");
-    assert_eq!(stats.substeps, Substepping::needed(16, TICK));
+    let stats = |cloth| app.world().get::<ClothStats>(cloth).expect("figures");
+    assert_eq!(stats(cloth).substeps, stats(by_default).substeps);
+    assert!(stats(cloth).substeps <= 2 * Substepping::needed(16, TICK));
+    let stats = stats(cloth);
     assert!(stats.stretch.structural > 0.001);
     assert_eq!(stats.exceeded, Some(ClothLimit::Tolerance));
     assert!(app.world().get::<ClothFault>(cloth).is_none());
@@ -160,7 +165,9 @@ fn far_from_the_origin_it_moves_as_at_the_origin() {
     assert!(run(Vec3::ZERO) == run(Vec3::new(1000.0, 1000.0, -1000.0)));
 }
 
-/// Tethers leave to the springs what is elastic: a rubber sheet that a ball pushes into is where it is without them.
+/// Tethers leave to the springs what is elastic: a rubber sheet that a ball pushes into is where it is without them. Without
+/// friction, so that it has one place to come to rest in: with them threads are solved, without them forces push, which differ by
+/// a part ε²/4 of the force at a stretch ε: 1 % of the sag of 0.4 m where it is 0.2.
 #[test]
 fn tethers_do_not_stiffen_rubber() {
     let run = |tethers: bool| {
@@ -171,6 +178,7 @@ fn tethers_do_not_stiffen_rubber() {
         };
         let material = ClothMaterial {
             damping: 0.1,
+            friction: 0.0,
             ..ClothMaterial::RUBBER
         };
         let cloth = (Cloth::default(), material, settings);
@@ -184,6 +192,6 @@ fn tethers_do_not_stiffen_rubber() {
     };
     let (with, without) = (run(true), run(false));
     for (with, without) in with.positions().zip(without.positions()) {
-        assert!(with.distance(without) < 2.0e-3, "{with} {without}");
+        assert!(with.distance(without) < 4.0e-3, "{with} {without}");
     }
 }
