@@ -7,7 +7,7 @@ use super::{
     beside::Scratch,
     direction::Direction,
     link::Family,
-    rows::{RowScratch, RowThreads},
+    rows::{GROUP, RowScratch, RowThreads},
 };
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout},
@@ -186,7 +186,8 @@ impl ThreadSweep {
     fn across_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> f32 {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
-        let border = |band: usize| rows * band / bands;
+        let groups = rows.div_ceil(GROUP);
+        let border = |band: usize| (groups * band / bands * GROUP).min(rows);
         if self.rows.len() < bands {
             self.rows.resize(bands, RowScratch::new(strip));
         }

@@ -26,7 +26,9 @@ pub(crate) struct RowScratch {
     links: Vec<Link>,
     /// For each of them the part of the last multiplier of the strip before that it takes.
     spikes: Vec<Lanes>,
-    systems: [Reduced; GROUP],
+    strip: Strip,
+    /// By steps in turns.
+    systems: [Reduced; 2],
 }
 
 impl RowScratch {
@@ -34,146 +36,132 @@ impl RowScratch {
         Self {
             links: vec![Link::NONE; strip * GROUP],
             spikes: vec![[0.0; LANES]; strip * GROUP],
-            systems: [Reduced::NONE; GROUP],
+            strip: Strip::NONE,
+            systems: [Reduced::NONE; 2],
         }
     }
 }
 
-/// A number for each lane, and as many for lanes beside that there are not as a step of the reduction looks at.
-type Wide = [f32; 2 * BESIDE + LANES];
+/// The lanes of all rows of a group, one after the other, and as many on either side as a step of the reduction looks at.
+type Wide = [f32; BESIDE + GROUP * LANES + BESIDE];
 const BESIDE: usize = 4;
 
-/// The system for the last springs of a row's strips.
+/// The system for the last springs of strips. A row's first lane has nothing to do with the last one of the row before, so that
+/// they need not be kept apart.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 struct Reduced {
-    diagonal: Lanes,
-    /// One over the diagonal.
-    inverse: Wide,
+    diagonal: Wide,
     /// What has to do with the lane before.
     off: Wide,
     /// Right side; in the end the multipliers.
     right: Wide,
+    /// One over the diagonal.
+    inverse: Wide,
+    /// What the strip leaves to the diagonal and the right side of the lane before.
+    to_diagonal: Wide,
+    to_right: Wide,
 }
 
 impl Reduced {
     const NONE: Self = Self {
-        diagonal: [1.0; LANES],
-        inverse: [0.0; _],
+        diagonal: [1.0; _],
         off: [0.0; _],
         right: [0.0; _],
+        inverse: [1.0; _],
+        to_diagonal: [0.0; _],
+        to_right: [0.0; _],
     };
 
-    /// Makes each lane independent of those `distance` away; with them goes what they had to do with those beyond.
+    /// Solves it.
+    #[inline(always)]
+    fn solve([this, other]: &mut [Self; 2]) {
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let diagonal = this.diagonal[at] - this.to_diagonal[at + 1];
+            this.right[at] -= this.to_right[at + 1];
+            this.diagonal[at] = diagonal;
+            this.inverse[at] = 1.0 / diagonal;
+        }
+        this.without::<1>(other);
+        other.without::<2>(this);
+        this.without::<4>(other);
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            this.right[at] = other.right[at] * other.inverse[at];
+        }
+    }
+
+    /// Makes each lane independent of those `DISTANCE` away; with them comes what they have to do with those beyond.
     #[inline(always)]
     fn without<const DISTANCE: usize>(&self, out: &mut Self) {
-        for l in 0..LANES {
-            let at = BESIDE + l;
+        for at in BESIDE..BESIDE + GROUP * LANES {
             let (left, right) = (at - DISTANCE, at + DISTANCE);
             let before = self.off[at] * self.inverse[left];
             let after = self.off[right] * self.inverse[right];
-            let diagonal = self.diagonal[l] - self.off[at] * before - self.off[right] * after;
+            let diagonal = self.diagonal[at] - self.off[at] * before - self.off[right] * after;
             out.right[at] = self.right[at] - before * self.right[left] - after * self.right[right];
             out.off[at] = -before * self.off[left];
-            out.diagonal[l] = diagonal;
+            out.diagonal[at] = diagonal;
             out.inverse[at] = 1.0 / diagonal;
         }
     }
 }
 
 /// What a lane knows of its strip up to a spring.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 struct Strip {
     before: Before,
     /// What the spring has to do with the last of the strip before.
     off: Lanes,
     /// What that one has to take over into its diagonal and its right side.
-    diagonal: Lanes,
-    right: Lanes,
+    to_diagonal: Lanes,
+    to_right: Lanes,
 }
 
-/// Eliminates the springs before; the first of a strip has none, the last is left to the reduced system.
+impl Strip {
+    const NONE: Self = Self {
+        before: Before::NONE,
+        off: [0.0; LANES],
+        to_diagonal: [0.0; LANES],
+        to_right: [0.0; LANES],
+    };
+}
+
+/// Eliminates the springs before: of a strip's first there are none; its last is not solved for.
 #[inline(always)]
-fn eliminate<const FIRST: bool>(
+fn eliminate<const FIRST: bool, const LAST: bool>(
     [a, b]: [&View; 2],
     family: &Family,
     block: usize,
     strip: &mut Strip,
-    (link, spike): (&mut Link, &mut Lanes),
+    link: &mut Link,
+    spike: &mut Lanes,
 ) {
     let (softness, hold) = (&family.softness[block], &family.hold[block]);
-    let before = &mut strip.before;
     for l in 0..LANES {
         let [x, y, z] = way(a, b, family.inverse_rest, l);
         let weight = a[W + l] + b[W + l];
         let [diagonal, right] = terms([x, y, z], weight, softness[l], hold[l], family.rest);
+        let before = &mut strip.before;
         let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
         let off = -a[W + l] * along;
-        let (share, to_strip) = if FIRST {
-            (0.0, off)
-        } else {
-            let share = off * before.pivot[l];
-            (share, -share * strip.off[l])
-        };
-        let (diagonal, right) = if FIRST {
-            (diagonal, right)
-        } else {
-            (diagonal - off * share, right - off * before.right[l])
-        };
-        let pivot = 1.0 / diagonal;
-        let right = right * pivot;
-        let part = to_strip * pivot;
+        let share = if FIRST { 0.0 } else { off * before.pivot[l] };
+        let to_strip = if FIRST { off } else { -share * strip.off[l] };
+        let diagonal = if FIRST { diagonal } else { diagonal - off * share };
+        let right = if FIRST { right } else { right - off * before.right[l] };
+        let pivot = if LAST { diagonal } else { 1.0 / diagonal };
+        let right = if LAST { right } else { right * pivot };
         [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
         [before.way[0][l], before.way[1][l], before.way[2][l]] = [x, y, z];
         [link.share[l], before.pivot[l]] = [share, pivot];
         [link.right[l], before.right[l]] = [right, right];
         strip.off[l] = to_strip;
-        spike[l] = part;
-        strip.diagonal[l] += to_strip * part;
-        strip.right[l] += to_strip * right;
-    }
-}
-
-/// The last spring of a strip, reduced to what it has to do with those of the other strips.
-#[inline(always)]
-fn eliminate_last<const FIRST: bool>(
-    [a, b]: [&View; 2],
-    family: &Family,
-    block: usize,
-    strip: &Strip,
-    link: &mut Link,
-    system: &mut Reduced,
-) {
-    let (softness, hold) = (&family.softness[block], &family.hold[block]);
-    let before = &strip.before;
-    // What the lane on the right leaves to this one's system comes from the lane behind: so from the last lane on.
-    let mut right_lane = [0.0; 2];
-    for l in (0..LANES).rev() {
-        let [x, y, z] = way(a, b, family.inverse_rest, l);
-        let weight = a[W + l] + b[W + l];
-        let [diagonal, right] = terms([x, y, z], weight, softness[l], hold[l], family.rest);
-        let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
-        let off = -a[W + l] * along;
-        let (share, to_strip) = if FIRST {
-            (0.0, off)
-        } else {
-            let share = off * before.pivot[l];
-            (share, -share * strip.off[l])
-        };
-        let (diagonal, right) = if FIRST {
-            (diagonal, right)
-        } else {
-            (diagonal - off * share, right - off * before.right[l])
-        };
-        [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
-        link.share[l] = share;
-        let diagonal = diagonal - right_lane[0];
-        system.off[BESIDE + l] = to_strip;
-        system.right[BESIDE + l] = right - right_lane[1];
-        system.diagonal[l] = diagonal;
-        system.inverse[BESIDE + l] = 1.0 / diagonal;
-        right_lane = [strip.diagonal[l], strip.right[l]];
+        if !LAST {
+            let part = to_strip * pivot;
+            spike[l] = part;
+            strip.to_diagonal[l] += to_strip * part;
+            strip.to_right[l] += to_strip * right;
+        }
     }
 }
 
@@ -196,30 +184,34 @@ fn reduce(
     family: &Family,
     links: &mut [Link],
     spikes: &mut [Lanes],
-    system: &mut Reduced,
+    strip: &mut Strip,
+    (system, at): (&mut Reduced, usize),
 ) {
     let last = row.len() - 1;
     let to_next = [row[last].view(), row[0].shifted()];
-    let mut strip = Strip {
-        before: Before::NONE,
-        off: [0.0; LANES],
-        diagonal: [0.0; LANES],
-        right: [0.0; LANES],
-    };
+    *strip = Strip::NONE;
     strip.before.way = way_before(to_next, family);
-    let (link, links) = links.split_last_mut().expect("a block");
-    if last == 0 {
-        return eliminate_last::<true>(to_next, family, 0, &strip, link, system);
-    }
-    for (j, springs) in links.iter_mut().zip(spikes).enumerate() {
-        let ends = [row[j].view(), row[j + 1].view()];
-        if j == 0 {
-            eliminate::<true>(ends, family, j, &mut strip, springs);
-        } else {
-            eliminate::<false>(ends, family, j, &mut strip, springs);
+    for (j, (link, spike)) in links.iter_mut().zip(spikes).enumerate() {
+        let ends = match row.get(j + 1) {
+            Some(b) => [row[j].view(), b.view()],
+            None => to_next,
+        };
+        match (j == 0, j == last) {
+            (true, true) => eliminate::<true, true>(ends, family, j, strip, link, spike),
+            (true, false) => eliminate::<true, false>(ends, family, j, strip, link, spike),
+            (false, false) => eliminate::<false, false>(ends, family, j, strip, link, spike),
+            (false, true) => eliminate::<false, true>(ends, family, j, strip, link, spike),
         }
     }
-    eliminate_last::<false>(to_next, family, last, &strip, link, system);
+    for (to, from) in [
+        (&mut system.diagonal, &strip.before.pivot),
+        (&mut system.right, &strip.before.right),
+        (&mut system.off, &strip.off),
+        (&mut system.to_diagonal, &strip.to_diagonal),
+        (&mut system.to_right, &strip.to_right),
+    ] {
+        to[at..at + LANES].copy_from_slice(from);
+    }
 }
 
 /// Solves for the multipliers, given those behind them and that of the strip before, and moves the particles in between.
@@ -239,11 +231,12 @@ fn substitute(b: &mut View, link: &mut Link, spike: &Lanes, to_strip: &Lanes, be
 
 /// Solves a row, of which the multipliers of the reduced system are known.
 #[inline(always)]
-fn pull_row(row: &mut [Block], links: &mut [Link], spikes: &[Lanes], system: &Reduced) {
+fn pull_row(row: &mut [Block], links: &mut [Link], spikes: &[Lanes], multipliers: &Wide, from: usize) {
     let last = row.len() - 1;
     let mut behind = Behind::NONE;
-    links[last].right = *system.right[BESIDE..].first_chunk().expect("lanes");
-    let to_strip = system.right[BESIDE - 1..].first_chunk().expect("lanes");
+    links[last].right = *multipliers[from..].first_chunk().expect("lanes");
+    // The first has none before it, and nothing to do with that of the row above.
+    let to_strip = multipliers[from - 1..].first_chunk().expect("lanes");
     let none = [0.0; LANES];
     substitute(
         row[0].shifted_mut(),
@@ -284,46 +277,20 @@ pub(crate) fn solve_rows(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
         let is_border = (row == 0 && first) || (row + 1 == count && last);
         if is_border { border } else { inner }
     };
-    let RowScratch {
-        links,
-        spikes,
-        systems,
-    } = &mut *rows.scratch;
+    let RowScratch { links, spikes, strip: state, systems } = &mut *rows.scratch;
     for (group, blocks) in rows.blocks.chunks_mut(strip * GROUP).enumerate() {
-        let of_rows = links
-            .chunks_exact_mut(strip)
-            .zip(spikes.chunks_exact_mut(strip));
-        let of_rows = of_rows.zip(&mut *systems);
-        for (at, (row, ((links, spikes), system))) in
-            blocks.chunks_exact(strip).zip(of_rows).enumerate()
-        {
-            reduce(row, family(group * GROUP + at), links, spikes, system);
+        if blocks.len() < strip * GROUP {
+            systems[0] = Reduced::NONE;
         }
-        let systems = &mut systems[..blocks.len() / strip];
-        let mut others = [Reduced::NONE; GROUP];
-        for (from, to) in systems.iter().zip(&mut others) {
-            from.without::<1>(to);
+        let springs = links.chunks_exact_mut(strip).zip(spikes.chunks_exact_mut(strip));
+        for (at, (row, (links, spikes))) in blocks.chunks_exact(strip).zip(springs).enumerate() {
+            let system = (&mut systems[0], BESIDE + at * LANES);
+            reduce(row, family(group * GROUP + at), links, spikes, state, system);
         }
-        for (from, to) in others.iter().zip(&mut *systems) {
-            from.without::<2>(to);
-        }
-        for (from, to) in systems.iter().zip(&mut others) {
-            from.without::<4>(to);
-        }
-        for (from, to) in others.iter().zip(&mut *systems) {
-            for at in BESIDE..BESIDE + LANES {
-                to.right[at] = from.right[at] * from.inverse[at];
-            }
-        }
-        let of_rows = links
-            .chunks_exact_mut(strip)
-            .zip(spikes.chunks_exact(strip));
-        for (at, (row, ((links, spikes), system))) in blocks
-            .chunks_exact_mut(strip)
-            .zip(of_rows.zip(&*systems))
-            .enumerate()
-        {
-            pull_row(row, links, spikes, system);
+        Reduced::solve(systems);
+        let springs = links.chunks_exact_mut(strip).zip(spikes.chunks_exact(strip));
+        for (at, (row, (links, spikes))) in blocks.chunks_exact_mut(strip).zip(springs).enumerate() {
+            pull_row(row, links, spikes, &systems[0].right, BESIDE + at * LANES);
             if let Some(given) = &mut rows.given {
                 measure_given(links, &family(group * GROUP + at).softness, given);
             }
