@@ -109,7 +109,7 @@ fn substitute<const CROSSES: bool>(b: &mut View, link: &mut Link, behind: &mut B
 
 /// Moves particles at the head of their threads.
 #[inline(always)]
-pub(super) fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
+fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
     for l in 0..LANES {
         a[DX + l] -= a[W + l] * pull[0][l];
         a[DY + l] -= a[W + l] * pull[1][l];

@@ -11,7 +11,7 @@
 //! than half of it at 16².
 
 use super::{
-    down::{Before, Behind, pull_head},
+    down::{Before, Behind},
     link::{Family, Link, measure_given, terms, way},
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
@@ -27,6 +27,7 @@ pub(crate) struct RowScratch {
     /// For each of them the part of the last multiplier of the strip before that it takes.
     spikes: Vec<Lanes>,
     strip: Strip,
+    ends: Ends,
     /// By steps in turns.
     systems: [Reduced; 2],
 }
@@ -37,6 +38,7 @@ impl RowScratch {
             links: vec![Link::NONE; strip * GROUP],
             spikes: vec![[0.0; LANES]; strip * GROUP],
             strip: Strip::NONE,
+            ends: Ends::NONE,
             systems: [Reduced::NONE; 2],
         }
     }
@@ -46,21 +48,17 @@ impl RowScratch {
 type Wide = [f32; BESIDE + GROUP * LANES + BESIDE];
 const BESIDE: usize = 4;
 
-/// The system for the last springs of strips. A row's first lane has nothing to do with the last one of the row before, so that
-/// they need not be kept apart.
+/// The system for the last springs of strips. The last strip's leads nowhere: infinitely held, it takes nothing and hands on
+/// nothing, so that rows need not be kept apart.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 struct Reduced {
     diagonal: Wide,
     /// What has to do with the lane before.
     off: Wide,
-    /// Right side; in the end the multipliers.
     right: Wide,
     /// One over the diagonal.
     inverse: Wide,
-    /// What the strip leaves to the diagonal and the right side of the lane before.
-    to_diagonal: Wide,
-    to_right: Wide,
 }
 
 impl Reduced {
@@ -69,26 +67,7 @@ impl Reduced {
         off: [0.0; _],
         right: [0.0; _],
         inverse: [1.0; _],
-        to_diagonal: [0.0; _],
-        to_right: [0.0; _],
     };
-
-    /// Solves it.
-    #[inline(always)]
-    fn solve([this, other]: &mut [Self; 2]) {
-        for at in BESIDE..BESIDE + GROUP * LANES {
-            let diagonal = this.diagonal[at] - this.to_diagonal[at + 1];
-            this.right[at] -= this.to_right[at + 1];
-            this.diagonal[at] = diagonal;
-            this.inverse[at] = 1.0 / diagonal;
-        }
-        this.without::<1>(other);
-        other.without::<2>(this);
-        this.without::<4>(other);
-        for at in BESIDE..BESIDE + GROUP * LANES {
-            this.right[at] = other.right[at] * other.inverse[at];
-        }
-    }
 
     /// Makes each lane independent of those `DISTANCE` away; with them comes what they have to do with those beyond.
     #[inline(always)]
@@ -111,9 +90,9 @@ impl Reduced {
 #[repr(C, align(32))]
 struct Strip {
     before: Before,
-    /// What the spring has to do with the last of the strip before.
+    /// What the spring has to do with the last of the strip before, as a part of what the strip's first spring has.
     off: Lanes,
-    /// What that one has to take over into its diagonal and its right side.
+    /// What that one has to take over into its diagonal and its right side, likewise.
     to_diagonal: Lanes,
     to_right: Lanes,
 }
@@ -125,6 +104,67 @@ impl Strip {
         to_diagonal: [0.0; LANES],
         to_right: [0.0; LANES],
     };
+}
+
+/// What a group's strips know of their first and last springs.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+struct Ends {
+    /// Of the first particles (1/kg).
+    weight: Wide,
+    /// Of the first springs and of the last, in rest lengths.
+    first: [Wide; 3],
+    last: [Wide; 3],
+    to_diagonal: Wide,
+    to_right: Wide,
+    /// What the first has to do with the last of the strip before; then what it takes from that one's multiplier.
+    off: Wide,
+    /// What the last ones pull with (m kg).
+    pull: [Wide; 3],
+}
+
+impl Ends {
+    const NONE: Self = Self {
+        weight: [0.0; _],
+        first: [[0.0; _]; 3],
+        last: [[0.0; _]; 3],
+        to_diagonal: [0.0; _],
+        to_right: [0.0; _],
+        off: [0.0; _],
+        pull: [[0.0; _]; 3],
+    };
+
+    /// Solves for the multipliers of the last springs, which are the right side then.
+    #[inline(always)]
+    fn solve(&mut self, [this, other]: &mut [Reduced; 2]) {
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let along = self.last[0][at - 1] * self.first[0][at]
+                + self.last[1][at - 1] * self.first[1][at]
+                + self.last[2][at - 1] * self.first[2][at];
+            self.off[at] = -self.weight[at] * along;
+            this.off[at] *= self.off[at];
+        }
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let off = self.off[at + 1];
+            let diagonal = this.diagonal[at] - off * (off * self.to_diagonal[at + 1]);
+            this.diagonal[at] = diagonal;
+            this.right[at] -= off * self.to_right[at + 1];
+            this.inverse[at] = 1.0 / diagonal;
+        }
+        this.without::<1>(other);
+        other.without::<2>(this);
+        this.without::<4>(other);
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let multiplier = other.right[at] * other.inverse[at];
+            this.right[at] = multiplier;
+            self.pull[0][at] = self.last[0][at] * multiplier;
+            self.pull[1][at] = self.last[1][at] * multiplier;
+            self.pull[2][at] = self.last[2][at] * multiplier;
+        }
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            self.off[at] *= this.right[at - 1];
+        }
+    }
 }
 
 /// Eliminates the springs before: of a strip's first there are none; its last is not solved for.
@@ -146,9 +186,17 @@ fn eliminate<const FIRST: bool, const LAST: bool>(
         let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
         let off = -a[W + l] * along;
         let share = if FIRST { 0.0 } else { off * before.pivot[l] };
-        let to_strip = if FIRST { off } else { -share * strip.off[l] };
-        let diagonal = if FIRST { diagonal } else { diagonal - off * share };
-        let right = if FIRST { right } else { right - off * before.right[l] };
+        let to_strip = if FIRST { 1.0 } else { -share * strip.off[l] };
+        let diagonal = if FIRST {
+            diagonal
+        } else {
+            diagonal - off * share
+        };
+        let right = if FIRST {
+            right
+        } else {
+            right - off * before.right[l]
+        };
         let pivot = if LAST { diagonal } else { 1.0 / diagonal };
         let right = if LAST { right } else { right * pivot };
         [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
@@ -165,19 +213,7 @@ fn eliminate<const FIRST: bool, const LAST: bool>(
     }
 }
 
-/// The way that leads to the first block of a row: that of the last block's springs, a lane on.
-#[inline(always)]
-fn way_before([a, b]: [&View; 2], family: &Family) -> [Lanes; 3] {
-    let mut ways = [[0.0; LANES]; 3];
-    let mut lane_before = [0.0; 3];
-    for l in 0..LANES {
-        [ways[0][l], ways[1][l], ways[2][l]] = lane_before;
-        lane_before = way(a, b, family.inverse_rest, l);
-    }
-    ways
-}
-
-/// The springs of a row up to the reduced system.
+/// The springs of a row up to the reduced system, whose rows are to be `at` there.
 #[inline(always)]
 fn reduce(
     row: &[Block],
@@ -185,40 +221,51 @@ fn reduce(
     links: &mut [Link],
     spikes: &mut [Lanes],
     strip: &mut Strip,
-    (system, at): (&mut Reduced, usize),
+    (ends, system): (&mut Ends, &mut Reduced),
+    at: usize,
 ) {
     let last = row.len() - 1;
-    let to_next = [row[last].view(), row[0].shifted()];
     *strip = Strip::NONE;
-    strip.before.way = way_before(to_next, family);
     for (j, (link, spike)) in links.iter_mut().zip(spikes).enumerate() {
-        let ends = match row.get(j + 1) {
-            Some(b) => [row[j].view(), b.view()],
-            None => to_next,
+        let b = match row.get(j + 1) {
+            Some(b) => b.view(),
+            None => row[0].shifted(),
         };
+        let between = [row[j].view(), b];
         match (j == 0, j == last) {
-            (true, true) => eliminate::<true, true>(ends, family, j, strip, link, spike),
-            (true, false) => eliminate::<true, false>(ends, family, j, strip, link, spike),
-            (false, false) => eliminate::<false, false>(ends, family, j, strip, link, spike),
-            (false, true) => eliminate::<false, true>(ends, family, j, strip, link, spike),
+            (true, true) => eliminate::<true, true>(between, family, j, strip, link, spike),
+            (true, false) => eliminate::<true, false>(between, family, j, strip, link, spike),
+            (false, false) => eliminate::<false, false>(between, family, j, strip, link, spike),
+            (false, true) => eliminate::<false, true>(between, family, j, strip, link, spike),
         }
     }
+    let weight = row[0].view()[W..].first_chunk().expect("lanes");
+    let [first_x, first_y, first_z] = &mut ends.first;
+    let [last_x, last_y, last_z] = &mut ends.last;
     for (to, from) in [
         (&mut system.diagonal, &strip.before.pivot),
         (&mut system.right, &strip.before.right),
         (&mut system.off, &strip.off),
-        (&mut system.to_diagonal, &strip.to_diagonal),
-        (&mut system.to_right, &strip.to_right),
+        (&mut ends.to_diagonal, &strip.to_diagonal),
+        (&mut ends.to_right, &strip.to_right),
+        (&mut ends.weight, weight),
+        (first_x, &links[0].way[0]),
+        (first_y, &links[0].way[1]),
+        (first_z, &links[0].way[2]),
+        (last_x, &strip.before.way[0]),
+        (last_y, &strip.before.way[1]),
+        (last_z, &strip.before.way[2]),
     ] {
         to[at..at + LANES].copy_from_slice(from);
     }
 }
 
-/// Solves for the multipliers, given those behind them and that of the strip before, and moves the particles in between.
+/// Solves for the multipliers, given those behind them and what the first spring takes from the strip before, and moves the
+/// particles in between.
 #[inline(always)]
-fn substitute(b: &mut View, link: &mut Link, spike: &Lanes, to_strip: &Lanes, behind: &mut Behind) {
+fn substitute(b: &mut View, link: &mut Link, spike: &Lanes, to_first: &Lanes, behind: &mut Behind) {
     for l in 0..LANES {
-        let multiplier = link.right[l] - spike[l] * to_strip[l] - behind.given[l];
+        let multiplier = link.right[l] - spike[l] * to_first[l] - behind.given[l];
         link.right[l] = multiplier;
         behind.given[l] = link.share[l] * multiplier;
         let [x, y, z] = [0, 1, 2].map(|axis| link.way[axis][l] * multiplier);
@@ -229,32 +276,41 @@ fn substitute(b: &mut View, link: &mut Link, spike: &Lanes, to_strip: &Lanes, be
     }
 }
 
-/// Solves a row, of which the multipliers of the reduced system are known.
+/// Moves the first particles of strips.
 #[inline(always)]
-fn pull_row(row: &mut [Block], links: &mut [Link], spikes: &[Lanes], multipliers: &Wide, from: usize) {
-    let last = row.len() - 1;
-    let mut behind = Behind::NONE;
-    links[last].right = *multipliers[from..].first_chunk().expect("lanes");
-    // The first has none before it, and nothing to do with that of the row above.
-    let to_strip = multipliers[from - 1..].first_chunk().expect("lanes");
-    let none = [0.0; LANES];
-    substitute(
-        row[0].shifted_mut(),
-        &mut links[last],
-        &none,
-        to_strip,
-        &mut behind,
-    );
-    for j in (0..last).rev() {
-        substitute(
-            row[j + 1].view_mut(),
-            &mut links[j],
-            &spikes[j],
-            to_strip,
-            &mut behind,
-        );
+fn pull_first(a: &mut View, before: [&Lanes; 3], behind: &[Lanes; 3]) {
+    for l in 0..LANES {
+        a[DX + l] += a[W + l] * (before[0][l] - behind[0][l]);
+        a[DY + l] += a[W + l] * (before[1][l] - behind[1][l]);
+        a[DZ + l] += a[W + l] * (before[2][l] - behind[2][l]);
     }
-    pull_head(row[0].view_mut(), &behind.pull);
+}
+
+/// Solves a row, of which the multipliers of the last springs are known.
+#[inline(always)]
+fn pull_row(
+    row: &mut [Block],
+    links: &mut [Link],
+    spikes: &[Lanes],
+    (ends, system): (&Ends, &Reduced),
+    at: usize,
+) {
+    let lanes = |wide: &Wide, at: usize| -> Lanes { *wide[at..].first_chunk().expect("lanes") };
+    let last = row.len() - 1;
+    let multiplier = lanes(&system.right, at);
+    let mut behind = Behind::NONE;
+    behind.pull = [0, 1, 2].map(|axis| lanes(&ends.pull[axis], at));
+    for l in 0..LANES {
+        behind.given[l] = links[last].share[l] * multiplier[l];
+    }
+    links[last].right = multiplier;
+    let to_first = lanes(&ends.off, at);
+    for j in (0..last).rev() {
+        let b = row[j + 1].view_mut();
+        substitute(b, &mut links[j], &spikes[j], &to_first, &mut behind);
+    }
+    let before = [0, 1, 2].map(|axis| lanes(&ends.pull[axis], at - 1));
+    pull_first(row[0].view_mut(), before.each_ref(), &behind.pull);
 }
 
 /// Rows that lie one below the other.
@@ -277,20 +333,38 @@ pub(crate) fn solve_rows(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
         let is_border = (row == 0 && first) || (row + 1 == count && last);
         if is_border { border } else { inner }
     };
-    let RowScratch { links, spikes, strip: state, systems } = &mut *rows.scratch;
+    let RowScratch {
+        links,
+        spikes,
+        strip: state,
+        ends,
+        systems,
+    } = &mut *rows.scratch;
     for (group, blocks) in rows.blocks.chunks_mut(strip * GROUP).enumerate() {
         if blocks.len() < strip * GROUP {
-            systems[0] = Reduced::NONE;
+            (*ends, systems[0]) = (Ends::NONE, Reduced::NONE);
         }
-        let springs = links.chunks_exact_mut(strip).zip(spikes.chunks_exact_mut(strip));
+        let springs = links
+            .chunks_exact_mut(strip)
+            .zip(spikes.chunks_exact_mut(strip));
         for (at, (row, (links, spikes))) in blocks.chunks_exact(strip).zip(springs).enumerate() {
-            let system = (&mut systems[0], BESIDE + at * LANES);
-            reduce(row, family(group * GROUP + at), links, spikes, state, system);
+            let (family, system) = (family(group * GROUP + at), (&mut *ends, &mut systems[0]));
+            let at = BESIDE + at * LANES;
+            reduce(row, family, links, spikes, state, system, at);
         }
-        Reduced::solve(systems);
-        let springs = links.chunks_exact_mut(strip).zip(spikes.chunks_exact(strip));
-        for (at, (row, (links, spikes))) in blocks.chunks_exact_mut(strip).zip(springs).enumerate() {
-            pull_row(row, links, spikes, &systems[0].right, BESIDE + at * LANES);
+        ends.solve(systems);
+        let springs = links
+            .chunks_exact_mut(strip)
+            .zip(spikes.chunks_exact(strip));
+        for (at, (row, (links, spikes))) in blocks.chunks_exact_mut(strip).zip(springs).enumerate()
+        {
+            pull_row(
+                row,
+                links,
+                spikes,
+                (&*ends, &systems[0]),
+                BESIDE + at * LANES,
+            );
             if let Some(given) = &mut rows.given {
                 measure_given(links, &family(group * GROUP + at).softness, given);
             }
