@@ -5,7 +5,7 @@
 //! then, and on the way back, what it pulls with is put into those of its first.
 //!
 //! # The floor
-//! Eight springs ask for 75 additions, multiplications and comparisons and two divisions, with nothing to wait for but where one
+//! Eight springs ask for some 70 additions, multiplications and comparisons and two divisions, with nothing to wait for but where one
 //! spring needs the pivot of the one before: a division, a subtraction and two multiplications, some 25 cycles, while the other
 //! blocks of the row are worked on. So rows of few blocks are bound by that, others by the arithmetic. What goes to the next row
 //! lies in memory, where to read it a lane aside before it has left the store buffer would cost as much again: it is moved in
@@ -138,8 +138,9 @@ fn solve<const OBLIQUE: bool>(threads: &mut Threads, family: &Family) {
     } = threads;
     let last = rows.strip() - 1;
     before.fill(Before::NONE);
+    let mut upper = rows.at(0);
     for (number, links) in links.chunks_exact_mut(*width).enumerate() {
-        let (upper, lower) = (rows.at(number), rows.at(number + 1));
+        let lower = rows.at(number + 1);
         let mut block = upper.first;
         for (thread, (link, before)) in links.iter_mut().zip(&mut **before).enumerate() {
             let (a, b) = (upper.block(thread).view(), lower.block(thread));
@@ -150,6 +151,7 @@ fn solve<const OBLIQUE: bool>(threads: &mut Threads, family: &Family) {
             }
             block = if block == last { 0 } else { block + 1 };
         }
+        upper = lower;
     }
     behind.fill(Behind::NONE);
     for (number, links) in links.chunks_exact_mut(*width).enumerate().rev() {

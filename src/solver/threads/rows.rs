@@ -6,9 +6,9 @@
 //! three steps, in which each is made independent of those one, two and four lanes away.
 //!
 //! # The floor
-//! As of threads from row to row, and besides, what links a strip to the one before it: nine operations for eight springs. The
-//! eight multipliers of a row cost 40 operations and four divisions: as much as a third of a block's other work at 64², more
-//! than half of it at 16².
+//! As of threads from row to row, and besides, what links a strip to the one before it: ten operations for eight springs. The
+//! eight multipliers of a row cost five divisions and some 70 operations: little beside the eight blocks of 64 columns, as much as
+//! one of the two blocks of 16.
 
 use super::{
     down::{Before, Behind},
@@ -24,7 +24,7 @@ pub(super) const GROUP: usize = 8;
 pub(crate) struct RowScratch {
     /// Row by row, block by block.
     links: Vec<Link>,
-    /// For each of them the part of the last multiplier of the strip before that it takes.
+    /// For each of them what it takes of what the first spring of its strip takes from the strip before.
     spikes: Vec<Lanes>,
     strip: Strip,
     ends: Ends,
