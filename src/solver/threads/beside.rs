@@ -4,14 +4,15 @@
 //! that moves along from row to row, in two pieces where it is at the border. Its links are in the order of its threads. Each
 //! thread's numbers are those that it would have in one band, to the last bit.
 
+use std::ops::Range;
+
 use super::{
     direction::Direction,
-    down::{Before, Behind},
-    link::{Family, Link},
+    link::{Before, Behind, Link},
 };
 use crate::{
-    cloth::{Block, Lanes, Layout},
-    solver::{bands::take, kernel::Kernels},
+    cloth::{Block, Layout},
+    solver::bands::take,
 };
 
 /// Threads of one direction, beside each other.
@@ -202,13 +203,10 @@ impl Scratch {
 }
 
 impl Threads<'_> {
-    /// Solves them. Raises `given` to the squares of what the springs of columns give at their tension (m²).
-    pub fn solve(&mut self, family: &Family, kernels: &Kernels, given: Option<&mut Lanes>) {
-        (kernels.solve_threads)(self, family);
-        if let Some(given) = given {
-            let heads = self.rows.from..self.rows.from + self.width;
-            (kernels.measure_given)(self.links, &family.softness[heads], given);
-        }
+    /// Their springs, and in which blocks they are, of columns.
+    pub fn links(&self) -> (&[Link], Range<usize>) {
+        let from = self.rows.from;
+        (self.links, from..from + self.width)
     }
 
     /// Whether they lead from one block to another.

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::{
-    beside::Scratch,
+    beside::{Scratch, Threads},
     direction::Direction,
     link::Family,
     rows::{GROUP, RowScratch, RowThreads},
@@ -89,7 +89,7 @@ impl ThreadSweep {
         };
         let strip = self.layout.strip as usize;
         let mut threads = self.scratch.all(direction, strip, blocks);
-        threads.solve(family, kernels, given);
+        solve(&mut threads, family, kernels, given);
     }
 
     /// Solves all threads within rows, likewise.
@@ -144,7 +144,7 @@ impl ThreadSweep {
             for direction in [Direction::Right, Direction::Left] {
                 let strip = self.layout.strip as usize;
                 let all = self.scratch.split(direction, (strip, bands), blocks);
-                in_bands(all, |mut band| band.solve(family, kernels, None));
+                in_bands(all, |mut band| solve(&mut band, family, kernels, None));
             }
         }
         let across = self.across_in_bands(blocks, motion, bands) / self.across[0].rest;
@@ -152,7 +152,8 @@ impl ThreadSweep {
         let (strip, down) = (self.layout.strip as usize, &self.down);
         let all = self.scratch.split(Direction::Down, (strip, bands), blocks);
         in_bands(all.into_iter().zip(&mut found), |(mut band, found)| {
-            band.solve(down, kernels, measures.then_some(&mut found.given));
+            let given = measures.then_some(&mut found.given);
+            solve(&mut band, down, kernels, given);
             for (first, blocks) in band.pieces() {
                 let (tethers, anchors) = (motion.tethers, motion.anchors);
                 tethers.pull(anchors, blocks, first, kernels);
@@ -265,6 +266,15 @@ impl Sweep for ThreadSweep {
 
     fn boxed(&self) -> Box<dyn Sweep> {
         Box::new(self.clone())
+    }
+}
+
+/// Solves threads. Raises `given` to the squares of what the springs of columns give at their tension (m²).
+fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels, given: Option<&mut Lanes>) {
+    (kernels.solve_threads)(threads, family);
+    if let Some(given) = given {
+        let (links, blocks) = threads.links();
+        (kernels.measure_given)(links, &family.softness[blocks], given);
     }
 }
 

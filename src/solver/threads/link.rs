@@ -33,6 +33,45 @@ impl Link {
     };
 }
 
+/// What a spring has to know of the one before it in its thread.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct Before {
+    /// In rest lengths.
+    pub way: [Lanes; 3],
+    /// One over the pivot of its row of the system (kg).
+    pub pivot: Lanes,
+    /// Right side, eliminated (m kg).
+    pub right: Lanes,
+}
+
+impl Before {
+    /// No spring.
+    pub const NONE: Self = Self {
+        way: [[0.0; LANES]; 3],
+        pivot: [0.0; LANES],
+        right: [0.0; LANES],
+    };
+}
+
+/// What a spring has to know of the one behind it in its thread.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct Behind {
+    /// What it pulls with (m kg).
+    pub pull: [Lanes; 3],
+    /// Its multiplier, as much as the spring before it is to be given (m kg).
+    pub given: Lanes,
+}
+
+impl Behind {
+    /// No spring.
+    pub const NONE: Self = Self {
+        pull: [[0.0; LANES]; 3],
+        given: [0.0; LANES],
+    };
+}
+
 /// Springs that lie alike: those that begin in the blocks of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Family {

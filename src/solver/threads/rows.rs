@@ -10,10 +10,7 @@
 //! eight multipliers of a row cost five divisions and some 70 operations: little beside the eight blocks of 64 columns, as much as
 //! one of the two blocks of 16.
 
-use super::{
-    down::{Before, Behind},
-    link::{Family, Link, measure_given, terms, way},
-};
+use super::link::{Before, Behind, Family, Link, measure_given, terms, way};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
 /// Rows that are worked on at once: while one waits for its divisions, others need not.
