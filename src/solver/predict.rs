@@ -12,10 +12,12 @@
 use super::barrier::one_block_at_a_time;
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, StepKind, View, W};
 
-/// What a displacement becomes: `d₀ + own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
+/// What a displacement becomes: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Prediction {
     own: f32,
+    /// `own` − 1.
+    more: f32,
     one: f32,
     two: f32,
     /// c a Δt² (m).
@@ -27,17 +29,18 @@ impl Prediction {
     pub fn new(kind: StepKind, kept: f32, pull: [f32; 3]) -> Self {
         let k = f64::from(kept);
         let [own, one, two] = match kind {
-            StepKind::First => [k - 1.0, 0.0, 0.0],
-            StepKind::Start => [k.sqrt() - 1.0, 0.0, 0.0],
+            StepKind::First => [k, 0.0, 0.0],
+            StepKind::Start => [k.sqrt(), 0.0, 0.0],
             // (8 κ u₀ − 2 κ² u₁)/9 + d₀/3 with velocities u₀ = (3 d₀ − d₁)/2 and u₁ = (3 d₁ − d₂)/2.
             StepKind::Second => [
-                (8.0 * k - 2.0 * k * k - 6.0) / 9.0,
+                (3.0 + 8.0 * k - 2.0 * k * k) / 9.0,
                 (4.0 * k + 2.0 * k * k) / 9.0,
                 -k * k / 9.0,
             ],
         };
         Self {
             own: own as f32,
+            more: (own - 1.0) as f32,
             one: one as f32,
             two: two as f32,
             pull,
@@ -69,10 +72,14 @@ fn free(view: &View) -> Lanes {
 pub(super) fn predict_first(row: &mut [Block], prediction: &Prediction) {
     for block in row {
         let view = block.view_mut();
-        let free = free(view);
         for (at, pull) in [DX, DY, DZ].into_iter().zip(prediction.pull) {
             for l in 0..LANES {
-                view[at + l] += free[l] * (view[at + l] * prediction.own + pull);
+                let moved = view[at + l] * prediction.own + pull;
+                view[at + l] = if view[W + l] > 0.0 {
+                    moved
+                } else {
+                    view[at + l]
+                };
             }
         }
         one_block_at_a_time();
@@ -83,10 +90,11 @@ pub(super) fn predict_first(row: &mut [Block], prediction: &Prediction) {
 #[inline(always)]
 pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction) {
     let Prediction {
-        own,
+        more,
         one,
         two,
         pull,
+        ..
     } = *prediction;
     for (block, Earlier(earlier)) in row.iter_mut().zip(past) {
         let view = block.view_mut();
@@ -95,8 +103,8 @@ pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
             let at = DX + axis * LANES;
             for l in 0..LANES {
                 let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
-                let more = own * now + one * (now - before) + two * (before - first) + pull[axis];
-                view[at + l] = now + free[l] * more;
+                let added = more * now + one * (now - before) + two * (before - first) + pull[axis];
+                view[at + l] = now + free[l] * added;
                 earlier[axis + 3][l] = before;
                 earlier[axis][l] = now;
             }
