@@ -10,14 +10,12 @@
 //! off by a Δt/2, and all that follows of first order.
 
 use super::barrier::one_block_at_a_time;
-use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, StepKind, View, W};
+use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
 
 /// What a displacement becomes: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Prediction {
     own: f32,
-    /// `own` − 1.
-    more: f32,
     one: f32,
     two: f32,
     /// c a Δt² (m).
@@ -40,7 +38,6 @@ impl Prediction {
         };
         Self {
             own: own as f32,
-            more: (own - 1.0) as f32,
             one: one as f32,
             two: two as f32,
             pull,
@@ -55,16 +52,6 @@ pub(super) fn weight(kind: StepKind) -> f32 {
         StepKind::Start => 0.5,
         StepKind::Second => 4.0 / 9.0,
     }
-}
-
-/// 1 for particles that move freely, 0 for pinned ones: found once a block, and cheaper to multiply by than to choose.
-#[inline(always)]
-fn free(view: &View) -> Lanes {
-    let mut free = [0.0; LANES];
-    for l in 0..LANES {
-        free[l] = if view[W + l] > 0.0 { 1.0 } else { 0.0 };
-    }
-    free
 }
 
 /// Without a past. Pinned particles keep the displacement that they were given.
@@ -90,21 +77,25 @@ pub(super) fn predict_first(row: &mut [Block], prediction: &Prediction) {
 #[inline(always)]
 pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction) {
     let Prediction {
-        more,
+        own,
         one,
         two,
         pull,
-        ..
     } = *prediction;
     for (block, Earlier(earlier)) in row.iter_mut().zip(past) {
         let view = block.view_mut();
-        let free = free(view);
+        // Found once a block, as bits: compilers make much of a choice by numbers that lie elsewhere in the block.
+        let mut free = [0; LANES];
+        for l in 0..LANES {
+            free[l] = if view[W + l] > 0.0 { u32::MAX } else { 0 };
+        }
         for axis in 0..3 {
             let at = DX + axis * LANES;
             for l in 0..LANES {
                 let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
-                let added = more * now + one * (now - before) + two * (before - first) + pull[axis];
-                view[at + l] = now + free[l] * added;
+                let moved = own * now + one * (now - before) + two * (before - first) + pull[axis];
+                let chosen = (moved.to_bits() & free[l]) | (now.to_bits() & !free[l]);
+                view[at + l] = f32::from_bits(chosen);
                 earlier[axis + 3][l] = before;
                 earlier[axis][l] = now;
             }

@@ -203,7 +203,7 @@ impl ThreadSweep {
         });
         let families = &self.across;
         in_bands(parts, |mut part| {
-            (motion.kernels.solve_rows)(&mut part, families)
+            (motion.kernels.solve_rows)(&mut part, families);
         });
         largest(&merged(&found, |found| &found.given))
     }

@@ -297,10 +297,11 @@ fn pull_row(
     let multiplier = lanes(&system.right, at);
     let mut behind = Behind::NONE;
     behind.pull = [0, 1, 2].map(|axis| lanes(&ends.pull[axis], at));
-    for l in 0..LANES {
-        behind.given[l] = links[last].share[l] * multiplier[l];
-    }
     links[last].right = multiplier;
+    let shares = links[last].share.iter().zip(&multiplier);
+    for (given, (share, multiplier)) in behind.given.iter_mut().zip(shares) {
+        *given = share * multiplier;
+    }
     let to_first = lanes(&ends.off, at);
     for j in (0..last).rev() {
         let b = row[j + 1].view_mut();
