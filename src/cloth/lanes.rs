@@ -65,13 +65,6 @@ impl Block {
         self.0[1..].first_chunk_mut().expect("56 of 63 numbers")
     }
 
-    /// A block of what the shifted view shows.
-    pub fn to_shifted(self) -> Self {
-        let mut numbers = [0.0; 8 * LANES];
-        numbers[..END].copy_from_slice(self.shifted());
-        Self(numbers)
-    }
-
     /// Displacements alone: x, y and z.
     #[inline(always)]
     pub fn displacements_mut(&mut self) -> &mut [f32; 3 * LANES] {

@@ -28,8 +28,8 @@
 //! **Order.** Diagonals first, then rows, then columns; what is solved last is held best. On a mesh all threads there and back:
 //! one way only, a motion of second order gains energy.
 //!
-//! **Cost** (64², one thread, AVX2): 0.8 ns a spring of a column, 1.1 of a diagonal, 2 of a row, whose lanes have to be turned;
-//! 24 µs a sub-step of all 16,000, where one sweep took 11.
+//! **Cost** (64², one thread, AVX2): a spring of a diagonal costs 1.1 times one of a column, one of a row 1.3 times: its lanes are
+//! strips of one thread, and what they have to do with each other is a system of its own.
 //!
 //! **Where it fails.** Each thread is exact by itself; what one leaves to the next is not. Where all the load hangs by one corner,
 //! it passes from thread to thread, a step a sub-step: with too few of them the spring beside the pin stretches ([`needed`]). And

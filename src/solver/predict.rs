@@ -84,12 +84,18 @@ pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
     } = *prediction;
     for (block, Earlier(earlier)) in row.iter_mut().zip(past) {
         let view = block.view_mut();
+        // Found once a block, as bits: compilers make much of a choice by numbers that lie elsewhere in the block.
+        let mut free = [0; LANES];
+        for l in 0..LANES {
+            free[l] = if view[W + l] > 0.0 { u32::MAX } else { 0 };
+        }
         for axis in 0..3 {
             let at = DX + axis * LANES;
             for l in 0..LANES {
                 let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
                 let moved = own * now + one * (now - before) + two * (before - first) + pull[axis];
-                view[at + l] = if view[W + l] > 0.0 { moved } else { now };
+                let chosen = (moved.to_bits() & free[l]) | (now.to_bits() & !free[l]);
+                view[at + l] = f32::from_bits(chosen);
                 earlier[axis + 3][l] = before;
                 earlier[axis][l] = now;
             }

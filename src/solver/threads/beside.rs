@@ -1,217 +1,228 @@
-//! Threads that lead from row to row, in bands side by side that are solved at the same time.
+//! Threads that lead from row to row, all of them, or some of them in a band beside others that are solved at the same time.
 //!
-//! A diagonal is a block farther in each row, or one less far; at the last block it goes on in the first, a lane beside. So a band
-//! is a range of blocks that moves along from row to row, in two pieces where it is at the border. Its links are in the order of
-//! its threads. Each thread's numbers are those that it would have in one band, to the last bit.
+//! A diagonal is a block farther in each row; at the last block it goes on in the first, a lane on. So a band is a range of blocks
+//! that moves along from row to row, in two pieces where it is at the border. Its links are in the order of its threads. Each
+//! thread's numbers are those that it would have in one band, to the last bit.
 
-use std::{ops::Range, slice};
+use std::ops::Range;
 
 use super::{
     direction::Direction,
-    down::Pull,
-    link::{Family, Link, from_left},
+    link::{Before, Behind, Link},
 };
 use crate::{
-    cloth::{Block, Lanes},
-    solver::{bands::take, kernel::Kernels},
+    cloth::{Block, Layout},
+    solver::bands::take,
 };
 
-/// Some of the threads of one direction.
-pub(super) struct Beside<'a> {
-    direction: Direction,
-    strip: usize,
-    /// Where its first threads are in the first row.
-    from: usize,
+/// Threads of one direction, beside each other.
+pub(crate) struct Threads<'a> {
+    pub(super) rows: Rows<'a>,
     /// Blocks in a row.
-    width: usize,
-    /// Up to the last block of the strip, and from its first on.
-    rows: Vec<[&'a mut [Block]; 2]>,
-    links: &'a mut [Link],
-    next: &'a mut [Pull],
-    pulls: &'a mut [Pull],
+    pub(super) width: usize,
+    /// Row by row of springs.
+    pub(super) links: &'a mut [Link],
+    pub(super) before: &'a mut [Before],
+    pub(super) behind: &'a mut [Behind],
 }
 
-impl<'a> Beside<'a> {
+/// Their rows.
+pub(super) struct Rows<'a> {
+    direction: Direction,
+    strip: usize,
+    count: usize,
+    /// The block in which the first thread is in the first row.
+    from: usize,
+    blocks: Blocks<'a>,
+}
+
+enum Blocks<'a> {
+    /// All of the cloth.
+    All(&'a mut [Block]),
+    /// Of each row, in their order on the way, up to the last block of the strip, and from its first on.
+    Some(Vec<[&'a mut [Block]; 2]>),
+}
+
+/// A row's blocks in the order of the threads, in two pieces.
+pub(super) struct Row<T> {
+    /// The number of the first.
+    pub first: usize,
+    high: T,
+    low: T,
+}
+
+impl Row<&[Block]> {
+    #[inline(always)]
+    pub fn block(&self, thread: usize) -> &Block {
+        match thread.checked_sub(self.high.len()) {
+            Some(thread) => &self.low[thread],
+            None => &self.high[thread],
+        }
+    }
+}
+
+impl Row<&mut [Block]> {
+    #[inline(always)]
+    pub fn block(&mut self, thread: usize) -> &mut Block {
+        match thread.checked_sub(self.high.len()) {
+            Some(thread) => &mut self.low[thread],
+            None => &mut self.high[thread],
+        }
+    }
+}
+
+impl Rows<'_> {
+    #[inline(always)]
+    pub fn strip(&self) -> usize {
+        self.strip
+    }
+
+    /// The row of this number on the threads' way.
+    #[inline(always)]
+    pub fn at(&self, number: usize) -> Row<&[Block]> {
+        let shift = self.direction.shift(number, self.strip);
+        let (low, high) = match &self.blocks {
+            Blocks::All(blocks) => {
+                let row = self.direction.row(number, self.count);
+                blocks[row * self.strip..][..self.strip].split_at(shift)
+            }
+            Blocks::Some(rows) => (&*rows[number][1], &*rows[number][0]),
+        };
+        let first = self.first(shift);
+        Row { first, high, low }
+    }
+
+    #[inline(always)]
+    pub fn at_mut(&mut self, number: usize) -> Row<&mut [Block]> {
+        let shift = self.direction.shift(number, self.strip);
+        let first = self.first(shift);
+        let (low, high) = match &mut self.blocks {
+            Blocks::All(blocks) => {
+                let row = self.direction.row(number, self.count);
+                blocks[row * self.strip..][..self.strip].split_at_mut(shift)
+            }
+            Blocks::Some(rows) => {
+                let [high, low] = &mut rows[number];
+                (&mut **low, &mut **high)
+            }
+        };
+        Row { first, high, low }
+    }
+
+    #[inline(always)]
+    fn first(&self, shift: usize) -> usize {
+        let first = self.from + shift;
+        if first < self.strip {
+            first
+        } else {
+            first - self.strip
+        }
+    }
+}
+
+/// What threads from row to row are solved in.
+#[derive(Debug, Clone)]
+pub(super) struct Scratch {
+    links: Vec<Link>,
+    before: Vec<Before>,
+    behind: Vec<Behind>,
+}
+
+impl Scratch {
+    pub fn new(layout: Layout) -> Self {
+        let strip = layout.strip as usize;
+        Self {
+            links: vec![Link::NONE; layout.blocks().saturating_sub(strip)],
+            before: vec![Before::NONE; strip],
+            behind: vec![Behind::NONE; strip],
+        }
+    }
+
+    /// All threads of a direction.
+    pub fn all<'a>(
+        &'a mut self,
+        direction: Direction,
+        strip: usize,
+        blocks: &'a mut [Block],
+    ) -> Threads<'a> {
+        Threads {
+            rows: Rows {
+                direction,
+                strip,
+                count: blocks.len() / strip,
+                from: 0,
+                blocks: Blocks::All(blocks),
+            },
+            width: strip,
+            links: &mut self.links,
+            before: &mut self.before,
+            behind: &mut self.behind,
+        }
+    }
+
     /// Splits all threads of a direction.
-    pub fn split(
+    pub fn split<'a>(
+        &'a mut self,
         direction: Direction,
         (strip, bands): (usize, usize),
         blocks: &'a mut [Block],
-        mut links: &'a mut [Link],
-        [next, pulls]: &'a mut [Vec<Pull>; 2],
-    ) -> Vec<Self> {
-        let rows = blocks.len() / strip;
-        let (mut next, mut pulls) = (&mut next[..], &mut pulls[..]);
+    ) -> Vec<Threads<'a>> {
+        let count = blocks.len() / strip;
         let border = |band| strip * band / bands;
-        let band = |band| {
-            let width = border(band + 1) - border(band);
-            Self {
+        let width = |band| border(band + 1) - border(band);
+        let mut rows: Vec<_> = blocks.chunks_exact_mut(strip).collect();
+        if direction == Direction::Left {
+            rows.reverse();
+        }
+        let mut pieces: Vec<_> = (0..bands).map(|_| Vec::with_capacity(count)).collect();
+        for (number, row) in rows.into_iter().enumerate() {
+            let (mut low, mut high) = row.split_at_mut(direction.shift(number, strip));
+            for (band, pieces) in pieces.iter_mut().enumerate() {
+                let up_to_last = width(band).min(high.len());
+                let low = take(&mut low, width(band) - up_to_last);
+                pieces.push([take(&mut high, up_to_last), low]);
+            }
+        }
+        let (mut links, mut before) = (&mut self.links[..], &mut self.before[..]);
+        let mut behind = &mut self.behind[..];
+        let threads = |(band, pieces): (usize, Vec<_>)| Threads {
+            rows: Rows {
                 direction,
                 strip,
+                count,
                 from: border(band),
-                width,
-                rows: Vec::with_capacity(rows),
-                links: take(&mut links, width * rows),
-                next: take(&mut next, width),
-                pulls: take(&mut pulls, width),
-            }
+                blocks: Blocks::Some(pieces),
+            },
+            width: width(band),
+            links: take(&mut links, width(band) * (count - 1)),
+            before: take(&mut before, width(band)),
+            behind: take(&mut behind, width(band)),
         };
-        let mut all: Vec<Self> = (0..bands).map(band).collect();
-        for (row, blocks) in blocks.chunks_exact_mut(strip).enumerate() {
-            let (mut low, mut high) = blocks.split_at_mut(direction.shift(row, strip));
-            for band in &mut all {
-                let up_to_last = band.width.min(high.len());
-                let pieces = [
-                    take(&mut high, up_to_last),
-                    take(&mut low, band.width - up_to_last),
-                ];
-                band.rows.push(pieces);
-            }
-        }
-        all
+        pieces.into_iter().enumerate().map(threads).collect()
+    }
+}
+
+impl Threads<'_> {
+    /// Their springs, and in which blocks they are, of columns.
+    pub fn links(&self) -> (&[Link], Range<usize>) {
+        let from = self.rows.from;
+        (self.links, from..from + self.width)
     }
 
-    /// Solves them. Raises `given` to the squares of what the springs of columns give at their tension (m²).
-    pub fn solve(&mut self, family: &Family, kernels: &Kernels, mut given: Option<&mut Lanes>) {
-        let springs = self.rows.len() - 1;
-        // The links before the first row's are none: so are those of the last row, where no spring begins.
-        (kernels.clear)(&mut self.links[springs * self.width..], self.next);
-        for row in 0..springs {
-            self.forward(row, family, kernels);
-        }
-        for row in (0..springs).rev() {
-            self.backward(row, kernels);
-            if let Some(given) = &mut given {
-                let softness = &family.softness[self.from..];
-                (kernels.measure_given)(self.pulls, softness, given);
-            }
-            std::mem::swap(&mut self.next, &mut self.pulls);
-        }
-        let [first, _] = &mut self.rows[0];
-        let wraps = usize::from(self.direction == Direction::Left && self.from == 0);
-        let (wrapped, first) = first.split_at_mut(wraps);
-        if wraps > 0 {
-            (kernels.left_heads)(wrapped, &self.next[..wraps]);
-        }
-        (kernels.column_heads)(first, &self.next[wraps..]);
+    /// Whether they lead from one block to another.
+    #[inline(always)]
+    pub fn is_oblique(&self) -> bool {
+        self.rows.direction != Direction::Down
     }
 
-    /// Its blocks of each row, with the number of the first.
+    /// A band's blocks of each row of columns, with the number of the first.
     pub fn pieces(&mut self) -> impl Iterator<Item = (usize, &mut [Block])> {
-        let (direction, strip, from) = (self.direction, self.strip, self.from);
-        self.rows
-            .iter_mut()
-            .enumerate()
-            .flat_map(move |(row, pieces)| {
-                let first = (from + direction.shift(row, strip)) % strip;
-                let [high, low] = pieces;
-                let firsts = [row * strip + first, row * strip];
-                firsts.into_iter().zip([&mut **high, &mut **low])
-            })
-    }
-
-    /// The block of a row in which its thread is.
-    fn block(&self, row: usize, thread: usize) -> usize {
-        (self.from + self.direction.shift(row, self.strip) + thread) % self.strip
-    }
-
-    fn forward(&mut self, row: usize, family: &Family, kernels: &Kernels) {
-        let (width, strip, direction) = (self.width, self.strip, self.direction);
-        let last = strip - 1;
-        let mut at = 0;
-        while at < width {
-            let block = self.block(row, at);
-            // As far as both ends are side by side.
-            let count = match direction {
-                Direction::Down => width,
-                Direction::Right if block > 0 && block < last => last - block,
-                Direction::Right => 1,
-                Direction::Left if block == 0 => 1,
-                Direction::Left => strip - block,
-            };
-            let these = at..(at + count).min(width);
-            at = these.end;
-            let upper = piece(&self.rows[row], these.clone());
-            let lower = piece(&self.rows[row + 1], these.clone());
-            let (before, own) = self.links.split_at_mut(row * width);
-            let (own, after) = own.split_at_mut(width);
-            let before = match row {
-                0 => &after[after.len() - width..],
-                _ => &before[(row - 1) * width..],
-            };
-            let (before, links) = (&before[these.clone()], &mut own[these]);
-            let forward = kernels.column_forward;
-            match direction {
-                Direction::Right if block == last => {
-                    let shifted = lower[0].to_shifted();
-                    let lower = slice::from_ref(&shifted);
-                    forward(upper, lower, before, links, family, last);
-                }
-                Direction::Right if block == 0 => {
-                    let wrapped = before[0].moved_right();
-                    let before = slice::from_ref(&wrapped);
-                    forward(upper, lower, before, links, family, 0);
-                }
-                Direction::Left if block == 0 => {
-                    let shifted = upper[0].to_shifted();
-                    let wrapped = before[0].moved_left();
-                    let (upper, before) = (slice::from_ref(&shifted), slice::from_ref(&wrapped));
-                    forward(upper, lower, before, links, family, last);
-                }
-                Direction::Left => forward(upper, lower, before, links, family, block - 1),
-                Direction::Down | Direction::Right => {
-                    forward(upper, lower, before, links, family, block);
-                }
-            }
-        }
-    }
-
-    fn backward(&mut self, row: usize, kernels: &Kernels) {
-        let (width, direction) = (self.width, self.direction);
-        let mut at = 0;
-        while at < width {
-            let block = self.block(row + 1, at);
-            let wraps = block == 0 && direction != Direction::Down;
-            let count = if wraps { 1 } else { self.strip - block };
-            let these = at..(at + count).min(width);
-            at = these.end;
-            let links = &self.links[row * width..][these.clone()];
-            let (next, pulls) = (&self.next[these.clone()], &mut self.pulls[these.clone()]);
-            let lower = piece_mut(&mut self.rows[row + 1], these);
-            match direction {
-                Direction::Right if wraps => (kernels.right_backward)(lower, links, next, pulls),
-                Direction::Left if wraps => {
-                    let wrapped = [0, 1, 2].map(|axis| from_left(&next[0][axis]));
-                    (kernels.column_backward)(lower, links, slice::from_ref(&wrapped), pulls);
-                }
-                _ => (kernels.column_backward)(lower, links, next, pulls),
-            }
-        }
-    }
-}
-
-impl Direction {
-    /// How far a thread is to the right of where it was in the first row, in blocks.
-    fn shift(self, row: usize, strip: usize) -> usize {
-        match self {
-            Self::Down => 0,
-            Self::Right => row % strip,
-            Self::Left => (strip - row % strip) % strip,
-        }
-    }
-}
-
-/// Blocks side by side, which are in one of both pieces.
-fn piece<'a>([high, low]: &'a [&mut [Block]; 2], these: Range<usize>) -> &'a [Block] {
-    match these.start.checked_sub(high.len()) {
-        Some(start) => &low[start..these.end - high.len()],
-        None => &high[these],
-    }
-}
-
-fn piece_mut<'a>([high, low]: &'a mut [&mut [Block]; 2], these: Range<usize>) -> &'a mut [Block] {
-    match these.start.checked_sub(high.len()) {
-        Some(start) => &mut low[start..these.end - high.len()],
-        None => &mut high[these],
+        let (strip, from) = (self.rows.strip, self.rows.from);
+        let rows: &mut [[&mut [Block]; 2]] = match &mut self.rows.blocks {
+            Blocks::All(_) => &mut [],
+            Blocks::Some(rows) => rows,
+        };
+        let pieces = rows.iter_mut().enumerate();
+        pieces.map(move |(row, [high, _])| (row * strip + from, &mut **high))
     }
 }

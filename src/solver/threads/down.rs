@@ -1,45 +1,76 @@
 //! Threads that lead from row to row: columns, and both diagonals. The lanes are side by side, each in a thread of its own.
+//!
+//! A thread's system is solved by elimination: forward from its first spring to its last, and back. Where a diagonal comes to the
+//! last block of a row it goes on in the first, a lane on. All that is known of a spring is in the lanes of its second particle
+//! then, and on the way back, what it pulls with is put into those of its first.
+//!
+//! # The floor
+//! Eight springs ask for some 70 additions, multiplications and comparisons and two divisions, with nothing to wait for but where one
+//! spring needs the pivot of the one before: a division, a subtraction and two multiplications, some 25 cycles, while the other
+//! blocks of the row are worked on. So rows of few blocks are bound by that, others by the arithmetic. What goes to the next row
+//! lies in memory, where to read it a lane aside before it has left the store buffer would cost as much again: it is moved in
+//! registers, by loops that carry a lane's number into the next.
 
-use super::link::{Equation, Family, Link, equation, from_left, from_right};
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
+use super::{
+    beside::Threads,
+    link::{Before, Behind, Family, Link, terms, way},
+};
+use crate::cloth::{DX, DY, DZ, LANES, Lanes, View, W};
 
-/// What the springs of a block pull with: x, y and z (m kg).
-pub(crate) type Pull = [Lanes; 3];
-
-const NO_PULL: Pull = [[0.0; LANES]; 3];
-
-/// Eliminates the springs before, whose last is `previous`.
+/// Eliminates the springs before. With `CROSSES`, what it finds is moved by a lane to the right.
 #[inline(always)]
-fn eliminate(a: &View, row: &Equation, previous: &Link, link: &mut Link) {
+fn eliminate<const CROSSES: bool>(
+    [a, b]: [&View; 2],
+    family: &Family,
+    block: usize,
+    before: &mut Before,
+    link: &mut Link,
+) {
+    let (softness, hold) = (&family.softness[block], &family.hold[block]);
+    let mut lane_before = [0.0; 6];
     for l in 0..LANES {
-        let [x, y, z] = [0, 1, 2].map(|axis| row.way[axis][l]);
-        let along = previous.way[0][l] * x + previous.way[1][l] * y + previous.way[2][l] * z;
+        let [x, y, z] = way(a, b, family.inverse_rest, l);
+        let weight = a[W + l] + b[W + l];
+        let [diagonal, right] = terms([x, y, z], weight, softness[l], hold[l], family.rest);
+        let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
         let off = -a[W + l] * along;
-        let pivot = 1.0 / (row.diagonal[l] - off * (off * previous.pivot[l]));
-        link.pivot[l] = pivot;
-        link.right[l] = (row.right[l] - off * previous.right[l]) * pivot;
+        let share = off * before.pivot[l];
+        let pivot = 1.0 / (diagonal - off * share);
+        let right = (right - off * before.right[l]) * pivot;
+        let own = [x, y, z, share, pivot, right];
+        let [x, y, z, share, pivot, right] = if CROSSES { lane_before } else { own };
+        lane_before = own;
+        [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
+        [before.way[0][l], before.way[1][l], before.way[2][l]] = [x, y, z];
+        [link.share[l], before.pivot[l]] = [share, pivot];
+        [link.right[l], before.right[l]] = [right, right];
     }
-    link.way = row.way;
 }
 
-/// Solves for the pull of a block's springs, given that of those after them, and moves the particles in between.
+/// Solves for the multipliers, given those behind them, and moves the particles in between. With `CROSSES`, what is for the springs
+/// before is moved by a lane to the left.
 #[inline(always)]
-fn substitute(b: &mut View, link: &Link, next: &Pull, pull: &mut Pull) {
+fn substitute<const CROSSES: bool>(b: &mut View, link: &mut Link, behind: &mut Behind) {
+    let mut lane_behind = [0.0; 4];
     for l in 0..LANES {
-        let [x, y, z] = [0, 1, 2].map(|axis| link.way[axis][l]);
-        let along = x * next[0][l] + y * next[1][l] + z * next[2][l];
-        let multiplier = link.right[l] + link.pivot[l] * (b[W + l] * along);
-        let own = [x * multiplier, y * multiplier, z * multiplier];
-        b[DX + l] += b[W + l] * (own[0] - next[0][l]);
-        b[DY + l] += b[W + l] * (own[1] - next[1][l]);
-        b[DZ + l] += b[W + l] * (own[2] - next[2][l]);
-        [pull[0][l], pull[1][l], pull[2][l]] = own;
+        let l = if CROSSES { LANES - 1 - l } else { l };
+        let multiplier = link.right[l] - behind.given[l];
+        let [x, y, z] = [0, 1, 2].map(|axis| link.way[axis][l] * multiplier);
+        b[DX + l] += b[W + l] * (x - behind.pull[0][l]);
+        b[DY + l] += b[W + l] * (y - behind.pull[1][l]);
+        b[DZ + l] += b[W + l] * (z - behind.pull[2][l]);
+        link.right[l] = multiplier;
+        let own = [x, y, z, link.share[l] * multiplier];
+        let [x, y, z, given] = if CROSSES { lane_behind } else { own };
+        lane_behind = own;
+        [behind.pull[0][l], behind.pull[1][l], behind.pull[2][l]] = [x, y, z];
+        behind.given[l] = given;
     }
 }
 
 /// Moves particles at the head of their threads.
 #[inline(always)]
-fn pull_head(a: &mut View, pull: &Pull) {
+fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
     for l in 0..LANES {
         a[DX + l] -= a[W + l] * pull[0][l];
         a[DY + l] -= a[W + l] * pull[1][l];
@@ -47,170 +78,58 @@ fn pull_head(a: &mut View, pull: &Pull) {
     }
 }
 
+/// Solves threads that lead from row to row.
 #[inline(always)]
-fn pull_lane(a: &mut Block, pull: &Pull, lane: usize) {
-    let view = a.view_mut();
-    for (axis, from) in [DX, DY, DZ].into_iter().enumerate() {
-        view[from + lane] -= view[W + lane] * pull[axis][lane];
+pub(crate) fn solve_threads(threads: &mut Threads, family: &Family) {
+    if threads.is_oblique() {
+        solve::<true>(threads, family);
+    } else {
+        solve::<false>(threads, family);
     }
 }
 
-/// Forward over springs of columns between two rows, those of the family from number `first` on.
 #[inline(always)]
-pub(crate) fn column_forward(
-    upper: &[Block],
-    lower: &[Block],
-    previous: &[Link],
-    links: &mut [Link],
-    family: &Family,
-    first: usize,
-) {
-    for (j, ((a, b), (before, link))) in upper
-        .iter()
-        .zip(lower)
-        .zip(previous.iter().zip(links))
-        .enumerate()
-    {
-        let row = equation(a.view(), b.view(), family, first + j);
-        eliminate(a.view(), &row, before, link);
+fn solve<const OBLIQUE: bool>(threads: &mut Threads, family: &Family) {
+    let Threads {
+        rows,
+        width,
+        links,
+        before,
+        behind,
+    } = threads;
+    let last = rows.strip() - 1;
+    before.fill(Before::NONE);
+    let mut upper = rows.at(0);
+    for (number, links) in links.chunks_exact_mut(*width).enumerate() {
+        let lower = rows.at(number + 1);
+        let mut block = upper.first;
+        for (thread, (link, before)) in links.iter_mut().zip(&mut **before).enumerate() {
+            let (a, b) = (upper.block(thread).view(), lower.block(thread));
+            if OBLIQUE && block == last {
+                eliminate::<true>([a, b.shifted()], family, block, before, link);
+            } else {
+                eliminate::<false>([a, b.view()], family, block, before, link);
+            }
+            block = if block == last { 0 } else { block + 1 };
+        }
+        upper = lower;
     }
-}
-
-/// Backward: moves the lower row.
-#[inline(always)]
-pub(crate) fn column_backward(
-    lower: &mut [Block],
-    links: &[Link],
-    next: &[Pull],
-    pulls: &mut [Pull],
-) {
-    for ((b, link), (next, pull)) in lower.iter_mut().zip(links).zip(next.iter().zip(pulls)) {
-        substitute(b.view_mut(), link, next, pull);
+    behind.fill(Behind::NONE);
+    for (number, links) in links.chunks_exact_mut(*width).enumerate().rev() {
+        let mut lower = rows.at_mut(number + 1);
+        let mut block = lower.first;
+        for (thread, (link, behind)) in links.iter_mut().zip(&mut **behind).enumerate() {
+            let b = lower.block(thread).view_mut();
+            if OBLIQUE && block == 0 {
+                substitute::<true>(b, link, behind);
+            } else {
+                substitute::<false>(b, link, behind);
+            }
+            block = if block == last { 0 } else { block + 1 };
+        }
     }
-}
-
-/// The first row of columns or diagonals.
-#[inline(always)]
-pub(crate) fn column_heads(first: &mut [Block], pulls: &[Pull]) {
-    for (a, pull) in first.iter_mut().zip(pulls) {
-        pull_head(a.view_mut(), pull);
+    let mut heads = rows.at_mut(0);
+    for (thread, behind) in behind.iter().enumerate() {
+        pull_head(heads.block(thread).view_mut(), &behind.pull);
     }
-}
-
-/// Diagonals from each column of the upper row to the next column of the lower.
-#[inline(always)]
-pub(crate) fn right_forward(
-    upper: &[Block],
-    lower: &[Block],
-    previous: &[Link],
-    links: &mut [Link],
-    family: &Family,
-) {
-    let last = links.len() - 1;
-    let wrapped = previous[last].moved_right();
-    if last == 0 {
-        let row = equation(upper[0].view(), lower[0].shifted(), family, 0);
-        eliminate(upper[0].view(), &row, &wrapped, &mut links[0]);
-        return;
-    }
-    let row = equation(upper[0].view(), lower[1].view(), family, 0);
-    eliminate(upper[0].view(), &row, &wrapped, &mut links[0]);
-    let ends = upper[1..].iter().zip(&lower[2..]);
-    for (j, ((a, b), (before, link))) in ends.zip(previous.iter().zip(&mut links[1..])).enumerate()
-    {
-        let row = equation(a.view(), b.view(), family, j + 1);
-        eliminate(a.view(), &row, before, link);
-    }
-    let row = equation(upper[last].view(), lower[0].shifted(), family, last);
-    eliminate(
-        upper[last].view(),
-        &row,
-        &previous[last - 1],
-        &mut links[last],
-    );
-}
-
-/// Backward: moves the lower row, but for its first column.
-#[inline(always)]
-pub(crate) fn right_backward(
-    lower: &mut [Block],
-    links: &[Link],
-    next: &[Pull],
-    pulls: &mut [Pull],
-) {
-    let last = links.len() - 1;
-    for j in 0..last {
-        substitute(
-            lower[j + 1].view_mut(),
-            &links[j],
-            &next[j + 1],
-            &mut pulls[j],
-        );
-    }
-    let wrapped = [0, 1, 2].map(|axis| from_right(&next[0][axis]));
-    substitute(
-        lower[0].shifted_mut(),
-        &links[last],
-        &wrapped,
-        &mut pulls[last],
-    );
-    // Its first column begins a thread.
-    pull_lane(&mut lower[0], &next[0], 0);
-}
-
-/// Diagonals from each column of the lower row up to the next column of the upper; a thread leads down from right to left.
-#[inline(always)]
-pub(crate) fn left_forward(
-    upper: &[Block],
-    lower: &[Block],
-    previous: &[Link],
-    links: &mut [Link],
-    family: &Family,
-) {
-    let last = links.len() - 1;
-    for j in 0..last {
-        let row = equation(upper[j + 1].view(), lower[j].view(), family, j);
-        eliminate(upper[j + 1].view(), &row, &previous[j + 1], &mut links[j]);
-    }
-    let row = equation(upper[0].shifted(), lower[last].view(), family, last);
-    eliminate(
-        upper[0].shifted(),
-        &row,
-        &previous[0].moved_left(),
-        &mut links[last],
-    );
-}
-
-/// Backward: moves the lower row. Where a thread begins, at its last column, no spring leads to.
-#[inline(always)]
-pub(crate) fn left_backward(
-    lower: &mut [Block],
-    links: &[Link],
-    next: &[Pull],
-    pulls: &mut [Pull],
-) {
-    let last = links.len() - 1;
-    let wrapped = [0, 1, 2].map(|axis| from_left(&next[last][axis]));
-    substitute(lower[0].view_mut(), &links[0], &wrapped, &mut pulls[0]);
-    let each = lower[1..].iter_mut().zip(&links[1..]);
-    for ((b, link), (next, pull)) in each.zip(next.iter().zip(&mut pulls[1..])) {
-        substitute(b.view_mut(), link, next, pull);
-    }
-}
-
-/// The first row of diagonals that lead down to the left.
-#[inline(always)]
-pub(crate) fn left_heads(first: &mut [Block], pulls: &[Pull]) {
-    let last = pulls.len() - 1;
-    for j in 0..last {
-        pull_head(first[j + 1].view_mut(), &pulls[j]);
-    }
-    pull_head(first[0].shifted_mut(), &pulls[last]);
-}
-
-/// No spring at all.
-#[inline(always)]
-pub(crate) fn clear(links: &mut [Link], pulls: &mut [Pull]) {
-    links.fill(Link::NONE);
-    pulls.fill(NO_PULL);
 }

@@ -4,12 +4,10 @@
 use std::ops::Range;
 
 use super::{
-    beside::Beside,
+    beside::{Scratch, Threads},
     direction::Direction,
-    down::Pull,
-    link::{Family, Link},
-    rows::GROUP,
-    systems::{Part, RowSystems},
+    link::Family,
+    rows::{GROUP, RowScratch, RowThreads},
 };
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
@@ -37,12 +35,9 @@ pub(in crate::solver) struct ThreadSweep {
     diagonal: Option<Family>,
     /// For measuring: within a row, down, diagonal.
     runs: [Run; 3],
-    /// Row by row.
-    links: Vec<Link>,
-    /// Of two rows.
-    pulls: [Vec<Pull>; 2],
+    scratch: Scratch,
     /// One for each band.
-    systems: Vec<RowSystems>,
+    rows: Vec<RowScratch>,
     /// c Δt² (s²).
     weight_dt2: f32,
     /// Largest stiffness over length of springs across and down (N/m²), 0 of those that don't give.
@@ -78,9 +73,8 @@ impl ThreadSweep {
             ripple_stiffness,
             diagonal: compliances.shear.is_finite().then(|| family((1, 1), 0)),
             runs: run,
-            links: vec![Link::NONE; layout.blocks()],
-            pulls: [0, 1].map(|_| vec![[[0.0; _]; 3]; strip]),
-            systems: vec![RowSystems::new(strip)],
+            scratch: Scratch::new(layout),
+            rows: vec![RowScratch::new(strip)],
             weight_dt2: 0.0,
         }
     }
@@ -92,55 +86,17 @@ impl ThreadSweep {
         blocks: &mut [Block],
         direction: Direction,
         kernels: &Kernels,
-        mut given: Option<&mut Lanes>,
+        given: Option<&mut Lanes>,
     ) {
-        let strip = self.layout.strip as usize;
-        let rows = self.layout.rows as usize;
         let Some(family) = (match direction {
             Direction::Down => Some(&self.down),
             Direction::Right | Direction::Left => self.diagonal.as_ref(),
         }) else {
             return;
         };
-        let backward = match direction {
-            Direction::Down => kernels.column_backward,
-            Direction::Right => kernels.right_backward,
-            Direction::Left => kernels.left_backward,
-        };
-        // The links before the first row's are none: so are those of the last row, where no spring begins.
-        let none = (rows - 1) * strip;
-        (kernels.clear)(&mut self.links[none..], &mut self.pulls[0]);
-        let (links, none) = self.links.split_at_mut(none);
-        for row in 0..rows - 1 {
-            let (upper, lower) = blocks[row * strip..(row + 2) * strip].split_at(strip);
-            let (before, own) = links.split_at_mut(row * strip);
-            let before = if row == 0 {
-                &*none
-            } else {
-                &before[(row - 1) * strip..]
-            };
-            let own = &mut own[..strip];
-            match direction {
-                Direction::Down => (kernels.column_forward)(upper, lower, before, own, family, 0),
-                Direction::Right => (kernels.right_forward)(upper, lower, before, own, family),
-                Direction::Left => (kernels.left_forward)(upper, lower, before, own, family),
-            }
-        }
-        let [next, pulls] = &mut self.pulls;
-        for row in (0..rows - 1).rev() {
-            let lower = &mut blocks[(row + 1) * strip..(row + 2) * strip];
-            backward(lower, &links[row * strip..(row + 1) * strip], next, pulls);
-            if let Some(given) = &mut given {
-                (kernels.measure_given)(pulls, &family.softness, given);
-            }
-            std::mem::swap(next, pulls);
-        }
-        let heads = if direction == Direction::Left {
-            kernels.left_heads
-        } else {
-            kernels.column_heads
-        };
-        heads(&mut blocks[..strip], next);
+        let strip = self.layout.strip as usize;
+        let mut threads = self.scratch.all(direction, strip, blocks);
+        solve(&mut threads, family, kernels, given);
     }
 
     /// Solves all threads within rows, likewise.
@@ -150,13 +106,13 @@ impl ThreadSweep {
         kernels: &Kernels,
         given: Option<&mut Lanes>,
     ) {
-        let part = Part {
+        let mut rows = RowThreads {
             blocks,
-            first_row: 0,
-            systems: &mut self.systems[0],
+            is_border: [true; 2],
+            scratch: &mut self.rows[0],
             given,
         };
-        part.solve(self.layout, &self.across, kernels);
+        (kernels.solve_rows)(&mut rows, &self.across);
     }
 
     /// The lengths of the springs that begin in these rows.
@@ -222,18 +178,17 @@ impl ThreadSweep {
         if let Some(family) = &self.diagonal {
             for direction in [Direction::Right, Direction::Left] {
                 let strip = self.layout.strip as usize;
-                let (links, pulls) = (&mut self.links[..], &mut self.pulls);
-                let all = Beside::split(direction, (strip, bands), blocks, links, pulls);
-                in_bands(all, |mut band| band.solve(family, kernels, None));
+                let all = self.scratch.split(direction, (strip, bands), blocks);
+                in_bands(all, |mut band| solve(&mut band, family, kernels, None));
             }
         }
         let across = self.across_in_bands(blocks, motion, bands);
         let mut found = [Found::default(); MAX_BANDS];
         let (strip, down) = (self.layout.strip as usize, &self.down);
-        let (links, pulls) = (&mut self.links[..], &mut self.pulls);
-        let all = Beside::split(Direction::Down, (strip, bands), blocks, links, pulls);
+        let all = self.scratch.split(Direction::Down, (strip, bands), blocks);
         in_bands(all.into_iter().zip(&mut found), |(mut band, found)| {
-            band.solve(down, kernels, measures.then_some(&mut found.given));
+            let given = measures.then_some(&mut found.given);
+            solve(&mut band, down, kernels, given);
             for (first, blocks) in band.pieces() {
                 let (tethers, anchors) = (motion.tethers, motion.anchors);
                 tethers.pull(anchors, blocks, first, kernels);
@@ -272,20 +227,22 @@ impl ThreadSweep {
         let rows = self.layout.rows as usize;
         let groups = rows.div_ceil(GROUP);
         let border = |band: usize| (groups * band / bands * GROUP).min(rows);
-        if self.systems.len() < bands {
-            self.systems.resize(bands, RowSystems::new(strip));
+        if self.rows.len() < bands {
+            self.rows.resize(bands, RowScratch::new(strip));
         }
         let mut found = [Found::default(); MAX_BANDS];
         let mut rest = blocks;
-        let each = self.systems.iter_mut().zip(&mut found).take(bands);
-        let parts = each.enumerate().map(|(band, (systems, found))| Part {
+        let each = self.rows.iter_mut().zip(&mut found).take(bands);
+        let parts = each.enumerate().map(|(band, (scratch, found))| RowThreads {
             blocks: take(&mut rest, (border(band + 1) - border(band)) * strip),
-            first_row: border(band),
-            systems,
+            is_border: [band == 0, band + 1 == bands],
+            scratch,
             given: motion.measures.then_some(&mut found.given),
         });
-        let (layout, families) = (self.layout, &self.across);
-        in_bands(parts, |part| part.solve(layout, families, motion.kernels));
+        let families = &self.across;
+        in_bands(parts, |mut part| {
+            (motion.kernels.solve_rows)(&mut part, families);
+        });
         merged(&found, |found| &found.given)
     }
 }
@@ -350,6 +307,15 @@ impl Sweep for ThreadSweep {
 
     fn boxed(&self) -> Box<dyn Sweep> {
         Box::new(self.clone())
+    }
+}
+
+/// Solves threads. Raises `given` to the squares of what the springs of columns give at their tension (m²).
+fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels, given: Option<&mut Lanes>) {
+    (kernels.solve_threads)(threads, family);
+    if let Some(given) = given {
+        let (links, blocks) = threads.links();
+        (kernels.measure_given)(links, &family.softness[blocks], given);
     }
 }
 

@@ -1,6 +1,6 @@
 //! One spring of a thread, in the system of equations of all springs of that thread.
 
-use crate::cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z};
+use crate::cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, X, Y, Z};
 
 /// What keeps a spring between two pins from dividing by zero (1/kg).
 pub(super) const HOLD: f32 = 1.0e-18;
@@ -12,15 +12,15 @@ const REGULARISATION: f32 = 1.0e-3;
 /// line by y would be thrown beyond it, by C/ε × y.
 const STRAINED: f32 = 0.2;
 
-/// Eight springs that begin in the lanes of one block, between the forward and the backward pass.
+/// Eight springs, each of a thread of its own, between the forward and the backward pass.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Link {
-    /// From its first to its second particle, in rest lengths; after the backward pass what it pulls with (m kg).
+    /// From its first to its second particle, in rest lengths.
     pub way: [Lanes; 3],
-    /// One over the pivot of its row of the system (kg).
-    pub pivot: Lanes,
-    /// Right side, eliminated (m kg).
+    /// Which part of its multiplier the spring before it is to be given.
+    pub share: Lanes,
+    /// Right side, eliminated; after the backward pass the multiplier (m kg).
     pub right: Lanes,
 }
 
@@ -28,41 +28,48 @@ impl Link {
     /// No spring.
     pub const NONE: Self = Self {
         way: [[0.0; LANES]; 3],
+        share: [0.0; LANES],
+        right: [0.0; LANES],
+    };
+}
+
+/// What a spring has to know of the one before it in its thread.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct Before {
+    /// In rest lengths.
+    pub way: [Lanes; 3],
+    /// One over the pivot of its row of the system (kg).
+    pub pivot: Lanes,
+    /// Right side, eliminated (m kg).
+    pub right: Lanes,
+}
+
+impl Before {
+    /// No spring.
+    pub const NONE: Self = Self {
+        way: [[0.0; LANES]; 3],
         pivot: [0.0; LANES],
         right: [0.0; LANES],
     };
-
-    /// Each lane holds what its left neighbour did.
-    #[inline(always)]
-    pub fn moved_right(&self) -> Self {
-        self.each(from_left)
-    }
-
-    /// Each lane holds what its right neighbour did.
-    #[inline(always)]
-    pub fn moved_left(&self) -> Self {
-        self.each(from_right)
-    }
-
-    #[inline(always)]
-    fn each(&self, f: fn(&Lanes) -> Lanes) -> Self {
-        let [x, y, z] = &self.way;
-        Self {
-            way: [f(x), f(y), f(z)],
-            pivot: f(&self.pivot),
-            right: f(&self.right),
-        }
-    }
 }
 
-#[inline(always)]
-pub(super) fn from_left([a, b, c, d, e, f, g, _]: &Lanes) -> Lanes {
-    [0.0, *a, *b, *c, *d, *e, *f, *g]
+/// What a spring has to know of the one behind it in its thread.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct Behind {
+    /// What it pulls with (m kg).
+    pub pull: [Lanes; 3],
+    /// Its multiplier, as much as the spring before it is to be given (m kg).
+    pub given: Lanes,
 }
 
-#[inline(always)]
-pub(super) fn from_right([_, a, b, c, d, e, f, g]: &Lanes) -> Lanes {
-    [*a, *b, *c, *d, *e, *f, *g, 0.0]
+impl Behind {
+    /// No spring.
+    pub const NONE: Self = Self {
+        pull: [[0.0; LANES]; 3],
+        given: [0.0; LANES],
+    };
 }
 
 /// Springs that lie alike: those that begin in the blocks of a row.
@@ -128,14 +135,6 @@ impl Family {
     }
 }
 
-/// The row of the system for eight springs: their ways, and diagonal (1/kg) and right side (m).
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Equation {
-    pub way: [Lanes; 3],
-    pub diagonal: Lanes,
-    pub right: Lanes,
-}
-
 /// So far apart are no two neighbours of a cloth (rest lengths): farther, and products of lengths would be infinite.
 const FARTHEST: f32 = 1.0e4;
 
@@ -156,48 +155,39 @@ pub(super) fn terms(
 ) -> [f32; 2] {
     let p = x * x + y * y + z * z;
     let soft = softness * p;
-    let off = if p > 1.0 { p - 1.0 } else { 1.0 - p };
-    let least = (REGULARISATION + STRAINED * off) * weight;
+    let off = p - 1.0;
+    let least = (REGULARISATION + STRAINED * off.abs()) * weight;
     let soft = if soft > least { soft } else { least };
     // Halley's step for the root, as in a sweep. Between two pins, however far apart, nothing is to be done.
-    let right = -rest * p * ((p - 1.0) / (1.5 * p + 0.5));
+    let right = -rest * p * (off / (1.5 * p + 0.5));
     let right = if weight > 0.0 { right } else { 0.0 };
     [weight * p + (soft + hold), right]
 }
 
-/// From views of the first and the second particles.
+/// The way of one lane's spring from the first to the second particle, in rest lengths.
 #[inline(always)]
-pub(super) fn equation(a: &View, b: &View, family: &Family, block: usize) -> Equation {
-    let mut row = Equation {
-        way: [[0.0; LANES]; 3],
-        diagonal: [0.0; LANES],
-        right: [0.0; LANES],
-    };
-    let (softness, hold) = (&family.softness[block], &family.hold[block]);
-    for l in 0..LANES {
-        let x = clamped(((b[X + l] - a[X + l]) + (b[DX + l] - a[DX + l])) * family.inverse_rest);
-        let y = clamped(((b[Y + l] - a[Y + l]) + (b[DY + l] - a[DY + l])) * family.inverse_rest);
-        let z = clamped(((b[Z + l] - a[Z + l]) + (b[DZ + l] - a[DZ + l])) * family.inverse_rest);
-        let weight = a[W + l] + b[W + l];
-        [row.way[0][l], row.way[1][l], row.way[2][l]] = [x, y, z];
-        [row.diagonal[l], row.right[l]] =
-            terms([x, y, z], weight, softness[l], hold[l], family.rest);
-    }
-    row
+pub(super) fn way(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
+    [(X, DX), (Y, DY), (Z, DZ)].map(|(at, moved)| {
+        clamped(((b[at + l] - a[at + l]) + (b[moved + l] - a[moved + l])) * inverse_rest)
+    })
 }
 
-/// Raises `largest` to the squares of what springs give at their pull (m²).
+/// Raises `largest` to the squares of what springs give at their pull (m²), of rows of them as long as `softness`.
 #[inline(always)]
-pub(crate) fn measure_given(pulls: &[[Lanes; 3]], softness: &[Lanes], largest: &mut Lanes) {
-    for ([x, y, z], softness) in pulls.iter().zip(softness) {
-        for l in 0..LANES {
-            let pull = x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
-            let given = pull * softness[l] * softness[l];
-            largest[l] = if given > largest[l] {
-                given
-            } else {
-                largest[l]
-            };
+pub(crate) fn measure_given(links: &[Link], softness: &[Lanes], largest: &mut Lanes) {
+    for row in links.chunks_exact(softness.len()) {
+        for (link, softness) in row.iter().zip(softness) {
+            let [x, y, z] = &link.way;
+            for l in 0..LANES {
+                let p = x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
+                let alone = link.right[l] * softness[l];
+                let given = alone * alone * p;
+                largest[l] = if given > largest[l] {
+                    given
+                } else {
+                    largest[l]
+                };
+            }
         }
     }
 }

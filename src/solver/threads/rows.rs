@@ -1,193 +1,371 @@
-//! Threads within rows: sixteen rows at a time, their lanes turned so that each row is a lane.
+//! Threads within rows.
+//!
+//! Of a row, each lane has a strip of its own, springs in a line whose last leads to the strip of the next lane. So each lane
+//! eliminates its strip alone, all but the last spring (the partition method, H. H. Wang 1981): what is left are eight multipliers
+//! a row, each of which has to do with those of both lanes beside it. They are found by cyclic reduction (R. W. Hockney 1965), in
+//! three steps, in which each is made independent of those one, two and four lanes away.
+//!
+//! # The floor
+//! As of threads from row to row, and besides, what links a strip to the one before it: ten operations for eight springs. The
+//! eight multipliers of a row cost five divisions and some 70 operations: little beside the eight blocks of 64 columns, as much as
+//! one of the two blocks of 16.
 
-use bevy::math::{Mat4, Vec4};
-
-use super::link::{Family, equation, from_left};
+use super::link::{Before, Behind, Family, Link, measure_given, terms, way};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
-/// Rows that are solved at once.
-pub(crate) const GROUP: usize = 16;
+/// Rows that are worked on at once: while one waits for its divisions, others need not.
+pub(super) const GROUP: usize = 8;
 
-/// Places in the terms of a spring.
-const DIAGONAL: usize = 0;
-const OFF: usize = 1;
-const RIGHT: usize = 2;
-
-/// One number of each row.
-pub(crate) type Rows = [f32; GROUP];
-
-/// Transposes four by four numbers.
-#[inline(always)]
-fn turned([a, b, c, d]: [&[f32]; 4]) -> [[f32; 4]; 4] {
-    let [a, b, c, d] = [a, b, c, d].map(Vec4::from_slice);
-    Mat4::from_cols(a, b, c, d).transpose().to_cols_array_2d()
+/// What a group of rows is solved in.
+#[derive(Debug, Clone)]
+pub(crate) struct RowScratch {
+    /// Row by row, block by block.
+    links: Vec<Link>,
+    /// For each of them what it takes of what the first spring of its strip takes from the strip before.
+    spikes: Vec<Lanes>,
+    strip: Strip,
+    ends: Ends,
+    /// By steps in turns.
+    systems: [Reduced; 2],
 }
 
-/// The rows of the system for the springs of one row of the cloth.
+impl RowScratch {
+    pub fn new(strip: usize) -> Self {
+        Self {
+            links: vec![Link::NONE; strip * GROUP],
+            spikes: vec![[0.0; LANES]; strip * GROUP],
+            strip: Strip::NONE,
+            ends: Ends::NONE,
+            systems: [Reduced::NONE; 2],
+        }
+    }
+}
+
+/// The lanes of all rows of a group, one after the other, and as many on either side as a step of the reduction looks at.
+type Wide = [f32; BESIDE + GROUP * LANES + BESIDE];
+const BESIDE: usize = 4;
+
+/// The system for the last springs of strips. The last strip's leads nowhere: infinitely held, it takes nothing and hands on
+/// nothing, so that rows need not be kept apart.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+struct Reduced {
+    diagonal: Wide,
+    /// What has to do with the lane before.
+    off: Wide,
+    right: Wide,
+    /// One over the diagonal.
+    inverse: Wide,
+}
+
+impl Reduced {
+    const NONE: Self = Self {
+        diagonal: [1.0; _],
+        off: [0.0; _],
+        right: [0.0; _],
+        inverse: [1.0; _],
+    };
+
+    /// Makes each lane independent of those `DISTANCE` away; with them comes what they have to do with those beyond.
+    #[inline(always)]
+    fn without<const DISTANCE: usize>(&self, out: &mut Self) {
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let (left, right) = (at - DISTANCE, at + DISTANCE);
+            let before = self.off[at] * self.inverse[left];
+            let after = self.off[right] * self.inverse[right];
+            let diagonal = self.diagonal[at] - self.off[at] * before - self.off[right] * after;
+            out.right[at] = self.right[at] - before * self.right[left] - after * self.right[right];
+            out.off[at] = -before * self.off[left];
+            out.diagonal[at] = diagonal;
+            out.inverse[at] = 1.0 / diagonal;
+        }
+    }
+}
+
+/// What a lane knows of its strip up to a spring.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+struct Strip {
+    before: Before,
+    /// What the spring has to do with the last of the strip before, as a part of what the strip's first spring has.
+    off: Lanes,
+    /// What that one has to take over into its diagonal and its right side, likewise.
+    to_diagonal: Lanes,
+    to_right: Lanes,
+}
+
+impl Strip {
+    const NONE: Self = Self {
+        before: Before::NONE,
+        off: [0.0; LANES],
+        to_diagonal: [0.0; LANES],
+        to_right: [0.0; LANES],
+    };
+}
+
+/// What a group's strips know of their first and last springs.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+struct Ends {
+    /// Of the first particles (1/kg).
+    weight: Wide,
+    /// Of the first springs and of the last, in rest lengths.
+    first: [Wide; 3],
+    last: [Wide; 3],
+    to_diagonal: Wide,
+    to_right: Wide,
+    /// What the first has to do with the last of the strip before; then what it takes from that one's multiplier.
+    off: Wide,
+    /// What the last ones pull with (m kg).
+    pull: [Wide; 3],
+}
+
+impl Ends {
+    const NONE: Self = Self {
+        weight: [0.0; _],
+        first: [[0.0; _]; 3],
+        last: [[0.0; _]; 3],
+        to_diagonal: [0.0; _],
+        to_right: [0.0; _],
+        off: [0.0; _],
+        pull: [[0.0; _]; 3],
+    };
+
+    /// Solves for the multipliers of the last springs, which are the right side then.
+    #[inline(always)]
+    fn solve(&mut self, [this, other]: &mut [Reduced; 2]) {
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let along = self.last[0][at - 1] * self.first[0][at]
+                + self.last[1][at - 1] * self.first[1][at]
+                + self.last[2][at - 1] * self.first[2][at];
+            self.off[at] = -self.weight[at] * along;
+            this.off[at] *= self.off[at];
+        }
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let off = self.off[at + 1];
+            let diagonal = this.diagonal[at] - off * (off * self.to_diagonal[at + 1]);
+            this.diagonal[at] = diagonal;
+            this.right[at] -= off * self.to_right[at + 1];
+            this.inverse[at] = 1.0 / diagonal;
+        }
+        this.without::<1>(other);
+        other.without::<2>(this);
+        this.without::<4>(other);
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            let multiplier = other.right[at] * other.inverse[at];
+            this.right[at] = multiplier;
+            self.pull[0][at] = self.last[0][at] * multiplier;
+            self.pull[1][at] = self.last[1][at] * multiplier;
+            self.pull[2][at] = self.last[2][at] * multiplier;
+        }
+        for at in BESIDE..BESIDE + GROUP * LANES {
+            self.off[at] *= this.right[at - 1];
+        }
+    }
+}
+
+/// Eliminates the springs before: of a strip's first there are none; its last is not solved for.
 #[inline(always)]
-pub(crate) fn row_equations(
+fn eliminate<const FIRST: bool, const LAST: bool>(
+    [a, b]: [&View; 2],
+    family: &Family,
+    block: usize,
+    strip: &mut Strip,
+    link: &mut Link,
+    spike: &mut Lanes,
+) {
+    let (softness, hold) = (&family.softness[block], &family.hold[block]);
+    for l in 0..LANES {
+        let [x, y, z] = way(a, b, family.inverse_rest, l);
+        let weight = a[W + l] + b[W + l];
+        let [diagonal, right] = terms([x, y, z], weight, softness[l], hold[l], family.rest);
+        let before = &mut strip.before;
+        let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
+        let off = -a[W + l] * along;
+        let share = if FIRST { 0.0 } else { off * before.pivot[l] };
+        let to_strip = if FIRST { 1.0 } else { -share * strip.off[l] };
+        let diagonal = if FIRST {
+            diagonal
+        } else {
+            diagonal - off * share
+        };
+        let right = if FIRST {
+            right
+        } else {
+            right - off * before.right[l]
+        };
+        let pivot = if LAST { diagonal } else { 1.0 / diagonal };
+        let right = if LAST { right } else { right * pivot };
+        [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
+        [before.way[0][l], before.way[1][l], before.way[2][l]] = [x, y, z];
+        [link.share[l], before.pivot[l]] = [share, pivot];
+        [link.right[l], before.right[l]] = [right, right];
+        strip.off[l] = to_strip;
+        if !LAST {
+            let part = to_strip * pivot;
+            spike[l] = part;
+            strip.to_diagonal[l] += to_strip * part;
+            strip.to_right[l] += to_strip * right;
+        }
+    }
+}
+
+/// The springs of a row up to the reduced system, whose rows are to be `at` there.
+#[inline(always)]
+fn reduce(
     row: &[Block],
     family: &Family,
-    ways: &mut [[Lanes; 3]],
-    terms: &mut [[Lanes; 3]],
+    links: &mut [Link],
+    spikes: &mut [Lanes],
+    strip: &mut Strip,
+    (ends, system): (&mut Ends, &mut Reduced),
+    at: usize,
 ) {
-    let strip = row.len();
-    for (j, (way, terms)) in ways.iter_mut().zip(terms.iter_mut()).enumerate() {
+    let last = row.len() - 1;
+    *strip = Strip::NONE;
+    for (j, (link, spike)) in links.iter_mut().zip(spikes).enumerate() {
         let b = match row.get(j + 1) {
             Some(b) => b.view(),
             None => row[0].shifted(),
         };
-        let spring = equation(row[j].view(), b, family, j);
-        *way = spring.way;
-        (terms[DIAGONAL], terms[RIGHT]) = (spring.diagonal, spring.right);
-    }
-    for j in 1..strip {
-        coupling(row[j].view(), &ways[j - 1], &ways[j], &mut terms[j][OFF]);
-    }
-    // The first spring of a strip follows on the last of the strip before.
-    let before = ways[strip - 1].map(|axis| from_left(&axis));
-    coupling(row[0].view(), &before, &ways[0], &mut terms[0][OFF]);
-}
-
-/// What a spring has to do with the one before it, whose second particle is its first.
-#[inline(always)]
-fn coupling(a: &View, before: &[Lanes; 3], way: &[Lanes; 3], off: &mut Lanes) {
-    for l in 0..LANES {
-        let along = before[0][l] * way[0][l] + before[1][l] * way[1][l] + before[2][l] * way[2][l];
-        off[l] = -a[W + l] * along;
-    }
-}
-
-/// Moves the particles of a row by what its springs pull with.
-#[inline(always)]
-pub(crate) fn pull_row(row: &mut [Block], ways: &mut [[Lanes; 3]], multipliers: &[[Lanes; 3]]) {
-    for (way, [multiplier, ..]) in ways.iter_mut().zip(multipliers) {
-        for axis in way {
-            for l in 0..LANES {
-                axis[l] *= multiplier[l];
-            }
+        let between = [row[j].view(), b];
+        match (j == 0, j == last) {
+            (true, true) => eliminate::<true, true>(between, family, j, strip, link, spike),
+            (true, false) => eliminate::<true, false>(between, family, j, strip, link, spike),
+            (false, false) => eliminate::<false, false>(between, family, j, strip, link, spike),
+            (false, true) => eliminate::<false, true>(between, family, j, strip, link, spike),
         }
     }
+    let weight = row[0].view()[W..].first_chunk().expect("lanes");
+    let [first_x, first_y, first_z] = &mut ends.first;
+    let [last_x, last_y, last_z] = &mut ends.last;
+    for (to, from) in [
+        (&mut system.diagonal, &strip.before.pivot),
+        (&mut system.right, &strip.before.right),
+        (&mut system.off, &strip.off),
+        (&mut ends.to_diagonal, &strip.to_diagonal),
+        (&mut ends.to_right, &strip.to_right),
+        (&mut ends.weight, weight),
+        (first_x, &links[0].way[0]),
+        (first_y, &links[0].way[1]),
+        (first_z, &links[0].way[2]),
+        (last_x, &strip.before.way[0]),
+        (last_y, &strip.before.way[1]),
+        (last_z, &strip.before.way[2]),
+    ] {
+        to[at..at + LANES].copy_from_slice(from);
+    }
+}
+
+/// Solves for the multipliers, given those behind them and what the first spring takes from the strip before, and moves the
+/// particles in between.
+#[inline(always)]
+fn substitute(b: &mut View, link: &mut Link, spike: &Lanes, to_first: &Lanes, behind: &mut Behind) {
+    for l in 0..LANES {
+        let multiplier = link.right[l] - spike[l] * to_first[l] - behind.given[l];
+        link.right[l] = multiplier;
+        behind.given[l] = link.share[l] * multiplier;
+        let [x, y, z] = [0, 1, 2].map(|axis| link.way[axis][l] * multiplier);
+        b[DX + l] += b[W + l] * (x - behind.pull[0][l]);
+        b[DY + l] += b[W + l] * (y - behind.pull[1][l]);
+        b[DZ + l] += b[W + l] * (z - behind.pull[2][l]);
+        [behind.pull[0][l], behind.pull[1][l], behind.pull[2][l]] = [x, y, z];
+    }
+}
+
+/// Moves the first particles of strips.
+#[inline(always)]
+fn pull_first(a: &mut View, before: [&Lanes; 3], behind: &[Lanes; 3]) {
+    for l in 0..LANES {
+        a[DX + l] += a[W + l] * (before[0][l] - behind[0][l]);
+        a[DY + l] += a[W + l] * (before[1][l] - behind[1][l]);
+        a[DZ + l] += a[W + l] * (before[2][l] - behind[2][l]);
+    }
+}
+
+/// Solves a row, of which the multipliers of the last springs are known.
+#[inline(always)]
+fn pull_row(
+    row: &mut [Block],
+    links: &mut [Link],
+    spikes: &[Lanes],
+    (ends, system): (&Ends, &Reduced),
+    at: usize,
+) {
+    let lanes = |wide: &Wide, at: usize| -> Lanes { *wide[at..].first_chunk().expect("lanes") };
     let last = row.len() - 1;
-    let before = ways[last].map(|axis| from_left(&axis));
-    move_by(row[0].view_mut(), &before, &ways[0]);
-    for (block, pulls) in row[1..].iter_mut().zip(ways.windows(2)) {
-        move_by(block.view_mut(), &pulls[0], &pulls[1]);
+    let multiplier = lanes(&system.right, at);
+    let mut behind = Behind::NONE;
+    behind.pull = [0, 1, 2].map(|axis| lanes(&ends.pull[axis], at));
+    links[last].right = multiplier;
+    let shares = links[last].share.iter().zip(&multiplier);
+    for (given, (share, multiplier)) in behind.given.iter_mut().zip(shares) {
+        *given = share * multiplier;
     }
+    let to_first = lanes(&ends.off, at);
+    for j in (0..last).rev() {
+        let b = row[j + 1].view_mut();
+        substitute(b, &mut links[j], &spikes[j], &to_first, &mut behind);
+    }
+    let before = [0, 1, 2].map(|axis| lanes(&ends.pull[axis], at - 1));
+    pull_first(row[0].view_mut(), before.each_ref(), &behind.pull);
 }
 
-/// Moves eight particles by what the springs before and behind them pull with.
-#[inline(always)]
-fn move_by(view: &mut View, before: &[Lanes; 3], behind: &[Lanes; 3]) {
-    for l in 0..LANES {
-        let weight = view[W + l];
-        view[DX + l] += weight * (before[0][l] - behind[0][l]);
-        view[DY + l] += weight * (before[1][l] - behind[1][l]);
-        view[DZ + l] += weight * (before[2][l] - behind[2][l]);
-    }
+/// Rows that lie one below the other.
+pub(crate) struct RowThreads<'a> {
+    pub blocks: &'a mut [Block],
+    /// For the first and the last of them: whether it is on the grid's border.
+    pub is_border: [bool; 2],
+    pub scratch: &'a mut RowScratch,
+    /// To be raised to the squares of what springs give at their tension (m²).
+    pub given: Option<&'a mut Lanes>,
 }
 
-/// Turns what the blocks of [`GROUP`] rows know of their springs to what each column's springs know of their rows.
+/// Solves the threads within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
-pub(crate) fn turn_terms(terms: &[[Lanes; 3]], unknowns: &mut [[Rows; 3]], strip: usize) {
-    for j in 0..strip {
-        for row in (0..GROUP).step_by(4) {
-            let of = |at: usize| &terms[(row + at) * strip + j];
-            let rows = [of(0), of(1), of(2), of(3)];
-            for lane in (0..LANES).step_by(4) {
-                for at in 0..3 {
-                    let numbers = turned(rows.map(|row| &row[at][lane..lane + 4]));
-                    for (l, numbers) in numbers.iter().enumerate() {
-                        let into = &mut unknowns[(lane + l) * strip + j][at];
-                        into[row..row + 4].copy_from_slice(numbers);
-                    }
-                }
+pub(crate) fn solve_rows(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
+    let strip = border.hold.len();
+    let count = rows.blocks.len() / strip;
+    let [first, last] = rows.is_border;
+    let family = |row: usize| {
+        let is_border = (row == 0 && first) || (row + 1 == count && last);
+        if is_border { border } else { inner }
+    };
+    let RowScratch {
+        links,
+        spikes,
+        strip: state,
+        ends,
+        systems,
+    } = &mut *rows.scratch;
+    for (group, blocks) in rows.blocks.chunks_mut(strip * GROUP).enumerate() {
+        if blocks.len() < strip * GROUP {
+            (*ends, systems[0]) = (Ends::NONE, Reduced::NONE);
+        }
+        let springs = links
+            .chunks_exact_mut(strip)
+            .zip(spikes.chunks_exact_mut(strip));
+        for (at, (row, (links, spikes))) in blocks.chunks_exact(strip).zip(springs).enumerate() {
+            let (family, system) = (family(group * GROUP + at), (&mut *ends, &mut systems[0]));
+            let at = BESIDE + at * LANES;
+            reduce(row, family, links, spikes, state, system, at);
+        }
+        ends.solve(systems);
+        let springs = links
+            .chunks_exact_mut(strip)
+            .zip(spikes.chunks_exact(strip));
+        for (at, (row, (links, spikes))) in blocks.chunks_exact_mut(strip).zip(springs).enumerate()
+        {
+            pull_row(
+                row,
+                links,
+                spikes,
+                (&*ends, &systems[0]),
+                BESIDE + at * LANES,
+            );
+            if let Some(given) = &mut rows.given {
+                measure_given(links, &family(group * GROUP + at).softness, given);
             }
         }
     }
-}
-
-/// And back: the multipliers, in the place of the diagonal.
-#[inline(always)]
-pub(crate) fn turn_back(unknowns: &[[Rows; 3]], terms: &mut [[Lanes; 3]], strip: usize) {
-    for j in 0..strip {
-        for lane in (0..LANES).step_by(4) {
-            let of = |at: usize| &unknowns[(lane + at) * strip + j][RIGHT];
-            let lanes = [of(0), of(1), of(2), of(3)];
-            for row in (0..GROUP).step_by(4) {
-                let numbers = turned(lanes.map(|column| &column[row..row + 4]));
-                for (r, numbers) in numbers.iter().enumerate() {
-                    let into = &mut terms[(row + r) * strip + j][0];
-                    into[lane..lane + 4].copy_from_slice(numbers);
-                }
-            }
-        }
-    }
-}
-
-/// Solves tridiagonal systems from both ends at once, so that two eliminations run side by side. Of `springs` unknowns.
-#[inline(always)]
-pub(crate) fn solve_turned(unknowns: &mut [[Rows; 3]], springs: usize) {
-    let none = [0.0; GROUP];
-    let (mut first, mut last) = ([none; 2], [none; 2]);
-    let middle = springs / 2;
-    let (low, high) = unknowns.split_at_mut(middle);
-    let (own, high) = high.split_first_mut().expect("a spring");
-    let (high, beyond) = high.split_at_mut(springs - 1 - middle);
-    let mut behind = none;
-    for (k, row) in low.iter_mut().enumerate() {
-        let off = row[OFF];
-        step(row, &off, &mut first);
-        // One fewer behind the middle, or as many.
-        let Some(at) = high.len().checked_sub(k + 1) else {
-            continue;
-        };
-        let off = if at + 1 < high.len() {
-            high[at + 1][OFF]
-        } else {
-            none
-        };
-        step(&mut high[at], &off, &mut last);
-        behind = high[0][OFF];
-    }
-    let mut value = none;
-    for r in 0..GROUP {
-        let off = own[OFF][r];
-        let beside = off * (off * first[0][r]) + behind[r] * (behind[r] * last[0][r]);
-        let known = off * first[1][r] + behind[r] * last[1][r];
-        value[r] = (own[RIGHT][r] - known) / (own[DIAGONAL][r] - beside);
-    }
-    own[RIGHT] = value;
-    let (mut before, mut after, mut off) = (value, value, own[OFF]);
-    for (k, row) in low.iter_mut().rev().enumerate() {
-        back(row, &off, &mut before);
-        off = row[OFF];
-        if let Some(row) = high.get_mut(k) {
-            let off = row[OFF];
-            back(row, &off, &mut after);
-        }
-    }
-    for row in beyond {
-        row[RIGHT] = none;
-    }
-}
-
-/// Eliminates the spring before, of which pivot and right side are known.
-#[inline(always)]
-fn step(row: &mut [Rows; 3], off: &Rows, known: &mut [Rows; 2]) {
-    for r in 0..GROUP {
-        let own = 1.0 / (row[DIAGONAL][r] - off[r] * (off[r] * known[0][r]));
-        let value = (row[RIGHT][r] - off[r] * known[1][r]) * own;
-        (known[0][r], known[1][r]) = (own, value);
-    }
-    (row[DIAGONAL], row[RIGHT]) = (known[0], known[1]);
-}
-
-/// Puts in the spring beside, of which the multiplier is known.
-#[inline(always)]
-fn back(row: &mut [Rows; 3], off: &Rows, known: &mut Rows) {
-    for r in 0..GROUP {
-        known[r] = row[RIGHT][r] - row[DIAGONAL][r] * (off[r] * known[r]);
-    }
-    row[RIGHT] = *known;
 }
