@@ -55,8 +55,27 @@ pub fn hanging_places(lengths: &[f64], shape: &[f64], amplitude: f64) -> Vec<[f6
     places
 }
 
+/// How much longer each row of springs of a hanging sheet is for what hangs below it, and how much narrower, as parts. As a lattice
+/// of C₁₁ = k₁ + k₂ and C₁₂ = k₂ gives that is pulled one way: by N ⁄ (C₁₁ − C₁₂² ⁄ C₁₁), and C₁₂ ⁄ C₁₁ of that across.
+fn hanging_strains(rows: u32, spacing: f64, material: &ClothMaterial) -> Vec<[f64; 2]> {
+    let [k1, k2] = [material.stretch_compliance, material.shear_compliance].map(f64::from);
+    let [k1, k2] = [1.0 / k1, 1.0 / k2];
+    let (stiffness, across) = if k1.is_finite() && k2.is_finite() {
+        (k1 + k2 - k2 * k2 / (k1 + k2), k2 / (k1 + k2))
+    } else {
+        (k1.max(k2), 0.0)
+    };
+    let weight = f64::from(material.areal_density) * GRAVITY * spacing;
+    // The last row is half a row.
+    let below = |row: u32| f64::from(rows - 1 - row) - 0.5;
+    let strain = |row: u32| weight * below(row) / stiffness;
+    let each = (0..rows - 1).map(|row| [strain(row), across * strain(row)]);
+    each.collect()
+}
+
 /// The same as it is found by the solver: infinite where it does not swing. Of a sheet of 8 columns that is let go in the
-/// mode's shape, sloped by 1.5 % at most; lengthened by its own weight it is longer by 2 parts in 10,000 (cotton, 2 m).
+/// mode's shape, sloped by 1.5 % at most, and as long and wide as its weight makes it: let go at rest, cotton would bounce, and
+/// its folds are chaos that hides the third mode. Lengthened by its own weight it is longer by 1 part in 10,000 (cotton, 2 m).
 pub fn hanging_found(
     rows: u32,
     length: f64,
@@ -68,10 +87,27 @@ pub fn hanging_found(
     let spacing = length / f64::from(rows - 1);
     let shape = hanging_shape(rows, mode);
     let amplitude = 0.01 * length * (ROOTS[0] / ROOTS[mode]).powi(2);
-    let places = hanging_places(&vec![spacing; shape.len() - 1], &shape, amplitude);
+    let strains = hanging_strains(rows, spacing, material);
+    let lengths: Vec<f64> = strains
+        .iter()
+        .map(|[long, _]| spacing * (1.0 + long))
+        .collect();
+    let places = hanging_places(&lengths, &shape, amplitude);
     let place = |row: u32, column: u32| {
         let [y, z] = places[row as usize];
-        Vec3::new(spacing as f32 * column as f32, y as f32, z as f32)
+        // A row of particles is between two of springs.
+        let narrow = |row: Option<u32>| {
+            row.and_then(|row| strains.get(row as usize))
+                .map(|of| of[1])
+        };
+        let [above, below] = [narrow(row.checked_sub(1)), narrow(Some(row))];
+        let narrow = 0.5 * (above.or(below).unwrap_or(0.0) + below.or(above).unwrap_or(0.0));
+        let aside = f64::from(column) - 0.5 * f64::from(COLUMNS - 1);
+        Vec3::new(
+            (spacing * (1.0 - narrow) * aside) as f32,
+            y as f32,
+            z as f32,
+        )
     };
     let size = (COLUMNS, rows);
     let pinned = |row, _| row == 0;
