@@ -78,6 +78,12 @@ impl ElasticGrid {
             diagonal: of((1, 1), 0)?,
         })
     }
+
+    /// The shorter distance between neighbours (m).
+    pub(super) fn spacing(&self) -> f32 {
+        let [across, down] = [&self.across[0], &self.down].map(|of| of.inverse_rest_square);
+        across.max(down).sqrt().recip()
+    }
 }
 
 /// What forces and velocities count for in a sub-step.

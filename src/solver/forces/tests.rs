@@ -1,6 +1,6 @@
 //! Forces against the same springs in f64, bands against one band, and when they are chosen.
 
-use bevy::math::{DVec3, Vec3};
+use bevy::math::{DVec3, Isometry3d, Vec3};
 
 use super::*;
 use crate::{
@@ -177,7 +177,7 @@ fn bands_and_simd_levels_change_no_bit() {
 fn the_limit_is_that_of_the_stiffest_particle() {
     let grid = Cloth::new(16, 16, 0.1).grid(Vec3::ONE).expect("a grid");
     let springs = Springs::of_grid(&grid, &SOFT);
-    let particles =
+    let mut particles =
         ClothParticles::at_rest(&Surface::of_grid(&grid), &SOFT).expect("a valid material");
     let SpringStorage::Grid(grid, compliances) = springs.storage() else {
         panic!("a grid's");
@@ -186,8 +186,19 @@ fn the_limit_is_that_of_the_stiffest_particle() {
     let mass = 0.15 * 0.1 * 0.1;
     let square = 8.0 / mass * (1.0 / 1.0e-3 + 1.0 / 2.0e-3_f32);
     let longest = 0.95 * 2.0 / square.sqrt();
-    let found = forces.longest_substep(particles.blocks());
+    let mut at = |away: f32| {
+        particles.transform(Isometry3d::from_translation(away * Vec3::X));
+        let found = forces.longest_substep(particles.blocks());
+        particles.transform(Isometry3d::from_translation(-away * Vec3::X));
+        found
+    };
+    let found = at(0.0);
     assert!((found / longest - 1.0).abs() < 1.0e-5, "{found} {longest}");
+    // Where rounding is as large as is allowed.
+    let rounding = (0.08 * 9.81 * 0.1 * longest / square).sqrt();
+    let farthest = rounding * 12.0_f32.sqrt() / f32::EPSILON;
+    assert!(at(0.98 * farthest - 1.5) > 0.0, "{farthest}");
+    assert_eq!(at(1.02 * farthest - 1.5), 0.0, "{farthest}");
 }
 
 /// Rigid springs have no forces, and nor do those for which threads are cheaper.
