@@ -17,6 +17,7 @@ pub fn threads(stretch: f32, shear: f32) -> ClothMaterial {
         stretch_compliance: stretch,
         shear_compliance: shear,
         bend_rigidity: 0.0,
+        stretch_damping: 0.0,
         damping: 0.0,
         friction: 0.0,
     }
@@ -73,6 +74,7 @@ impl Sheet {
         };
         let mut solver = Solver::of_surface(&surface, &springs);
         solver.set_bending(Bending::new(&surface, &material));
+        solver.set_stretch_damping(material.stretch_damping);
         Self {
             solver,
             masses: particles.inverse_masses().map(mass).collect(),

@@ -209,6 +209,7 @@ impl PreparingItem<'_, '_> {
         }
         // The plugin's own writing, up to here.
         state.written = Some(particles.last_changed());
+        built.solver.set_stretch_damping(material.stretch_damping);
         scratch.step = Some(TickStep {
             seconds,
             substeps: state.control.substeps(

@@ -13,6 +13,7 @@ use bevy::math::Vec4;
 use super::{
     Stretch,
     kernel::Kernels,
+    pace::Pace,
     packet::{Packet, Row, SPRINGS},
     sweep::{Motion, Sweep, Swept},
     threads::Bundles,
@@ -29,8 +30,7 @@ pub(super) struct ListSweep {
     pulls: Vec<Vec4>,
     threads: Bundles,
     layout: Layout,
-    /// 1/Δt² (1/s²).
-    inverse_dt2: f32,
+    pace: Pace,
     /// The particles of one sub-step, strip by strip: in the order of their indices, with what is no particle at the end of
     /// each row of the layout.
     rows: Vec<Row>,
@@ -75,7 +75,7 @@ impl ListSweep {
             packets: packets.into(),
             threads: Bundles::new(springs, row_of, none),
             layout,
-            inverse_dt2: 0.0,
+            pace: Pace::default(),
             rows: vec![Row::default(); layout.blocks() * LANES + 1],
         }
     }
@@ -136,8 +136,8 @@ impl ListSweep {
 }
 
 impl Sweep for ListSweep {
-    fn set_weight(&mut self, weight_dt2: f32) {
-        self.inverse_dt2 = 1.0 / weight_dt2;
+    fn set_pace(&mut self, pace: Pace) {
+        self.pace = pace;
     }
 
     fn is_exact(&self) -> bool {
@@ -151,14 +151,14 @@ impl Sweep for ListSweep {
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> Swept {
         let kernels = motion.kernels;
         self.load(blocks);
-        let (rows, packets, weight) = (&mut self.rows, &self.packets, self.inverse_dt2);
+        let (rows, packets, pace) = (&mut self.rows, &self.packets, &self.pace);
         if self.threads.is_empty() {
-            (kernels.relax_packets)(rows, packets, weight);
+            (kernels.relax_packets)(rows, packets, pace);
         } else {
-            self.threads.solve_there(rows, weight, kernels);
-            (kernels.relax_packets_there)(rows, packets, &mut self.pulls, weight);
-            (kernels.relax_packets_back)(rows, packets, &self.pulls, weight);
-            self.threads.solve_back(rows, weight, kernels);
+            self.threads.solve_there(rows, pace, kernels);
+            (kernels.relax_packets_there)(rows, packets, &mut self.pulls, pace);
+            (kernels.relax_packets_back)(rows, packets, &self.pulls, pace);
+            self.threads.solve_back(rows, pace, kernels);
         }
         self.store(blocks);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);

@@ -50,6 +50,7 @@ mod list;
 #[cfg(feature = "methods")]
 #[doc(hidden)]
 pub mod methods;
+mod pace;
 mod packet;
 mod pentadiagonal;
 mod pipeline;

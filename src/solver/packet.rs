@@ -10,7 +10,7 @@
 
 use bevy::math::{Mat4, Vec4};
 
-use super::run::MIN_SOFTNESS;
+use super::{pace::Pace, run::MIN_SOFTNESS};
 
 /// Springs in a packet.
 pub(super) const SPRINGS: usize = 4;
@@ -39,9 +39,9 @@ pub(super) struct Packet {
 
 /// Moves the ends of all springs, one packet after the other: what [`kernel`](super::kernel) does to the springs of a grid.
 #[inline(always)]
-pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], inverse_dt2: f32) {
+pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], pace: &Pace) {
     for packet in packets {
-        relax(rows, packet, inverse_dt2, None);
+        relax(rows, packet, pace, None);
     }
 }
 
@@ -51,10 +51,10 @@ pub(super) fn relax_packets_there(
     rows: &mut [Row],
     packets: &[Packet],
     pulls: &mut [Vec4],
-    inverse_dt2: f32,
+    pace: &Pace,
 ) {
     for (packet, pull) in packets.iter().zip(pulls) {
-        *pull = relax(rows, packet, inverse_dt2, None);
+        *pull = relax(rows, packet, pace, None);
     }
 }
 
@@ -64,16 +64,16 @@ pub(super) fn relax_packets_back(
     rows: &mut [Row],
     packets: &[Packet],
     pulls: &[Vec4],
-    inverse_dt2: f32,
+    pace: &Pace,
 ) {
     for (packet, pull) in packets.iter().zip(pulls).rev() {
-        relax(rows, packet, inverse_dt2, Some(*pull));
+        relax(rows, packet, pace, Some(*pull));
     }
 }
 
 /// Moves the ends of a packet's springs. Returns what they pull with: what moves their ends over inverse mass and length (kg).
 #[inline(always)]
-fn relax(rows: &mut [Row], packet: &Packet, inverse_dt2: f32, pulled: Option<Vec4>) -> Vec4 {
+fn relax(rows: &mut [Row], packet: &Packet, pace: &Pace, pulled: Option<Vec4>) -> Vec4 {
     let a = packet.from.map(|end| rows[end as usize]);
     let b = packet.to.map(|end| rows[end as usize]);
     let offsets: [Vec4; SPRINGS] =
@@ -82,13 +82,22 @@ fn relax(rows: &mut [Row], packet: &Packet, inverse_dt2: f32, pulled: Option<Vec
     let (weight_a, weight_b) = (weights(&a), weights(&b));
     let q = x * x + y * y + z * z;
     let r2 = packet.rest_square;
-    let softness = packet.compliance * inverse_dt2 + MIN_SOFTNESS;
+    let (mut softness, mut beyond) = (packet.compliance * pace.inverse_weight, q - r2);
+    if pace.kept < 1.0 {
+        // As of a grid's springs; what a way opens by changes its square by twice its length times that.
+        let moved: [Vec4; SPRINGS] = std::array::from_fn(|at| b[at].moved - a[at].moved);
+        let [dx, dy, dz] = coordinates(moved);
+        let is_soft = packet.compliance.cmpgt(Vec4::ZERO);
+        let kept = Vec4::select(is_soft, Vec4::splat(pace.kept), Vec4::ONE);
+        softness *= kept;
+        beyond = kept * beyond + (1.0 - kept) * 2.0 * (x * dx + y * dy + z * dz);
+    }
+    let softness = softness + MIN_SOFTNESS;
     let weight = weight_a + weight_b + softness;
     let scale = 1.5 * q + 0.5 * r2;
-    let beyond = match pulled {
-        None => q - r2,
-        Some(pulled) => (q - r2) - softness * pulled * scale,
-    };
+    if let Some(pulled) = pulled {
+        beyond -= softness * pulled * scale;
+    }
     let share = beyond / (scale * weight);
     let share_a = (share * weight_a).to_array();
     let share_b = (share * weight_b).to_array();

@@ -7,6 +7,7 @@ use super::{
     Stretch,
     bands::{MAX_BANDS, pool},
     kernel::{Kernels, Longest},
+    pace::Pace,
     run::Run,
     sweep::{Motion, Sweep, Swept},
 };
@@ -132,8 +133,8 @@ pub(super) struct GridSweep {
     /// Those of [`ORDER`] for which there are springs.
     stages: Vec<Stage>,
     has_shear: bool,
-    /// The Δt² (s²) that softnesses hold for.
-    weight_dt2: f32,
+    /// That softnesses hold for.
+    pace: Pace,
 }
 
 impl GridSweep {
@@ -155,7 +156,7 @@ impl GridSweep {
                 })
                 .collect(),
             has_shear,
-            weight_dt2: 0.0,
+            pace: Pace::default(),
         }
     }
 
@@ -176,16 +177,15 @@ impl GridSweep {
         Stretch::of_ratios(structural, bound)
     }
 
-    /// Takes over what stands for Δt² (s²).
-    fn soften(&mut self, weight_dt2: f32) {
-        if self.weight_dt2 == weight_dt2 {
+    /// Takes over what the sub-step is, but for damping along springs.
+    fn soften(&mut self, pace: Pace) {
+        if self.pace == pace {
             return;
         }
-        self.weight_dt2 = weight_dt2;
-        let inverse_dt2 = 1.0 / weight_dt2;
+        self.pace = pace;
         let between = [&mut self.down, &mut self.diagonal];
         for run in self.across.iter_mut().chain(between) {
-            run.soften(inverse_dt2);
+            run.soften(pace.inverse_weight);
         }
     }
 
@@ -327,8 +327,8 @@ impl GridSweep {
 }
 
 impl Sweep for GridSweep {
-    fn set_weight(&mut self, weight_dt2: f32) {
-        self.soften(weight_dt2);
+    fn set_pace(&mut self, pace: Pace) {
+        self.soften(pace);
     }
 
     fn is_exact(&self) -> bool {

@@ -11,6 +11,7 @@ use super::{
     energy::Energy,
     forces::Forces,
     list::ListSweep,
+    pace::Pace,
     pipeline::GridSweep,
     predict::{Prediction, weight},
     spin::Spin,
@@ -55,6 +56,8 @@ pub struct Solver {
     bending: Option<Bending>,
     tethers: Tethers,
     anchors: Anchors,
+    /// Of damping along springs (s).
+    retardation: f32,
     bands: usize,
     simd_level: SimdLevel,
 }
@@ -136,6 +139,7 @@ impl Solver {
             bending: None,
             tethers: Tethers::default(),
             anchors: Anchors::default(),
+            retardation: 0.0,
             bands: 1,
             simd_level: SimdLevel::default(),
         }
@@ -144,6 +148,12 @@ impl Solver {
     /// With this resistance to bending from now on, which must be that of the solver's particles; `None` for none.
     pub fn set_bending(&mut self, bending: Option<Bending>) {
         self.bending = bending;
+    }
+
+    /// With damping along springs from now on: [`ClothMaterial::stretch_damping`](crate::cloth::ClothMaterial::stretch_damping)
+    /// (s), 0 for none.
+    pub fn set_stretch_damping(&mut self, retardation: f32) {
+        self.retardation = retardation;
     }
 
     /// With tethers from now on, which must be those of the solver's particles.
@@ -262,11 +272,11 @@ impl Solver {
     }
 
     /// The longest sub-step (s) in which the springs push by their forces, in a motion of second order; 0 where they never do: on a
-    /// mesh, with tethers, and where one of them is rigid.
+    /// mesh, with tethers, with damping along springs, and where one of them is rigid.
     pub fn longest_explicit_substep(&self, particles: &ClothParticles) -> f32 {
         let blocks = particles.blocks();
         match &self.forces {
-            Some(forces) if self.tethers.is_empty() => {
+            Some(forces) if self.tethers.is_empty() && self.retardation == 0.0 => {
                 let bent = self.bending.as_ref();
                 let bent = bent.map_or(f32::INFINITY, |bending| bending.longest_push(blocks));
                 forces.longest_substep(blocks).min(bent)
@@ -378,7 +388,8 @@ impl Solver {
                 bending.prepare(blocks, weight_dt2);
                 bending.solve(blocks, &kernels);
             }
-            self.sweep.set_weight(weight_dt2);
+            self.sweep
+                .set_pace(Pace::new(weight_dt2, dt, self.retardation));
             let motion = Motion {
                 kernels: &kernels,
                 tethers: &self.tethers,

@@ -5,6 +5,7 @@ use std::fmt;
 use super::{
     Stretch,
     kernel::Kernels,
+    pace::Pace,
     tether::{Anchors, Tethers},
 };
 use crate::cloth::{Block, Lanes};
@@ -34,9 +35,8 @@ pub(super) struct Swept {
 /// A solver of springs that are known, and of tethers, for particles where they would be without: made once for them, and for
 /// as long as they stay.
 pub(super) trait Sweep: fmt::Debug + Send + Sync {
-    /// Takes over what a force is multiplied with to move a particle, besides its inverse mass: Δt², or what the method
-    /// makes of it (s²).
-    fn set_weight(&mut self, weight_dt2: f32);
+    /// Takes over what the coming sub-step is.
+    fn set_pace(&mut self, pace: Pace);
 
     /// Whether it leaves so little unsolved that a motion of second order may go on from it.
     fn is_exact(&self) -> bool;

@@ -8,6 +8,7 @@ mod catenary;
 mod changes;
 mod compliance;
 mod convergence;
+mod damping;
 mod distance;
 mod drops;
 mod energy;

@@ -24,6 +24,7 @@ fn material(compliance: f32, shear: f32) -> ClothMaterial {
         stretch_compliance: compliance,
         shear_compliance: shear,
         bend_rigidity: 0.0,
+        stretch_damping: 0.0,
         damping: 0.0,
         friction: 0.0,
     }

@@ -308,6 +308,15 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
             slider.logarithmic(true).smallest_positive(smallest.into())
         });
     }
+    let tip = "Damping along springs (s): the time in which a stretch that nothing pulls at dies away. 0 is none";
+    slide(
+        ui,
+        "loss, s",
+        tip,
+        &mut material.stretch_damping,
+        0.0..=0.1,
+        |slider| slider,
+    );
     let tip = "The part of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";
     slide(
         ui,

@@ -42,6 +42,7 @@ impl Scene {
             stretch_compliance: 0.0,
             shear_compliance: 0.0,
             bend_rigidity: 0.0,
+            stretch_damping: 0.0,
             damping: 1.0 - 0.99_f32.powf(1.0 / 60.0),
             friction: 0.0,
         };
@@ -69,6 +70,7 @@ impl Scene {
             stretch_compliance: compliance,
             shear_compliance: compliance,
             bend_rigidity: 0.0,
+            stretch_damping: 0.0,
             damping: 0.0,
             friction: 0.0,
         };

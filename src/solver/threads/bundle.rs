@@ -10,7 +10,7 @@ use bevy::math::{Mat4, Vec4};
 use super::link::{HOLD, clamped, terms};
 use crate::{
     cloth::{LANES, Lanes, Spring},
-    solver::packet::Row,
+    solver::{pace::Pace, packet::Row},
 };
 
 /// The next spring of each thread of a bundle.
@@ -103,7 +103,23 @@ pub(crate) fn bundle_forward(
     steps: &[Step],
     pulled: &[Lanes],
     solved: &mut [Solved],
-    inverse_weight: f32,
+    pace: &Pace,
+) {
+    if pace.kept < 1.0 {
+        forward::<true>(rows, heads, steps, pulled, solved, pace);
+    } else {
+        forward::<false>(rows, heads, steps, pulled, solved, pace);
+    }
+}
+
+#[inline(always)]
+fn forward<const DAMPED: bool>(
+    rows: &[Row],
+    heads: &[u32; LANES],
+    steps: &[Step],
+    pulled: &[Lanes],
+    solved: &mut [Solved],
+    pace: &Pace,
 ) {
     let is_weight = Vec4::W.cmpgt(Vec4::ZERO);
     let mut from = heads;
@@ -115,6 +131,13 @@ pub(crate) fn bundle_forward(
             let offset = (b.place - a.place) + (b.moved - a.moved);
             Vec4::select(is_weight, b.place, offset)
         });
+        let moved = if DAMPED {
+            turned(&std::array::from_fn(|l| {
+                rows[step.to[l] as usize].moved - rows[from[l] as usize].moved
+            }))
+        } else {
+            [[0.0; LANES]; 4]
+        };
         let [x, y, z, weight] = turned(&offsets);
         let mut link = Solved {
             way: [x, y, z],
@@ -124,8 +147,19 @@ pub(crate) fn bundle_forward(
         for l in 0..LANES {
             let [x, y, z] = [0, 1, 2].map(|axis| clamped(link.way[axis][l] * step.inverse_rest[l]));
             let both = weight_a[l] + weight[l];
-            let softness = step.compliance[l] * inverse_weight;
+            let is_rigid = step.compliance[l] == 0.0;
+            let kept = if is_rigid { 1.0 } else { pace.kept };
+            let softness = step.compliance[l] * pace.inverse_weight;
+            let softness = if DAMPED { kept * softness } else { softness };
             let [diagonal, right] = terms([x, y, z], both, softness, step.hold[l], step.rest[l]);
+            let right = if DAMPED {
+                // As of a grid's springs.
+                let opening = x * moved[0][l] + y * moved[1][l] + z * moved[2][l];
+                let opening = if both > 0.0 { opening } else { 0.0 };
+                kept * right - (1.0 - kept) * opening
+            } else {
+                right
+            };
             // What gives has pulled already.
             let right = right - softness * (x * x + y * y + z * z) * pulled[l];
             let before = &previous.way;

@@ -8,7 +8,7 @@ use std::{ops::Range, sync::Arc};
 use super::bundle::{Solved, Step};
 use crate::{
     cloth::{LANES, Lanes, SpringList},
-    solver::{kernel::Kernels, packet::Row},
+    solver::{kernel::Kernels, pace::Pace, packet::Row},
 };
 
 /// Up to eight threads that share no particle.
@@ -71,28 +71,28 @@ impl Bundles {
         self.bundles.is_empty()
     }
 
-    /// Solves thread after thread. `inverse_weight` is 1/(c Δt²) (1/s²).
-    pub fn solve_there(&mut self, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+    /// Solves thread after thread.
+    pub fn solve_there(&mut self, rows: &mut [Row], pace: &Pace, kernels: &Kernels) {
         self.pulled.fill([0.0; LANES]);
         for index in 0..self.bundles.len() {
-            self.solve(index, rows, inverse_weight, kernels);
+            self.solve(index, rows, pace, kernels);
         }
     }
 
     /// The same from the last to the first, after [`solve_there`](Self::solve_there): springs that give go on from what they
     /// have pulled with.
-    pub fn solve_back(&mut self, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+    pub fn solve_back(&mut self, rows: &mut [Row], pace: &Pace, kernels: &Kernels) {
         for index in (0..self.bundles.len()).rev() {
-            self.solve(index, rows, inverse_weight, kernels);
+            self.solve(index, rows, pace, kernels);
         }
     }
 
-    fn solve(&mut self, index: usize, rows: &mut [Row], inverse_weight: f32, kernels: &Kernels) {
+    fn solve(&mut self, index: usize, rows: &mut [Row], pace: &Pace, kernels: &Kernels) {
         let Bundle { heads, steps } = &self.bundles[index];
         let pulled = &mut self.pulled[steps.clone()];
         let steps = &self.steps[steps.clone()];
         let solved = &mut self.solved;
-        (kernels.bundle_forward)(rows, heads, steps, pulled, solved, inverse_weight);
+        (kernels.bundle_forward)(rows, heads, steps, pulled, solved, pace);
         (kernels.bundle_backward)(rows, heads, steps, pulled, solved);
     }
 }

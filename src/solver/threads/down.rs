@@ -13,25 +13,23 @@
 
 use super::{
     beside::Threads,
-    link::{Before, Behind, Family, Link, terms, way},
+    link::{Before, Behind, Family, Link, family_terms, way},
 };
 use crate::cloth::{DX, DY, DZ, LANES, Lanes, View, W};
 
 /// Eliminates the springs before. With `CROSSES`, what it finds is moved by a lane to the right.
 #[inline(always)]
-fn eliminate<const CROSSES: bool>(
+fn eliminate<const CROSSES: bool, const DAMPED: bool>(
     [a, b]: [&View; 2],
     family: &Family,
     block: usize,
     before: &mut Before,
     link: &mut Link,
 ) {
-    let (softness, hold) = (&family.softness[block], &family.hold[block]);
     let mut lane_before = [0.0; 6];
     for l in 0..LANES {
         let [x, y, z] = way(a, b, family.inverse_rest, l);
-        let weight = a[W + l] + b[W + l];
-        let [diagonal, right] = terms([x, y, z], weight, softness[l], hold[l], family.rest);
+        let [diagonal, right] = family_terms::<DAMPED>([a, b], [x, y, z], family, block, l);
         let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
         let off = -a[W + l] * along;
         let share = off * before.pivot[l];
@@ -81,15 +79,16 @@ fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
 /// Solves threads that lead from row to row.
 #[inline(always)]
 pub(crate) fn solve_threads(threads: &mut Threads, family: &Family) {
-    if threads.is_oblique() {
-        solve::<true>(threads, family);
-    } else {
-        solve::<false>(threads, family);
+    match (threads.is_oblique(), family.kept < 1.0) {
+        (true, false) => solve::<true, false>(threads, family),
+        (true, true) => solve::<true, true>(threads, family),
+        (false, false) => solve::<false, false>(threads, family),
+        (false, true) => solve::<false, true>(threads, family),
     }
 }
 
 #[inline(always)]
-fn solve<const OBLIQUE: bool>(threads: &mut Threads, family: &Family) {
+fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, family: &Family) {
     let Threads {
         rows,
         width,
@@ -106,9 +105,9 @@ fn solve<const OBLIQUE: bool>(threads: &mut Threads, family: &Family) {
         for (thread, (link, before)) in links.iter_mut().zip(&mut **before).enumerate() {
             let (a, b) = (upper.block(thread).view(), lower.block(thread));
             if OBLIQUE && block == last {
-                eliminate::<true>([a, b.shifted()], family, block, before, link);
+                eliminate::<true, DAMPED>([a, b.shifted()], family, block, before, link);
             } else {
-                eliminate::<false>([a, b.view()], family, block, before, link);
+                eliminate::<false, DAMPED>([a, b.view()], family, block, before, link);
             }
             block = if block == last { 0 } else { block + 1 };
         }

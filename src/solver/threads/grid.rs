@@ -15,6 +15,7 @@ use crate::{
         Stretch,
         bands::{MAX_BANDS, in_bands, take},
         kernel::{Kernels, Longest},
+        pace::Pace,
         run::Run,
         sweep::{Motion, Sweep, Swept},
     },
@@ -38,8 +39,8 @@ pub(in crate::solver) struct ThreadSweep {
     scratch: Scratch,
     /// One for each band.
     rows: Vec<RowScratch>,
-    /// c Δt² (s²).
-    weight_dt2: f32,
+    /// That softnesses hold for.
+    pace: Pace,
     /// Largest stiffness over length of springs across and down (N/m²), 0 of those that don't give.
     ripple_stiffness: [f32; 2],
 }
@@ -75,7 +76,7 @@ impl ThreadSweep {
             runs: run,
             scratch: Scratch::new(layout),
             rows: vec![RowScratch::new(strip)],
-            weight_dt2: 0.0,
+            pace: Pace::default(),
         }
     }
 
@@ -248,16 +249,16 @@ impl ThreadSweep {
 }
 
 impl Sweep for ThreadSweep {
-    fn set_weight(&mut self, weight_dt2: f32) {
-        if self.weight_dt2 != weight_dt2 {
-            self.weight_dt2 = weight_dt2;
+    fn set_pace(&mut self, pace: Pace) {
+        if self.pace != pace {
+            self.pace = pace;
             for family in self
                 .across
                 .iter_mut()
                 .chain([&mut self.down])
                 .chain(&mut self.diagonal)
             {
-                family.soften(weight_dt2);
+                family.soften(pace);
             }
         }
     }

@@ -1,6 +1,9 @@
 //! One spring of a thread, in the system of equations of all springs of that thread.
 
-use crate::cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, X, Y, Z};
+use crate::{
+    cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
+    solver::pace::Pace,
+};
 
 /// What keeps a spring between two pins from dividing by zero (1/kg).
 pub(super) const HOLD: f32 = 1.0e-18;
@@ -85,6 +88,8 @@ pub(crate) struct Family {
     pub softness: Vec<Lanes>,
     /// 0, or infinity where there is no spring (1/kg).
     pub hold: Vec<Lanes>,
+    /// The part of a spring's stretch that a sub-step answers; the rest is damping's, for what changes in it. 1 without.
+    pub kept: f32,
 }
 
 impl Family {
@@ -114,6 +119,7 @@ impl Family {
             compliance: all(&|compliance| compliance.unwrap_or(0.0)),
             softness: all(&|_| 0.0),
             hold: all(&|compliance| compliance.map_or(f32::INFINITY, |_| HOLD)),
+            kept: 1.0,
         }
     }
 
@@ -126,12 +132,13 @@ impl Family {
         1.0 / least
     }
 
-    /// Takes over c Δt² (s²).
-    pub fn soften(&mut self, weight_dt2: f32) {
-        let inverse = 1.0 / weight_dt2;
+    /// Takes over what a sub-step is.
+    pub fn soften(&mut self, pace: Pace) {
         for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
-            *softness = compliance.map(|compliance| compliance * inverse);
+            *softness = compliance.map(|compliance| compliance * pace.inverse_weight);
         }
+        let is_rigid = self.compliance.as_flattened().iter().all(|of| *of == 0.0);
+        self.kept = if is_rigid { 1.0 } else { pace.kept };
     }
 }
 
@@ -162,6 +169,30 @@ pub(super) fn terms(
     let right = -rest * p * (off / (1.5 * p + 0.5));
     let right = if weight > 0.0 { right } else { 0.0 };
     [weight * p + (soft + hold), right]
+}
+
+/// The same of one lane's spring in a family. With `DAMPED`, its damping as well: a force of τ/α times the speed of its stretch,
+/// `C − C₀` in a sub-step, makes `C + (τ/Δt)(C − C₀)` of C in its equation, which is divided by 1 + τ/Δt = 1/κ:
+/// `κ C + (1 − κ)(C − C₀)` with a softness of κ α/(c Δt²).
+#[inline(always)]
+pub(super) fn family_terms<const DAMPED: bool>(
+    [a, b]: [&View; 2],
+    [x, y, z]: [f32; 3],
+    family: &Family,
+    block: usize,
+    l: usize,
+) -> [f32; 2] {
+    let (softness, hold) = (family.softness[block][l], family.hold[block][l]);
+    let weight = a[W + l] + b[W + l];
+    if !DAMPED {
+        return terms([x, y, z], weight, softness, hold, family.rest);
+    }
+    let kept = family.kept;
+    let [diagonal, right] = terms([x, y, z], weight, kept * softness, hold, family.rest);
+    let [dx, dy, dz] = [DX, DY, DZ].map(|at| b[at + l] - a[at + l]);
+    let opening = x * dx + y * dy + z * dz;
+    let opening = if weight > 0.0 { opening } else { 0.0 };
+    [diagonal, kept * right - (1.0 - kept) * opening]
 }
 
 /// The way of one lane's spring from the first to the second particle, in rest lengths.

@@ -10,7 +10,7 @@
 //! eight multipliers of a row cost five divisions and some 70 operations: little beside the eight blocks of 64 columns, as much as
 //! one of the two blocks of 16.
 
-use super::link::{Before, Behind, Family, Link, measure_given, terms, way};
+use super::link::{Before, Behind, Family, Link, family_terms, measure_given, way};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
 /// Rows that are worked on at once: while one waits for its divisions, others need not.
@@ -166,7 +166,7 @@ impl Ends {
 
 /// Eliminates the springs before: of a strip's first there are none; its last is not solved for.
 #[inline(always)]
-fn eliminate<const FIRST: bool, const LAST: bool>(
+fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
     [a, b]: [&View; 2],
     family: &Family,
     block: usize,
@@ -174,11 +174,9 @@ fn eliminate<const FIRST: bool, const LAST: bool>(
     link: &mut Link,
     spike: &mut Lanes,
 ) {
-    let (softness, hold) = (&family.softness[block], &family.hold[block]);
     for l in 0..LANES {
         let [x, y, z] = way(a, b, family.inverse_rest, l);
-        let weight = a[W + l] + b[W + l];
-        let [diagonal, right] = terms([x, y, z], weight, softness[l], hold[l], family.rest);
+        let [diagonal, right] = family_terms::<DAMPED>([a, b], [x, y, z], family, block, l);
         let before = &mut strip.before;
         let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
         let off = -a[W + l] * along;
@@ -212,7 +210,7 @@ fn eliminate<const FIRST: bool, const LAST: bool>(
 
 /// The springs of a row up to the reduced system, whose rows are to be `at` there.
 #[inline(always)]
-fn reduce(
+fn reduce<const DAMPED: bool>(
     row: &[Block],
     family: &Family,
     links: &mut [Link],
@@ -230,10 +228,16 @@ fn reduce(
         };
         let between = [row[j].view(), b];
         match (j == 0, j == last) {
-            (true, true) => eliminate::<true, true>(between, family, j, strip, link, spike),
-            (true, false) => eliminate::<true, false>(between, family, j, strip, link, spike),
-            (false, false) => eliminate::<false, false>(between, family, j, strip, link, spike),
-            (false, true) => eliminate::<false, true>(between, family, j, strip, link, spike),
+            (true, true) => eliminate::<true, true, DAMPED>(between, family, j, strip, link, spike),
+            (true, false) => {
+                eliminate::<true, false, DAMPED>(between, family, j, strip, link, spike);
+            }
+            (false, false) => {
+                eliminate::<false, false, DAMPED>(between, family, j, strip, link, spike);
+            }
+            (false, true) => {
+                eliminate::<false, true, DAMPED>(between, family, j, strip, link, spike);
+            }
         }
     }
     let weight = row[0].view()[W..].first_chunk().expect("lanes");
@@ -323,7 +327,16 @@ pub(crate) struct RowThreads<'a> {
 
 /// Solves the threads within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
-pub(crate) fn solve_rows(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
+pub(crate) fn solve_rows(rows: &mut RowThreads, families: &[Family; 2]) {
+    if families[0].kept < 1.0 {
+        solve::<true>(rows, families);
+    } else {
+        solve::<false>(rows, families);
+    }
+}
+
+#[inline(always)]
+fn solve<const DAMPED: bool>(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
     let strip = border.hold.len();
     let count = rows.blocks.len() / strip;
     let [first, last] = rows.is_border;
@@ -348,7 +361,7 @@ pub(crate) fn solve_rows(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
         for (at, (row, (links, spikes))) in blocks.chunks_exact(strip).zip(springs).enumerate() {
             let (family, system) = (family(group * GROUP + at), (&mut *ends, &mut systems[0]));
             let at = BESIDE + at * LANES;
-            reduce(row, family, links, spikes, state, system, at);
+            reduce::<DAMPED>(row, family, links, spikes, state, system, at);
         }
         ends.solve(systems);
         let springs = links

@@ -5,7 +5,7 @@ use bevy::math::{DVec3, Vec3};
 use super::{direction::Direction, grid::ThreadSweep};
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Compliances, Surface},
-    solver::{SimdLevel, sweep::Sweep},
+    solver::{SimdLevel, pace::Pace, sweep::Sweep},
 };
 
 const WEIGHT_DT2: f32 = 1.0 / 1200.0 / 1200.0;
@@ -149,7 +149,7 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
             };
             for step in [(0, 1), (1, 0), (1, 1), (1, -1)] {
                 let mut sweep = ThreadSweep::new(&grid, &compliances);
-                sweep.set_weight(WEIGHT_DT2);
+                sweep.set_pace(Pace::new(WEIGHT_DT2, 1.0, 0.0));
                 let mut particles = start.clone();
                 let kernels = SimdLevel::Auto.kernels();
                 let blocks = particles.blocks_mut();

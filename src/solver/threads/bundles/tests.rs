@@ -8,11 +8,17 @@ use crate::{
     solver::{
         SimdLevel, Solver, TickStep,
         methods::meshes,
+        pace::Pace,
         threads::tests::{random, solved},
     },
 };
 
 const INVERSE_WEIGHT: f32 = 1200.0 * 1200.0;
+
+const PACE: Pace = Pace {
+    inverse_weight: INVERSE_WEIGHT,
+    kept: 1.0,
+};
 
 fn surface() -> Surface {
     let mesh = meshes::irregular(1.0, 0.7, 0.05, 0.3);
@@ -129,8 +135,8 @@ fn threads_are_solved_as_by_elimination_in_f64() {
             // Twice: nothing stays from one sub-step to the next.
             for _ in 0..2 {
                 rows.clone_from(&start);
-                bundles.solve_there(&mut rows, INVERSE_WEIGHT, &kernels);
-                bundles.solve_back(&mut rows, INVERSE_WEIGHT, &kernels);
+                bundles.solve_there(&mut rows, &PACE, &kernels);
+                bundles.solve_back(&mut rows, &PACE, &kernels);
             }
             rows
         });
@@ -172,8 +178,8 @@ fn threads_without_a_solution_are_no_nan() {
         rows.push(Row::default());
         let mut bundles = Bundles::new(list, |particle| particle, surface.len() as u32);
         for _ in 0..3 {
-            bundles.solve_there(&mut rows, INVERSE_WEIGHT, &kernels);
-            bundles.solve_back(&mut rows, INVERSE_WEIGHT, &kernels);
+            bundles.solve_there(&mut rows, &PACE, &kernels);
+            bundles.solve_back(&mut rows, &PACE, &kernels);
         }
         assert!(rows.iter().all(|row| row.moved.is_finite()), "{index}");
     }
