@@ -164,7 +164,8 @@ impl IntegratingItem<'_, '_> {
             substep: step.seconds / count,
             damping: step.damping,
             material_stretch: self.built.material_stretch,
-            is_tethered: !self.built.solver.tethers().is_empty(),
+            holds_weight: self.built.surface().as_grid().is_some()
+                || !self.built.solver.tethers().is_empty(),
             masses: self.built.masses,
             distance: (Vec3::from(root.center).length() - root.radius()).max(0.0),
             spacing: spacing.shortest,

@@ -10,6 +10,9 @@ use bevy::math::{DVec3, Vec3};
 
 use crate::cloth::{Block, ClothParticles, Earlier, LANES, Lanes, W};
 
+/// Ticks after a change to shorter sub-steps in which no energy is gained. What was left stretched comes back within a few.
+const WATCHED_TICKS: u32 = 20;
+
 /// Energy of the particles (J), but for what springs hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Energy {
@@ -19,11 +22,25 @@ pub(super) struct Energy {
     inner: f64,
     /// Whether nothing is pinned.
     is_free: bool,
+    /// What was lost in the ticks before, and may come back.
+    lost: f64,
 }
 
 impl Energy {
+    /// As a tick in sub-steps of `dt` (s) begins, if it is one of the first after a change to shorter ones.
+    pub fn watched(particles: &mut ClothParticles, dt: f32, acceleration: Vec3) -> Option<Self> {
+        if dt < particles.substep() {
+            particles.past_mut().watch(WATCHED_TICKS);
+        }
+        let lost = particles.past_mut().next_watched()?;
+        Some(Self {
+            lost,
+            ..Self::of(particles, acceleration)
+        })
+    }
+
     /// Of `particles` under an `acceleration` (m/s²).
-    pub fn of(particles: &ClothParticles, acceleration: Vec3) -> Self {
+    fn of(particles: &ClothParticles, acceleration: Vec3) -> Self {
         let (mut mass, mut momentum) = (0.0, DVec3::ZERO);
         let (mut kinetic, mut potential) = (0.0, 0.0);
         let (mut free, acceleration) = (0, acceleration.as_dvec3());
@@ -57,20 +74,21 @@ impl Energy {
             total: kinetic * to_joules + potential,
             inner: (kinetic - as_one) * to_joules,
             is_free,
+            lost: 0.0,
         }
     }
 
-    /// Takes from `particles`, whose energy was `self` as a tick began, what they have gained in it beyond `lost` (J), what
-    /// they lost in the ticks before; and has `lost` be what may come back.
-    pub fn limit(self, particles: &mut ClothParticles, acceleration: Vec3, lost: f64) -> f64 {
+    /// Takes from `particles`, whose energy was `self` as a tick began, what they have gained in it beyond what they lost in the ticks
+    /// before, and remembers what may come back.
+    pub fn limit(self, particles: &mut ClothParticles, acceleration: Vec3) {
         let now = Self::of(particles, acceleration);
-        let excess = now.total - self.total - lost;
+        let excess = now.total - self.total - self.lost;
         // NaN stays for those who look for it.
         if excess > 0.0 && now.inner > 0.0 {
             let kept = (1.0 - excess / now.inner).max(0.0).sqrt();
             slow_down(particles, kept as f32, now.is_free);
         }
-        (-excess).max(0.0)
+        particles.past_mut().set_lost((-excess).max(0.0));
     }
 }
 
@@ -161,19 +179,22 @@ mod tests {
             let mut particles = moving(is_pinned, is_remembered);
             let now = Energy::of(&particles, GRAVITY);
             let (gain, lost) = (0.5 * now.inner, 0.2 * now.inner);
-            let before = Energy {
+            let before = |lost: f64| Energy {
                 total: now.total - gain,
+                lost,
                 ..now
             };
-            assert_eq!(before.limit(&mut particles, GRAVITY, lost), 0.0);
+            before(lost).limit(&mut particles, GRAVITY);
+            assert_eq!(particles.past_mut().lost(), 0.0);
             let after = Energy::of(&particles, GRAVITY);
-            let excess = after.total - (before.total + lost);
+            let excess = after.total - (before(lost).total + lost);
             assert!(excess.abs() < 1.0e-6 * now.inner, "{excess} {now:?}");
 
             let kept = particles.clone();
-            let left = before.limit(&mut particles, GRAVITY, 2.0 * gain);
-            assert_eq!(particles, kept);
-            let expected = 2.0 * gain - lost;
+            before(2.0 * gain).limit(&mut particles, GRAVITY);
+            assert!(particles.positions().eq(kept.positions()));
+            assert!(particles.displacements().eq(kept.displacements()));
+            let (left, expected) = (particles.past_mut().lost(), 2.0 * gain - lost);
             assert!((left - expected).abs() < 1.0e-6 * gain, "{left} {expected}");
         }
     }
@@ -191,7 +212,7 @@ mod tests {
             total: -1.0e6,
             ..Energy::of(&particles, GRAVITY)
         };
-        begins.limit(&mut particles, GRAVITY, 0.0);
+        begins.limit(&mut particles, GRAVITY);
         let after = momentum(&particles);
         assert!((after - before).length() < 1.0e-5 * before.length());
         let each = particles.velocity(3).expect("it exists");

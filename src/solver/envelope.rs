@@ -16,8 +16,8 @@ pub enum ClothLimit {
     Stretch,
     /// The largest number of sub-steps that the settings allow does not hold the tolerance that they ask for.
     Tolerance,
-    /// The heaviest particle that is free is more than 300 times as heavy as the lightest, or with tethers more than
-    /// 10,000 times.
+    /// The heaviest particle that is free is more than 10,000 times as heavy as the lightest, or of a mesh without tethers more than
+    /// 300 times.
     MassRatio,
     /// The cloth is farther from its frame's origin, its own size not counted, than single precision resolves well: 1,000 m
     /// with 20 sub-steps in 1/60 s, half of it with twice as many, and 40,000 spacings.
@@ -32,7 +32,8 @@ pub enum ClothLimit {
 
 /// Largest length / rest length − 1 beyond what the material gives.
 const MAX_STRETCH: f32 = 0.15;
-/// Of the masses of free particles, without tethers and with. Those of a rectangle's corners and middle differ by 4.
+/// Of the masses of free particles: of a mesh, and of what threads of a grid or tethers hold. Those of a rectangle's corners and
+/// middle differ by 4.
 const MAX_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
 /// In metres, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one. And in
 /// spacings: where it is half a per cent of one.
@@ -136,8 +137,8 @@ pub(crate) struct LimitInputs {
     pub material_stretch: f32,
     /// The paper's D.
     pub damping: f32,
-    /// Whether tethers hold it.
-    pub is_tethered: bool,
+    /// Whether tethers or the threads of a grid hold it, which what is heavy hardly stretches.
+    pub holds_weight: bool,
     /// Masses of the lightest and of the heaviest particle that is free (kg).
     pub masses: [f32; 2],
     /// From the frame's origin to the cloth (m), its own size not counted.
@@ -167,7 +168,7 @@ impl LimitInputs {
             },
             ClothLimit::MassRatio if lightest > 0.0 => [
                 heaviest / lightest,
-                MAX_MASS_RATIO[usize::from(self.is_tethered)],
+                MAX_MASS_RATIO[usize::from(self.holds_weight)],
             ],
             ClothLimit::Distance => {
                 let by_substep = MAX_DISTANCE * self.substep / USUAL_SUBSTEP;
@@ -196,7 +197,7 @@ mod tests {
         substep: USUAL_SUBSTEP,
         material_stretch: 0.0,
         damping: 0.97,
-        is_tethered: false,
+        holds_weight: false,
         masses: [1.0e-4, 1.0e-4 * MAX_MASS_RATIO[0]],
         distance: MAX_DISTANCE,
         spacing: 0.03,
@@ -296,9 +297,9 @@ mod tests {
     }
 
     #[test]
-    fn tethers_hold_heavier_particles() {
+    fn threads_and_tethers_hold_heavier_particles() {
         let ratio = |ratio: f32| LimitInputs {
-            is_tethered: true,
+            holds_weight: true,
             masses: [1.0e-4, 1.0e-4 * ratio],
             ..WITHIN
         };

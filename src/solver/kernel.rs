@@ -27,7 +27,7 @@ use super::{
     run::Run,
     threads::{
         Family, Link, RowThreads, Solved, Step, Threads, bundle_backward, bundle_forward,
-        measure_given, solve_rows, solve_threads,
+        measure_given, solve_damped_rows, solve_damped_threads, solve_rows, solve_threads,
     },
     twist::{twist_backward, twist_forward, twist_links},
 };
@@ -274,7 +274,9 @@ kernels! {
     predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction),
     begin_past(row: &[Block], past: &mut [Earlier]),
     solve_threads(threads: &mut Threads, family: &Family),
+    solve_damped_threads(threads: &mut Threads, family: &Family),
     solve_rows(rows: &mut RowThreads, families: &[Family; 2]),
+    solve_damped_rows(rows: &mut RowThreads, families: &[Family; 2]),
     measure_given(links: &[Link], softness: &[Lanes], largest: &mut Lanes),
     bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], pace: &Pace),
     bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),

@@ -30,7 +30,7 @@ pub struct ClothSettings {
     /// with fewer sub-steps than it needs stretches less with them: see [`Tethers`](super::Tethers).
     pub tethers: bool,
     /// How the error of its motion falls with the sub-steps: in proportion to their length squared, or, as in the paper, to
-    /// their length.
+    /// their length. Of second order, soft grids are pushed by their forces where that is stable.
     pub order: TimeOrder,
     /// Whether a cloth that has come to rest sleeps: it costs next to nothing, stays as it is to the last bit,
     /// and wakes by a collider that moves near it, a pin that moves, a change of its components or gravity.

@@ -34,7 +34,8 @@ pub enum TimeOrder {
     /// In proportion to Δt: the paper's Verlet, equation (2), which with constraints is implicit Euler. Takes energy out of a
     /// motion of frequency ω, by the part ω² Δt in a second.
     First,
-    /// In proportion to Δt²: backward differences over three displacements (BDF2). After what no past can foretell it falls
+    /// In proportion to Δt²: backward differences over three displacements (BDF2), or velocity Verlet where soft springs push by
+    /// their forces. After what no past can foretell it falls
     /// back to the first order for a while: contact, springs that were not solved, a write by the game.
     #[default]
     Second,

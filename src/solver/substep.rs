@@ -23,9 +23,6 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, StepKind, Surface};
 
-/// Ticks after a change to shorter sub-steps in which no energy is gained. What was left stretched comes back within a few.
-const WATCHED_TICKS: u32 = 20;
-
 /// Sub-steps of first order after one that ended with a push.
 const AFTER_CONTACT: u32 = 3;
 
@@ -221,11 +218,7 @@ impl Solver {
         if self.is_explicit(particles, &step) {
             return self.kicks(particles, step, pins, &mut respond);
         }
-        if dt < particles.substep() {
-            particles.past_mut().watch(WATCHED_TICKS);
-        }
-        let lost = particles.past_mut().next_watched();
-        let watched = lost.map(|lost| (Energy::of(particles, step.acceleration), lost));
+        let watched = Energy::watched(particles, dt, step.acceleration);
         particles.set_substep(dt);
         particles.zero_pin_displacements();
         if step.order == TimeOrder::First {
@@ -250,13 +243,12 @@ impl Solver {
         // What the material gives comes back by itself, and what pushes or carries a cloth gives it energy.
         let given = step.material_stretch.max(stretch.material);
         let is_unsolved = stretch.structural > 2.0 * given;
-        if let Some((before, lost)) = watched
+        if let Some(before) = watched
             && is_unsolved
             && is_still
             && !is_pushed
         {
-            let lost = before.limit(particles, step.acceleration, lost);
-            particles.past_mut().set_lost(lost);
+            before.limit(particles, step.acceleration);
         }
         if let Some(spin) = spin
             && !is_pushed

@@ -60,10 +60,10 @@ fn a_tolerance_that_the_cap_does_not_hold() {
     expect_reported(app, cloth, ClothLimit::Tolerance);
 }
 
-/// Without tethers a thousand times as heavy as others is too much, with them twenty thousand times is.
+/// Twenty thousand times as heavy as others is too much, with tethers or without.
 #[test]
 fn a_mass_of_many_others() {
-    for (tethers, times) in [(false, 1.0e3), (true, 2.0e4)] {
+    for tethers in [false, true] {
         let mut app = app();
         let awake = ClothSettings {
             sleeps: false,
@@ -75,7 +75,7 @@ fn a_mass_of_many_others() {
         change::<ClothParticles>(&mut app, cloth, |particles| {
             let light = particles.inverse_mass((2, 1)).expect("it exists");
             particles
-                .set_inverse_mass((3, 1), light / times)
+                .set_inverse_mass((3, 1), light / 2.0e4)
                 .expect("it exists");
         });
         assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);

@@ -65,17 +65,16 @@ pub fn measure(run: &mut Run) -> Vec<Row> {
 fn play(substepping: Substepping) -> (f64, f32) {
     let mut scene = Scene::hung_by_corners(32, 2.0).expect("a valid scene");
     scene.material.damping = 0.05;
-    let mut solver = scene.solver(true);
+    let mut solver = scene.solver(false);
     let mut particles = scene.particles.clone();
     let mut before = particles.clone();
     let mut control = Control::default();
     let mut largest = 0.0_f32;
     let time = seconds(|| {
         for tick in 0..TICKS {
-            let mut substeps = control.substeps(
-                substepping,
-                Substepping::needed(scene.surface.particles_along(), scene.seconds),
-            );
+            let along = scene.surface.particles_along();
+            let needed = solver.needed(&particles, along, scene.seconds);
+            let mut substeps = control.substeps(substepping, needed);
             if matches!(substepping, Substepping::Adaptive { .. }) {
                 before.clone_from(&particles);
             }

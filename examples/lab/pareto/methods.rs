@@ -356,10 +356,9 @@ impl<'a> Ours<'a> {
         if matches!(self.substepping, Substepping::Adaptive { .. }) {
             self.backup.clone_from(&self.particles);
         }
-        let mut substeps = self.control.substeps(
-            self.substepping,
-            Substepping::needed(scene.surface.particles_along(), scene.seconds),
-        );
+        let along = scene.surface.particles_along();
+        let needed = self.solver.needed(&self.particles, along, scene.seconds);
+        let mut substeps = self.control.substeps(self.substepping, needed);
         loop {
             let step = scene.step(substeps);
             let detection = &mut self.detection;

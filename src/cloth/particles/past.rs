@@ -134,6 +134,12 @@ impl Past {
         Some(self.watch.lost)
     }
 
+    /// Energy that may come back (J).
+    #[cfg(test)]
+    pub fn lost(&self) -> f64 {
+        self.watch.lost
+    }
+
     /// Has this much energy be what may come back (J).
     pub fn set_lost(&mut self, lost: f64) {
         self.watch.lost = lost;

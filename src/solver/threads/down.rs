@@ -13,7 +13,7 @@
 
 use super::{
     beside::Threads,
-    link::{Before, Behind, Family, Link, family_terms, way},
+    link::{Before, Behind, Family, Link, damped, terms, way},
 };
 use crate::cloth::{DX, DY, DZ, LANES, Lanes, View, W};
 
@@ -26,10 +26,22 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool>(
     before: &mut Before,
     link: &mut Link,
 ) {
+    let (softness, hold) = (&family.softness[block], &family.hold[block]);
     let mut lane_before = [0.0; 6];
     for l in 0..LANES {
         let [x, y, z] = way(a, b, family.inverse_rest, l);
-        let [diagonal, right] = family_terms::<DAMPED>([a, b], [x, y, z], family, block, l);
+        let weight = a[W + l] + b[W + l];
+        let softness = if DAMPED {
+            family.kept * softness[l]
+        } else {
+            softness[l]
+        };
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], family.rest);
+        let right = if DAMPED {
+            damped(right, [a, b], [x, y, z], family.kept, l)
+        } else {
+            right
+        };
         let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
         let off = -a[W + l] * along;
         let share = off * before.pivot[l];
@@ -79,11 +91,20 @@ fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
 /// Solves threads that lead from row to row.
 #[inline(always)]
 pub(crate) fn solve_threads(threads: &mut Threads, family: &Family) {
-    match (threads.is_oblique(), family.kept < 1.0) {
-        (true, false) => solve::<true, false>(threads, family),
-        (true, true) => solve::<true, true>(threads, family),
-        (false, false) => solve::<false, false>(threads, family),
-        (false, true) => solve::<false, true>(threads, family),
+    if threads.is_oblique() {
+        solve::<true, false>(threads, family);
+    } else {
+        solve::<false, false>(threads, family);
+    }
+}
+
+/// The same with damping along them.
+#[inline(always)]
+pub(crate) fn solve_damped_threads(threads: &mut Threads, family: &Family) {
+    if threads.is_oblique() {
+        solve::<true, true>(threads, family);
+    } else {
+        solve::<false, true>(threads, family);
     }
 }
 

@@ -113,7 +113,7 @@ impl ThreadSweep {
             scratch: &mut self.rows[0],
             given,
         };
-        (kernels.solve_rows)(&mut rows, &self.across);
+        solve_rows(&mut rows, &self.across, kernels);
     }
 
     /// The lengths of the springs that begin in these rows.
@@ -242,7 +242,7 @@ impl ThreadSweep {
         });
         let families = &self.across;
         in_bands(parts, |mut part| {
-            (motion.kernels.solve_rows)(&mut part, families);
+            solve_rows(&mut part, families, motion.kernels);
         });
         merged(&found, |found| &found.given)
     }
@@ -313,10 +313,23 @@ impl Sweep for ThreadSweep {
 
 /// Solves threads. Raises `given` to the squares of what the springs of columns give at their tension (m²).
 fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels, given: Option<&mut Lanes>) {
-    (kernels.solve_threads)(threads, family);
+    if family.kept < 1.0 {
+        (kernels.solve_damped_threads)(threads, family);
+    } else {
+        (kernels.solve_threads)(threads, family);
+    }
     if let Some(given) = given {
         let (links, blocks) = threads.links();
         (kernels.measure_given)(links, &family.softness[blocks], given);
+    }
+}
+
+/// Solves threads within rows.
+fn solve_rows(rows: &mut RowThreads, families: &[Family; 2], kernels: &Kernels) {
+    if families[0].kept < 1.0 {
+        (kernels.solve_damped_rows)(rows, families);
+    } else {
+        (kernels.solve_rows)(rows, families);
     }
 }
 

@@ -171,28 +171,25 @@ pub(super) fn terms(
     [weight * p + (soft + hold), right]
 }
 
-/// The same of one lane's spring in a family. With `DAMPED`, its damping as well: a force of τ/α times the speed of its stretch,
-/// `C − C₀` in a sub-step, makes `C + (τ/Δt)(C − C₀)` of C in its equation, which is divided by 1 + τ/Δt = 1/κ:
-/// `κ C + (1 − κ)(C − C₀)` with a softness of κ α/(c Δt²).
+/// The right side of one lane's spring with damping along it: a force of τ/α times the speed of its stretch, `C − C₀` in a sub-step,
+/// makes `C + (τ/Δt)(C − C₀)` of C in its equation, which is divided by 1 + τ/Δt = 1/κ: `κ C + (1 − κ)(C − C₀)`, with a softness
+/// of κ α/(c Δt²).
 #[inline(always)]
-pub(super) fn family_terms<const DAMPED: bool>(
+pub(super) fn damped(
+    right: f32,
     [a, b]: [&View; 2],
     [x, y, z]: [f32; 3],
-    family: &Family,
-    block: usize,
+    kept: f32,
     l: usize,
-) -> [f32; 2] {
-    let (softness, hold) = (family.softness[block][l], family.hold[block][l]);
-    let weight = a[W + l] + b[W + l];
-    if !DAMPED {
-        return terms([x, y, z], weight, softness, hold, family.rest);
-    }
-    let kept = family.kept;
-    let [diagonal, right] = terms([x, y, z], weight, kept * softness, hold, family.rest);
+) -> f32 {
     let [dx, dy, dz] = [DX, DY, DZ].map(|at| b[at + l] - a[at + l]);
     let opening = x * dx + y * dy + z * dz;
-    let opening = if weight > 0.0 { opening } else { 0.0 };
-    [diagonal, kept * right - (1.0 - kept) * opening]
+    let opening = if a[W + l] + b[W + l] > 0.0 {
+        opening
+    } else {
+        0.0
+    };
+    kept * right - (1.0 - kept) * opening
 }
 
 /// The way of one lane's spring from the first to the second particle, in rest lengths.

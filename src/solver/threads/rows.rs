@@ -10,7 +10,7 @@
 //! eight multipliers of a row cost five divisions and some 70 operations: little beside the eight blocks of 64 columns, as much as
 //! one of the two blocks of 16.
 
-use super::link::{Before, Behind, Family, Link, family_terms, measure_given, way};
+use super::link::{Before, Behind, Family, Link, damped, measure_given, terms, way};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
 /// Rows that are worked on at once: while one waits for its divisions, others need not.
@@ -174,9 +174,21 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
     link: &mut Link,
     spike: &mut Lanes,
 ) {
+    let (softness, hold) = (&family.softness[block], &family.hold[block]);
     for l in 0..LANES {
         let [x, y, z] = way(a, b, family.inverse_rest, l);
-        let [diagonal, right] = family_terms::<DAMPED>([a, b], [x, y, z], family, block, l);
+        let weight = a[W + l] + b[W + l];
+        let softness = if DAMPED {
+            family.kept * softness[l]
+        } else {
+            softness[l]
+        };
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], family.rest);
+        let right = if DAMPED {
+            damped(right, [a, b], [x, y, z], family.kept, l)
+        } else {
+            right
+        };
         let before = &mut strip.before;
         let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
         let off = -a[W + l] * along;
@@ -328,11 +340,13 @@ pub(crate) struct RowThreads<'a> {
 /// Solves the threads within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
 pub(crate) fn solve_rows(rows: &mut RowThreads, families: &[Family; 2]) {
-    if families[0].kept < 1.0 {
-        solve::<true>(rows, families);
-    } else {
-        solve::<false>(rows, families);
-    }
+    solve::<false>(rows, families);
+}
+
+/// The same with damping along them.
+#[inline(always)]
+pub(crate) fn solve_damped_rows(rows: &mut RowThreads, families: &[Family; 2]) {
+    solve::<true>(rows, families);
 }
 
 #[inline(always)]
