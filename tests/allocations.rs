@@ -123,8 +123,47 @@ fn a_step_does_not_allocate() {
         assert!(pushed > 0.0, "the ball was touched");
     }
     a_mesh_does_not_allocate();
+    neither_forces_nor_damping_allocate();
     attachments_and_what_is_animated_allocate_nothing_more();
     cloths_made_alike_share_all_but_their_particles();
+}
+
+/// Rubber, which its forces push, with and without bending, and cotton with damping along its springs.
+fn neither_forces_nor_damping_allocate() {
+    let limp = ClothMaterial {
+        bend_rigidity: 0.0,
+        ..ClothMaterial::RUBBER
+    };
+    let damped = ClothMaterial {
+        stretch_damping: 1.0e-3,
+        ..ClothMaterial::COTTON
+    };
+    for material in [ClothMaterial::RUBBER, limp, damped] {
+        let grid = Cloth::new(20, 20, 0.05).grid(Vec3::ONE).expect("a grid");
+        let surface = Surface::of_grid(&grid);
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a material");
+        particles.set_inverse_mass(0, 0.0).expect("it exists");
+        let mut solver = Solver::new(&Springs::of_grid(&grid, &material), &particles);
+        solver.set_bending(Bending::new(&surface, &material));
+        solver.set_stretch_damping(material.stretch_damping);
+        let step = TickStep {
+            acceleration: Vec3::NEG_Y * 9.81,
+            ..Default::default()
+        };
+        let is_explicit = solver.longest_explicit_substep(&particles) > step.seconds / 20.0;
+        assert_eq!(is_explicit, material.stretch_compliance > 1.0e-3);
+        let mut ticks = |count: u32| {
+            for _ in 0..count {
+                solver.advance(&mut particles, step, &[], |_, _| false);
+            }
+        };
+        ticks(1);
+        let region = Region::new(ALLOCATOR);
+        ticks(10);
+        let change = region.change();
+        let made = (change.allocations, change.reallocations);
+        assert_eq!(made, (0, 0), "{material:?}: {change:?}");
+    }
 }
 
 fn a_mesh_does_not_allocate() {

@@ -29,7 +29,7 @@ use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
     contact::{ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothSettings, PinMotion, TickStep},
+    solver::{ClothSettings, PinMotion, Substepping, TickStep},
 };
 
 /// The pins of a cloth from which the game took its [`Pins`].
@@ -210,14 +210,16 @@ impl PreparingItem<'_, '_> {
         // The plugin's own writing, up to here.
         state.written = Some(particles.last_changed());
         built.solver.set_stretch_damping(material.stretch_damping);
+        let along = surface.particles_along();
+        let needed = match settings.substepping {
+            // Nobody asks.
+            _ if state.rest.is_asleep() => Substepping::needed(along, seconds),
+            Substepping::Fixed(substeps) => substeps,
+            _ => (built.solver).needed(particles, along, seconds, settings.order),
+        };
         scratch.step = Some(TickStep {
             seconds,
-            substeps: state.control.substeps(
-                settings.substepping,
-                built
-                    .solver
-                    .needed(particles, surface.particles_along(), seconds),
-            ),
+            substeps: state.control.substeps(settings.substepping, needed),
             acceleration,
             damping: material.damping,
             order: settings.order,

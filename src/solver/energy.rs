@@ -1,4 +1,4 @@
-//! That a change of the sub-step gives no energy.
+//! Keeps a change of the sub-step from adding energy.
 //!
 //! Springs pull back in a sub-step of Δt what they are stretched by, or a part of it where threads carry others: so what is
 //! left unsolved acts like springs as stiff as 1/Δt², and shorter sub-steps find in stiffer ones the stretch that the longer left.
@@ -10,8 +10,10 @@ use bevy::math::{DVec3, Vec3};
 
 use crate::cloth::{Block, ClothParticles, Earlier, LANES, Lanes, W};
 
-/// Ticks after a change to shorter sub-steps in which no energy is gained. What was left stretched comes back within a few.
+/// Ticks after a change to shorter sub-steps in which no energy is gained, and after each in which more than this part of the motion
+/// came back. What was left stretched comes back within a few; all that fell, stopped by one pin, takes longer.
 const WATCHED_TICKS: u32 = 20;
+const RETURNING: f64 = 0.01;
 
 /// Energy of the particles (J), but for what springs hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +84,9 @@ impl Energy {
     /// before, and remembers what may come back.
     pub fn limit(self, particles: &mut ClothParticles, acceleration: Vec3) {
         let now = Self::of(particles, acceleration);
+        if now.total - self.total > RETURNING * now.inner {
+            particles.past_mut().watch(WATCHED_TICKS);
+        }
         let excess = now.total - self.total - self.lost;
         // NaN stays for those who look for it.
         if excess > 0.0 && now.inner > 0.0 {

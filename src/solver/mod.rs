@@ -31,7 +31,7 @@
 //! **Cost** (64², one thread, AVX2): a spring of a diagonal costs 1.1 times one of a column, one of a row 1.3 times: its lanes are
 //! strips of one thread, and what they have to do with each other is a system of its own.
 //!
-//! **Soft cloth** is not solved at all where its sub-steps are shorter than 1.9/ω̂, with ω̂² = 2 max_i w_i Σ_j k_ij: its springs push
+//! **Soft cloth** is not solved at all where its sub-steps are shorter than 1.9/ω̂, with `ω̂² = 2 max_i w_i Σ_j k_ij`: its springs push
 //! by their forces then, in steps of velocity Verlet, for a third of the time ([`Solver::longest_explicit_substep`]). Where that takes
 //! no more than twice the sub-steps it is chosen by itself ([`Solver::needed`]).
 //!

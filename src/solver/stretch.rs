@@ -11,8 +11,9 @@ pub struct Stretch {
     pub structural: f32,
     /// Over structural and shear springs: no path along them is longer than its rest length times 1 + this.
     pub bound: f32,
-    /// What the material gives at the largest tension of its structural springs, where they were solved for it; else 0. A
-    /// stretch beyond it is what the sub-steps left unsolved.
+    /// What the material gives at the largest tension of its structural springs, damping along them included, where threads were
+    /// solved for it; all of `structural` where springs push by their forces; else 0. A stretch beyond it is what the sub-steps left
+    /// unsolved.
     pub material: f32,
     /// Sub-steps in a tick as long as the last for which ripples across its threads are resolved, at the tension of half of its
     /// width: those of a membrane that is taut in a frame. Of grids whose threads give; else 0.

@@ -1,4 +1,4 @@
-//! A tick of sub-steps: Verlet, bending, one sweep over the springs, response.
+//! A tick of sub-steps: prediction, bending, springs, response.
 
 #[cfg(test)]
 mod tests;
@@ -16,7 +16,7 @@ use super::{
     predict::{Prediction, weight},
     spin::Spin,
     step::{DAMPING_REFERENCE, existing, put_pins},
-    substepping::FEWEST,
+    substepping::MAX_SUBSTEPS,
     sweep::{Motion, Sweep},
     tether::Anchors,
     threads::ThreadSweep,
@@ -29,14 +29,17 @@ const AFTER_CONTACT: u32 = 3;
 /// A stretch beyond the material's own that has not been solved: to go on from it would feed in energy.
 const UNSOLVED: f32 = 0.5;
 
-/// A sub-step of forces takes less than this part of one in which threads are solved.
+/// Ticks of first order after a tick that ended so stretched.
+const WARY_TICKS: u32 = 15;
+
+/// So many sub-steps of forces take no longer than one in which threads are solved.
 const CHEAPER: u32 = 2;
 
 /// What a quotient may be off by.
 const ROUNDING: f32 = 1.0 + 1.0e-6;
 
-/// Ticks of first order after a tick that ended so.
-const WARY_TICKS: u32 = 15;
+/// Damped more than that, particles hardly keep any displacement for what bends to be added to.
+const MAX_DAMPING: f32 = 0.5;
 
 /// ω Δt up to which ripples of tension are as fast as they are. Springs pull along where their threads are foreseen to be: beyond 2.3,
 /// on grids of 17² to 65² alike, what is foreseen goes beyond what it comes from, and a taut membrane rings lower, by 30 % at 3.9.
@@ -182,7 +185,7 @@ impl Solver {
         self.sweep.bands(self.bands)
     }
 
-    /// And those of a tick of forces.
+    /// Bands in a tick of forces.
     #[cfg(test)]
     pub(super) fn forces_bands(&self) -> usize {
         self.forces.as_ref().map_or(1, |forces| forces.bands())
@@ -216,7 +219,7 @@ impl Solver {
         }
         let dt = step.seconds / step.substeps.max(1) as f32;
         if self.is_explicit(particles, &step) {
-            return self.kicks(particles, step, pins, &mut respond);
+            return self.advance_by_forces(particles, step, pins, &mut respond);
         }
         let watched = Energy::watched(particles, dt, step.acceleration);
         particles.set_substep(dt);
@@ -249,7 +252,10 @@ impl Solver {
             && !is_pushed
         {
             before.limit(particles, step.acceleration);
+        } else {
+            particles.past_mut().set_lost(0.0);
         }
+        particles.past_mut().set_moved();
         if let Some(spin) = spin
             && !is_pushed
         {
@@ -277,29 +283,54 @@ impl Solver {
         }
     }
 
-    /// Whether the springs of the coming tick push by their forces.
-    pub(super) fn is_explicit(&self, particles: &ClothParticles, step: &TickStep) -> bool {
-        step.order == TimeOrder::Second
-            && step.seconds / step.substeps.max(1) as f32
-                <= self.longest_explicit_substep(particles)
+    /// Whether a sub-step of `dt` (s) may be short enough for forces, which most cloths deny with their first rows.
+    fn may_be_explicit(&self, particles: &ClothParticles, dt: f32) -> bool {
+        let forces = self.forces.as_ref();
+        forces.is_some_and(|forces| forces.is_short(particles.blocks(), dt))
     }
 
-    /// Sub-steps in a tick of `seconds` that hold the cloth, whose longer side has `along` particles:
+    /// Whether the springs of the coming tick push by their forces.
+    pub(super) fn is_explicit(&self, particles: &ClothParticles, step: &TickStep) -> bool {
+        let dt = step.seconds / step.substeps.max(1) as f32;
+        step.order == TimeOrder::Second
+            && step.damping <= MAX_DAMPING
+            && self.may_be_explicit(particles, dt)
+            && dt <= self.longest_explicit_substep(particles)
+    }
+
+    /// Sub-steps in a tick of `seconds` that hold the cloth, whose longer side has `along` particles, in a motion of this order:
     /// [`Substepping::needed`], or those from which its springs push by their forces, where these cost no more.
-    pub fn needed(&self, particles: &ClothParticles, along: usize, seconds: f32) -> u32 {
+    pub fn needed(
+        &self,
+        particles: &ClothParticles,
+        along: usize,
+        seconds: f32,
+        order: TimeOrder,
+    ) -> u32 {
         let needed = Substepping::needed(along, seconds);
+        let most = CHEAPER * needed;
+        if order == TimeOrder::First || !self.may_be_explicit(particles, seconds / most as f32) {
+            return needed;
+        }
         let longest = self.longest_explicit_substep(particles);
         // Division may round to a step that is too long.
-        let from = ((seconds / longest * ROUNDING).ceil() as u32).max(FEWEST);
-        if from <= CHEAPER * needed {
-            from
+        let from = (seconds / longest * ROUNDING).ceil() as u32;
+        if from <= most.min(MAX_SUBSTEPS) {
+            // What touches it asks for as many as before.
+            from.max(needed)
         } else {
             needed
         }
     }
 
+    /// Without forces from now on: threads are solved, however soft they are.
+    #[doc(hidden)]
+    pub fn forget_forces(&mut self) {
+        self.forces = None;
+    }
+
     /// A tick of forces.
-    fn kicks(
+    fn advance_by_forces(
         &mut self,
         particles: &mut ClothParticles,
         step: TickStep,
@@ -307,6 +338,7 @@ impl Solver {
         respond: &mut impl FnMut(&mut ClothParticles, SubStep) -> bool,
     ) -> Stretch {
         particles.set_substep(step.seconds / step.substeps.max(1) as f32);
+        particles.end_past();
         particles.zero_pin_displacements();
         let kernels = self.simd_level.kernels();
         let forces = self.forces.as_mut().expect("forces");
@@ -315,6 +347,7 @@ impl Solver {
             forces.advance(particles, &step, pins, bending, &kernels, respond);
         });
         put_pins(particles, pins);
+        particles.past_mut().set_moved();
         let stretch = self.measure(particles);
         Stretch {
             material: stretch.structural,

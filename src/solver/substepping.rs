@@ -25,7 +25,7 @@ const SLACK_TICKS: u32 = 30;
 const MOST_FOR_TAUT: u32 = 4;
 
 /// Fewer than this, and what moves within a tick is missed.
-pub(super) const FEWEST: u32 = 4;
+const FEWEST: u32 = 4;
 
 /// Sub-steps in 1/60 s for each particle along a cloth's longer side: with fewer, threads that carry others stretch by more than
 /// a few per cent (the lab's chart `hung`).
@@ -35,8 +35,9 @@ const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 /// square; stretch that is passed on from thread to thread shrinks faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 pub enum Substepping {
-    /// As many as a cloth of so many particles needs, [`Substepping::needed`], the same in each tick; more where it is taut as a
-    /// membrane, until ripples across its threads are resolved: [`Stretch::ripple_substeps`].
+    /// As many as the cloth needs by its particles, [`Substepping::needed`], or, where it is soft, for its springs to push by their
+    /// forces, [`Solver::needed`](super::Solver::needed); more where it is taut as a membrane, until ripples across its threads are
+    /// resolved: [`Stretch::ripple_substeps`].
     #[default]
     Automatic,
     /// This many sub-steps a tick, from 1 to 10,000.

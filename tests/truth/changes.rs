@@ -96,10 +96,24 @@ fn a_change_of_substeps_gains_no_energy() {
         ("top row", |row, _| row == 0),
     ];
     for (name, pinned) in PINS {
-        let mut control = Control::default();
-        let by_tolerance = gain(&mut lying(64, pinned), |sheet, _| {
-            held(sheet, &mut control, 0.01);
-        });
+        // What falls on one pin is thrown back for a long time, in another way from another start.
+        let mut by_tolerance = f64::NEG_INFINITY;
+        for start in [0, 4] {
+            let mut sheet = lying(64, pinned);
+            let nudged = (7 * start % 64, 11 * start + 5);
+            let place = sheet.particles.position(nudged).expect("it exists");
+            sheet
+                .particles
+                .set_position(nudged, place + 1.0e-6 * Vec3::Y)
+                .expect("it exists");
+            let mut control = Control::default();
+            let found = gain(&mut sheet, |sheet, _| held(sheet, &mut control, 0.01));
+            by_tolerance = if by_tolerance >= found {
+                by_tolerance
+            } else {
+                found
+            };
+        }
         let by_turns = gain(&mut lying(64, pinned), |sheet, tick| {
             sheet.step.substeps = if tick / 10 % 2 == 0 { 20 } else { 40 };
             sheet.tick(|_, _| {});
@@ -174,6 +188,8 @@ fn what_the_material_holds_comes_back() {
         let mut sheet = Sheet::new((side, side), spacing, material, step, place, |row, _| {
             row == 0
         });
+        // So soft, it would be pushed by forces.
+        sheet.solver.forget_forces();
         let mut heights = Vec::new();
         for tick in 0..90 {
             let is_late = heights.len() > 2 && heights[tick - 1] > heights[tick - 2];

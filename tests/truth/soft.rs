@@ -69,7 +69,7 @@ fn rubber_keeps_its_energy_for_a_minute() {
         let mut sheet = Sheet::new((side, side), spacing, material, step, place, is_corner);
         let needed = sheet
             .solver
-            .needed(&sheet.particles, side as usize, step.seconds);
+            .needed(&sheet.particles, side as usize, step.seconds, step.order);
         sheet.step.substeps = needed;
         let weight = sheet.masses().iter().sum::<f64>() * GRAVITY;
         let scale = 1.5 * weight;

@@ -73,7 +73,7 @@ fn play(substepping: Substepping) -> (f64, f32) {
     let time = seconds(|| {
         for tick in 0..TICKS {
             let along = scene.surface.particles_along();
-            let needed = solver.needed(&particles, along, scene.seconds);
+            let needed = solver.needed(&particles, along, scene.seconds, scene.step(1).order);
             let mut substeps = control.substeps(substepping, needed);
             if matches!(substepping, Substepping::Adaptive { .. }) {
                 before.clone_from(&particles);

@@ -357,7 +357,9 @@ impl<'a> Ours<'a> {
             self.backup.clone_from(&self.particles);
         }
         let along = scene.surface.particles_along();
-        let needed = self.solver.needed(&self.particles, along, scene.seconds);
+        let needed = self
+            .solver
+            .needed(&self.particles, along, scene.seconds, scene.step(1).order);
         let mut substeps = self.control.substeps(self.substepping, needed);
         loop {
             let step = scene.step(substeps);

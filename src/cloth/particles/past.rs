@@ -28,6 +28,8 @@ pub(crate) struct Past {
     is_known: bool,
     /// For how many sub-steps to come the past says nothing of the future.
     wait: u32,
+    /// Whether there was a tick before.
+    has_moved: bool,
     /// After a change to shorter sub-steps.
     watch: Watch,
 }
@@ -57,6 +59,7 @@ impl Past {
     pub fn end(&mut self, now: &mut [Block]) {
         self.restart(now, 1.0);
         self.wait = 0;
+        self.watch = Watch::default();
     }
 
     /// Forgets all, and lets this many sub-steps of first order pass first.
@@ -119,9 +122,14 @@ impl Past {
 
     /// Watches this many ticks from the coming one on, if there was motion before.
     pub fn watch(&mut self, ticks: u32) {
-        if !self.blocks.is_empty() {
+        if self.has_moved {
             self.watch.ticks = ticks;
         }
+    }
+
+    /// A tick has passed.
+    pub fn set_moved(&mut self) {
+        self.has_moved = true;
     }
 
     /// Energy that may come back in the coming tick (J), if it is watched; what comes after it has one tick less.
@@ -163,7 +171,7 @@ impl Past {
     pub fn copy_from(&mut self, other: &Self) {
         self.blocks.clone_from(&other.blocks);
         (self.is_known, self.wait) = (other.is_known, other.wait);
-        self.watch = other.watch;
+        (self.has_moved, self.watch) = (other.has_moved, other.watch);
     }
 }
 
@@ -210,7 +218,7 @@ mod tests {
         let mut past = Past::default();
         past.watch(2);
         assert_eq!(past.next_watched(), None);
-        past.next(1);
+        past.set_moved();
         past.watch(2);
         assert_eq!(past.next_watched(), Some(0.0));
         past.set_lost(3.0);

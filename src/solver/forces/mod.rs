@@ -50,7 +50,7 @@ const ROUNDING: f32 = f32::EPSILON * 0.288_675;
 /// Four times the part of what weight does over a spacing that rounding may add in a second.
 const NOISE: f32 = 0.08;
 
-/// m/s²
+/// m/s², whatever pulls at a cloth.
 const GRAVITY: f32 = 9.81;
 
 /// Fewer rows a band than this, and waiting for the others would take longer than the work.
@@ -129,7 +129,7 @@ impl Forces {
         }
     }
 
-    /// A tick: sub-steps of forces alone, and of what bends. `respond` is called at the end of each, as by
+    /// A tick of particles that remember nothing but their velocity: sub-steps of forces alone, and of what bends. `respond` is called at the end of each, as by
     /// [`Solver::advance`](super::Solver::advance).
     pub fn advance(
         &mut self,
@@ -143,7 +143,6 @@ impl Forces {
         let count = step.substeps.max(1);
         let dt = step.seconds / count as f32;
         let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
-        particles.end_past();
         for index in 0..=count {
             // The end of one sub-step is the beginning of the next.
             let (part, kept) = match index == 0 || index == count {
@@ -170,7 +169,8 @@ impl Forces {
             }
             let blocks = particles.blocks_mut();
             if let Some(bending) = &mut bending {
-                bending.push(blocks, weight, kernels);
+                // Before the kick, which keeps a part of it.
+                bending.push(blocks, weight / kept, kernels);
             }
             let moved = self.kick(blocks, &kick, kernels);
             if kick.moves {
@@ -178,6 +178,23 @@ impl Forces {
                 respond(particles, substep);
             }
         }
+    }
+
+    /// Whether each particle is heavy enough for a sub-step of `dt` (s). Ends with the first that is not.
+    pub fn is_short(&self, blocks: &[Block], dt: f32) -> bool {
+        let rows = self.springs.layout.rows as usize;
+        let most = (MARGIN * 2.0 / dt).powi(2) / 2.0;
+        let mut each = blocks
+            .chunks_exact(self.springs.layout.strip as usize)
+            .enumerate();
+        each.all(|(row, blocks)| {
+            let sums = &self.sums[usize::from(row > 0 && row + 1 < rows)];
+            let own = |(block, sum): (&Block, &Lanes)| {
+                let view = block.view();
+                (0..LANES).all(|l| view[W + l] * sum[l] <= most)
+            };
+            blocks.iter().zip(sums).all(own)
+        })
     }
 
     /// Has forces act, and moves the particles. Returns their squared displacements (m²), the largest of each lane.

@@ -157,6 +157,7 @@ fn bands_and_simd_levels_change_no_bit() {
         solver.set_bands(bands);
         solver.set_simd_level(simd_level);
         assert_eq!(solver.forces_bands(), bands.min(4));
+        assert!(solver.is_explicit(&particles, &step(60)));
         for _ in 0..3 {
             solver.advance(&mut particles, step(60), &[], |_, _| false);
         }
@@ -213,7 +214,10 @@ fn forces_are_for_soft_springs() {
         let particles = ClothParticles::at_rest(&surface, material).expect("a valid material");
         let mut solver = Solver::new(&Springs::of_grid(&grid, material), &particles);
         solver.set_bending(Bending::new(&surface, material));
-        let substeps = solver.needed(&particles, side as usize, seconds);
+        let needed = |order| solver.needed(&particles, side as usize, seconds, order);
+        let substeps = needed(TimeOrder::Second);
+        let by_threads = Substepping::needed(side as usize, seconds);
+        assert_eq!(needed(TimeOrder::First), by_threads);
         let is_explicit = |substeps: u32, order: TimeOrder| {
             let step = TickStep {
                 order,
@@ -241,8 +245,7 @@ fn forces_are_for_soft_springs() {
     }
 }
 
-/// A particle that a game throws 3 m out of its cloth comes back, and takes no more with it than it was given: no spring is too long
-/// for its force.
+/// A particle that a game throws 3 m out of its cloth comes back, and the cloth to rest: no spring is too long for its force.
 #[test]
 fn what_is_torn_out_comes_back() {
     let (mut particles, mut solver) = crumpled(&grid(16, 16), &SOFT);
