@@ -21,7 +21,7 @@ fn order(motion: &Smooth) -> f64 {
             substeps,
             ..TickStep::default()
         };
-        let error = motion.error(step, &reference);
+        let error = motion.error(step, false, &reference).expect("threads");
         println!(
             "{}, {substeps} sub-steps: {:.4} mm",
             motion.name,

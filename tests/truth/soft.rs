@@ -17,14 +17,16 @@ fn a_soft_cloth_moves_as_in_f64() {
         let motion = Smooth::ALL.iter().find(|motion| motion.name == name);
         let motion = motion.expect("it is among them");
         let (reference, apart) = motion.reference();
-        let error = |substeps: u32| {
+        let error = |by_forces: bool| {
             let step = TickStep {
                 substeps,
                 ..TickStep::default()
             };
-            motion.error(step, &reference)
+            motion
+                .error(step, by_forces, &reference)
+                .expect("short sub-steps")
         };
-        let (forces, threads) = (error(substeps), error(substeps - 2));
+        let (forces, threads) = (error(true), error(false));
         println!(
             "{name}: {forces:.2e} m by forces, {threads:.2e} m by threads; reference {apart:.0e} m"
         );
