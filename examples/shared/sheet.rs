@@ -115,6 +115,22 @@ impl Sheet {
         &self.masses
     }
 
+    /// What its weight can do at most (J): no particle comes to hang lower below its nearest pin than it is from it now.
+    pub fn fall(&self) -> f64 {
+        let places: Vec<Vec3> = self.particles.positions().collect();
+        let each = || self.masses.iter().zip(&places);
+        let pins: Vec<Vec3> = each()
+            .filter(|(mass, _)| **mass == 0.0)
+            .map(|(_, place)| *place)
+            .collect();
+        each()
+            .map(|(mass, place)| {
+                let nearest = pins.iter().map(|pin| pin.distance(*place));
+                mass * GRAVITY * f64::from(nearest.fold(f32::INFINITY, f32::min))
+            })
+            .sum()
+    }
+
     /// Kinetic, and kinetic and potential energy together (J), the potential being 0 at the origin's height. What springs hold is
     /// left out: where they are stiff it is mostly what the solver leaves of them. Of a sheet that begins with its springs at
     /// their rest lengths the sum never exceeds what it begins with.

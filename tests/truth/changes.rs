@@ -6,7 +6,7 @@ use bevy_drape::{
     solver::{Control, PinMotion, Substepping, TickStep},
 };
 
-use crate::sheet::{GRAVITY, Sheet, threads};
+use crate::sheet::{Sheet, threads};
 
 const SECONDS: f32 = 1.0 / 60.0;
 
@@ -28,25 +28,9 @@ fn lying(side: u32, pinned: impl Fn(u32, u32) -> bool) -> Sheet {
     )
 }
 
-/// What its weight can do at most (J): each particle hangs as far below its nearest pin as it is from it.
-fn scale(sheet: &Sheet) -> f64 {
-    let places: Vec<Vec3> = sheet.particles.positions().collect();
-    let each = || sheet.masses().iter().zip(&places);
-    let pins: Vec<Vec3> = each()
-        .filter(|(mass, _)| **mass == 0.0)
-        .map(|(_, place)| *place)
-        .collect();
-    each()
-        .map(|(mass, place)| {
-            let nearest = pins.iter().map(|pin| pin.distance(*place));
-            mass * GRAVITY * f64::from(nearest.fold(f32::INFINITY, f32::min))
-        })
-        .sum()
-}
-
 /// Three seconds. `substeps` says of each tick how many it has. Returns the largest gain, as a part of what weight can do.
 fn gain(sheet: &mut Sheet, mut tick: impl FnMut(&mut Sheet, u32)) -> f64 {
-    let (scale, [_, start]) = (scale(sheet), sheet.energy());
+    let (scale, [_, start]) = (sheet.fall(), sheet.energy());
     let mut highest = f64::NEG_INFINITY;
     for index in 0..180 {
         tick(sheet, index);

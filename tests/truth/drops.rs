@@ -3,7 +3,7 @@
 use bevy::math::{Quat, Vec3};
 use bevy_drape::solver::TickStep;
 
-use crate::sheet::{GRAVITY, Sheet, threads};
+use crate::sheet::{Sheet, threads};
 
 /// Drops, and ticks of 1/64 s of each.
 const DROPS: u32 = 120;
@@ -74,24 +74,6 @@ fn drop(random: &mut Random) -> Sheet {
     )
 }
 
-/// What gains are parts of (J): each particle's weight × its distance from the nearest pin, which is as far as it can hang below
-/// it.
-fn scale(sheet: &Sheet) -> f64 {
-    let all: Vec<Vec3> = sheet.particles.positions().collect();
-    let each = || sheet.masses().iter().zip(&all);
-    let pins: Vec<Vec3> = each()
-        .filter(|(mass, _)| **mass == 0.0)
-        .map(|(_, place)| *place)
-        .collect();
-    let hang = |place: &Vec3| {
-        let apart = pins.iter().map(|pin| pin.distance(*place));
-        f64::from(apart.fold(f32::INFINITY, f32::min))
-    };
-    each()
-        .map(|(mass, place)| mass * GRAVITY * hang(place))
-        .sum()
-}
-
 /// Undamped and let go with its springs at rest, a cloth never has more kinetic and potential energy than it began with, to one per
 /// cent of what its weight can do hanging from its pins.
 #[test]
@@ -101,7 +83,7 @@ fn random_drops_gain_no_energy() {
     let mut gaining = 0;
     for number in 0..DROPS {
         let mut sheet = drop(&mut random);
-        let scale = scale(&sheet);
+        let scale = sheet.fall();
         if scale == 0.0 {
             // All of it is pinned.
             continue;

@@ -8,7 +8,7 @@ use bevy_drape::{
     solver::{ClothSettings, Control, Substepping, TickStep},
 };
 
-use crate::shared::sheet::{GRAVITY, Sheet, threads};
+use crate::shared::sheet::{Sheet, threads};
 
 /// Particles along a side, and its length (m).
 pub const SIDE: u32 = 64;
@@ -64,7 +64,7 @@ pub fn play(pinned: Pinned, substepping: Substepping, start: u32) -> Outcome {
     let size = (SIDE, SIDE);
     let mut sheet = Sheet::new(size, spacing, threads(0.0, 0.0), step, place, pinned)
         .tethered(ClothSettings::default().tethers);
-    let scale = scale(&sheet);
+    let scale = sheet.fall();
     let [_, begins] = sheet.energy();
     let mut control = Control::default();
     let mut backup = sheet.particles.clone();
@@ -119,22 +119,4 @@ fn stretches(sheet: &Sheet) -> impl Iterator<Item = f64> {
         let [a, b] = spring.ends.map(|end| places[end as usize].as_dvec3());
         a.distance(b) / f64::from(spring.rest_length) - 1.0
     })
-}
-
-/// The start's energy above the lowest that could be reached (J): no particle comes to hang lower below its nearest pin than it
-/// is far from it as the cloth lies flat. Kinetic energy is none at the start, and the potential is that of all pins' height.
-fn scale(sheet: &Sheet) -> f64 {
-    let places: Vec<Vec3> = sheet.particles.positions().collect();
-    let each = || sheet.masses().iter().zip(&places);
-    let pins: Vec<Vec3> = each()
-        .filter(|(mass, _)| **mass == 0.0)
-        .map(|(_, place)| *place)
-        .collect();
-    let fall = |place: &Vec3| {
-        let apart = pins.iter().map(|pin| pin.distance(*place));
-        f64::from(apart.fold(f32::INFINITY, f32::min))
-    };
-    each()
-        .map(|(mass, place)| mass * GRAVITY * fall(place))
-        .sum()
 }
