@@ -18,7 +18,7 @@ use crate::{
     solver::{LimitInputs, Stretch, Substepping, TickStep},
 };
 
-/// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.4 at 256², 1.6 at 512².
+/// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.3 at 256², 1.4 at 512².
 const MIN_TO_SPLIT: usize = 256 * 256;
 
 /// Cloths whose particles × sub-steps come to less are solved one after the other on this thread.
