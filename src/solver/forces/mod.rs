@@ -129,8 +129,8 @@ impl Forces {
         }
     }
 
-    /// A tick of particles that remember nothing but their velocity: sub-steps of forces alone, and of what bends. `respond` is called at the end of each, as by
-    /// [`Solver::advance`](super::Solver::advance).
+    /// A tick of particles that remember nothing but their velocity: sub-steps of forces alone, and of what bends. `respond` is
+    /// called at the end of each, as by [`Solver::advance`](super::Solver::advance).
     pub fn advance(
         &mut self,
         particles: &mut ClothParticles,
