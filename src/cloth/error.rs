@@ -48,6 +48,16 @@ pub enum ClothError {
         /// What it is.
         value: f32,
     },
+    /// Layers of cloth are to be kept farther apart than its particles leave room for.
+    #[error(
+        "a thickness of {thickness} m asks for a spacing of at least twice as much, and the shortest is {shortest} m: make the thickness smaller, or the cloth of fewer particles"
+    )]
+    TooThick {
+        /// How far apart (m).
+        thickness: f32,
+        /// The shortest spacing at rest (m).
+        shortest: f32,
+    },
     /// Rows and columns were asked of a cloth that was not made from a grid.
     #[error("the cloth is a mesh, which has neither rows nor columns")]
     NotAGrid,

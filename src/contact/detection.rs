@@ -336,6 +336,12 @@ impl Detection {
         }
     }
 
+    /// Takes into account that something else has pushed particles, by at most this far (m).
+    pub fn note_push(&mut self, farthest: f32) {
+        self.moved += farthest;
+        self.moved_now += farthest;
+    }
+
     /// The colliders that may touch.
     pub fn touches(&self) -> &[Touch] {
         &self.touches

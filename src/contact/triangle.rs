@@ -144,7 +144,7 @@ pub(super) fn nearest(triangle: [Vec3; 3], [start, end]: [Vec3; 2]) -> NearestPo
 }
 
 /// How far along two segments their nearest points are, from 0 to 1.
-fn nearest_of_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f32, f32) {
+pub(super) fn nearest_of_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f32, f32) {
     let (ab, cd, ca) = (b - a, d - c, a - c);
     let (aa, ee, f) = (ab.length_squared(), cd.length_squared(), cd.dot(ca));
     let (along, across) = (ab.dot(ca), ab.dot(cd));

@@ -86,4 +86,5 @@ pub(super) fn clear_stats(stats: &mut ClothStats, is_asleep: bool) {
     (stats.nodes_visited, stats.leaf_tests) = (0, 0);
     (stats.colliders_near, stats.by_triangles) = (0, 0);
     stats.requeries = 0;
+    (stats.layer_pairs, stats.layer_searches) = (0, 0);
 }

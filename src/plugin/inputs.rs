@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use crate::{
     cloth::{ClothError, ClothMaterial},
-    contact::NarrowPhase,
+    contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::ClothSettings,
 };
@@ -16,6 +16,7 @@ pub(super) struct Inputs {
     pub material: ClothMaterial,
     pub search: SearchMethod,
     pub narrow_phase: NarrowPhase,
+    pub self_collision: Option<ClothSelfCollision>,
     /// In the world (m/s²).
     pub gravity: Vec3,
 }
@@ -30,6 +31,7 @@ impl Inputs {
         material: Option<&ClothMaterial>,
         search: Option<&SearchMethod>,
         narrow_phase: Option<&NarrowPhase>,
+        self_collision: Option<&ClothSelfCollision>,
         gravity: Vec3,
     ) -> Result<Self, ClothError> {
         let settings = settings.copied().unwrap_or_default();
@@ -46,6 +48,7 @@ impl Inputs {
             material,
             search,
             narrow_phase: narrow_phase.copied().unwrap_or_default(),
+            self_collision: self_collision.copied(),
             gravity,
         })
     }

@@ -20,6 +20,8 @@ mod frame;
 mod gizmos;
 mod gravity;
 mod inputs;
+mod integrate;
+mod islands;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod naming;
@@ -37,6 +39,7 @@ mod source;
 mod state;
 mod stats;
 mod tick;
+mod together;
 
 use bevy::{
     app::{FixedUpdate, PluginGroup, PluginGroupBuilder},

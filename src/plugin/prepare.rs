@@ -27,7 +27,7 @@ use super::{
 };
 use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
-    contact::{ContactSettings, NarrowPhase},
+    contact::{ClothSelfCollision, ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothSettings, PinMotion, Substepping, TickStep},
 };
@@ -46,6 +46,7 @@ pub(super) struct Preparing {
     settings: Option<&'static ClothSettings>,
     method: Option<&'static SearchMethod>,
     narrow_phase: Option<&'static NarrowPhase>,
+    self_collision: Option<&'static ClothSelfCollision>,
     particles: &'static mut ClothParticles,
     built: &'static mut ClothBuilt,
     state: &'static mut ClothState,
@@ -77,6 +78,7 @@ pub(super) fn prepare_cloths(
             cloth.material,
             cloth.method,
             cloth.narrow_phase,
+            cloth.self_collision,
             gravity.0,
         );
         let outcome = inputs.and_then(|inputs| {
@@ -151,6 +153,9 @@ impl PreparingItem<'_, '_> {
             state.largest_speed = check_particles(particles)?;
         }
         let surface = built.surface().clone();
+        if let Some(self_collision) = &inputs.self_collision {
+            self_collision.validate(&surface)?;
+        }
         targets.find(
             attachments,
             &state.attachments,
@@ -199,7 +204,13 @@ impl PreparingItem<'_, '_> {
             particles,
             inputs.gravity.length(),
         );
-        let known = Some((*settings, inputs.search, inputs.narrow_phase, acceleration));
+        let known = Some((
+            *settings,
+            inputs.search,
+            inputs.narrow_phase,
+            inputs.self_collision,
+            acceleration,
+        ));
         if state.known != known || !scratch.pins.is_empty() || !settings.sleeps {
             state.known = known;
             state.rest.disturb();
@@ -226,6 +237,15 @@ impl PreparingItem<'_, '_> {
             material_stretch: built.material_stretch,
         });
         scratch.substepping = settings.substepping;
+        scratch.is_in_island = false;
+        scratch.self_collision = inputs.self_collision;
+        if inputs.self_collision.is_none() {
+            scratch.mutual = None;
+        } else if let Some(mutual) = &mut scratch.mutual
+            && (was_written || !was_built || scratch.teleports)
+        {
+            mutual.forget();
+        }
         scratch.search = inputs.search;
         scratch.contact_settings = ContactSettings {
             particle_radius: settings.particle_radius,

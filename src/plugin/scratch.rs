@@ -10,7 +10,7 @@ use bevy::{
 
 use crate::{
     cloth::ClothParticles,
-    contact::{ContactSettings, Detection, MovingCollider},
+    contact::{ClothSelfCollision, ContactSettings, Detection, MovingCollider, MutualContact},
     hierarchy::{NodeBounds, SearchMethod, TopDownQuery},
     solver::{LimitInputs, PinMotion, Substepping, TickStep},
 };
@@ -39,6 +39,11 @@ pub struct ClothScratch {
     /// Their entities, while others are looked for.
     pub(super) near_set: EntityHashSet,
     pub(super) detection: Detection,
+    /// How it touches cloth, and whether other cloths are near that it is moved with.
+    pub(super) self_collision: Option<ClothSelfCollision>,
+    pub(super) is_in_island: bool,
+    /// Contact with itself alone.
+    pub(super) mutual: Option<Box<MutualContact>>,
     /// What a cloth that sleeps is searched with.
     pub(super) sleep_query: (NodeBounds, TopDownQuery),
     /// The particles as the tick began, for one that is done again.

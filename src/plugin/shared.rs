@@ -1,12 +1,13 @@
 //! What cloths made alike share.
 
-use std::sync::{Arc, Weak};
+use std::sync::{Arc, OnceLock, Weak};
 
 use bevy::{ecs::resource::Resource, math::Vec3};
 
 use super::source::Source;
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothShape, SpringKind, Springs, Surface},
+    contact::Sheet,
     hierarchy::QuadTree,
     solver::{Bending, Solver},
 };
@@ -21,6 +22,16 @@ pub(super) struct Shared {
     pub tree: QuadTree,
     /// One that has moved nothing yet, for each cloth to begin with.
     pub solver: Solver,
+    /// For contact of cloth with cloth: made when a cloth asks for it.
+    sheet: OnceLock<Arc<Sheet>>,
+}
+
+impl Shared {
+    /// What contact of cloth with cloth searches.
+    pub fn sheet(&self) -> &Arc<Sheet> {
+        self.sheet
+            .get_or_init(|| Arc::new(Sheet::new(&self.surface, &self.tree)))
+    }
 }
 
 /// What a surface is made from.
@@ -80,6 +91,7 @@ impl SharedParts {
             surface,
             springs,
             tree,
+            sheet: OnceLock::new(),
         });
         self.known.retain(|known| known.strong_count() > 0);
         self.known.push(Arc::downgrade(&shared));

@@ -31,15 +31,16 @@ use super::{
     contacts::{send_stopped_messages, send_touch_messages},
     envelope::report_limits,
     fault::log_faults,
+    integrate::integrate,
+    islands::{Islands, find_islands},
     naming::Part,
     prepare::prepare_cloths,
     search::{query_collisions, rebuild_hierarchies},
     shared::SharedParts,
-    tick::integrate,
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, Pins},
-    contact::{ClothCollider, NarrowPhase},
+    contact::{ClothCollider, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::ClothSettings,
 };
@@ -74,6 +75,7 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothSettings>()
             .register_type::<SearchMethod>()
             .register_type::<NarrowPhase>()
+            .register_type::<ClothSelfCollision>()
             .register_type::<ClothCollider>()
             .register_type::<ClothContacts>()
             .register_type::<ClothFrame>()
@@ -92,6 +94,7 @@ impl Plugin for ClothPlugin {
             .add_message::<ClothLimitExceeded>()
             .insert_resource(ClothPresence::Simulated)
             .init_resource::<SharedParts>()
+            .init_resource::<Islands>()
             .add_observer(add_parts::<Cloth, ClothParts>)
             .add_observer(add_parts::<ClothCollider, ColliderMotion>)
             .add_observer(send_stopped_messages)
@@ -112,7 +115,7 @@ impl Plugin for ClothPlugin {
         .add_systems(
             self.schedule,
             (
-                (prepare_colliders, prepare_cloths)
+                (prepare_colliders, prepare_cloths, find_islands)
                     .chain()
                     .run_if(resource_exists::<Time>)
                     .in_set(ClothSystems::Prepare),

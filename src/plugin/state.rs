@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{ClothAttachment, attachments::Attached, excess::Excess};
 use crate::{
-    contact::{MovingCollider, NarrowPhase},
+    contact::{ClothSelfCollision, MovingCollider, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
 };
@@ -29,7 +29,13 @@ pub struct ClothState {
     /// When the plugin last wrote the particles: whoever wrote them since was the game.
     pub(super) written: Option<Tick>,
     /// What disturbs a cloth at rest when it changes, besides what it is built from.
-    pub(super) known: Option<(ClothSettings, SearchMethod, NarrowPhase, Vec3)>,
+    pub(super) known: Option<(
+        ClothSettings,
+        SearchMethod,
+        NarrowPhase,
+        Option<ClothSelfCollision>,
+        Vec3,
+    )>,
     /// What `attached` was made from, and the entities that it names.
     pub(super) attachments: Vec<ClothAttachment>,
     pub(super) targets: Vec<Entity>,

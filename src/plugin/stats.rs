@@ -36,6 +36,11 @@ pub struct ClothStats {
     pub requeries: u32,
     /// Particles that were pushed out of a collider, once for each; cells where it is tested against triangles.
     pub contacts: usize,
+    /// Pairs of its features, or of its and of other cloths', that may come near each other: vertices with faces, edges with
+    /// edges. 0 without [`ClothSelfCollision`](crate::contact::ClothSelfCollision).
+    pub layer_pairs: usize,
+    /// How often in the tick these were searched for.
+    pub layer_searches: u32,
     /// The largest stretch, at the end of the tick.
     pub stretch: Stretch,
     /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps.

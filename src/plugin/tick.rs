@@ -1,8 +1,13 @@
-//! All sub-steps of a tick.
+//! All sub-steps of a cloth's tick.
 
 use bevy::{
-    ecs::{change_detection::DetectChanges, entity::Entity, query::QueryData, system::Query},
-    math::Vec3,
+    ecs::{
+        change_detection::DetectChanges,
+        entity::{Entity, EntityHashSet},
+        query::QueryData,
+        system::Query,
+    },
+    math::{Isometry3d, Vec3},
     platform::time::Instant,
     tasks::{ComputeTaskPool, available_parallelism},
 };
@@ -13,62 +18,38 @@ use super::{
 };
 use crate::{
     cloth::ClothParticles,
-    contact::ColliderShape,
+    contact::{ClothSelfCollision, ColliderShape, MovingCollider, MutualContact, Participant},
     hierarchy::Core,
-    solver::{LimitInputs, Stretch, Substepping, TickStep},
+    solver::{LimitInputs, Stretch, SubStep, Substepping, TickStep},
 };
 
 /// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.3 at 256², 1.4 at 512².
 const MIN_TO_SPLIT: usize = 256 * 256;
 
-/// Cloths whose particles × sub-steps come to less are solved one after the other on this thread.
-const MIN_TO_SHARE: usize = 64 * 64 * 20;
-
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct Integrating {
-    built: &'static mut ClothBuilt,
-    frame: &'static ClothFrame,
-    particles: &'static mut ClothParticles,
-    state: &'static mut ClothState,
-    scratch: &'static mut ClothScratch,
-    contacts: &'static mut ClothContacts,
-    stats: &'static mut ClothStats,
-}
-
-/// Runs all sub-steps, of several cloths at once where there is enough to do.
-pub(super) fn integrate(
-    mut cloths: Query<Integrating>,
-    colliders: Query<(Entity, &ColliderMotion)>,
-) {
-    let (mut awake, mut work) = (0, 0);
-    for cloth in &cloths {
-        if let Some(step) = cloth.scratch.step
-            && !cloth.state.rest.is_asleep()
-        {
-            awake += 1;
-            work += cloth.particles.len() * step.substeps as usize;
-        }
-    }
-    if awake > 1 && work >= MIN_TO_SHARE && threads() > 1 {
-        cloths
-            .par_iter_mut()
-            .for_each(|mut cloth| cloth.integrate(&colliders));
-    } else {
-        cloths
-            .iter_mut()
-            .for_each(|mut cloth| cloth.integrate(&colliders));
-    }
+    pub built: &'static mut ClothBuilt,
+    pub frame: &'static ClothFrame,
+    pub particles: &'static mut ClothParticles,
+    pub state: &'static mut ClothState,
+    pub scratch: &'static mut ClothScratch,
+    pub contacts: &'static mut ClothContacts,
+    pub stats: &'static mut ClothStats,
 }
 
 /// Threads that work on a tick: those of Bevy's compute pool, and the one that waits for them.
-fn threads() -> usize {
+pub(super) fn threads() -> usize {
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (pool + 1).min(available_parallelism())
 }
 
 impl IntegratingItem<'_, '_> {
-    fn integrate(&mut self, colliders: &Query<(Entity, &ColliderMotion)>) {
+    pub fn integrate(&mut self, colliders: &Query<(Entity, &ColliderMotion)>) {
+        // Those that may touch each other have been moved.
+        if self.scratch.is_in_island {
+            return;
+        }
         // Taken: a cloth that is not prepared again does not move again.
         let Some(step) = self.scratch.step.take() else {
             return;
@@ -86,7 +67,12 @@ impl IntegratingItem<'_, '_> {
         }
         let start = Instant::now();
         self.solve(step, colliders);
-        self.stats.integrate_ms = milliseconds_since(start);
+        self.finish(milliseconds_since(start));
+    }
+
+    /// Takes over what came of a tick whose sub-steps took this long (ms).
+    pub(super) fn finish(&mut self, milliseconds: f64) {
+        self.stats.integrate_ms = milliseconds;
         self.state.written = Some(self.particles.last_changed());
         self.remember_contacts();
         self.contacts
@@ -136,7 +122,7 @@ impl IntegratingItem<'_, '_> {
     }
 
     /// What the tick's last run of sub-steps asked of the cloth.
-    fn limit_inputs(&self, step: TickStep) -> LimitInputs {
+    pub(super) fn limit_inputs(&self, step: TickStep) -> LimitInputs {
         let spacing = self.built.surface().spacing();
         let root = self
             .built
@@ -174,6 +160,7 @@ impl IntegratingItem<'_, '_> {
 
     /// One way through the sub-steps.
     fn advance(&mut self, step: TickStep, colliders: &Query<(Entity, &ColliderMotion)>) -> Stretch {
+        let mut alone = self.begin_alone();
         let ClothScratch {
             pins,
             near,
@@ -182,22 +169,105 @@ impl IntegratingItem<'_, '_> {
             contact_settings,
             ..
         } = &mut *self.scratch;
-        let solver = &mut self.built.solver;
+        let built = &mut *self.built;
+        let (sheet, dt) = (&built.shared, step.seconds / step.substeps.max(1) as f32);
         let frame = self.frame;
-        solver.advance(&mut self.particles, step, pins, |particles, substep| {
-            detection.respond(particles, contact_settings, substep, |numbered| {
-                // Those that were far away may be near now; who is known keeps its number.
-                near_set.clear();
-                near_set.extend(near.iter().map(|(known, _)| *known));
-                for (entity, motion) in colliders {
-                    if !near_set.contains(&entity)
-                        && let Some(collider) = motion.seen_from(frame)
-                    {
-                        numbered.push((near.len(), collider));
-                        near.push((entity, collider));
-                    }
-                }
-            })
+        let stretch =
+            built
+                .solver
+                .advance(&mut self.particles, step, pins, |particles, substep| {
+                    let settings = *contact_settings;
+                    let numbered = |numbered: &mut Vec<(usize, MovingCollider)>| {
+                        add_far(near, near_set, frame, colliders, numbered);
+                    };
+                    let is_touched = detection.respond(particles, &settings, substep, numbered);
+                    let Some((mutual, settings)) = &mut alone else {
+                        return is_touched;
+                    };
+                    let itself = Participant {
+                        particles,
+                        sheet: sheet.sheet(),
+                        to_common: None,
+                        settings: *settings,
+                        is_fixed: false,
+                    };
+                    let mut is_pushed = [false];
+                    let moved = (!is_touched).then_some(substep.farthest_move);
+                    let farthest =
+                        mutual.respond(&mut [itself], |_, _| true, dt, moved, &mut is_pushed);
+                    detection.note_push(farthest);
+                    is_touched | is_pushed[0]
+                });
+        if let Some((mutual, _)) = alone {
+            self.stats.layer_pairs = mutual.pairs();
+            self.stats.layer_searches = mutual.searches();
+            self.scratch.mutual = Some(mutual);
+        }
+        stretch
+    }
+
+    /// Begins contact of a cloth with itself, where that is asked for.
+    fn begin_alone(&mut self) -> Option<(Box<MutualContact>, ClothSelfCollision)> {
+        let settings = self.scratch.self_collision?;
+        if !settings.with_itself {
+            return None;
+        }
+        let mut mutual = self.scratch.mutual.take().unwrap_or_default();
+        mutual.begin(&[self.participant(settings, None)], |_, _| true);
+        Some((mutual, settings))
+    }
+
+    /// The cloth, as contact of cloth with cloth sees it.
+    pub(super) fn participant(
+        &mut self,
+        settings: ClothSelfCollision,
+        to_common: Option<Isometry3d>,
+    ) -> Participant<'_> {
+        Participant {
+            particles: &mut self.particles,
+            sheet: self.built.shared.sheet(),
+            to_common,
+            settings,
+            is_fixed: self.state.rest.is_asleep(),
+        }
+    }
+
+    /// Pushes it out of what it touches that is no cloth. Returns whether anything moved.
+    pub(super) fn touch(
+        &mut self,
+        substep: SubStep,
+        colliders: &Query<(Entity, &ColliderMotion)>,
+    ) -> bool {
+        let ClothScratch {
+            near,
+            near_set,
+            detection,
+            contact_settings,
+            ..
+        } = &mut *self.scratch;
+        let frame = self.frame;
+        detection.respond(&mut self.particles, contact_settings, substep, |numbered| {
+            add_far(near, near_set, frame, colliders, numbered);
         })
+    }
+}
+
+/// Adds the colliders that were far away as the tick began: they may be near now. Who is known keeps its number.
+fn add_far(
+    near: &mut Vec<(Entity, MovingCollider)>,
+    near_set: &mut EntityHashSet,
+    frame: &ClothFrame,
+    colliders: &Query<(Entity, &ColliderMotion)>,
+    numbered: &mut Vec<(usize, MovingCollider)>,
+) {
+    near_set.clear();
+    near_set.extend(near.iter().map(|(known, _)| *known));
+    for (entity, motion) in colliders {
+        if !near_set.contains(&entity)
+            && let Some(collider) = motion.seen_from(frame)
+        {
+            numbered.push((near.len(), collider));
+            near.push((entity, collider));
+        }
     }
 }

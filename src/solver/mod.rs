@@ -88,7 +88,7 @@ pub use rest::Rest;
 pub use settings::ClothSettings;
 pub use step::{PinMotion, SubStep, TickStep, TimeOrder};
 pub use stretch::Stretch;
-pub use substep::Solver;
+pub use substep::{Solver, StartedTick};
 pub use substepping::{Control, Substepping};
 pub use tether::Tethers;
 pub(crate) use tether::material_stretch;

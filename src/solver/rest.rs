@@ -76,6 +76,11 @@ impl Rest {
         self.is_asleep
     }
 
+    /// Whether all particles were near their places when they were last looked at.
+    pub fn is_calm(&self) -> bool {
+        self.is_asleep || self.calm > 0.0
+    }
+
     /// Whether it sleeps, with its particles as they are here to the last bit.
     pub fn sleeps_as(&self, particles: &ClothParticles) -> bool {
         self.is_asleep && self.origin == *particles

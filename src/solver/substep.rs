@@ -1,27 +1,20 @@
 //! A tick of sub-steps: prediction, bending, springs, response.
 
 mod explicit;
+mod started;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
 
 use super::{
-    Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, TimeOrder,
-    bands::{in_bands, with_threads_awake},
-    energy::Energy,
-    forces::Forces,
-    list::ListSweep,
-    pace::Pace,
-    pipeline::GridSweep,
-    predict::{Prediction, weight},
-    spin::Spin,
-    step::{DAMPING_REFERENCE, existing, put_pins},
-    sweep::{Motion, Sweep},
-    tether::Anchors,
+    Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, bands::with_threads_awake,
+    forces::Forces, list::ListSweep, pipeline::GridSweep, sweep::Sweep, tether::Anchors,
     threads::ThreadSweep,
 };
-use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, StepKind, Surface};
+use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
+
+pub use started::StartedTick;
 
 /// Sub-steps of first order after one that ended with a push.
 const AFTER_CONTACT: u32 = 3;
@@ -200,144 +193,15 @@ impl Solver {
         pins: &[PinMotion],
         mut respond: impl FnMut(&mut ClothParticles, SubStep) -> bool,
     ) -> Stretch {
-        let step = self.allowed(step);
-        assert!(
-            particles.layout() == self.layout,
-            "particles of the solver's own"
-        );
-        if step.seconds <= 0.0 {
-            return self.measure(particles);
-        }
-        let dt = step.seconds / step.substeps.max(1) as f32;
-        if self.is_explicit(particles, &step) {
-            return self.advance_by_forces(particles, step, pins, &mut respond);
-        }
-        let watched = Energy::watched(particles, dt, step.acceleration);
-        particles.set_substep(dt);
-        particles.zero_pin_displacements();
-        if step.order == TimeOrder::First {
-            particles.past_mut().forget(0);
-        }
-        let bands = self.bands();
-        // What else turns the cloth, or carries it in another way, is not known here.
-        let spin = Spin::of(particles, &step, pins);
-        let mut is_pushed = false;
-        let mut respond = |particles: &mut ClothParticles, substep| {
-            let pushes = respond(particles, substep);
-            is_pushed |= pushes;
-            pushes
-        };
-        let (measured, ripple) =
-            with_threads_awake(bands, || self.substeps(particles, step, pins, &mut respond));
-        let stretch = Stretch {
-            ripple_substeps: step.seconds * ripple / RESOLVED,
-            ..measured.unwrap_or_else(|| self.measure(particles))
-        };
-        let is_still = pins.iter().all(|pin| pin.from == pin.to);
-        // What the material gives comes back by itself, and what pushes or carries a cloth gives it energy.
-        let given = step.material_stretch.max(stretch.material);
-        let is_unsolved = stretch.structural > 2.0 * given;
-        if let Some(before) = watched
-            && is_unsolved
-            && is_still
-            && !is_pushed
-        {
-            before.limit(particles, step.acceleration);
-        } else {
-            particles.past_mut().set_lost(0.0);
-        }
-        particles.past_mut().set_moved();
-        if let Some(spin) = spin
-            && !is_pushed
-        {
-            let kept = (1.0 - step.damping).powf(step.seconds / DAMPING_REFERENCE);
-            spin.restore(particles, kept);
-        }
-        put_pins(particles, pins);
-        if stretch.structural > step.material_stretch + UNSOLVED {
-            particles.past_mut().forget(WARY_TICKS * step.substeps);
-        }
-        stretch
-    }
-
-    /// A step of the order that is safe with what solves the springs.
-    fn allowed(&self, step: TickStep) -> TickStep {
-        let order = if self.sweep.is_exact() {
-            step.order
-        } else {
-            TimeOrder::First
-        };
-        TickStep { order, ..step }
-    }
-
-    /// All sub-steps of a tick. Returns the stretch where it was measured on the way, and the frequency of ripples (rad/s).
-    fn substeps(
-        &mut self,
-        particles: &mut ClothParticles,
-        step: TickStep,
-        pins: &[PinMotion],
-        respond: &mut impl FnMut(&mut ClothParticles, SubStep) -> bool,
-    ) -> (Option<Stretch>, f32) {
-        let count = step.substeps.max(1);
-        let dt = step.seconds / count as f32;
-        let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
-        let kernels = self.simd_level.kernels();
-        let bands = self.bands();
-        let (mut measured, mut ripple) = (None, 0.0);
-        for index in 0..count {
-            let mut substep = SubStep {
-                index,
-                count,
-                farthest_move: 0.0,
-            };
-            for pin in existing(pins, particles.len()) {
-                particles
-                    .set_pin_target(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
-            }
-            self.tethers.locate(particles.blocks(), &mut self.anchors);
-            let kind = match step.order {
-                TimeOrder::First => StepKind::First,
-                TimeOrder::Second => particles.next_step(),
-            };
-            let weight_dt2 = weight(kind) * dt * dt;
-            let pull = (step.acceleration * weight_dt2).to_array();
-            let prediction = Prediction::new(kind, kept, pull);
-            let (blocks, past) = particles.blocks_and_past();
-            match step.order {
-                TimeOrder::First => (kernels.predict_first)(blocks, &prediction),
-                TimeOrder::Second if bands > 1 => {
-                    let size = blocks.len().div_ceil(bands);
-                    let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
-                    in_bands(parts, |(blocks, past)| {
-                        (kernels.predict)(blocks, past, &prediction);
-                    });
+        let mut tick = self.begin(particles, step, pins);
+        with_threads_awake(self.bands_of(&tick), || {
+            while let Some(substep) = self.substep(particles, pins, &mut tick) {
+                if respond(particles, substep) {
+                    tick.note_push(particles);
                 }
-                TimeOrder::Second => (kernels.predict)(blocks, past, &prediction),
             }
-            if let Some(bending) = &mut self.bending {
-                bending.prepare(blocks, weight_dt2);
-                bending.solve(blocks, &kernels);
-            }
-            self.sweep
-                .set_pace(Pace::new(weight_dt2, dt, self.retardation));
-            let motion = Motion {
-                kernels: &kernels,
-                tethers: &self.tethers,
-                anchors: &self.anchors,
-                measures: index + 1 == count,
-            };
-            let swept = self.sweep.substep(blocks, &motion, self.bands);
-            if kind == StepKind::Start {
-                (kernels.begin_past)(blocks, past);
-            }
-            (measured, ripple) = (swept.stretch, swept.ripple);
-            substep.farthest_move = swept.moved.into_iter().fold(0.0, f32::max).sqrt();
-            if respond(particles, substep) {
-                measured = None;
-                particles.past_mut().forget(AFTER_CONTACT);
-            }
-        }
-        (measured, ripple)
+        });
+        self.end(particles, pins, tick)
     }
 
     /// Measures the stretch of `particles`.

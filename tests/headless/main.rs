@@ -6,6 +6,7 @@ mod envelope;
 mod faults;
 mod frame;
 mod gizmos;
+mod layers;
 mod lifetime;
 mod log;
 mod mesh;

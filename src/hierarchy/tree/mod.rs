@@ -153,6 +153,14 @@ impl QuadTree {
         })
     }
 
+    /// Of a grid, how the nodes of each level lie in rows: the first of them, and how many a row has.
+    pub(crate) fn lattice(&self) -> Option<Vec<(u32, u32)>> {
+        let levels = self.levels().iter().enumerate();
+        levels
+            .map(|(level, nodes)| Some((nodes.start, self.0.columns(level)?)))
+            .collect()
+    }
+
     /// Indices of the particles that a node holds.
     pub fn particles_of(&self, node: u32) -> Vec<u32> {
         let level = self.level_of(node);

@@ -16,6 +16,11 @@ pub(crate) trait Tree: Debug + Send + Sync {
     /// A node of a level.
     fn node(&self, level: usize, node: u32) -> Node;
 
+    /// Nodes side by side on a level, where all of its nodes lie in rows and columns.
+    fn columns(&self, _level: usize) -> Option<u32> {
+        None
+    }
+
     /// How the particles lie that it was made for.
     fn layout(&self) -> Layout;
 

@@ -129,55 +129,51 @@ impl Forces {
         }
     }
 
-    /// A tick of particles that remember nothing but their velocity: sub-steps of forces alone, and of what bends. `respond` is
-    /// called at the end of each, as by [`Solver::advance`](super::Solver::advance).
-    pub fn advance(
+    /// A sub-step of particles that remember nothing but their velocity: forces alone, and what bends. The one after the last
+    /// only ends the tick, and is none.
+    pub fn substep(
         &mut self,
         particles: &mut ClothParticles,
         step: &TickStep,
+        index: u32,
         pins: &[PinMotion],
-        mut bending: Option<&mut Bending>,
+        bending: Option<&mut Bending>,
         kernels: &Kernels,
-        respond: &mut impl FnMut(&mut ClothParticles, SubStep) -> bool,
-    ) {
+    ) -> Option<SubStep> {
         let count = step.substeps.max(1);
         let dt = step.seconds / count as f32;
         let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
-        for index in 0..=count {
-            // The end of one sub-step is the beginning of the next.
-            let (part, kept) = match index == 0 || index == count {
-                true => (0.5, kept.sqrt()),
-                false => (1.0, kept),
-            };
-            let weight = part * dt * dt;
-            let kick = Kick {
-                kept,
-                weight,
-                pull: (step.acceleration * weight).to_array(),
-                moves: index < count,
-            };
-            let mut substep = SubStep {
-                index,
-                count,
-                farthest_move: 0.0,
-            };
-            if kick.moves {
-                for pin in existing(pins, particles.len()) {
-                    let target = pin.from.lerp(pin.to, substep.end());
-                    particles.set_pin_target(pin.particle as usize, target);
-                }
-            }
-            let blocks = particles.blocks_mut();
-            if let Some(bending) = &mut bending {
-                // Before the kick, which keeps a part of it.
-                bending.push(blocks, weight / kept, kernels);
-            }
-            let moved = self.kick(blocks, &kick, kernels);
-            if kick.moves {
-                substep.farthest_move = moved.into_iter().fold(0.0, f32::max).sqrt();
-                respond(particles, substep);
+        // The end of one sub-step is the beginning of the next.
+        let (part, kept) = match index == 0 || index == count {
+            true => (0.5, kept.sqrt()),
+            false => (1.0, kept),
+        };
+        let weight = part * dt * dt;
+        let kick = Kick {
+            kept,
+            weight,
+            pull: (step.acceleration * weight).to_array(),
+            moves: index < count,
+        };
+        let mut substep = SubStep {
+            index,
+            count,
+            farthest_move: 0.0,
+        };
+        if kick.moves {
+            for pin in existing(pins, particles.len()) {
+                let target = pin.from.lerp(pin.to, substep.end());
+                particles.set_pin_target(pin.particle as usize, target);
             }
         }
+        let blocks = particles.blocks_mut();
+        if let Some(bending) = bending {
+            // Before the kick, which keeps a part of it.
+            bending.push(blocks, weight / kept, kernels);
+        }
+        let moved = self.kick(blocks, &kick, kernels);
+        substep.farthest_move = moved.into_iter().fold(0.0, f32::max).sqrt();
+        kick.moves.then_some(substep)
     }
 
     /// Whether each particle is heavy enough for a sub-step of `dt` (s). Ends with the first that is not.

@@ -3,10 +3,7 @@
 use super::Solver;
 use crate::{
     cloth::ClothParticles,
-    solver::{
-        PinMotion, Stretch, SubStep, Substepping, TickStep, TimeOrder, bands::with_threads_awake,
-        step::put_pins, substepping::MAX_SUBSTEPS,
-    },
+    solver::{Substepping, TickStep, TimeOrder, substepping::MAX_SUBSTEPS},
 };
 
 /// So many sub-steps of forces take no longer than one in which threads are solved.
@@ -81,31 +78,5 @@ impl Solver {
     #[doc(hidden)]
     pub fn forget_forces(&mut self) {
         self.forces = None;
-    }
-
-    /// A tick of forces.
-    pub(super) fn advance_by_forces(
-        &mut self,
-        particles: &mut ClothParticles,
-        step: TickStep,
-        pins: &[PinMotion],
-        respond: &mut impl FnMut(&mut ClothParticles, SubStep) -> bool,
-    ) -> Stretch {
-        particles.set_substep(step.seconds / step.substeps.max(1) as f32);
-        particles.end_past();
-        particles.zero_pin_displacements();
-        let kernels = self.simd_level.kernels();
-        let forces = self.forces.as_mut().expect("forces");
-        let bending = self.bending.as_mut();
-        with_threads_awake(forces.bands(), || {
-            forces.advance(particles, &step, pins, bending, &kernels, respond);
-        });
-        put_pins(particles, pins);
-        particles.past_mut().set_moved();
-        let stretch = self.measure(particles);
-        Stretch {
-            material: stretch.structural,
-            ..stretch
-        }
     }
 }

@@ -1,0 +1,85 @@
+//! How many triangles of cloths pass through each other: by brute force, in f64.
+
+use bevy::math::{DVec3, Vec3};
+
+use crate::cloth::Surface;
+
+/// Pairs of triangles that intersect, of surfaces whose particles are at these places (m), all in one frame. Triangles of one
+/// surface that have a particle in common do not count. What a test or a chart asks for: it takes milliseconds.
+pub fn intersections(cloths: &[(&Surface, Vec<Vec3>)]) -> usize {
+    let mut triangles: Vec<Triangle> = cloths
+        .iter()
+        .enumerate()
+        .flat_map(|(cloth, (surface, places))| {
+            let faces = surface.triangles().iter();
+            faces.map(move |&particles| Triangle {
+                cloth,
+                particles,
+                corners: particles.map(|particle| places[particle as usize].as_dvec3()),
+            })
+        })
+        .collect();
+    triangles.sort_by(|a, b| a.low().x.total_cmp(&b.low().x));
+    let mut count = 0;
+    for (index, a) in triangles.iter().enumerate() {
+        let (low, high) = (a.low(), a.high());
+        let near = triangles[index + 1..]
+            .iter()
+            .take_while(|b| b.low().x <= high.x);
+        let may_meet = |b: &&Triangle| {
+            let (from, to) = (b.low(), b.high());
+            from.y <= high.y && to.y >= low.y && from.z <= high.z && to.z >= low.z
+        };
+        count += near
+            .filter(may_meet)
+            .filter(|b| !a.is_beside(b) && a.intersects(b))
+            .count();
+    }
+    count
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Triangle {
+    cloth: usize,
+    particles: [u32; 3],
+    corners: [DVec3; 3],
+}
+
+impl Triangle {
+    fn low(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        a.min(b).min(c)
+    }
+
+    fn high(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        a.max(b).max(c)
+    }
+
+    /// Whether a particle is a corner of both.
+    fn is_beside(&self, other: &Self) -> bool {
+        let own = &self.particles;
+        self.cloth == other.cloth && own.iter().any(|corner| other.particles.contains(corner))
+    }
+
+    /// Whether an edge of one passes through the other.
+    fn intersects(&self, other: &Self) -> bool {
+        let passes = |a: &Self, b: &Self| {
+            let [p, q, r] = a.corners;
+            [[p, q], [q, r], [r, p]]
+                .into_iter()
+                .any(|edge| b.is_passed_by(edge))
+        };
+        passes(self, other) || passes(other, self)
+    }
+
+    fn is_passed_by(&self, [p, q]: [DVec3; 2]) -> bool {
+        let [a, b, c] = self.corners;
+        let volume = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| (b - a).cross(c - a).dot(d - a);
+        if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
+            return false;
+        }
+        let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+        sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
+    }
+}

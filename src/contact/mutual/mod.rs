@@ -1,0 +1,287 @@
+//! Contact of cloth with cloth: with itself, and with others.
+//!
+//! Layers are kept a thickness apart by pairs of features, vertex with face and edge with edge. A search through the trees finds
+//! those that may come near each other, with a margin; until particles have moved as far as that, each sub-step looks at these
+//! alone. A patch that is not bent far is passed over whole, by [a bound that is proved](bounds::Tangents). At the end of each
+//! sub-step pairs are pushed apart, in proportion to inverse masses and with friction, and then [a plane](certificate) between
+//! each two proves that nothing has passed through.
+
+mod bounds;
+mod certificate;
+mod flat;
+mod intersections;
+mod members;
+mod origin;
+mod pair;
+mod participant;
+mod response;
+mod search;
+mod settings;
+mod sheet;
+#[cfg(test)]
+mod tests;
+
+use bevy::math::Vec3;
+
+use self::{
+    certificate::Zones,
+    members::Members,
+    origin::Origin,
+    pair::{Nearest, Pair},
+    response::{push, select},
+    search::{Found, Search},
+};
+
+pub use intersections::intersections;
+pub(crate) use participant::Participant;
+pub use settings::ClothSelfCollision;
+pub(crate) use sheet::Sheet;
+
+/// How many sub-steps as fast as this one a search should last.
+const SUBSTEPS: f32 = 8.0;
+
+/// How often in a sub-step what has been pushed is compared with what was too far away before.
+const ROUNDS: u32 = 3;
+
+/// The margin of a search, at least and, unless things are faster than that, at most: as a part of the shortest spacing.
+const MARGINS: [f32; 2] = [0.02, 0.1];
+
+/// Contact of cloths with themselves and with each other, from tick to tick. May be dropped at any time.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct MutualContact {
+    search: Search,
+    found: Vec<Found>,
+    pairs: Vec<Pair>,
+    members: Members,
+    /// Which member each particle of each cloth is, if any.
+    member_of: Vec<Vec<u32>>,
+    /// The same before the last search.
+    members_before: Members,
+    member_of_before: Vec<Vec<u32>>,
+    /// Where all particles were at the last search, and how much nearer to each other any two may come before the next (m).
+    origin: Origin,
+    margin: f32,
+    /// How much nearer to each other any two may have come by now, at most (m).
+    nearer: f32,
+    is_searched: bool,
+    /// By how much any two members can have come nearer to each other since the last search, at most (m).
+    odometer: f32,
+    /// Pairs that may touch in this sub-step.
+    close: Vec<u32>,
+    zones: Zones,
+    searches: u32,
+    has_zones: bool,
+}
+
+const NOBODY: u32 = u32::MAX;
+
+impl MutualContact {
+    /// Forgets what was found: the particles are others, or somewhere else.
+    pub fn forget(&mut self) {
+        self.is_searched = false;
+    }
+
+    /// Begins a tick of these cloths, of which `meets` says which two of them touch.
+    pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
+        (self.searches, self.has_zones) = (0, false);
+        let is_known = self.is_searched && self.origin.is_of(cloths);
+        if is_known {
+            self.nearer = self.origin.approach(cloths);
+        }
+        if !is_known || self.nearer > self.margin {
+            self.search(cloths, meets, 0.0);
+        }
+        self.members.begin(cloths);
+    }
+
+    /// How often in the tick features were searched for.
+    pub fn searches(&self) -> u32 {
+        self.searches
+    }
+
+    /// Whether some particles had to be moved as one in the tick, so that they do not pass through each other.
+    #[cfg(test)]
+    pub fn has_zones(&self) -> bool {
+        self.has_zones
+    }
+
+    /// Pairs of features that may come near each other, as found last.
+    pub fn pairs(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Pairs of features that were looked at in the last sub-step.
+    #[cfg(test)]
+    pub fn close(&self) -> usize {
+        self.close.len()
+    }
+
+    /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s), in which no particle has moved farther than `moved`
+    /// (m), if that is known. Says of each cloth whether any of it was pushed. Returns the farthest that anything was pushed (m).
+    pub fn respond(
+        &mut self,
+        cloths: &mut [Participant],
+        meets: impl Fn(usize, usize) -> bool,
+        dt: f32,
+        moved: Option<f32>,
+        is_pushed: &mut [bool],
+    ) -> f32 {
+        self.nearer += 2.0 * moved.unwrap_or(f32::INFINITY);
+        // What all have in common is no approach: that is measured where it may matter.
+        if self.nearer > self.margin || !self.pairs.is_empty() {
+            self.nearer = self.origin.approach(cloths);
+        }
+        if self.nearer > self.margin {
+            // Some may have met on the way to here.
+            self.search(cloths, &meets, self.nearer - self.margin);
+        }
+        self.close.clear();
+        if self.pairs.is_empty() {
+            return 0.0;
+        }
+        self.members.gather(cloths);
+        let mut approach = self.members.approach();
+        self.odometer += approach;
+        let mut farthest = 0.0_f32;
+        for round in 0..ROUNDS {
+            select(
+                &mut self.pairs,
+                &self.members,
+                approach,
+                self.odometer,
+                &mut self.close,
+            );
+            if self.close.is_empty() {
+                break;
+            }
+            if round == 0 {
+                farthest = push(&self.pairs, &self.close, &mut self.members, dt);
+            }
+            let (moved, has_zones) =
+                self.zones
+                    .certify(&self.pairs, &self.close, &mut self.members);
+            farthest = farthest.max(moved);
+            self.has_zones |= has_zones;
+            // What was pushed has come nearer to others.
+            let after = self.members.approach();
+            if after <= approach {
+                break;
+            }
+            self.odometer += after - approach;
+            approach = after;
+        }
+        self.members.scatter(cloths, is_pushed);
+        self.nearer += 2.0 * farthest;
+        // Better from here than on the way.
+        if self.nearer + 1.5 * approach > self.margin {
+            self.search(cloths, &meets, 0.0);
+        }
+        farthest
+    }
+
+    /// Searches for all pairs that may come near each other before any two particles have come nearer by a margin, besides those
+    /// that may have met while they came nearer by `missed` (m).
+    fn search(
+        &mut self,
+        cloths: &[Participant],
+        meets: impl Fn(usize, usize) -> bool,
+        missed: f32,
+    ) {
+        self.searches += 1;
+        self.is_searched = true;
+        self.odometer = 0.0;
+        let spacing = cloths
+            .iter()
+            .map(|cloth| cloth.sheet.surface().spacing().shortest)
+            .fold(f32::INFINITY, f32::min);
+        let substep = relative_motion(cloths);
+        let [least, most] = MARGINS.map(|part| part * spacing);
+        self.margin = (SUBSTEPS * substep)
+            .clamp(least, most)
+            .max(1.5 * substep)
+            .min(spacing);
+        self.origin.set(cloths);
+        self.nearer = 0.0;
+        if let Some(room) = room_in_flat(cloths)
+            && room > self.margin + missed
+        {
+            self.margin = (room - missed).min(spacing);
+            self.pairs.clear();
+            self.members.clear();
+            self.member_of.clear();
+            return;
+        }
+        self.search
+            .find(cloths, meets, self.margin + missed, &mut self.found);
+        std::mem::swap(&mut self.members, &mut self.members_before);
+        std::mem::swap(&mut self.member_of, &mut self.member_of_before);
+        self.members.clear();
+        self.pairs.clear();
+        self.member_of.resize_with(cloths.len(), Vec::new);
+        for (of, cloth) in self.member_of.iter_mut().zip(cloths) {
+            of.clear();
+            if !self.found.is_empty() {
+                of.resize(cloth.particles.len(), NOBODY);
+            }
+        }
+        for found in &self.found {
+            let mut members = [0; 4];
+            for (index, &particle) in found.particles.iter().enumerate() {
+                let cloth = found.cloths[usize::from(index >= found.split)] as usize;
+                let place = &mut self.member_of[cloth][particle as usize];
+                if *place == NOBODY {
+                    let known = self.member_of_before.get(cloth);
+                    let known = known.and_then(|known| known.get(particle as usize).copied());
+                    let of = &cloths[cloth];
+                    let slot = of.particles.layout().slot_of(particle as usize);
+                    let start = match known {
+                        Some(member) if member != NOBODY => {
+                            self.members_before.start[member as usize]
+                        }
+                        _ => of.start(slot),
+                    };
+                    *place = self.members.add(cloth as u32, slot, start);
+                }
+                members[index] = *place;
+            }
+            let [a, b] = found.cloths.map(|cloth| cloths[cloth as usize].settings);
+            self.pairs.push(Pair {
+                members,
+                split: found.split,
+                thickness: found.thickness,
+                friction: (a.friction * b.friction).sqrt(),
+                far_until: f32::NEG_INFINITY,
+                nearest: Nearest::default(),
+            });
+        }
+    }
+}
+
+/// By how much any two particles come nearer to each other in a sub-step as long as the last, at most (m).
+fn relative_motion(cloths: &[Participant]) -> f32 {
+    let each = || {
+        cloths.iter().flat_map(|cloth| {
+            cloth
+                .particles
+                .displacements()
+                .map(|moved| cloth.vector(moved))
+        })
+    };
+    let count = cloths
+        .iter()
+        .map(|cloth| cloth.particles.len())
+        .sum::<usize>();
+    let drift = each().sum::<Vec3>() / count.max(1) as f32;
+    let squares = each().map(|moved| (moved - drift).length_squared());
+    2.0 * squares.fold(0.0, f32::max).sqrt()
+}
+
+/// By how much any two points of a cloth that is alone may come nearer to each other until it touches itself (m), as far as its
+/// tangents say so; none if they don't.
+fn room_in_flat(cloths: &[Participant]) -> Option<f32> {
+    let [cloth] = cloths else {
+        return None;
+    };
+    let tangents = cloth.sheet.tangents_of_all(cloth.particles)?;
+    Some(tangents.unfolded() * cloth.sheet.closest() - cloth.settings.thickness)
+}

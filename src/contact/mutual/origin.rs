@@ -1,0 +1,85 @@
+//! Where particles were, to see how far they have come since.
+
+use bevy::math::Vec3;
+
+use super::participant::Participant;
+use crate::cloth::{LANES, Lanes, X, Y, Z};
+
+/// Where all particles of some cloths were, each in its own frame, block by block (m). What is no particle is nowhere (NaN).
+#[derive(Debug, Default, Clone)]
+pub(super) struct Origin {
+    cloths: Vec<Vec<[Lanes; 3]>>,
+}
+
+impl Origin {
+    /// Takes over where they are.
+    pub fn set(&mut self, cloths: &[Participant]) {
+        self.cloths.resize_with(cloths.len(), Vec::new);
+        for (places, cloth) in self.cloths.iter_mut().zip(cloths) {
+            let layout = cloth.particles.layout();
+            places.clear();
+            places.extend(
+                cloth
+                    .particles
+                    .blocks()
+                    .iter()
+                    .enumerate()
+                    .map(|(index, block)| {
+                        let mut place = [[0.0; LANES]; 3];
+                        for (axis, place) in [X, Y, Z].into_iter().zip(&mut place) {
+                            place.copy_from_slice(&block.view()[axis..axis + LANES]);
+                        }
+                        for lane in 0..LANES {
+                            if layout.column(index % layout.strip as usize, lane).is_none() {
+                                place[0][lane] = f32::NAN;
+                            }
+                        }
+                        place
+                    }),
+            );
+        }
+    }
+
+    /// Whether it is one of as many particles.
+    pub fn is_of(&self, cloths: &[Participant]) -> bool {
+        let sizes = |(places, cloth): (&Vec<_>, &Participant)| {
+            places.len() == cloth.particles.blocks().len()
+        };
+        self.cloths.len() == cloths.len() && self.cloths.iter().zip(cloths).all(sizes)
+    }
+
+    /// By how much any two of the particles can have come nearer to each other since, at most (m).
+    pub fn approach(&self, cloths: &[Participant]) -> f32 {
+        // Whatever all have in common does not count: here what one particle has come.
+        let drift = match (self.cloths.first(), cloths.first()) {
+            (Some(places), Some(cloth)) => {
+                let at = cloth.particles.layout().slot_of(cloth.particles.len() / 2);
+                let place = places[at.block].map(|axis| axis[at.lane]);
+                let moved =
+                    cloth.particles.blocks()[at.block].position(at.lane) - Vec3::from(place);
+                cloth.vector(moved)
+            }
+            _ => return 0.0,
+        };
+        let mut farthest = [0.0_f32; LANES];
+        for (places, cloth) in self.cloths.iter().zip(cloths) {
+            let drift = cloth.own_vector(drift);
+            for (place, block) in places.iter().zip(cloth.particles.blocks()) {
+                let view = block.view();
+                for l in 0..LANES {
+                    let x = view[X + l] - place[0][l] - drift.x;
+                    let y = view[Y + l] - place[1][l] - drift.y;
+                    let z = view[Z + l] - place[2][l] - drift.z;
+                    let square = x * x + y * y + z * z;
+                    // What is nowhere is not farther.
+                    farthest[l] = if square > farthest[l] {
+                        square
+                    } else {
+                        farthest[l]
+                    };
+                }
+            }
+        }
+        2.0 * farthest.into_iter().fold(0.0, f32::max).sqrt()
+    }
+}

@@ -1,0 +1,101 @@
+//! Two features that may come near each other.
+
+use bevy::math::Vec3;
+
+use crate::contact::triangle::{at, nearest_of_segments, nearest_to_point};
+
+/// A vertex and a face, or two edges: of one cloth or of two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pair {
+    /// The vertex and the face's corners, or the two ends of each edge: places among the [`Members`](super::members::Members).
+    pub members: [u32; 4],
+    /// Of the four, how many are of the first feature.
+    pub split: usize,
+    /// How near the features may come (m).
+    pub thickness: f32,
+    /// Coulomb's μ.
+    pub friction: f32,
+    /// What the odometer says when they can first be that near (m).
+    pub far_until: f32,
+    /// How the nearest points were as the sub-step began.
+    pub nearest: Nearest,
+}
+
+/// The nearest points of two features.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Nearest {
+    /// Parts of the four particles in the vector from the second feature's point to the first's.
+    pub weights: [f32; 4],
+    /// Along that vector, of length 1; 0 where the points are the same.
+    pub normal: Vec3,
+    /// Between the points (m).
+    pub distance: f32,
+}
+
+/// The vertices of a face count as the second feature.
+pub(super) const VERTEX_AND_FACE: usize = 1;
+/// Two ends are the first edge's.
+pub(super) const TWO_EDGES: usize = 2;
+
+impl Nearest {
+    /// Of four particles, so many of which are the first feature.
+    #[inline]
+    pub fn of(split: usize, [a, b, c, d]: [Vec3; 4]) -> Self {
+        let weights = if split == VERTEX_AND_FACE {
+            let [u, v, w] = nearest_to_point([b, c, d], a);
+            [1.0, -u, -v, -w]
+        } else {
+            let (s, t) = nearest_of_segments([a, b], [c, d]);
+            [1.0 - s, s, t - 1.0, -t]
+        };
+        let between = combined(weights, [a, b, c, d]);
+        let distance = between.length();
+        let normal = if distance > 0.0 {
+            between / distance
+        } else {
+            Vec3::ZERO
+        };
+        Self {
+            weights,
+            normal,
+            distance,
+        }
+    }
+
+    /// The vector between the points that have these parts now (m).
+    #[inline]
+    pub fn between(&self, places: [Vec3; 4]) -> Vec3 {
+        combined(self.weights, places)
+    }
+}
+
+impl Pair {
+    /// How far all of the first feature is from all of the second along the normal (m): as long as it is positive, a plane is
+    /// between them.
+    #[inline]
+    pub fn clearance(&self, places: [Vec3; 4]) -> f32 {
+        let [a, b, c, d] = places.map(|place| self.nearest.normal.dot(place));
+        if self.split == VERTEX_AND_FACE {
+            a - b.max(c).max(d)
+        } else {
+            a.min(b) - c.max(d)
+        }
+    }
+}
+
+fn combined([p, q, r, s]: [f32; 4], [a, b, c, d]: [Vec3; 4]) -> Vec3 {
+    a * p + b * q + c * r + d * s
+}
+
+/// The distance between a vertex and a face, squared (m²).
+pub(super) fn vertex_to_face(vertex: Vec3, face: [Vec3; 3]) -> f32 {
+    at(face, nearest_to_point(face, vertex)).distance_squared(vertex)
+}
+
+/// The distance between two edges, squared (m²).
+pub(super) fn edge_to_edge(first: [Vec3; 2], second: [Vec3; 2]) -> f32 {
+    let (s, t) = nearest_of_segments(first, second);
+    first[0]
+        .lerp(first[1], s)
+        .distance_squared(second[0].lerp(second[1], t))
+}

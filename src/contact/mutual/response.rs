@@ -1,0 +1,105 @@
+//! What keeps layers apart at the end of a sub-step.
+
+use bevy::math::Vec3;
+
+use super::{
+    members::Members,
+    pair::{Nearest, Pair},
+};
+
+/// How fast layers that were too near each other from the start part again (m/s): slowly, so that springs which that stretches
+/// give no speed worth the name.
+const RELEASE: f32 = 0.05;
+
+/// Of the thickness, what is always kept of it at once: so much no sub-step may leave for the next.
+const KEPT: f32 = 0.3;
+
+/// How often all pairs are gone through: of one that is still nearer than half of its thickness, once more.
+const PASSES: u32 = 2;
+
+/// Finds the nearest points of all pairs that may touch in this sub-step, in which any two particles come nearer to each other by
+/// at most `approach` (m). The others are passed over until the `odometer` says that they may.
+pub(super) fn select(
+    pairs: &mut [Pair],
+    members: &Members,
+    approach: f32,
+    odometer: f32,
+    close: &mut Vec<u32>,
+) {
+    close.clear();
+    for (index, pair) in pairs.iter_mut().enumerate() {
+        if pair.far_until > odometer {
+            continue;
+        }
+        pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
+        let spare = pair.nearest.distance - pair.thickness - approach;
+        if spare > 0.0 {
+            pair.far_until = odometer + spare;
+        } else {
+            close.push(index as u32);
+        }
+    }
+}
+
+/// Keeps those that are `close` apart. Returns the farthest that a particle was pushed by one of them (m).
+pub(super) fn push(pairs: &[Pair], close: &[u32], members: &mut Members, dt: f32) -> f32 {
+    let mut farthest = 0.0_f32;
+    for pass in 0..PASSES {
+        for &index in close {
+            let pair = &pairs[index as usize];
+            let floor = if pass == 0 {
+                pair.thickness
+            } else {
+                0.5 * pair.thickness
+            };
+            farthest = farthest.max(push_pair(pair, floor, members, dt));
+        }
+    }
+    farthest
+}
+
+/// Pushes two features apart that are nearer than `floor` (m), and slows them against each other by Coulomb's law. What both came
+/// towards each other in the sub-step is what velocity has to lose; an older overlap is no velocity, and must not become one.
+#[inline]
+fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> f32 {
+    let Nearest {
+        weights,
+        normal,
+        distance,
+    } = pair.nearest;
+    let between = pair.nearest.between(members.places(pair.members));
+    let gap = normal.dot(between);
+    if gap >= floor || normal == Vec3::ZERO {
+        return 0.0;
+    }
+    let inverse_masses = members.inverse_masses(pair.members);
+    let mobility: f32 = (0..4)
+        .map(|index| weights[index] * weights[index] * inverse_masses[index])
+        .sum();
+    if mobility == 0.0 {
+        return 0.0;
+    }
+    let depth = pair.thickness - gap;
+    let stopped = depth.min(distance - gap).max(0.0);
+    let least = (KEPT * pair.thickness - gap).max(0.0);
+    let released = (depth - stopped).min((RELEASE * dt).max(least));
+    let slid = between - pair.nearest.between(members.starts(pair.members));
+    let tangential = slid - normal * normal.dot(slid);
+    let slip = tangential.length();
+    let grip = if slip > pair.friction * stopped {
+        pair.friction * stopped / slip
+    } else {
+        1.0
+    };
+    let motion = (normal * stopped - tangential * grip) / mobility;
+    let all = motion + normal * (released / mobility);
+    let mut farthest = 0.0_f32;
+    for index in 0..4 {
+        let member = pair.members[index] as usize;
+        let share = weights[index] * inverse_masses[index];
+        members.place[member] += all * share;
+        members.moved[member] += motion * share;
+        farthest = farthest.max(share.abs());
+    }
+    farthest * all.length()
+}

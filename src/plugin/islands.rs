@@ -1,0 +1,184 @@
+//! Which cloths are near each other: their sub-steps run together.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        query::QueryData,
+        resource::Resource,
+        system::{Query, ResMut},
+    },
+    math::Vec3,
+};
+
+use super::{ClothBuilt, ClothScratch, ClothState, components::BroadPhaseBounds};
+use crate::contact::MutualContact;
+
+/// Cloths that may touch each other in the tick, island by island.
+#[derive(Resource, Debug, Default)]
+pub(super) struct Islands {
+    pub all: Vec<Island>,
+    /// Those of the tick before.
+    before: Vec<Island>,
+    /// Where each cloth may be, sorted by the first number.
+    spans: Vec<Span>,
+    parent: Vec<u32>,
+    /// Which island the cloths of each root are, if any.
+    island_of: Vec<u32>,
+}
+
+/// Cloths that may touch each other, of which at least one is awake.
+#[derive(Debug, Default)]
+pub(super) struct Island {
+    /// Ascending.
+    pub cloths: Vec<Entity>,
+    pub contact: MutualContact,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    entity: Entity,
+    centre: Vec3,
+    radius: f32,
+}
+
+const NONE: u32 = u32::MAX;
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct Neighbour {
+    entity: Entity,
+    built: &'static ClothBuilt,
+    bounds: &'static mut BroadPhaseBounds,
+    state: &'static mut ClothState,
+    scratch: &'static mut ClothScratch,
+}
+
+/// Finds which cloths may touch each other in the tick. What moves wakes those that sleep beside it.
+pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Query<Neighbour>) {
+    let islands = &mut *islands;
+    islands.spans.clear();
+    for cloth in &cloths {
+        if let Some(settings) = cloth.scratch.self_collision
+            && cloth.bounds.takes_part
+        {
+            islands.spans.push(Span {
+                entity: cloth.entity,
+                centre: cloth.bounds.centre,
+                radius: cloth.bounds.radius + settings.thickness,
+            });
+        }
+    }
+    std::mem::swap(&mut islands.all, &mut islands.before);
+    islands.all.clear();
+    if islands.spans.len() < 2 {
+        return;
+    }
+    islands.join();
+    islands.collect();
+    for island in &mut islands.all {
+        wake(island, &mut cloths);
+    }
+    islands.all.retain(|island| !island.cloths.is_empty());
+}
+
+impl Islands {
+    /// Joins all cloths whose spheres meet, by a sweep along the x axis.
+    fn join(&mut self) {
+        let first = |span: &Span| span.centre.x - span.radius;
+        self.spans
+            .sort_unstable_by(|a, b| first(a).total_cmp(&first(b)).then(a.entity.cmp(&b.entity)));
+        self.parent.clear();
+        self.parent.extend(0..self.spans.len() as u32);
+        for a in 0..self.spans.len() {
+            let own = self.spans[a];
+            let end = own.centre.x + own.radius;
+            for b in a + 1..self.spans.len() {
+                let other = self.spans[b];
+                if first(&other) > end {
+                    break;
+                }
+                let reach = own.radius + other.radius;
+                if own.centre.distance_squared(other.centre) <= reach * reach {
+                    let [a, b] = [a, b].map(|span| self.find(span as u32));
+                    self.parent[a.max(b) as usize] = a.min(b);
+                }
+            }
+        }
+    }
+
+    fn find(&mut self, mut span: u32) -> u32 {
+        while self.parent[span as usize] != span {
+            let above = self.parent[span as usize];
+            self.parent[span as usize] = self.parent[above as usize];
+            span = above;
+        }
+        span
+    }
+
+    /// Makes islands of those that are not alone. One of the same cloths as before knows what it found.
+    fn collect(&mut self) {
+        self.island_of.clear();
+        self.island_of.resize(self.spans.len(), NONE);
+        for span in 0..self.spans.len() {
+            let root = self.find(span as u32) as usize;
+            if root == span {
+                continue;
+            }
+            if self.island_of[root] == NONE {
+                self.island_of[root] = self.all.len() as u32;
+                let mut island = Island::default();
+                island.cloths.push(self.spans[root].entity);
+                self.all.push(island);
+            }
+            let island = &mut self.all[self.island_of[root] as usize];
+            island.cloths.push(self.spans[span].entity);
+        }
+        for island in &mut self.all {
+            island.cloths.sort_unstable();
+            let known = self
+                .before
+                .iter_mut()
+                .find(|before| before.cloths == island.cloths);
+            if let Some(known) = known {
+                island.contact = std::mem::take(&mut known.contact);
+            }
+        }
+        // In an order that does not depend on where they are.
+        self.all.sort_unstable_by(|a, b| a.cloths.cmp(&b.cloths));
+    }
+}
+
+/// Wakes all cloths of an island of which one moves. One in which all sleep is none.
+fn wake(island: &mut Island, cloths: &mut Query<Neighbour>) {
+    let (mut is_awake, mut is_moving) = (false, false);
+    for cloth in cloths.iter_many(&island.cloths) {
+        let rest = &cloth.state.rest;
+        is_awake |= !rest.is_asleep();
+        is_moving |= !rest.is_asleep() && !rest.is_calm();
+    }
+    if !is_awake {
+        island.cloths.clear();
+        return;
+    }
+    let mut each = cloths.iter_many_mut(&island.cloths);
+    while let Some(mut cloth) = each.fetch_next() {
+        cloth.scratch.is_in_island = true;
+        // What it knows of itself alone is in its island's.
+        cloth.scratch.mutual = None;
+        if is_moving && cloth.state.rest.is_asleep() {
+            cloth.wake();
+        }
+    }
+}
+
+impl NeighbourItem<'_, '_> {
+    /// Has a cloth that was prepared as one that sleeps take part as one that is awake.
+    fn wake(&mut self) {
+        self.state.rest.disturb();
+        self.state.rests_on.clear();
+        self.bounds.has_sleeping_contacts = false;
+        let scratch = &mut *self.scratch;
+        scratch.near.clear();
+        scratch.detection.begin(self.built.surface(), scratch.reach);
+    }
+}

@@ -1,0 +1,180 @@
+//! The sub-steps of cloths that may touch each other, run together.
+
+use bevy::{
+    ecs::{
+        entity::{Entity, EntityIndexSet},
+        system::Query,
+    },
+    math::Isometry3d,
+    platform::time::Instant,
+};
+
+use super::{
+    clock::milliseconds_since,
+    colliders::ColliderMotion,
+    islands::Island,
+    tick::{Integrating, IntegratingItem},
+};
+use crate::{
+    contact::{MutualContact, Participant},
+    solver::{StartedTick, Stretch, Substepping, TickStep},
+};
+
+/// A cloth of an island, in its tick.
+struct Member<'w, 's> {
+    cloth: IntegratingItem<'w, 's>,
+    /// `None` of one that sleeps.
+    step: Option<TickStep>,
+    to_common: Option<Isometry3d>,
+}
+
+/// Does the tick of all cloths of an island, and does it again with more sub-steps while the tolerance of one asks for it.
+pub(super) fn integrate_together(
+    island: &mut Island,
+    cloths: &mut Query<Integrating>,
+    colliders: &Query<(Entity, &ColliderMotion)>,
+) {
+    let start = Instant::now();
+    let entities: EntityIndexSet = island.cloths.iter().copied().collect();
+    let mut members = Vec::new();
+    let mut first = None;
+    for mut cloth in cloths.iter_many_unique_mut(&entities) {
+        let Some(step) = cloth.scratch.step.take() else {
+            continue;
+        };
+        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
+            continue;
+        }
+        let frame = cloth.frame.isometry();
+        let to_common = first.map(|first: Isometry3d| first.inverse() * frame);
+        first = first.or(Some(frame));
+        let is_asleep = cloth.state.rest.is_asleep();
+        cloth.stats.is_asleep = is_asleep;
+        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+        members.push(Member {
+            cloth,
+            step: (!is_asleep).then_some(step),
+            to_common,
+        });
+    }
+    // All take as many sub-steps as the one that asks for most.
+    let mut substeps = members
+        .iter()
+        .filter_map(|member| member.step.map(|step| step.substeps))
+        .max()
+        .unwrap_or(1);
+    let may_repeat = members.iter().any(|member| {
+        matches!(
+            member.cloth.scratch.substepping,
+            Substepping::Adaptive { .. }
+        )
+    });
+    if may_repeat {
+        for member in members.iter_mut().filter(|member| member.step.is_some()) {
+            let backup = &mut member.cloth.scratch.backup;
+            backup.copy_from(&member.cloth.particles);
+        }
+    }
+    loop {
+        let more = advance(&mut members, substeps, &mut island.contact, colliders);
+        let Some(more) = more else {
+            break;
+        };
+        substeps = more;
+        for member in members.iter_mut().filter(|member| member.step.is_some()) {
+            member
+                .cloth
+                .particles
+                .copy_from(&member.cloth.scratch.backup);
+            member.cloth.scratch.detection.restart();
+        }
+        island.contact.forget();
+    }
+    let milliseconds = milliseconds_since(start) / members.len().max(1) as f64;
+    for Member { cloth, step, .. } in &mut members {
+        if let Some(step) = step {
+            cloth.scratch.limit_inputs = Some(cloth.limit_inputs(TickStep { substeps, ..*step }));
+            cloth.finish(milliseconds);
+            cloth.stats.layer_pairs = island.contact.pairs();
+            cloth.stats.layer_searches = island.contact.searches();
+        }
+    }
+}
+
+/// One way through the sub-steps of all. Returns how many a tolerance asks for, if these were too few.
+fn advance(
+    members: &mut [Member],
+    substeps: u32,
+    contact: &mut MutualContact,
+    colliders: &Query<(Entity, &ColliderMotion)>,
+) -> Option<u32> {
+    let seconds = members.iter().find_map(|member| member.step)?.seconds;
+    let dt = seconds / substeps as f32;
+    let mut ticks: Vec<Option<StartedTick>> = members
+        .iter_mut()
+        .map(|Member { cloth, step, .. }| {
+            let step = TickStep {
+                substeps,
+                ..(*step)?
+            };
+            let solver = &mut cloth.built.solver;
+            solver.set_bands(1);
+            Some(solver.begin(&mut cloth.particles, step, &cloth.scratch.pins))
+        })
+        .collect();
+    let meets = |_: usize, _: usize| true;
+    contact.begin(&participants(members), meets);
+    let mut is_pushed = vec![false; members.len()];
+    for _ in 0..substeps {
+        for (Member { cloth, .. }, tick) in members.iter_mut().zip(&mut ticks) {
+            let Some(tick) = tick else {
+                continue;
+            };
+            let solver = &mut cloth.built.solver;
+            let pins = &cloth.scratch.pins;
+            if let Some(substep) = solver.substep(&mut cloth.particles, pins, tick)
+                && cloth.touch(substep, colliders)
+            {
+                tick.note_push(&mut cloth.particles);
+            }
+        }
+        is_pushed.fill(false);
+        let farthest = contact.respond(&mut participants(members), meets, dt, None, &mut is_pushed);
+        for ((member, tick), is_pushed) in members.iter_mut().zip(&mut ticks).zip(&is_pushed) {
+            if let Some(tick) = tick
+                && *is_pushed
+            {
+                member.cloth.scratch.detection.note_push(farthest);
+                tick.note_push(&mut member.cloth.particles);
+            }
+        }
+    }
+    let mut wanted = None;
+    for (Member { cloth, .. }, tick) in members.iter_mut().zip(ticks) {
+        let Some(mut tick) = tick else {
+            continue;
+        };
+        let solver = &mut cloth.built.solver;
+        // Forces have half a push left.
+        let rest = solver.substep(&mut cloth.particles, &cloth.scratch.pins, &mut tick);
+        debug_assert!(rest.is_none(), "all sub-steps are done");
+        let stretch: Stretch = solver.end(&mut cloth.particles, &cloth.scratch.pins, tick);
+        cloth.stats.substeps += substeps;
+        cloth.state.stretch = stretch;
+        let more = cloth
+            .state
+            .control
+            .observe(cloth.scratch.substepping, stretch);
+        wanted = wanted.max(more);
+    }
+    wanted
+}
+
+fn participants<'a>(members: &'a mut [Member]) -> Vec<Participant<'a>> {
+    let each = members.iter_mut();
+    each.map(|member| {
+        let settings = member.cloth.scratch.self_collision.unwrap_or_default();
+        member.cloth.participant(settings, member.to_common)
+    })
+    .collect()
+}

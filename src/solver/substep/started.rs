@@ -1,0 +1,271 @@
+//! A tick sub-step by sub-step: so that cloths which touch each other can be moved together.
+
+use super::{AFTER_CONTACT, RESOLVED, Solver, UNSOLVED, WARY_TICKS};
+use crate::{
+    cloth::{ClothParticles, StepKind},
+    solver::{
+        PinMotion, Stretch, SubStep, TickStep, TimeOrder,
+        bands::in_bands,
+        energy::Energy,
+        pace::Pace,
+        predict::{Prediction, weight},
+        spin::Spin,
+        step::{DAMPING_REFERENCE, existing, put_pins},
+        sweep::Motion,
+    },
+};
+
+/// A tick that has begun and not ended.
+#[derive(Debug)]
+pub struct StartedTick {
+    step: TickStep,
+    /// The sub-step to come.
+    next: u32,
+    /// Whether springs push by their forces.
+    is_explicit: bool,
+    /// What the cloth's energy was, where it is watched.
+    watched: Option<Energy>,
+    spin: Option<Spin>,
+    is_pushed: bool,
+    /// The stretch, where it was measured on the way.
+    measured: Option<Stretch>,
+    /// Frequency of ripples (rad/s).
+    ripple: f32,
+}
+
+impl StartedTick {
+    /// Sub-steps in it.
+    pub fn substeps(&self) -> u32 {
+        self.step.substeps.max(1)
+    }
+
+    /// Length of a sub-step (s).
+    fn substep(&self) -> f32 {
+        self.step.seconds / self.substeps() as f32
+    }
+
+    /// To be called after a sub-step at whose end particles were pushed: their past says nothing of what follows.
+    pub fn note_push(&mut self, particles: &mut ClothParticles) {
+        self.is_pushed = true;
+        self.measured = None;
+        if !self.is_explicit {
+            particles.past_mut().forget(AFTER_CONTACT);
+        }
+    }
+}
+
+impl Solver {
+    /// Begins a tick of `particles`. What follows are its [sub-steps](Self::substep), and its [end](Self::end).
+    ///
+    /// # Panics
+    /// If the particles are others than those that the solver was made for.
+    pub fn begin(
+        &mut self,
+        particles: &mut ClothParticles,
+        step: TickStep,
+        pins: &[PinMotion],
+    ) -> StartedTick {
+        assert!(
+            particles.layout() == self.layout,
+            "particles of the solver's own"
+        );
+        let step = self.allowed(step);
+        let mut tick = StartedTick {
+            step,
+            next: 0,
+            is_explicit: false,
+            watched: None,
+            spin: None,
+            is_pushed: false,
+            measured: None,
+            ripple: 0.0,
+        };
+        if step.seconds <= 0.0 {
+            tick.next = u32::MAX;
+            return tick;
+        }
+        let dt = tick.substep();
+        tick.is_explicit = self.is_explicit(particles, &step);
+        if tick.is_explicit {
+            particles.set_substep(dt);
+            particles.end_past();
+            particles.zero_pin_displacements();
+            return tick;
+        }
+        tick.watched = Energy::watched(particles, dt, step.acceleration);
+        particles.set_substep(dt);
+        particles.zero_pin_displacements();
+        if step.order == TimeOrder::First {
+            particles.past_mut().forget(0);
+        }
+        // What else turns the cloth, or carries it in another way, is not known here.
+        tick.spin = Spin::of(particles, &step, pins);
+        tick
+    }
+
+    /// A step of the order that is safe with what solves the springs.
+    fn allowed(&self, step: TickStep) -> TickStep {
+        let order = if self.sweep.is_exact() {
+            step.order
+        } else {
+            TimeOrder::First
+        };
+        TickStep { order, ..step }
+    }
+
+    /// How many bands a tick's sub-steps are cut into.
+    pub(super) fn bands_of(&self, tick: &StartedTick) -> usize {
+        match &self.forces {
+            Some(forces) if tick.is_explicit => forces.bands(),
+            _ => self.bands(),
+        }
+    }
+
+    /// Moves `particles` by the next sub-step; `None` where there is none left. Whoever then pushes any
+    /// [says so](StartedTick::note_push).
+    pub fn substep(
+        &mut self,
+        particles: &mut ClothParticles,
+        pins: &[PinMotion],
+        tick: &mut StartedTick,
+    ) -> Option<SubStep> {
+        if tick.next == u32::MAX {
+            return None;
+        }
+        if tick.is_explicit {
+            return self.substep_by_forces(particles, pins, tick);
+        }
+        if tick.next == tick.substeps() {
+            return None;
+        }
+        let step = tick.step;
+        let dt = tick.substep();
+        let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
+        let kernels = self.simd_level.kernels();
+        let bands = self.bands();
+        let mut substep = SubStep {
+            index: tick.next,
+            count: tick.substeps(),
+            farthest_move: 0.0,
+        };
+        for pin in existing(pins, particles.len()) {
+            particles.set_pin_target(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
+        }
+        self.tethers.locate(particles.blocks(), &mut self.anchors);
+        let kind = match step.order {
+            TimeOrder::First => StepKind::First,
+            TimeOrder::Second => particles.next_step(),
+        };
+        let weight_dt2 = weight(kind) * dt * dt;
+        let pull = (step.acceleration * weight_dt2).to_array();
+        let prediction = Prediction::new(kind, kept, pull);
+        let (blocks, past) = particles.blocks_and_past();
+        match step.order {
+            TimeOrder::First => (kernels.predict_first)(blocks, &prediction),
+            TimeOrder::Second if bands > 1 => {
+                let size = blocks.len().div_ceil(bands);
+                let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
+                in_bands(parts, |(blocks, past)| {
+                    (kernels.predict)(blocks, past, &prediction);
+                });
+            }
+            TimeOrder::Second => (kernels.predict)(blocks, past, &prediction),
+        }
+        if let Some(bending) = &mut self.bending {
+            bending.prepare(blocks, weight_dt2);
+            bending.solve(blocks, &kernels);
+        }
+        self.sweep
+            .set_pace(Pace::new(weight_dt2, dt, self.retardation));
+        tick.next += 1;
+        let motion = Motion {
+            kernels: &kernels,
+            tethers: &self.tethers,
+            anchors: &self.anchors,
+            measures: tick.next == tick.substeps(),
+        };
+        let swept = self.sweep.substep(blocks, &motion, self.bands);
+        if kind == StepKind::Start {
+            (kernels.begin_past)(blocks, past);
+        }
+        (tick.measured, tick.ripple) = (swept.stretch, swept.ripple);
+        substep.farthest_move = swept.moved.into_iter().fold(0.0, f32::max).sqrt();
+        Some(substep)
+    }
+
+    /// The next sub-step of a tick of forces. What would follow the last ends it.
+    fn substep_by_forces(
+        &mut self,
+        particles: &mut ClothParticles,
+        pins: &[PinMotion],
+        tick: &mut StartedTick,
+    ) -> Option<SubStep> {
+        let kernels = self.simd_level.kernels();
+        let forces = self.forces.as_mut().expect("forces");
+        let bending = self.bending.as_mut();
+        let substep = forces.substep(particles, &tick.step, tick.next, pins, bending, &kernels);
+        tick.next = if substep.is_some() {
+            tick.next + 1
+        } else {
+            u32::MAX
+        };
+        substep
+    }
+
+    /// Ends a tick of which all sub-steps are done, and measures the stretch.
+    pub fn end(
+        &mut self,
+        particles: &mut ClothParticles,
+        pins: &[PinMotion],
+        tick: StartedTick,
+    ) -> Stretch {
+        let StartedTick {
+            step,
+            is_pushed,
+            measured,
+            ripple,
+            ..
+        } = tick;
+        if step.seconds <= 0.0 {
+            return self.measure(particles);
+        }
+        if tick.is_explicit {
+            put_pins(particles, pins);
+            particles.past_mut().set_moved();
+            let stretch = self.measure(particles);
+            return Stretch {
+                material: stretch.structural,
+                ..stretch
+            };
+        }
+        let stretch = Stretch {
+            ripple_substeps: step.seconds * ripple / RESOLVED,
+            ..measured.unwrap_or_else(|| self.measure(particles))
+        };
+        let is_still = pins.iter().all(|pin| pin.from == pin.to);
+        // What the material gives comes back by itself, and what pushes or carries a cloth gives it energy.
+        let given = step.material_stretch.max(stretch.material);
+        let is_unsolved = stretch.structural > 2.0 * given;
+        if let Some(before) = tick.watched
+            && is_unsolved
+            && is_still
+            && !is_pushed
+        {
+            before.limit(particles, step.acceleration);
+        } else {
+            particles.past_mut().set_lost(0.0);
+        }
+        particles.past_mut().set_moved();
+        if let Some(spin) = tick.spin
+            && !is_pushed
+        {
+            let kept = (1.0 - step.damping).powf(step.seconds / DAMPING_REFERENCE);
+            spin.restore(particles, kept);
+        }
+        put_pins(particles, pins);
+        if stretch.structural > step.material_stretch + UNSOLVED {
+            particles.past_mut().forget(WARY_TICKS * step.substeps);
+        }
+        stretch
+    }
+}
