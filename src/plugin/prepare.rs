@@ -32,6 +32,9 @@ use crate::{
     solver::{ClothSettings, PinMotion, Substepping, TickStep},
 };
 
+/// Sub-steps of a cloth that touches cloth, unless it asks for a number of its own.
+const FOR_LAYERS: u32 = 16;
+
 /// The pins of a cloth from which the game took its [`Pins`].
 static NO_PINS: Pins = Pins::none();
 
@@ -227,6 +230,11 @@ impl PreparingItem<'_, '_> {
             _ if state.rest.is_asleep() => Substepping::needed(along, seconds),
             Substepping::Fixed(substeps) => substeps,
             _ => (built.solver).needed(particles, along, seconds, settings.order),
+        };
+        // Layers may come nearer in a sub-step by a part of their thickness alone.
+        let needed = match inputs.self_collision {
+            Some(_) => needed.max(FOR_LAYERS),
+            None => needed,
         };
         scratch.step = Some(TickStep {
             seconds,

@@ -18,8 +18,8 @@ pub(super) struct Members {
     pub moved: Vec<Vec3>,
     /// Inverse masses (1/kg).
     pub inverse_mass: Vec<f32>,
-    /// What was gathered, to find what has been changed.
-    gathered: Vec<Vec3>,
+    /// Places and motions as they were gathered, to find what has been changed.
+    gathered: Vec<[Vec3; 2]>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,15 +72,19 @@ impl Members {
             };
             self.inverse_mass.push(inverse_mass);
         }
-        self.gathered.clone_from(&self.place);
+        self.gathered.clear();
+        let both = self.place.iter().zip(&self.moved);
+        self.gathered
+            .extend(both.map(|(&place, &moved)| [place, moved]));
     }
 
     /// Gives the particles back what was changed, and begins the next sub-step there. Marks the cloths of which any was.
     pub fn scatter(&mut self, cloths: &mut [Participant], is_pushed: &mut [bool]) {
         for (index, member) in self.of.iter().enumerate() {
             let place = self.place[index];
-            let push = place - self.gathered[index];
-            if push != Vec3::ZERO {
+            let [was, moved_by] = self.gathered[index];
+            let push = place - was;
+            if push != Vec3::ZERO || self.moved[index] != moved_by {
                 let cloth = &mut cloths[member.cloth as usize];
                 is_pushed[member.cloth as usize] = true;
                 let push = cloth.own_vector(push);
@@ -104,6 +108,12 @@ impl Members {
     #[inline]
     pub fn places(&self, of: [u32; 4]) -> [Vec3; 4] {
         of.map(|member| self.place[member as usize])
+    }
+
+    /// Likewise, what the sub-step moved them by (m).
+    #[inline]
+    pub fn motions(&self, of: [u32; 4]) -> [Vec3; 4] {
+        of.map(|member| self.moved[member as usize])
     }
 
     /// Likewise, their inverse masses (1/kg).

@@ -7,9 +7,9 @@ use super::{
     pair::{Nearest, Pair},
 };
 
-/// How fast layers that were too near each other from the start part again (m/s): slowly, so that springs which that stretches
-/// give no speed worth the name.
-const RELEASE: f32 = 0.05;
+/// How fast layers that were too near each other as the sub-step began part again, at most (m/s). So much is motion: in a pile it is
+/// what carries those above.
+const RELEASE: f32 = 0.25;
 
 /// Of the thickness, what is always kept of it at once: so much no sub-step may leave for the next.
 const KEPT: f32 = 0.3;
@@ -59,7 +59,7 @@ pub(super) fn push(pairs: &[Pair], close: &[u32], members: &mut Members, dt: f32
 }
 
 /// Pushes two features apart that are nearer than `floor` (m), and slows them against each other by Coulomb's law. What both came
-/// towards each other in the sub-step is what velocity has to lose; an older overlap is no velocity, and must not become one.
+/// towards each other in the sub-step is what velocity has to lose; an older overlap gives no more of it than is slow.
 #[inline]
 fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> f32 {
     let Nearest {
@@ -80,19 +80,18 @@ fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> f32 {
         return 0.0;
     }
     let depth = pair.thickness - gap;
-    let stopped = depth.min(distance - gap).max(0.0);
-    let least = (KEPT * pair.thickness - gap).max(0.0);
-    let released = (depth - stopped).min((RELEASE * dt).max(least));
+    // Of the way, and of velocity, what brought them nearer.
+    let nearing = -normal.dot(pair.nearest.between(members.motions(pair.members)));
+    let [came, stopped] = [distance - gap, nearing].map(|nearer| depth.min(nearer).max(0.0));
+    let released = (depth - came).min(RELEASE * dt);
+    let least = (KEPT * pair.thickness - gap - came - released).max(0.0);
     let slid = between - pair.nearest.between(members.starts(pair.members));
     let tangential = slid - normal * normal.dot(slid);
-    let slip = tangential.length();
-    let grip = if slip > pair.friction * stopped {
-        pair.friction * stopped / slip
-    } else {
-        1.0
-    };
-    let motion = (normal * stopped - tangential * grip) / mobility;
-    let all = motion + normal * (released / mobility);
+    let (slip, most) = (tangential.length(), pair.friction * (came + released));
+    let grip = if slip > most { most / slip } else { 1.0 };
+    let held = tangential * (-grip / mobility);
+    let motion = normal * ((stopped + released) / mobility) + held;
+    let all = normal * ((came + released + least) / mobility) + held;
     let mut farthest = 0.0_f32;
     for index in 0..4 {
         let member = pair.members[index] as usize;

@@ -27,7 +27,9 @@ impl Sheeted {
     /// A square of so many particles a side and this width (m), each put where `place` says from where it would lie around the
     /// origin.
     pub fn new(side: u32, width: f32, place: impl Fn(Vec3) -> Vec3) -> Self {
-        let cloth = Cloth::new(side, side, width / (side - 1) as f32);
+        let cloth = Cloth::new(side, side, width / (side - 1) as f32)
+            .lying()
+            .centred();
         let grid = cloth.grid(Vec3::ONE).expect("a valid grid");
         let material = ClothMaterial::default();
         let surface = Arc::new(Surface::of_grid(&grid));
