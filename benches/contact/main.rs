@@ -17,12 +17,9 @@ use resting::rest;
 const TURNS: u32 = 3;
 
 fn main() {
-    let wanted = |name: &str| {
-        let mut names = std::env::args()
-            .skip(1)
-            .filter(|name| !name.starts_with('-'));
-        names.clone().count() == 0 || names.any(|wanted| wanted == name)
-    };
+    let arguments = std::env::args().skip(1);
+    let names: Vec<String> = arguments.filter(|name| !name.starts_with('-')).collect();
+    let wanted = |name: &str| names.is_empty() || names.iter().any(|wanted| wanted == name);
     if wanted("rest") {
         at_rest();
     }

@@ -84,12 +84,14 @@ fn push_eight(
     (motion, cells): (&LaneMotion, &Cells),
     sums: &mut Sums,
 ) -> ([bool; LANES], f32) {
-    let [a, b, c] = corners.map(|corner| *corner.view(blocks));
-    let near = nearest(&a, &b, &c, cells.centre);
+    let [a, b, c] = corners.map(|corner| corner.view(blocks));
+    let near = nearest(a, b, c, cells.centre);
     let half = cells.reach / 2.0;
     let mut speed = [0.0; LANES];
-    if !(cells.fastest + cells.pushed + sums.passed * cells.max_faces <= half) {
-        speed = speeds([&a, &b, &c], motion.slide);
+    // NaN is not slow.
+    let is_slow = cells.fastest + cells.pushed + sums.passed * cells.max_faces <= half;
+    if !is_slow {
+        speed = speeds([a, b, c], motion.slide);
     }
     let mut left = [false; LANES];
     let mut is_pushed = [false; LANES];
@@ -97,9 +99,10 @@ fn push_eight(
     for l in 0..LANES {
         let distance = near.distance[l];
         let edges = near.edges[1][l] + near.edges[2][l];
-        let is_line = !(near.sum[l] > 4.0e-9 * edges * edges);
+        let is_wide = near.sum[l] > 4.0e-9 * edges * edges;
+        let is_far = distance >= half;
         let is_met = (speed[l] > half) & motion.is_swept & (distance - speed[l] <= cells.reach);
-        let is_left = is_cell[l] & (is_line | is_met | !(distance >= half));
+        let is_left = is_cell[l] & (!is_wide | is_met | !is_far);
         left[l] = is_left;
         let depth = cells.reach - distance;
         is_pushed[l] = is_cell[l] & !is_left & (depth > 0.0);
@@ -121,12 +124,12 @@ fn push_eight(
         least = if clear[l] < least { clear[l] } else { least };
     }
     if any {
-        let pushes = pushes([&a, &b, &c], &near, &is_pushed, motion, cells, sums);
+        let pushes = pushes([a, b, c], &near, &is_pushed, motion, cells, sums);
         if cells.is_measured {
             let crosses = areas(&near, &is_pushed, cells.reach, sums);
             for (lane, crosses) in crosses.into_iter().enumerate() {
                 if crosses {
-                    add_area([&a, &b, &c], lane, cells, sums);
+                    add_area([a, b, c], lane, cells, sums);
                 }
             }
         }
@@ -146,11 +149,7 @@ fn push_eight(
 #[inline(always)]
 fn cells_of(layout: Layout, block: u32) -> [bool; LANES] {
     let place = block % layout.strip;
-    let mut is_cell = [false; LANES];
-    for l in 0..LANES {
-        is_cell[l] = l as u32 * layout.strip + place + 1 < layout.columns;
-    }
-    is_cell
+    std::array::from_fn(|lane| lane as u32 * layout.strip + place + 1 < layout.columns)
 }
 
 /// The corners of both triangles of a block's cells, as [`ClothGrid::triangles`](crate::cloth::ClothGrid::triangles) has them.
@@ -214,8 +213,7 @@ pub(super) fn push_cells_baseline(
     let first = contacts.partition_point(|contact| contact.block < from.block);
     let layout = cells.layout;
     let centre = cells.centre.iter().map(|at| at.abs()).sum::<f32>();
-    for index in first..contacts.len() {
-        let contact = &mut contacts[index];
+    for (index, contact) in contacts.iter_mut().enumerate().skip(first) {
         let block = contact.block;
         let pushed = cells.pushed + sums.passed * cells.max_faces;
         if !contact.has_cells() || motion.odometer + pushed < contact.clear_until {

@@ -155,10 +155,7 @@ pub(super) fn speeds(corners: [&View; 3], [sx, sy, sz]: [f32; 3]) -> Lanes {
             };
         }
     }
-    for l in 0..LANES {
-        fastest[l] = fastest[l].sqrt();
-    }
-    fastest
+    fastest.map(f32::sqrt)
 }
 
 /// How eight triangles are pushed.
@@ -256,13 +253,7 @@ pub(super) fn pushes(
             sums.deepest[l]
         };
     }
-    for l in 0..LANES {
-        sums.passed = if farthest[l] > sums.passed {
-            farthest[l]
-        } else {
-            sums.passed
-        };
-    }
+    sums.passed = farthest.into_iter().fold(sums.passed, f32::max);
     pushes
 }
 

@@ -19,7 +19,7 @@ use crate::cloth::{ClothParticles, Slot};
 
 /// How often all triangles are gone through at most, while any is hit on a fast way: one that was passed by may have been
 /// moved into the way by another's corners.
-const MAX_PASSES: u32 = 4;
+const MAX_PASSES: u32 = 8;
 
 /// What to go on with.
 #[derive(Debug, Default, Clone, Copy)]
@@ -45,6 +45,8 @@ pub(super) struct Pushed<'a> {
     pub room: f32,
     /// How far anything has moved in the sub-step (m).
     pub moved: f32,
+    /// Whether areas are wanted.
+    pub is_measured: bool,
     /// What the sub-step comes to.
     pub found: Found,
     /// The farthest that one triangle has pushed in this pass (m).
@@ -58,6 +60,7 @@ impl<'a> Pushed<'a> {
         helds: &'a mut [Held],
         fans: &'a Fans,
         [room, moved]: [f32; 2],
+        is_measured: bool,
     ) -> Self {
         Self {
             candidates,
@@ -67,6 +70,7 @@ impl<'a> Pushed<'a> {
             fans,
             room,
             moved,
+            is_measured,
             found: Found::default(),
             passed: 0.0,
         }
@@ -122,7 +126,8 @@ impl<'a> Pushed<'a> {
         let push_out = lanes.push_out;
         for contact in self.contacts.iter_mut() {
             // NaN is looked at.
-            contact.is_left = !(lanes.odometer < contact.clear_until);
+            let is_clear = lanes.odometer < contact.clear_until;
+            contact.is_left = !is_clear;
             if contact.is_left {
                 contact.clear_until = f32::INFINITY;
             }
@@ -205,7 +210,7 @@ impl<'a> Pushed<'a> {
                 pushed: self.found.farthest_push,
                 room: self.room,
                 max_faces: self.fans.max_faces,
-                is_measured: resume.pass == 0,
+                is_measured: self.is_measured && resume.pass == 0,
             };
             let blocks = particles.blocks_mut();
             let of = (lanes, &cells);

@@ -118,11 +118,7 @@ fn hold(
         sums.angular[2][l] += x * gy - y * gx;
     }
     held.push = [[0.0; LANES]; 3];
-    let mut any = 0.0_f32;
-    for l in 0..LANES {
-        any += left[l];
-    }
-    held.is_active = any > 0.0;
+    held.is_active = left.into_iter().any(|left| left > 0.0);
 }
 
 /// Has friction hold back all that contacts have pushed.

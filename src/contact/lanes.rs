@@ -207,17 +207,9 @@ fn survey(
         let away = view[X + l].abs() + view[Y + l].abs() + view[Z + l].abs();
         size[l] = if is_free { away } else { 0.0 };
     }
-    let (mut most, mut farthest, mut left) = (f32::NEG_INFINITY, 0.0_f32, 0);
-    for l in 0..LANES {
-        most = if deepest[l] > most { deepest[l] } else { most };
-        farthest = if size[l] > farthest {
-            size[l]
-        } else {
-            farthest
-        };
-        left |= is_left[l];
-    }
-    contact.is_left = left != 0;
+    let most = deepest.into_iter().fold(f32::NEG_INFINITY, f32::max);
+    let farthest = size.into_iter().fold(0.0, f32::max);
+    contact.is_left = is_left != [0; LANES];
     if contact.is_left {
         contact.clear_until = f32::NEG_INFINITY;
         sums.left += 1;

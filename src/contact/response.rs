@@ -65,7 +65,7 @@ pub(super) struct PushOut {
 /// What an overlap takes to be let out to the part 1/e (s), and how slow and how fast it leaves at most (m/s).
 const OVERLAP_TIME: f32 = 0.1;
 const SLOWEST_OUT: f32 = 0.05;
-const FASTEST_OUT: f32 = 0.5;
+const FASTEST_OUT: f32 = 0.25;
 
 impl PushOut {
     /// In a sub-step of so many seconds, in which the collider itself travels so far (m): its own way makes room at once. With

@@ -8,6 +8,7 @@ mod meshes;
 mod moving;
 mod particle;
 mod random;
+mod rest;
 mod shapes;
 mod shots;
 mod sweep;

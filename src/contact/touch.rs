@@ -25,7 +25,8 @@ pub struct Touch {
     pub narrow_phase: NarrowPhase,
     /// How deep the deepest was found (m), 0 if none was inside.
     pub deepest: f32,
-    /// The largest area of the cloth that was inside at the end of a sub-step (m²).
+    /// The largest area of the cloth that was inside at the end of a sub-step (m²); against triangles, of each fourth sub-step, and of
+    /// the last.
     pub area: f32,
     /// The largest ∫ depth dA over it (m³).
     pub volume: f32,

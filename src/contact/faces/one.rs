@@ -45,7 +45,7 @@ impl Pushed<'_> {
         resume.is_swept |= touch.is_swept;
         self.passed = self.passed.max(pushed);
         self.found.deepest = self.found.deepest.max(depth.min(reach));
-        if resume.pass == 0 {
+        if self.is_measured && resume.pass == 0 {
             let (area, volume) = cap(corners.positions, touch.centre, reach);
             self.found.area += area;
             self.found.volume += volume;
