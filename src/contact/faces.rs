@@ -19,7 +19,7 @@ use crate::cloth::{ClothParticles, Slot};
 
 /// How often all triangles are gone through at most, while any is hit on a fast way: one that was passed by may have been
 /// moved into the way by another's corners.
-const MAX_PASSES: u32 = 8;
+const MAX_PASSES: u32 = 4;
 
 /// What to go on with.
 #[derive(Debug, Default, Clone, Copy)]

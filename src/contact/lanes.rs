@@ -215,17 +215,13 @@ fn survey(
         sums.left += 1;
         return false;
     }
-    for l in 0..LANES {
-        let depth = if deepest[l] < motion.thickness {
-            deepest[l]
+    for (known, depth) in contact.depth.iter_mut().zip(deepest) {
+        let depth = if depth < motion.thickness {
+            depth
         } else {
             motion.thickness
         };
-        contact.depth[l] = if depth > contact.depth[l] {
-            depth
-        } else {
-            contact.depth[l]
-        };
+        *known = if depth > *known { depth } else { *known };
     }
     // A little less than rounding, and than what counts as a touch.
     let clear = -most - 2.0 * motion.tolerance - 1.0e-5 * (farthest - most + motion.odometer);

@@ -87,8 +87,9 @@ impl Scene {
     }
 }
 
-/// A ball is put 20 cm into a curtain that hangs still, and let out at a quarter of a metre a second at most. A wave that comes to a free end
-/// doubles there: the cloth has no more motion than if all of it moved twice as fast as that, however many sub-steps there are.
+/// A ball is put 20 cm into a curtain of 1.55 m that hangs still, and let out at a quarter of a metre a second at most. What is pushed aside
+/// by so much swings back with its slowest ω of 1.2 √(g/L) = 3 rad/s, at 0.6 m/s: both together are all the motion that there is, however
+/// many sub-steps there are.
 #[test]
 fn an_overlap_throws_nothing() {
     for narrow_phase in BOTH {
@@ -112,7 +113,7 @@ fn an_overlap_throws_nothing() {
                 mean = mean.max(scene.mean_speed());
             }
             println!("{narrow_phase:?}, {substeps} sub-steps: {mean} m/s");
-            assert!(mean < 0.5, "{narrow_phase:?} {substeps}: {mean} m/s");
+            assert!(mean < 0.85, "{narrow_phase:?} {substeps}: {mean} m/s");
             let farthest = scene
                 .particles
                 .positions()
