@@ -1,10 +1,17 @@
 //! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
 
+mod candidates;
+mod cells;
 mod collider;
 mod corners;
 mod depth;
 mod detection;
+mod eight;
 mod faces;
+mod friction;
+mod held;
+mod kept;
+mod lanes;
 mod moving;
 mod mutual;
 mod narrow_phase;

@@ -49,7 +49,7 @@ impl StartedTick {
         self.is_pushed = true;
         self.measured = None;
         if !self.is_explicit {
-            particles.past_mut().forget(AFTER_CONTACT);
+            particles.forget_past(AFTER_CONTACT);
         }
     }
 }
