@@ -5,7 +5,8 @@ use std::sync::Arc;
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
-    MovingCollider, NarrowPhase,
+    BodyChange, MovingCollider, NarrowPhase,
+    body::{Before, Body},
     faces::{ResumePoint, SubstepMotion, push_triangles},
     particle::push_particles,
     touch::{Candidate, ContactPoint, ContactSettings, Fans, Touch},
@@ -47,6 +48,10 @@ pub struct Detection {
     requeries: u32,
     found: TopDownQuery,
     known: Vec<(usize, ContactPoint)>,
+    /// Those of the colliders that give way, and how far any of them may be from where it was searched for (m).
+    bodies: Vec<Body>,
+    deviation: f32,
+    before: Before,
 }
 
 impl Detection {
@@ -60,6 +65,8 @@ impl Detection {
         self.candidates.clear();
         self.fans.clear();
         self.colliders.clear();
+        self.bodies.clear();
+        self.deviation = 0.0;
         self.margin = margin;
         (self.moved, self.moved_now) = (0.0, 0.0);
         self.has_origin = false;
@@ -114,6 +121,14 @@ impl Detection {
         self.hold(id, collider, narrow_phase, found, particles);
     }
 
+    /// What the cloth has changed of a collider's motion so far, if it gives way and was near.
+    pub fn body_change(&self, id: usize) -> Option<BodyChange> {
+        self.bodies
+            .iter()
+            .find(|body| body.id == id)
+            .map(Body::change)
+    }
+
     fn hold(
         &mut self,
         id: usize,
@@ -124,6 +139,9 @@ impl Detection {
     ) {
         if found.is_empty() {
             return;
+        }
+        if self.bodies.iter().all(|body| body.id != id) {
+            self.bodies.extend(Body::of(id, collider));
         }
         let first = self.candidates.len();
         let layout = particles.layout();
@@ -171,6 +189,10 @@ impl Detection {
         for candidate in &mut self.candidates {
             candidate.depth = f32::NEG_INFINITY;
         }
+        for body in &mut self.bodies {
+            let way = body.restart();
+            send_on(&mut self.touches, &mut self.colliders, body.id, &way);
+        }
         // What was searched for on the way was found where the particles were then.
         self.moved = if self.requeries > 0 {
             f32::INFINITY
@@ -189,7 +211,7 @@ impl Detection {
     fn is_outrun(&mut self, particles: &ClothParticles) -> bool {
         // NaN is no less.
         let is_beyond = |moved: f32, margin: f32| moved > margin || moved.is_nan();
-        if !is_beyond(self.moved, self.margin) {
+        if !is_beyond(self.moved + self.deviation, self.margin) {
             return false;
         }
         // Searching again widens the margin: cheaper than to measure for every push.
@@ -197,7 +219,7 @@ impl Detection {
             self.measured += 1;
             self.moved = particles.farthest_from(&self.origin);
         }
-        is_beyond(self.moved, self.margin)
+        is_beyond(self.moved + self.deviation, self.margin)
     }
 
     /// Searches for the candidates of all colliders again, among the particles as they are.
@@ -215,6 +237,12 @@ impl Detection {
         // The way of this sub-step lies behind.
         self.moved = moved_now;
         self.remember(particles);
+        self.deviation = 0.0;
+        for body in &mut self.bodies {
+            if let Some((_, way)) = self.colliders.iter().find(|(id, _)| *id == body.id) {
+                body.set_searched(way);
+            }
+        }
         self.known.clear();
         for touch in &mut self.touches {
             let candidates = self.candidates[touch.candidates.clone()].iter();
@@ -302,6 +330,14 @@ impl Detection {
                 return is_pushed;
             };
             let candidates = &mut self.candidates[touch.candidates.clone()];
+            let body = self.bodies.iter_mut().find(|body| body.id == touch.id);
+            if body.is_some() {
+                let corners = |candidate: &Candidate| self.fans.corners(candidate.corners);
+                let corners = candidates.iter().flat_map(corners);
+                let particles_near = candidates.iter().map(|candidate| &candidate.slot);
+                let blocks = particles_near.chain(corners).map(|slot| slot.block);
+                self.before.save(blocks, particles);
+            }
             let collider = &touch.collider;
             let (found, stopped) = match touch.narrow_phase {
                 NarrowPhase::Triangles => {
@@ -314,6 +350,19 @@ impl Detection {
                     None,
                 ),
             };
+            if let Some(body) = body
+                && found.farthest_push > 0.0
+            {
+                let mut way = touch.collider;
+                body.share(&self.before, particles, &mut way, substep);
+                self.deviation = self.deviation.max(body.deviation(&way, substep.end()));
+                send_on(
+                    std::slice::from_mut(touch),
+                    &mut self.colliders,
+                    body.id,
+                    &way,
+                );
+            }
             // One may be pushed by several.
             self.moved += found.farthest_push;
             self.moved_now += found.farthest_push;
@@ -354,5 +403,20 @@ impl Detection {
     /// How often in the tick particles moved farther than the margin.
     pub fn requeries(&self) -> u32 {
         self.requeries
+    }
+}
+
+/// Has a collider go another way from now on.
+fn send_on(
+    touches: &mut [Touch],
+    colliders: &mut [(usize, MovingCollider)],
+    id: usize,
+    way: &MovingCollider,
+) {
+    for touch in touches.iter_mut().filter(|touch| touch.id == id) {
+        touch.collider.clone_from(way);
+    }
+    for (_, collider) in colliders.iter_mut().filter(|(known, _)| *known == id) {
+        collider.clone_from(way);
     }
 }

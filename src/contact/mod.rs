@@ -1,10 +1,13 @@
 //! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
 
+mod body;
 mod collider;
 mod corners;
 mod depth;
 mod detection;
 mod faces;
+mod layers;
+mod mass;
 mod moving;
 mod narrow_phase;
 mod particle;
@@ -15,11 +18,14 @@ mod tests;
 mod touch;
 mod triangle;
 
+pub use body::BodyChange;
 pub use collider::ClothCollider;
 pub use corners::meets_triangles;
 #[doc(hidden)]
 pub use depth::deepest_penetration;
 pub use detection::Detection;
+pub use layers::ClothLayers;
+pub use mass::BodyMass;
 pub use moving::MovingCollider;
 pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
 pub use shape::ColliderShape;

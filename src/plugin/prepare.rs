@@ -72,6 +72,7 @@ pub(super) fn prepare_cloths(
         // Whatever is wrong, nothing of an earlier tick is done again.
         cloth.scratch.step = None;
         cloth.scratch.pins.clear();
+        cloth.scratch.pushed.clear();
         let inputs = Inputs::of(
             cloth.settings,
             cloth.material,

@@ -10,7 +10,7 @@ use bevy::{
 
 use crate::{
     cloth::ClothParticles,
-    contact::{ContactSettings, Detection, MovingCollider},
+    contact::{BodyChange, ContactSettings, Detection, MovingCollider},
     hierarchy::{NodeBounds, SearchMethod, TopDownQuery},
     solver::{LimitInputs, PinMotion, Substepping, TickStep},
 };
@@ -39,6 +39,8 @@ pub struct ClothScratch {
     /// Their entities, while others are looked for.
     pub(super) near_set: EntityHashSet,
     pub(super) detection: Detection,
+    /// The bodies that the cloth pushed in the tick, and what it changed of their motion, in the world.
+    pub(super) pushed: Vec<(Entity, BodyChange)>,
     /// What a cloth that sleeps is searched with.
     pub(super) sleep_query: (NodeBounds, TopDownQuery),
     /// The particles as the tick began, for one that is done again.

@@ -4,16 +4,15 @@ use bevy::{
     ecs::{change_detection::DetectChanges, entity::Entity, query::QueryData, system::Query},
     math::Vec3,
     platform::time::Instant,
-    tasks::{ComputeTaskPool, available_parallelism},
 };
 
 use super::{
     ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState, ClothStats,
-    clock::milliseconds_since, colliders::ColliderMotion,
+    clock::milliseconds_since, colliders::ColliderMotion, threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
-    contact::ColliderShape,
+    contact::{BodyChange, ClothLayers, ColliderShape},
     hierarchy::Core,
     solver::{LimitInputs, Stretch, Substepping, TickStep},
 };
@@ -34,13 +33,22 @@ pub(super) struct Integrating {
     scratch: &'static mut ClothScratch,
     contacts: &'static mut ClothContacts,
     stats: &'static mut ClothStats,
+    layers: Option<&'static ClothLayers>,
 }
 
+/// All colliders, however far.
+type Colliders<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static ColliderMotion,
+        Option<&'static ClothLayers>,
+    ),
+>;
+
 /// Runs all sub-steps, of several cloths at once where there is enough to do.
-pub(super) fn integrate(
-    mut cloths: Query<Integrating>,
-    colliders: Query<(Entity, &ColliderMotion)>,
-) {
+pub(super) fn integrate(mut cloths: Query<Integrating>, colliders: Colliders) {
     let (mut awake, mut work) = (0, 0);
     for cloth in &cloths {
         if let Some(step) = cloth.scratch.step
@@ -61,14 +69,8 @@ pub(super) fn integrate(
     }
 }
 
-/// Threads that work on a tick: those of Bevy's compute pool, and the one that waits for them.
-fn threads() -> usize {
-    let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
-    (pool + 1).min(available_parallelism())
-}
-
 impl IntegratingItem<'_, '_> {
-    fn integrate(&mut self, colliders: &Query<(Entity, &ColliderMotion)>) {
+    fn integrate(&mut self, colliders: &Colliders) {
         // Taken: a cloth that is not prepared again does not move again.
         let Some(step) = self.scratch.step.take() else {
             return;
@@ -89,6 +91,7 @@ impl IntegratingItem<'_, '_> {
         self.stats.integrate_ms = milliseconds_since(start);
         self.state.written = Some(self.particles.last_changed());
         self.remember_contacts();
+        self.push_bodies();
         self.contacts
             .renew(&self.scratch.near, &self.scratch.detection);
         self.stats.requeries = self.scratch.detection.requeries();
@@ -107,8 +110,31 @@ impl IntegratingItem<'_, '_> {
         self.state.rests_on.extend(known);
     }
 
+    /// Notes what the cloth did to bodies. While it does something to one, it does not rest.
+    fn push_bodies(&mut self) {
+        let ClothScratch {
+            near,
+            detection,
+            pushed,
+            ..
+        } = &mut *self.scratch;
+        let rotation = self.frame.isometry().rotation;
+        for (id, (entity, _)) in near
+            .iter()
+            .enumerate()
+            .filter(|(_, near)| near.1.body.is_some())
+        {
+            if let Some(change) = detection.body_change(id)
+                && change != BodyChange::default()
+            {
+                pushed.push((*entity, change.turned(rotation)));
+                self.state.rest.disturb();
+            }
+        }
+    }
+
     /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
-    fn solve(&mut self, mut step: TickStep, colliders: &Query<(Entity, &ColliderMotion)>) {
+    fn solve(&mut self, mut step: TickStep, colliders: &Colliders) {
         let substepping = self.scratch.substepping;
         let bands = if self.particles.len() < MIN_TO_SPLIT {
             1
@@ -173,7 +199,7 @@ impl IntegratingItem<'_, '_> {
     }
 
     /// One way through the sub-steps.
-    fn advance(&mut self, step: TickStep, colliders: &Query<(Entity, &ColliderMotion)>) -> Stretch {
+    fn advance(&mut self, step: TickStep, colliders: &Colliders) -> Stretch {
         let ClothScratch {
             pins,
             near,
@@ -184,13 +210,15 @@ impl IntegratingItem<'_, '_> {
         } = &mut *self.scratch;
         let solver = &mut self.built.solver;
         let frame = self.frame;
+        let layers = self.layers.copied().unwrap_or_default();
         solver.advance(&mut self.particles, step, pins, |particles, substep| {
             detection.respond(particles, contact_settings, substep, |numbered| {
                 // Those that were far away may be near now; who is known keeps its number.
                 near_set.clear();
                 near_set.extend(near.iter().map(|(known, _)| *known));
-                for (entity, motion) in colliders {
-                    if !near_set.contains(&entity)
+                for (entity, motion, others) in colliders {
+                    if others.copied().unwrap_or_default().interacts_with(layers)
+                        && !near_set.contains(&entity)
                         && let Some(collider) = motion.seen_from(frame)
                     {
                         numbered.push((near.len(), collider));

@@ -6,6 +6,8 @@ mod envelope;
 mod faults;
 mod frame;
 mod gizmos;
+mod hostile;
+mod layers;
 mod lifetime;
 mod log;
 mod mesh;
