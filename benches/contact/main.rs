@@ -1,14 +1,58 @@
-//! Particles or triangles? `cargo bench --profile dev --bench contact`, as CSV.
+//! What contact costs, and particles or triangles? `cargo bench --profile dev --bench contact`, as CSV.
 //!
-//! A ball is pressed six spacings deep into the middle of a cell of a cloth that is held by its rim, and held there. How
-//! deep the flat triangles then are inside of the ball, and what a sub-step's response takes, by either narrow phase.
+//! First a cloth of 64², 2 m wide, at rest on a fixed ball of 0.5 m, in 20 sub-steps, and without the ball: a whole tick of each,
+//! several times in turns (`-- rest` does only this).
+//!
+//! Then a ball is pressed six spacings deep into the middle of a cell of a cloth that is held by its rim, and held there. How
+//! deep the flat triangles then are inside of the ball, and what a sub-step's response takes, by either narrow phase (`-- press`).
 
 mod press;
+mod resting;
 
 use bevy_drape::{contact::NarrowPhase, solver::TickStep};
 use press::{SPACING, press};
+use resting::rest;
+
+/// How often each is measured, in turns.
+const TURNS: u32 = 3;
 
 fn main() {
+    let wanted = |name: &str| {
+        let mut names = std::env::args()
+            .skip(1)
+            .filter(|name| !name.starts_with('-'));
+        names.clone().count() == 0 || names.any(|wanted| wanted == name)
+    };
+    if wanted("rest") {
+        at_rest();
+    }
+    if wanted("press") {
+        pressed();
+    }
+}
+
+fn at_rest() {
+    println!("turn,test,ms_a_tick,times_without,ms_of_responses,deepest_triangle_mm");
+    for turn in 0..TURNS {
+        let without = rest(None).tick;
+        for (name, narrow_phase) in [
+            ("particles", NarrowPhase::Particles),
+            ("triangles", NarrowPhase::Triangles),
+        ] {
+            let cost = rest(Some(narrow_phase));
+            println!(
+                "{turn},{name},{:.3},{:.2},{:.3},{:.3}",
+                1.0e3 * cost.tick,
+                cost.tick / without,
+                1.0e3 * cost.response,
+                1.0e3 * cost.deepest,
+            );
+        }
+        println!("{turn},without,{:.3},1,0,0", 1.0e3 * without);
+    }
+}
+
+fn pressed() {
     println!(
         "radius_over_spacing,test,deepest_triangle_percent_of_radius,fallen_through,us_a_substep,candidates"
     );

@@ -144,14 +144,14 @@ impl Body {
     }
 
     /// Has particles, which were pushed as if the body could not move, and the body share in it, and sends the body on from
-    /// where it then is. Returns the part of the momentum that the particles keep.
+    /// where it then is. Returns the part of the momentum that the particles keep, and how far the body gave way at once (m).
     pub fn share(
         &mut self,
         before: &Before,
         particles: &mut ClothParticles,
         way: &mut MovingCollider,
         substep: SubStep,
-    ) -> f32 {
+    ) -> [f32; 2] {
         let passed = substep.end();
         let pose = way.pose_at(passed);
         let turned = pose.rotation * self.start.from.rotation.inverse();
@@ -215,6 +215,8 @@ impl Body {
             rotation
         };
         self.change.rotation = rotation.to_scaled_axis();
-        move_part
+        let swing = turn.length() * (way.shape.core_extent() + arm.length());
+        let swing = if swing > 0.0 { swing } else { 0.0 };
+        [move_part, go.length() + swing]
     }
 }

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::{
     MovingCollider,
-    response::{Push, first_touch},
+    response::first_touch,
     touch::ContactSettings,
     triangle::{NearestPoints, at, nearest},
 };
@@ -16,7 +16,7 @@ use crate::{
 
 /// A triangle's particles at the end of a sub-step.
 pub(super) struct Corners {
-    slots: [Slot; 3],
+    pub slots: [Slot; 3],
     pub positions: [Vec3; 3],
     pub displacements: [Vec3; 3],
     pub inverse_masses: [f32; 3],
@@ -33,13 +33,19 @@ impl Corners {
         }
     }
 
-    /// Moves a corner; returns how far (m).
-    pub fn push(&self, corner: usize, particles: &mut ClothParticles, push: Push) -> f32 {
+    /// Moves a corner by a way, and has it be faster by a displacement (m). Returns where it is then.
+    pub fn push(
+        &self,
+        corner: usize,
+        particles: &mut ClothParticles,
+        [way, displacement]: [Vec3; 2],
+    ) -> Vec3 {
         let Slot { block, lane } = self.slots[corner];
         let block = &mut particles.blocks_mut()[block];
-        block.set_position(lane, self.positions[corner] + push.position);
-        block.set_displacement(lane, self.displacements[corner] + push.displacement);
-        push.position.length()
+        let pushed = self.positions[corner] + way;
+        block.set_position(lane, pushed);
+        block.set_displacement(lane, self.displacements[corner] + displacement);
+        pushed
     }
 
     /// When a part of the sub-step has passed.
@@ -66,10 +72,12 @@ pub(super) struct SubstepMotion<'a> {
     /// How near the core may come (m).
     pub reach: f32,
     /// How far it moves in the sub-step, and its turn alone moves any point of its core (m).
-    slide: Vec3,
-    swing: f32,
+    pub slide: Vec3,
+    pub swing: f32,
     /// The core at the end of the sub-step.
-    at_end: [Vec3; 2],
+    pub at_end: [Vec3; 2],
+    /// The collider's origin then.
+    pub origin: Vec3,
 }
 
 impl<'a> SubstepMotion<'a> {
@@ -87,13 +95,14 @@ impl<'a> SubstepMotion<'a> {
             slide: (collider.to - Vec3::from(collider.from.translation)) / count,
             swing: collider.swing() / count,
             at_end: segment(collider, substep.end()),
+            origin: collider.pose_at(substep.end()).translation.into(),
         }
     }
 
-    /// Whether nothing of the faces that a particle stands for can have come near in the sub-step: most candidates are too
-    /// far away. `corners` are all of theirs, and `own` is the particle's.
+    /// How far all faces that a particle stands for are from being touched at least (m), and how far they have moved relative to
+    /// the collider in the sub-step at most (m). `corners` are all of theirs, and `own` is the particle's.
     #[inline]
-    pub fn is_beyond(&self, blocks: &[Block], own: Slot, corners: &[Slot]) -> bool {
+    pub fn clearance(&self, blocks: &[Block], own: Slot, corners: &[Slot]) -> [f32; 2] {
         let first = blocks[own.block].position(own.lane);
         let (mut edge, mut speed) = (0.0_f32, 0.0_f32);
         for &Slot { block, lane } in corners {
@@ -109,9 +118,17 @@ impl<'a> SubstepMotion<'a> {
         } else {
             start
         };
-        // A little more than rounding. NaN is looked at.
-        let near = (self.reach + edge.sqrt() + speed.sqrt() + self.swing) * (1.0 + 1.0e-5);
-        first.distance_squared(nearest) > near * near
+        // A little more than rounding, and than what counts as a touch.
+        let near = (1.0 + 4.0e-3) * self.reach + edge.sqrt();
+        let rounding = 1.0e-5 * (near + first.length());
+        let clear = first.distance(nearest) - near - rounding;
+        [clear, speed.sqrt() + self.swing]
+    }
+
+    /// How far the collider's surface moves in the sub-step, at a point (m).
+    pub fn surface_motion(&self, point: Vec3) -> Vec3 {
+        self.collider
+            .surface_motion(self.substep, self.origin, point)
     }
 
     /// How a triangle lies to the collider at the end of the sub-step, or where it was hit in it; and how far its nearest

@@ -7,9 +7,12 @@ use bevy::math::{Vec3, bounding::BoundingSphere};
 use super::{
     BodyChange, MovingCollider, NarrowPhase,
     body::{Before, Body},
-    faces::{ResumePoint, SubstepMotion, push_triangles},
-    particle::push_particles,
-    touch::{Candidate, ContactPoint, ContactSettings, Fans, Touch},
+    candidates::{Candidates, Ranges},
+    faces::{Pushed, ResumePoint, SubstepMotion},
+    kept::Kept,
+    particle::{lane_motion, push_particles},
+    response::PushOut,
+    touch::{ContactPoint, ContactSettings, Touch},
 };
 use crate::{
     cloth::{ClothParticles, Surface},
@@ -20,6 +23,9 @@ use crate::{
 /// How often a sub-step measures how far particles have moved, before it searches again.
 const MAX_MEASURED: u32 = 2;
 
+/// A particle is pushed by six triangles, with a third of each or more.
+const TRIANGLES_A_PUSH: f32 = 3.0;
+
 /// Which particles each collider may touch in a tick.
 ///
 /// They are those that come within the collider, all along its way, as far as a *margin*. Nothing is missed while no
@@ -29,11 +35,10 @@ const MAX_MEASURED: u32 = 2;
 pub struct Detection {
     /// In the order of their numbers, so that the result is the same whenever they were found.
     touches: Vec<Touch>,
-    candidates: Vec<Candidate>,
+    candidates: Candidates,
     /// All that were searched for, touching or not, and among what: to search again.
     colliders: Vec<(usize, MovingCollider)>,
     surface: Arc<Surface>,
-    fans: Fans,
     /// How far a particle may move before the candidates are searched for again (m).
     margin: f32,
     /// How far one may have moved since they were (m): as the largest moves and pushes add up, or as measured.
@@ -45,9 +50,11 @@ pub struct Detection {
     measured: u32,
     /// How far of that in this sub-step: the way that is swept lies so far behind (m).
     moved_now: f32,
+    /// The sum of all moves in the tick so far (m): what was so far away can't have come.
+    odometer: f32,
     requeries: u32,
     found: TopDownQuery,
-    known: Vec<(usize, ContactPoint)>,
+    kept: Kept,
     /// Those of the colliders that give way, and how far any of them may be from where it was searched for (m).
     bodies: Vec<Body>,
     deviation: f32,
@@ -59,16 +66,15 @@ impl Detection {
     pub fn begin(&mut self, surface: &Arc<Surface>, margin: f32) {
         if !Arc::ptr_eq(&self.surface, surface) {
             self.surface = surface.clone();
-            self.fans.max_faces = surface.max_faces() as f32;
+            self.candidates.fans.max_faces = surface.max_faces() as f32;
         }
         self.touches.clear();
         self.candidates.clear();
-        self.fans.clear();
         self.colliders.clear();
         self.bodies.clear();
         self.deviation = 0.0;
         self.margin = margin;
-        (self.moved, self.moved_now) = (0.0, 0.0);
+        (self.moved, self.moved_now, self.odometer) = (0.0, 0.0, 0.0);
         self.has_origin = false;
         self.requeries = 0;
     }
@@ -143,29 +149,17 @@ impl Detection {
         if self.bodies.iter().all(|body| body.id != id) {
             self.bodies.extend(Body::of(id, collider));
         }
-        let first = self.candidates.len();
+        if !self.has_origin {
+            // Pushes that balance springs add up to much in a tick, and lead nowhere: that is measured from here.
+            self.remember(particles);
+        }
         let layout = particles.layout();
         let by_triangles = narrow_phase == NarrowPhase::Triangles;
-        for &particle in found {
-            let [corners, faces] = if by_triangles {
-                self.fans.add(&self.surface, layout, particle)
-            } else {
-                [[0; 2]; 2]
-            };
-            self.candidates.push(Candidate {
-                particle,
-                slot: layout.slot_of(particle as usize),
-                corners,
-                faces,
-                area: self.surface.area_of(particle as usize),
-                depth: f32::NEG_INFINITY,
-            });
-        }
-        // In the order of the cloth, whatever the search's: so the result is the same whichever it is.
-        self.candidates[first..].sort_unstable_by_key(|candidate| candidate.particle);
-        let candidates = first..self.candidates.len();
+        let of = self
+            .candidates
+            .add(found, &self.surface, layout, by_triangles);
         match self.touches.binary_search_by_key(&id, |touch| touch.id) {
-            Ok(at) => self.touches[at].candidates = candidates,
+            Ok(at) => self.touches[at].of = of,
             Err(at) => self.touches.insert(
                 at,
                 Touch {
@@ -175,7 +169,10 @@ impl Detection {
                     deepest: 0.0,
                     area: 0.0,
                     volume: 0.0,
-                    candidates,
+                    impulse: Vec3::ZERO,
+                    angular_impulse: Vec3::ZERO,
+                    of,
+                    traveled: 0.0,
                 },
             ),
         }
@@ -185,10 +182,11 @@ impl Detection {
     pub fn restart(&mut self) {
         for touch in &mut self.touches {
             (touch.deepest, touch.area, touch.volume) = (0.0, 0.0, 0.0);
+            (touch.impulse, touch.angular_impulse) = (Vec3::ZERO, Vec3::ZERO);
+            touch.traveled = 0.0;
         }
-        for candidate in &mut self.candidates {
-            candidate.depth = f32::NEG_INFINITY;
-        }
+        self.candidates.restart();
+        self.odometer = 0.0;
         for body in &mut self.bodies {
             let way = body.restart();
             send_on(&mut self.touches, &mut self.colliders, body.id, &way);
@@ -202,7 +200,7 @@ impl Detection {
     }
 
     fn remember(&mut self, particles: &ClothParticles) {
-        self.origin.copy_from(particles);
+        self.origin.copy_places_from(particles);
         self.has_origin = true;
     }
 
@@ -243,23 +241,11 @@ impl Detection {
                 body.set_searched(way);
             }
         }
-        self.known.clear();
+        self.kept.take(&self.touches, &self.candidates);
         for touch in &mut self.touches {
-            let candidates = self.candidates[touch.candidates.clone()].iter();
-            let looked_at = candidates.filter(|candidate| candidate.depth > f32::NEG_INFINITY);
-            self.known.extend(looked_at.map(|candidate| {
-                (
-                    touch.id,
-                    ContactPoint {
-                        particle: candidate.particle,
-                        depth: candidate.depth,
-                    },
-                )
-            }));
-            touch.candidates = 0..0;
+            touch.of = Ranges::default();
         }
         self.candidates.clear();
-        self.fans.clear();
         let cloth = particles.bounding_sphere();
         let longest_edge = particles.longest_face_reach(&self.surface);
         let mut found = std::mem::take(&mut self.found);
@@ -275,31 +261,15 @@ impl Detection {
                 found.scan(particles, &probe);
             }
             // What was looked at stays, so that nothing that touched is forgotten.
-            // In the order of the touches' numbers.
-            let first = self.known.partition_point(|(known, _)| known < id);
-            let known = self.known[first..]
-                .iter()
-                .take_while(|(known, _)| known == id)
-                .map(|(_, point)| point.particle);
-            let mut all: Vec<u32> = known.chain(found.candidates().iter().copied()).collect();
+            let found = found.candidates().iter().copied();
+            let mut all: Vec<u32> = self.kept.particles(*id).chain(found).collect();
             all.sort_unstable();
             all.dedup();
             self.hold(*id, collider, narrow_phase, &all, particles);
         }
         self.colliders = colliders;
         self.found = found;
-        for &(id, point) in &self.known {
-            let Ok(at) = self.touches.binary_search_by_key(&id, |touch| touch.id) else {
-                continue;
-            };
-            let touch = &self.touches[at];
-            let candidates = &mut self.candidates[touch.candidates.clone()];
-            if let Ok(at) =
-                candidates.binary_search_by_key(&point.particle, |candidate| candidate.particle)
-            {
-                candidates[at].depth = point.depth;
-            }
-        }
+        self.kept.give_back(&self.touches, &mut self.candidates);
     }
 
     /// Pushes what is inside of a collider out, at the end of a sub-step. Returns whether anything moved.
@@ -316,7 +286,12 @@ impl Detection {
     ) -> bool {
         self.moved += substep.farthest_move;
         self.moved_now = substep.farthest_move;
+        self.odometer += substep.farthest_move;
         self.measured = 0;
+        for touch in &mut self.touches {
+            let way = touch.collider.max_surface_travel(f32::INFINITY);
+            touch.traveled += way / substep.count as f32;
+        }
         let mut is_pushed = false;
         let (mut next, mut from) = (0, ResumePoint::default());
         let (mut area, mut volume) = (0.0, 0.0);
@@ -329,32 +304,55 @@ impl Detection {
             let Some(touch) = self.touches.get_mut(at) else {
                 return is_pushed;
             };
-            let candidates = &mut self.candidates[touch.candidates.clone()];
+            let Candidates {
+                all,
+                blocks,
+                fans,
+                helds,
+                ..
+            } = &mut self.candidates;
+            let collider = &touch.collider;
+            let first = touch.of.blocks.start;
+            let contacts = &mut blocks[touch.of.blocks.clone()];
             let body = self.bodies.iter_mut().find(|body| body.id == touch.id);
             if body.is_some() {
-                let corners = |candidate: &Candidate| self.fans.corners(candidate.corners);
-                let corners = candidates.iter().flat_map(corners);
-                let particles_near = candidates.iter().map(|candidate| &candidate.slot);
-                let blocks = particles_near.chain(corners).map(|slot| slot.block);
+                let blocks = contacts.iter().map(|contact| contact.block as usize);
                 self.before.save(blocks, particles);
             }
-            let collider = &touch.collider;
+            let odometer = self.odometer + touch.traveled;
+            let travel = (collider.travel() + collider.swing()) / substep.count as f32;
+            let shares = match touch.narrow_phase {
+                NarrowPhase::Triangles => TRIANGLES_A_PUSH,
+                NarrowPhase::Auto | NarrowPhase::Particles => 1.0,
+            };
+            let push_out = PushOut::new(particles.substep(), travel, shares);
+            let lanes = lane_motion(collider, settings, substep, push_out, odometer);
             let (found, stopped) = match touch.narrow_phase {
                 NarrowPhase::Triangles => {
-                    let room = self.margin - self.moved;
                     let motion = SubstepMotion::new(collider, settings, substep);
-                    push_triangles(particles, candidates, &self.fans, &motion, from, room)
+                    let mut pushed = Pushed::new(
+                        &all[touch.of.candidates.clone()],
+                        (contacts, first),
+                        &mut helds[touch.of.helds.clone()],
+                        fans,
+                        [self.margin - self.moved - self.deviation, self.moved_now],
+                    );
+                    let stopped = pushed.push(particles, (&motion, &lanes), from);
+                    (pushed.found, stopped)
                 }
-                NarrowPhase::Auto | NarrowPhase::Particles => (
-                    push_particles(particles, candidates, collider, settings, substep),
-                    None,
-                ),
+                NarrowPhase::Auto | NarrowPhase::Particles => {
+                    let at = (collider, settings, substep);
+                    (push_particles(particles, contacts, at, &lanes), None)
+                }
             };
+            let mut given = found.given;
             if let Some(body) = body
                 && found.farthest_push > 0.0
             {
                 let mut way = touch.collider;
-                body.share(&self.before, particles, &mut way, substep);
+                let [kept, gone] = body.share(&self.before, particles, &mut way, substep);
+                given.scale(f64::from(kept));
+                touch.traveled += gone;
                 self.deviation = self.deviation.max(body.deviation(&way, substep.end()));
                 send_on(
                     std::slice::from_mut(touch),
@@ -366,8 +364,12 @@ impl Detection {
             // One may be pushed by several.
             self.moved += found.farthest_push;
             self.moved_now += found.farthest_push;
+            self.odometer += found.farthest_push;
             is_pushed |= found.farthest_push > 0.0;
             touch.deepest = touch.deepest.max(found.deepest);
+            let seconds = f64::from(particles.substep());
+            touch.impulse += (given.linear / seconds).as_vec3();
+            touch.angular_impulse += (given.angular / seconds).as_vec3();
             area += found.area;
             volume += found.volume;
             from = stopped.unwrap_or_default();
@@ -392,11 +394,11 @@ impl Detection {
 
     /// The particles near a collider.
     pub fn points(&self, touch: &Touch) -> impl ExactSizeIterator<Item = ContactPoint> + '_ {
-        self.candidates[touch.candidates.clone()]
+        self.candidates.all[touch.of.candidates.clone()]
             .iter()
             .map(|candidate| ContactPoint {
                 particle: candidate.particle,
-                depth: candidate.depth,
+                depth: self.candidates.depth_of(candidate),
             })
     }
 

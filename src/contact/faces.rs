@@ -1,20 +1,21 @@
 //! The narrow phase by triangles, for what is so small that it would slip between particles.
 
+mod one;
+
 use bevy::math::Vec3;
 
 pub(super) use super::corners::SubstepMotion;
 use super::{
-    corners::{Corners, Touching},
+    ColliderShape,
+    candidates::{Candidate, ContactBlock, Fans},
+    cells::{Place, Stop, push_cells, slots_of},
+    eight::Cells,
+    friction::{Axle, hold_all},
+    held::Held,
+    lanes::{LaneMotion, Sums},
     particle::Found,
-    response::{Contact, Push},
-    touch::{Candidate, Fans},
-    triangle::{area_within, at},
 };
-use crate::cloth::ClothParticles;
-
-/// How many times as far as a triangle's point one of its corners is pushed at most. Corners that are all free, with the
-/// masses of a grid, up to four times each other's, go no more than 2.0 times as far.
-const MAX_SHARE: f32 = 2.0;
+use crate::cloth::{ClothParticles, Slot};
 
 /// How often all triangles are gone through at most, while any is hit on a fast way: one that was passed by may have been
 /// moved into the way by another's corners.
@@ -26,176 +27,251 @@ pub(super) struct ResumePoint {
     pass: u32,
     /// A particle, and which of the triangles that it stands for.
     at: (u32, usize),
+    /// In blocks of cells.
+    place: Place,
     /// Whether one was hit on a fast way in this pass.
     is_swept: bool,
 }
 
-/// Pushes the triangles out of `collider` that it touches or passed through in this sub-step, each by moving its
-/// corners as much as they have a part in the nearest point, and mass allows.
-///
-/// Goes on `from` a triangle. Once a particle may have been pushed farther than there is `room` (m), candidates may be
-/// missing: it stops then, and says with which triangle to go on.
-pub(super) fn push_triangles(
-    particles: &mut ClothParticles,
-    candidates: &mut [Candidate],
-    fans: &Fans,
-    motion: &SubstepMotion,
-    from: ResumePoint,
-    room: f32,
-) -> (Found, Option<ResumePoint>) {
-    let reach = motion.reach;
-    let mut found = Found::default();
-    // The farthest that one triangle has pushed in this pass (m).
-    let mut passed = 0.0_f32;
-    let mut resume = from;
-    while resume.pass < MAX_PASSES {
-        for candidate in candidates.iter_mut() {
-            let faces = fans.faces(candidate.faces);
-            let corners = fans.corners(candidate.corners);
-            if faces.is_empty() || motion.is_beyond(particles.blocks(), candidate.slot, corners) {
+/// What a collider's triangles are pushed in.
+pub(super) struct Pushed<'a> {
+    pub candidates: &'a [Candidate],
+    /// Those of the collider, of which the first is the `first` of all.
+    pub contacts: &'a mut [ContactBlock],
+    pub first: usize,
+    pub helds: &'a mut [Held],
+    pub fans: &'a Fans,
+    /// Once particles may have been pushed farther than this, candidates may be missing (m).
+    pub room: f32,
+    /// How far anything has moved in the sub-step (m).
+    pub moved: f32,
+    /// What the sub-step comes to.
+    pub found: Found,
+    /// The farthest that one triangle has pushed in this pass (m).
+    passed: f32,
+}
+
+impl<'a> Pushed<'a> {
+    pub fn new(
+        candidates: &'a [Candidate],
+        (contacts, first): (&'a mut [ContactBlock], usize),
+        helds: &'a mut [Held],
+        fans: &'a Fans,
+        [room, moved]: [f32; 2],
+    ) -> Self {
+        Self {
+            candidates,
+            contacts,
+            first,
+            helds,
+            fans,
+            room,
+            moved,
+            found: Found::default(),
+            passed: 0.0,
+        }
+    }
+
+    /// Pushes the triangles out of a collider that it touches or passed through in this sub-step, each by moving its
+    /// corners as much as they have a part in the nearest point, and mass allows; then friction holds back their particles.
+    ///
+    /// Goes on `from` a triangle. Once a particle may have been pushed farther than there is room, candidates may be
+    /// missing: it stops then, and says with which triangle to go on.
+    pub fn push(
+        &mut self,
+        particles: &mut ClothParticles,
+        (motion, lanes): (&SubstepMotion, &LaneMotion),
+        from: ResumePoint,
+    ) -> Option<ResumePoint> {
+        let mut resume = from;
+        let ball = match motion.collider.shape {
+            ColliderShape::Ball { .. } if particles.layout().rows > 1 => Some(motion.at_end[0]),
+            _ => None,
+        };
+        while resume.pass < MAX_PASSES {
+            let stops = match ball {
+                Some(centre) => self.push_cells(particles, (motion, lanes), centre, &mut resume),
+                None => self.push_each(particles, (motion, lanes), &mut resume),
+            };
+            self.found.farthest_push += self.passed * self.fans.max_faces;
+            self.passed = 0.0;
+            if stops {
+                self.look_again();
+                return Some(resume);
+            }
+            if !resume.is_swept {
+                break;
+            }
+            self.look_again();
+            resume = ResumePoint {
+                pass: resume.pass + 1,
+                ..ResumePoint::default()
+            };
+        }
+        self.hold(particles, (motion, lanes));
+        None
+    }
+
+    /// One after the other. Returns whether it has to stop.
+    fn push_each(
+        &mut self,
+        particles: &mut ClothParticles,
+        (motion, lanes): (&SubstepMotion, &LaneMotion),
+        resume: &mut ResumePoint,
+    ) -> bool {
+        let push_out = lanes.push_out;
+        for contact in self.contacts.iter_mut() {
+            // NaN is looked at.
+            contact.is_left = !(lanes.odometer < contact.clear_until);
+            if contact.is_left {
+                contact.clear_until = f32::INFINITY;
+            }
+        }
+        for candidate in self.candidates {
+            let (contact, lane) = candidate.lane();
+            let contact = contact - self.first;
+            let faces = self.fans.faces(candidate.faces);
+            if faces.is_empty() {
+                continue;
+            }
+            let now = lanes.odometer + self.pushed();
+            if !self.contacts[contact].is_left && now < self.contacts[contact].clear_until {
+                continue;
+            }
+            let slot = Slot {
+                block: self.contacts[contact].block as usize,
+                lane,
+            };
+            let corners = self.fans.corners(candidate.corners);
+            let [clear, speed] = motion.clearance(particles.blocks(), slot, corners);
+            let until = if clear > 0.0 {
+                lanes.odometer * (1.0 - 1.0e-5) + clear
+            } else {
+                f32::NEG_INFINITY
+            };
+            let contact_block = &mut self.contacts[contact];
+            contact_block.clear_until = contact_block.clear_until.min(until);
+            if clear > speed {
                 continue;
             }
             for (which, &slots) in faces.iter().enumerate() {
                 if (candidate.particle, which) < resume.at {
                     continue;
                 }
-                let corners = Corners::of(particles, slots);
-                let Some((touch, depth)) = motion.touch(&corners) else {
-                    continue;
-                };
-                candidate.depth = candidate.depth.max(depth.min(reach));
-                if depth <= 0.0 {
-                    continue;
-                }
-                let pushed = if touch.is_swept {
-                    push_corners(particles, &corners, &touch, motion)
-                } else {
-                    push_point(particles, &corners, &touch, depth, motion)
-                };
-                if pushed == 0.0 {
-                    continue;
-                }
-                resume.is_swept |= touch.is_swept;
-                passed = passed.max(pushed);
-                let depth = depth.min(reach);
-                found.deepest = found.deepest.max(depth);
-                if resume.pass == 0 {
-                    let (area, volume) = cap(corners.positions, touch.centre, reach);
-                    found.area += area;
-                    found.volume += volume;
-                }
-                if found.farthest_push + passed * fans.max_faces > room {
-                    found.farthest_push += passed * fans.max_faces;
+                self.push_one(particles, motion, (contact, lane), slots, &push_out, resume);
+                if self.is_full() {
                     resume.at = (candidate.particle, which + 1);
-                    return (found, Some(resume));
+                    return true;
                 }
             }
         }
-        found.farthest_push += passed * fans.max_faces;
-        passed = 0.0;
-        if !resume.is_swept {
-            break;
-        }
-        resume = ResumePoint {
-            pass: resume.pass + 1,
-            ..ResumePoint::default()
-        };
+        false
     }
-    (found, None)
-}
 
-/// Pushes a triangle's nearest point out, by moving its corners as much as they have a part in it, and mass allows.
-/// Returns how far the farthest has moved (m).
-fn push_point(
-    particles: &mut ClothParticles,
-    corners: &Corners,
-    &Touching {
-        weights, normal, ..
-    }: &Touching,
-    depth: f32,
-    &SubstepMotion {
-        collider,
-        settings,
-        substep,
-        ..
-    }: &SubstepMotion,
-) -> f32 {
-    let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
-    let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
-    // One that hardly has a part, beside pins, can't make up for them: it would be thrown away.
-    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
-    if mobility == 0.0 {
-        return 0.0;
+    /// How far a particle may have been pushed so far (m).
+    fn pushed(&self) -> f32 {
+        self.found.farthest_push + self.passed * self.fans.max_faces
     }
-    let point = at(corners.positions, weights) + normal * (depth - settings.particle_radius);
-    let origin = Vec3::from(collider.pose_at(substep.end()).translation);
-    let surface = collider.surface_motion(substep, origin, point);
-    let push = Contact {
-        normal,
-        depth,
-        relative: at(corners.displacements, weights) - surface,
+
+    /// Whether that is farther than there is room.
+    fn is_full(&self) -> bool {
+        self.pushed() > self.room
     }
-    .push(settings.friction);
-    let mut farthest = 0.0_f32;
-    for (corner, part) in parts.into_iter().enumerate() {
-        let share = part / mobility;
-        if share > 0.0 {
-            let push = Push {
-                position: push.position * share,
-                displacement: push.displacement * share,
+
+    /// Has all be looked at again.
+    fn look_again(&mut self) {
+        for contact in self.contacts.iter_mut() {
+            contact.clear_until = f32::NEG_INFINITY;
+        }
+    }
+
+    /// By blocks of cells, out of a ball. Returns whether it has to stop.
+    fn push_cells(
+        &mut self,
+        particles: &mut ClothParticles,
+        (motion, lanes): (&SubstepMotion, &LaneMotion),
+        centre: Vec3,
+        resume: &mut ResumePoint,
+    ) -> bool {
+        let layout = particles.layout();
+        let mut sums = Sums::default();
+        loop {
+            sums.passed = self.passed;
+            let cells = Cells {
+                layout,
+                centre: centre.to_array(),
+                reach: motion.reach,
+                fastest: self.moved + motion.slide.length() + motion.swing,
+                pushed: self.found.farthest_push,
+                room: self.room,
+                max_faces: self.fans.max_faces,
+                is_measured: resume.pass == 0,
             };
-            farthest = farthest.max(corners.push(corner, particles, push));
+            let blocks = particles.blocks_mut();
+            let of = (lanes, &cells);
+            let (stop, next) = push_cells(
+                blocks,
+                self.contacts,
+                self.helds,
+                of,
+                resume.place,
+                &mut sums,
+            );
+            resume.place = next;
+            self.passed = self.passed.max(sums.passed);
+            match stop {
+                Stop::Left {
+                    contact,
+                    which,
+                    lanes: left,
+                } => {
+                    for (lane, _) in left.iter().enumerate().filter(|(_, is_left)| **is_left) {
+                        let slots = slots_of(layout, &self.contacts[contact], which, lane);
+                        let at = (contact, lane);
+                        self.push_one(particles, motion, at, slots, &lanes.push_out, resume);
+                    }
+                }
+                Stop::Room => {}
+                Stop::Done => break,
+            }
+            if self.is_full() {
+                break;
+            }
         }
+        let stops = self.is_full() && resume.place != Place::END;
+        self.found.add(&sums);
+        stops
     }
-    farthest
-}
 
-/// Pushes each corner of a triangle that was hit on its way in front of the surface's plane there, which keeps all of
-/// it on its side. Its point alone is not enough: a corner that has hardly a part in it would stay behind, and the
-/// triangle would turn out of a fast collider's way. Returns how far the farthest has moved (m).
-fn push_corners(
-    particles: &mut ClothParticles,
-    corners: &Corners,
-    &Touching { normal, centre, .. }: &Touching,
-    &SubstepMotion {
-        collider,
-        settings,
-        substep,
-        reach,
-        ..
-    }: &SubstepMotion,
-) -> f32 {
-    let origin = Vec3::from(collider.pose_at(substep.end()).translation);
-    let mut farthest = 0.0_f32;
-    for corner in 0..3 {
-        let position = corners.positions[corner];
-        let depth = reach - normal.dot(position - centre);
-        if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
-            continue;
-        }
-        let point = position + normal * (depth - settings.particle_radius);
-        let surface = collider.surface_motion(substep, origin, point);
-        let push = Contact {
-            normal,
-            depth,
-            relative: corners.displacements[corner] - surface,
-        }
-        .push(settings.friction);
-        farthest = farthest.max(corners.push(corner, particles, push));
+    /// Has friction hold back what was pushed.
+    fn hold(
+        &mut self,
+        particles: &mut ClothParticles,
+        (motion, lanes): (&SubstepMotion, &LaneMotion),
+    ) {
+        let [start, end] = motion.at_end;
+        let along = end - start;
+        let axle = Axle {
+            axis: along.normalize_or_zero().to_array(),
+            half_length: along.length() / 2.0,
+            radius: motion.reach - motion.settings.particle_radius,
+        };
+        let seconds = particles.substep();
+        let mut sums = Sums::default();
+        let blocks = particles.blocks_mut();
+        hold_all(
+            blocks,
+            self.contacts,
+            self.helds,
+            &axle,
+            lanes,
+            seconds,
+            &mut sums,
+        );
+        let farthest = self.found.farthest_push;
+        self.found.add(&sums);
+        // Friction comes after all pushes.
+        let held = sums.farthest_push.iter().copied().fold(0.0, f32::max);
+        self.found.farthest_push = farthest + held.sqrt();
     }
-    farthest
-}
-
-/// Area of the triangle inside of a ball (m²), and ∫ depth dA over it (m³) with the mean depth of a cap, half of its
-/// height.
-fn cap(corners: [Vec3; 3], centre: Vec3, radius: f32) -> (f32, f32) {
-    let [a, b, c] = corners;
-    let normal = (b - a).cross(c - a).normalize_or_zero();
-    let height = normal.dot(a - centre);
-    let within = radius * radius - height * height;
-    if within <= 0.0 {
-        return (0.0, 0.0);
-    }
-    let area = area_within(corners, centre + normal * height, within.sqrt());
-    (area, area * (radius - height.abs()) / 2.0)
 }

@@ -1,11 +1,18 @@
 //! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
 
 mod body;
+mod candidates;
+mod cells;
 mod collider;
 mod corners;
 mod depth;
 mod detection;
+mod eight;
 mod faces;
+mod friction;
+mod held;
+mod kept;
+mod lanes;
 mod layers;
 mod mass;
 mod moving;

@@ -1,15 +1,17 @@
 //! The narrow phase by particles: each is a ball of its own radius.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
 
 use super::{
-    MovingCollider,
-    response::{Contact, MAX_STEPS, first_touch},
+    ColliderShape, MovingCollider,
+    candidates::ContactBlock,
+    lanes::{Cuboid, HalfSpace, LaneMotion, Round, Sums, push_cuboid, push_half_space, push_round},
+    response::{Contact, Given, MAX_STEPS, PushOut, first_touch},
     shape::Nearest,
-    touch::{Candidate, ContactSettings},
+    touch::ContactSettings,
 };
 use crate::{
-    cloth::{Block, ClothParticles, Slot},
+    cloth::{Block, ClothParticles, LANES, Lanes},
     solver::SubStep,
 };
 
@@ -24,82 +26,224 @@ pub(super) struct Found {
     pub area: f32,
     /// ∫ depth dA over it (m³).
     pub volume: f32,
+    /// What the collider was given.
+    pub given: Given,
 }
 
-/// Pushes those candidates out that are inside of `collider`, or that passed through it in this sub-step.
+impl Found {
+    /// Adds what blocks of lanes came to.
+    pub fn add(&mut self, sums: &Sums) {
+        let largest = |lanes: &Lanes| lanes.iter().copied().fold(0.0, f32::max);
+        let sum = |lanes: &Lanes| lanes.iter().copied().map(f64::from).sum::<f64>();
+        let vector = |lanes: &[Lanes; 3]| DVec3::from([0, 1, 2].map(|axis| sum(&lanes[axis])));
+        self.deepest = self.deepest.max(largest(&sums.deepest));
+        let farthest = largest(&sums.farthest_push).sqrt();
+        self.farthest_push = self.farthest_push.max(farthest);
+        self.area += sum(&sums.area) as f32;
+        self.volume += sum(&sums.volume) as f32;
+        self.given.merge(&Given {
+            linear: vector(&sums.linear),
+            angular: vector(&sums.angular),
+        });
+    }
+}
+
+/// Pushes those particles out that are inside of `collider`, or that passed through it in this sub-step.
 ///
 /// Pinned particles are left where they are.
 pub(super) fn push_particles(
     particles: &mut ClothParticles,
-    candidates: &mut [Candidate],
+    contacts: &mut [ContactBlock],
+    (collider, settings, substep): (&MovingCollider, &ContactSettings, SubStep),
+    motion: &LaneMotion,
+) -> Found {
+    let mut found = Found::default();
+    let mut sums = Sums::default();
+    let pose = collider.pose_at(substep.end());
+    let blocks = particles.blocks_mut();
+    push_lanes(blocks, contacts, (&collider.shape, pose), motion, &mut sums);
+    found.add(&sums);
+    if sums.left > 0 {
+        push_left(
+            particles, contacts, collider, settings, substep, motion, &mut found,
+        );
+    }
+    found
+}
+
+/// What is the same for all blocks.
+pub(super) fn lane_motion(
     collider: &MovingCollider,
     settings: &ContactSettings,
     substep: SubStep,
-) -> Found {
+    push_out: PushOut,
+    odometer: f32,
+) -> LaneMotion {
+    let count = substep.count as f32;
+    let particle_radius = settings.particle_radius;
+    let thickness = collider.shape.thickness() + particle_radius;
+    LaneMotion {
+        origin: Vec3::from(collider.pose_at(substep.end()).translation).to_array(),
+        slide: slide(collider, substep).to_array(),
+        spin: (collider.turn / count).to_array(),
+        swing: collider.swing() / count,
+        particle_radius,
+        most: thickness / 2.0,
+        tolerance: tolerance(thickness),
+        is_swept: settings.is_swept,
+        friction: settings.friction,
+        push_out,
+        odometer,
+        thickness,
+    }
+}
+
+/// Pushes what is to be pushed in blocks, and marks the blocks that are to be looked at one by one.
+fn push_lanes(
+    blocks: &mut [Block],
+    contacts: &mut [ContactBlock],
+    (shape, pose): (&ColliderShape, Isometry3d),
+    motion: &LaneMotion,
+    sums: &mut Sums,
+) {
+    let centre = motion.origin;
+    let up = pose.rotation * Vec3::Y;
+    match *shape {
+        ColliderShape::Ball { radius } => {
+            let ball = Round {
+                centre,
+                axis: [0.0; 3],
+                half_length: 0.0,
+                reach: radius + motion.particle_radius,
+            };
+            push_round(blocks, contacts, &ball, motion, sums);
+        }
+        ColliderShape::Capsule {
+            radius,
+            half_length,
+        } => {
+            let capsule = Round {
+                centre,
+                axis: up.to_array(),
+                half_length,
+                reach: radius + motion.particle_radius,
+            };
+            push_round(blocks, contacts, &capsule, motion, sums);
+        }
+        ColliderShape::Cuboid { half_size } => {
+            let cuboid = Cuboid {
+                centre,
+                axes: Mat3::from_quat(pose.rotation).to_cols_array_2d(),
+                half_size: half_size.to_array(),
+                reach: motion.particle_radius,
+            };
+            push_cuboid(blocks, contacts, &cuboid, motion, sums);
+        }
+        ColliderShape::HalfSpace => {
+            let half_space = HalfSpace {
+                centre,
+                normal: up.normalize_or(Vec3::Y).to_array(),
+                reach: motion.particle_radius,
+            };
+            push_half_space(blocks, contacts, &half_space, motion, sums);
+        }
+    }
+}
+
+/// How far the collider moves in the sub-step (m).
+fn slide(collider: &MovingCollider, substep: SubStep) -> Vec3 {
+    (collider.to - Vec3::from(collider.from.translation)) / substep.count as f32
+}
+
+/// How near is a touch, where something moves fast (m).
+fn tolerance(thickness: f32) -> f32 {
+    if thickness.is_finite() {
+        1.0e-3 * thickness
+    } else {
+        0.0
+    }
+}
+
+/// Pushes the particles of those blocks that are left, one by one.
+fn push_left(
+    particles: &mut ClothParticles,
+    contacts: &mut [ContactBlock],
+    collider: &MovingCollider,
+    settings: &ContactSettings,
+    substep: SubStep,
+    motion: &LaneMotion,
+    found: &mut Found,
+) {
     let particle_radius = settings.particle_radius;
     let pose = collider.pose_at(substep.end());
     let centre = Vec3::from(pose.translation);
     let thickness = collider.shape.thickness() + particle_radius;
     let sweep = Sweep::new(collider, substep, settings, thickness);
     let mut side = None;
-    let mut found = Found::default();
-    for index in 0..candidates.len() {
-        let candidate = candidates[index];
-        let Slot { block, lane } = candidate.slot;
-        let block = &particles.blocks()[block];
-        if block.inverse_mass(lane) == 0.0 {
+    for index in 0..contacts.len() {
+        if !contacts[index].is_left {
             continue;
         }
-        let (position, displacement) = (block.position(lane), block.displacement(lane));
-        let Nearest {
-            distance,
-            mut normal,
-        } = collider.shape.nearest(pose, position);
-        let mut depth = particle_radius - distance;
-        if let Some((hit_normal, hit_depth)) = sweep.hit(position, displacement) {
-            (normal, depth) = (hit_normal, hit_depth);
-        } else if depth > thickness / 2.0 {
-            // So deep that the nearest way out may be on the other side.
-            let side = *side.get_or_insert_with(|| {
-                side_of(
-                    particles.blocks(),
-                    candidates,
-                    collider,
-                    pose,
-                    thickness,
-                    particle_radius,
-                )
-            });
-            if normal.dot(side) < 0.0 {
-                let way = way_out(collider, pose, position, side, particle_radius);
-                (normal, depth) = way.map_or((normal, depth), |depth| (side, depth));
+        for lane in 0..LANES {
+            let block = &particles.blocks()[contacts[index].block as usize];
+            let inverse_mass = block.inverse_mass(lane);
+            if inverse_mass == 0.0 {
+                continue;
             }
+            let (position, displacement) = (block.position(lane), block.displacement(lane));
+            let Nearest {
+                distance,
+                mut normal,
+            } = collider.shape.nearest(pose, position);
+            let mut depth = particle_radius - distance;
+            if let Some((hit_normal, hit_depth)) = sweep.hit(position, displacement) {
+                (normal, depth) = (hit_normal, hit_depth);
+            } else if depth > thickness / 2.0 {
+                // So deep that the nearest way out may be on the other side.
+                let side = *side.get_or_insert_with(|| {
+                    side_of(
+                        particles.blocks(),
+                        contacts,
+                        collider,
+                        pose,
+                        thickness,
+                        particle_radius,
+                    )
+                });
+                if normal.dot(side) < 0.0 {
+                    let way = way_out(collider, pose, position, side, particle_radius);
+                    (normal, depth) = way.map_or((normal, depth), |depth| (side, depth));
+                }
+            }
+            let contact = &mut contacts[index];
+            contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));
+            if depth <= 0.0 {
+                continue;
+            }
+            let surface = collider.surface_motion(
+                substep,
+                centre,
+                position + normal * (depth - particle_radius),
+            );
+            let push = Contact {
+                normal,
+                depth,
+                relative: displacement - surface,
+            }
+            .push(settings.friction, &motion.push_out);
+            let block = &mut particles.blocks_mut()[contact.block as usize];
+            let pushed = position + push.position;
+            block.set_position(lane, pushed);
+            block.set_displacement(lane, displacement + push.displacement);
+            found
+                .given
+                .add(pushed - centre, push.displacement, inverse_mass);
+            found.deepest = found.deepest.max(depth.min(thickness));
+            found.farthest_push = found.farthest_push.max(push.position.length());
+            found.area += contact.area[lane];
+            found.volume += contact.area[lane] * depth.min(thickness);
         }
-        candidates[index].depth = candidate.depth.max(depth.min(thickness));
-        if depth <= 0.0 {
-            continue;
-        }
-        let surface = collider.surface_motion(
-            substep,
-            centre,
-            position + normal * (depth - particle_radius),
-        );
-        let relative = displacement - surface;
-        let push = Contact {
-            normal,
-            depth,
-            relative,
-        }
-        .push(settings.friction);
-        let block = &mut particles.blocks_mut()[candidate.slot.block];
-        block.set_position(lane, position + push.position);
-        block.set_displacement(lane, displacement + push.displacement);
-        found.deepest = found.deepest.max(depth.min(thickness));
-        found.farthest_push = found.farthest_push.max(push.position.length());
-        found.area += candidate.area;
-        found.volume += candidate.area * depth.min(thickness);
     }
-    found
 }
 
 /// The test all along a sub-step, for what moves so far in it that the test at its end may come too late.
@@ -121,14 +265,13 @@ impl<'a> Sweep<'a> {
         settings: &ContactSettings,
         thickness: f32,
     ) -> Self {
-        let count = substep.count as f32;
         Self {
             collider,
             substep,
             particle_radius: settings.particle_radius,
             thickness,
-            slide: (collider.to - Vec3::from(collider.from.translation)) / count,
-            swing: collider.swing() / count,
+            slide: slide(collider, substep),
+            swing: collider.swing() / substep.count as f32,
             is_on: settings.is_swept,
         }
     }
@@ -152,7 +295,7 @@ impl<'a> Sweep<'a> {
         if nearest(0.0).distance < self.particle_radius - self.thickness / 2.0 {
             return None;
         }
-        let tolerance = 1.0e-3 * self.thickness;
+        let tolerance = tolerance(self.thickness);
         let part = first_touch(speed, self.particle_radius, tolerance, |part| {
             nearest(part).distance
         })?;
@@ -171,14 +314,19 @@ impl<'a> Sweep<'a> {
 /// The side on which most of what is inside would leave: the mean of the normals, of length 1; 0 if they have none.
 fn side_of(
     blocks: &[Block],
-    candidates: &[Candidate],
+    contacts: &[ContactBlock],
     collider: &MovingCollider,
     pose: Isometry3d,
     thickness: f32,
     particle_radius: f32,
 ) -> Vec3 {
-    let inside = candidates.iter().filter_map(|candidate| {
-        let position = blocks[candidate.slot.block].position(candidate.slot.lane);
+    let places = contacts.iter().flat_map(|contact| {
+        let block = &blocks[contact.block as usize];
+        (0..LANES)
+            .filter(|lane| contact.has(*lane))
+            .map(|lane| block.position(lane))
+    });
+    let inside = places.filter_map(|position| {
         let nearest = collider.shape.nearest(pose, position);
         // Those that were pushed out already are on the surface.
         (nearest.distance < particle_radius + 1.0e-3 * thickness).then_some(nearest.normal)

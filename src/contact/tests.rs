@@ -1,7 +1,10 @@
 //! Contact against closed forms, against `f64`, and against brute force.
 
+mod body;
 mod deep;
 mod fast;
+mod impulse;
+mod lanes;
 mod meshes;
 mod moving;
 mod particle;
@@ -33,12 +36,16 @@ const ONLY: SubStep = SubStep {
     farthest_move: 0.0,
 };
 
+/// A sub-step in which any overlap is let out at once (s): for what asks where to, and not how fast.
+const LONG: f32 = 100.0;
+
 fn build(columns: u32, rows: u32, spacing: f32) -> (Arc<Surface>, ClothParticles) {
     let surface = Cloth::new(columns, rows, spacing)
         .surface(Vec3::ONE)
         .expect("a valid grid");
-    let particles =
+    let mut particles =
         ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("a valid material");
+    particles.set_substep(LONG);
     (Arc::new(surface), particles)
 }
 
@@ -79,6 +86,7 @@ fn deepest_at(
 fn loose(positions: &[Vec3], displacements: &[Vec3]) -> ClothParticles {
     let mut particles =
         ClothParticles::new(positions, &vec![1.0; positions.len()]).expect("valid particles");
+    particles.set_substep(LONG);
     for (index, &displacement) in displacements.iter().enumerate() {
         particles
             .set_displacement(index, displacement)

@@ -1,69 +1,8 @@
 //! What a cloth is tested with, and what came of it.
 
-use std::ops::Range;
+use bevy::{math::Vec3, reflect::Reflect};
 
-use bevy::reflect::Reflect;
-
-use super::{MovingCollider, NarrowPhase};
-use crate::cloth::{Layout, Slot, Surface};
-
-/// A particle that a collider may touch in the tick; with triangles, one that stands for some.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Candidate {
-    pub particle: u32,
-    pub slot: Slot,
-    /// From where to where the corners and the faces that it stands for are among the [`Fans`]; none without triangles.
-    pub corners: [u32; 2],
-    pub faces: [u32; 2],
-    /// The part of the cloth's area that it stands for (m²).
-    pub area: f32,
-    /// The deepest that it has been found (m); negative if it has only come so near.
-    pub depth: f32,
-}
-
-/// The faces that candidates stand for.
-#[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct Fans {
-    /// All corners of each candidate's faces, each once.
-    corners: Vec<Slot>,
-    faces: Vec<[Slot; 3]>,
-    /// How many triangles a particle may be a corner of, and be pushed by.
-    pub max_faces: f32,
-}
-
-impl Fans {
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        self.corners.clear();
-        self.faces.clear();
-    }
-
-    /// Adds the faces that a particle stands for. Returns from where to where their corners and they are.
-    pub fn add(&mut self, surface: &Surface, layout: Layout, particle: u32) -> [[u32; 2]; 2] {
-        let (first_corner, first_face) = (self.corners.len(), self.faces.len());
-        for face in surface.faces().of(particle) {
-            let slots = face.map(|corner| layout.slot_of(corner as usize));
-            for slot in slots {
-                if !self.corners[first_corner..].contains(&slot) {
-                    self.corners.push(slot);
-                }
-            }
-            self.faces.push(slots);
-        }
-        [
-            [first_corner as u32, self.corners.len() as u32],
-            [first_face as u32, self.faces.len() as u32],
-        ]
-    }
-
-    pub fn corners(&self, [first, end]: [u32; 2]) -> &[Slot] {
-        &self.corners[first as usize..end as usize]
-    }
-
-    pub fn faces(&self, [first, end]: [u32; 2]) -> &[[Slot; 3]] {
-        &self.faces[first as usize..end as usize]
-    }
-}
+use super::{MovingCollider, NarrowPhase, candidates::Ranges};
 
 /// A particle near a collider, and how near it came.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
@@ -90,7 +29,14 @@ pub struct Touch {
     pub area: f32,
     /// The largest ∫ depth dA over it (m³).
     pub volume: f32,
-    pub(super) candidates: Range<usize>,
+    /// What the cloth has given to the collider in the tick so far, in the cloth's frame (N·s): the momentum that contact and
+    /// friction took from the cloth. What an overlap is let out by is none.
+    pub impulse: Vec3,
+    /// The same about the collider's origin, wherever that was in each sub-step (N·m·s).
+    pub angular_impulse: Vec3,
+    pub(super) of: Ranges,
+    /// How far it has moved in the tick so far (m).
+    pub(super) traveled: f32,
 }
 
 /// What a cloth is tested with in a tick.

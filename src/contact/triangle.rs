@@ -193,3 +193,17 @@ pub(super) fn area_within(corners: [Vec3; 3], centre: Vec3, radius: f32) -> f32 
     };
     (edge(a, b) + edge(b, c) + edge(c, a)).abs()
 }
+
+/// Area of the triangle inside of a ball (m²), and ∫ depth dA over it (m³) with the mean depth of a cap, half of its
+/// height.
+pub(super) fn cap(corners: [Vec3; 3], centre: Vec3, radius: f32) -> (f32, f32) {
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let height = normal.dot(a - centre);
+    let within = radius * radius - height * height;
+    if within <= 0.0 {
+        return (0.0, 0.0);
+    }
+    let area = area_within(corners, centre + normal * height, within.sqrt());
+    (area, area * (radius - height.abs()) / 2.0)
+}

@@ -72,8 +72,13 @@ impl Bounds {
     /// A box as such, if it can be stored.
     fn checked(self) -> Self {
         match self {
-            // NaN is no less.
-            Self::Box(corners) if corners.iter().all(|c| c.abs().max_element() < FARTHEST) => self,
+            Self::Box(corners)
+                if corners
+                    .iter()
+                    .all(|c| c.is_finite() && c.abs().max_element() < FARTHEST) =>
+            {
+                self
+            }
             Self::Box(_) => Self::Unbounded,
             _ => self,
         }

@@ -31,6 +31,9 @@ use crate::{
 /// How much larger a box is made, against what its corners and the collider's points are rounded by.
 const ROUNDING: f32 = 1.0e-5;
 
+/// No collider is larger than this, nor farther from the world's origin (m): products of such lengths are finite.
+const FARTHEST: f32 = 1.0e12;
+
 /// A collider's way through the tick, in the world.
 #[derive(Component, Debug, Default)]
 pub(super) struct ColliderMotion {
@@ -86,7 +89,19 @@ impl ColliderMotion {
         let transform = global_transform(transforms, entity)?;
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let shape = collider.scaled(scale)?;
-        if !(translation.is_finite() && rotation.is_finite()) {
+        // An infinite extent is a half-space's.
+        let extent = shape.extent();
+        if extent.is_finite() {
+            let is_in_reach = |extent: f32| extent <= FARTHEST;
+            ClothError::check(
+                extent,
+                is_in_reach,
+                "the collider's size (m)",
+                "at most 10¹²",
+            )?;
+        }
+        let is_far = translation.abs().max_element() > FARTHEST;
+        if is_far || !(translation.is_finite() && rotation.is_finite()) {
             return Err(ClothError::Transform {
                 transform: format!("{transform:?}"),
             });
@@ -198,12 +213,7 @@ type Reading = (
 /// Where a collider's own components have changed.
 type OwnChange = (
     With<ColliderMotion>,
-    Or<(
-        Changed<Transform>,
-        Changed<ClothCollider>,
-        Changed<ColliderMotion>,
-        Changed<ChildOf>,
-    )>,
+    Or<(Changed<Transform>, Changed<ClothCollider>, Changed<ChildOf>)>,
     Allow<Disabled>,
 );
 

@@ -103,10 +103,17 @@ pub(super) fn rebuild_hierarchies(
 
 /// Finds the particles that each collider near may touch within the tick.
 pub(super) fn query_collisions(mut cloths: Query<Searching>) {
-    for mut cloth in &mut cloths {
-        if cloth.broad_phase.is_searched && cloth.built.matches(cloth.particles) {
-            cloth.query();
-        }
+    let searched = cloths
+        .iter()
+        .filter(|cloth| cloth.broad_phase.is_searched)
+        .count();
+    if searched == 0 {
+        return;
+    }
+    if searched >= MIN_TO_SHARE && threads() > 1 {
+        cloths.par_iter_mut().for_each(|mut cloth| cloth.query());
+    } else {
+        cloths.iter_mut().for_each(|mut cloth| cloth.query());
     }
 }
 
@@ -263,7 +270,11 @@ impl SearchingItem<'_, '_> {
         true
     }
 
+    /// Finds the particles that each collider near may touch, if there is any.
     fn query(&mut self) {
+        if !(self.broad_phase.is_searched && self.built.matches(self.particles)) {
+            return;
+        }
         let start = Instant::now();
         let root = self.root();
         let scratch = &mut *self.scratch;

@@ -92,8 +92,9 @@ impl IntegratingItem<'_, '_> {
         self.state.written = Some(self.particles.last_changed());
         self.remember_contacts();
         self.push_bodies();
+        let rotation = self.frame.isometry().rotation;
         self.contacts
-            .renew(&self.scratch.near, &self.scratch.detection);
+            .renew(&self.scratch.near, &self.scratch.detection, rotation);
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();

@@ -334,7 +334,7 @@ impl Solver {
             substep.farthest_move = swept.moved.into_iter().fold(0.0, f32::max).sqrt();
             if respond(particles, substep) {
                 measured = None;
-                particles.past_mut().forget(AFTER_CONTACT);
+                particles.forget_past(AFTER_CONTACT);
             }
         }
         (measured, ripple)

@@ -14,6 +14,8 @@ mod mesh;
 mod meshes;
 mod motion;
 mod near;
+mod parents;
+mod push_back;
 mod rapier;
 mod reflection;
 mod rest;

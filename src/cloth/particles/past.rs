@@ -17,6 +17,11 @@ impl Earlier {
     pub fn before(&self, lane: usize) -> Vec3 {
         Vec3::from([0, 1, 2].map(|axis| self.0[axis][lane]))
     }
+
+    /// What the displacement of a particle in the sub-step before the last gained on the one before that (m).
+    pub fn gain(&self, lane: usize) -> Vec3 {
+        Vec3::from([0, 1, 2].map(|axis| self.0[axis][lane] - self.0[axis + 3][lane]))
+    }
 }
 
 /// Displacements in earlier sub-steps.

@@ -1,6 +1,6 @@
 //! What the solver and the plugin do to all particles at once.
 
-use bevy::math::{Isometry3d, Vec3, bounding::BoundingSphere};
+use bevy::math::{DVec3, Isometry3d, Vec3, bounding::BoundingSphere};
 
 use super::{AFTER_A_JUMP, ClothParticles, Earlier, Past, StepKind, validity::is_valid};
 use crate::cloth::{
@@ -162,6 +162,40 @@ impl ClothParticles {
         self.past.next(self.blocks.len())
     }
 
+    /// Forgets the displacements before the last, and lets this many sub-steps of first order pass first.
+    ///
+    /// Of second order, velocity is the last displacement and half of what it gained on the one before. Of a cloth that nothing
+    /// holds, all particles are given what that is in the mean: no momentum is forgotten. The gain is that of the sub-step
+    /// before, as the last displacement may hold a push.
+    pub(crate) fn forget_past(&mut self, wait: u32) {
+        if self.past.known().is_some() {
+            let gained = self.mean_gain();
+            if gained != Vec3::ZERO {
+                for Slot { block, lane } in self.layout.slots() {
+                    let block = &mut self.blocks[block];
+                    block.set_displacement(lane, block.displacement(lane) + 0.5 * gained);
+                }
+            }
+        }
+        self.past.forget(wait);
+    }
+
+    /// What displacements gained from one sub-step to the next, before the last (m), in the mean over all masses; 0 if a particle is
+    /// pinned.
+    fn mean_gain(&self) -> Vec3 {
+        let (mut sum, mut mass) = (DVec3::ZERO, 0.0);
+        for Slot { block, lane } in self.layout.slots() {
+            let weight = self.blocks[block].inverse_mass(lane);
+            if weight == 0.0 {
+                return Vec3::ZERO;
+            }
+            let own = 1.0 / f64::from(weight);
+            sum += own * self.past.blocks[block].gain(lane).as_dvec3();
+            mass += own;
+        }
+        (sum / mass).as_vec3()
+    }
+
     /// Has a particle be faster by `displacement` a sub-step (m), at any time that is remembered.
     pub(crate) fn accelerate(&mut self, slot: Slot, displacement: Vec3) {
         let block = &mut self.blocks[slot.block];
@@ -242,6 +276,12 @@ impl ClothParticles {
         self.blocks.clone_from(&other.blocks);
         self.substep = other.substep;
         self.past.copy_from(&other.past);
+    }
+
+    /// Becomes what `other` is, but for its past, in the memory that it has: for where particles were.
+    pub(crate) fn copy_places_from(&mut self, other: &Self) {
+        self.layout = other.layout;
+        self.blocks.clone_from(&other.blocks);
     }
 
     /// How far the particle that is farthest from where it was in `other`, or was before its last displacement, is from

@@ -171,7 +171,7 @@ fn check(seed: u64, narrow_phase: NarrowPhase) -> Result<(), TestCaseError> {
     prop_assert!(truth.0.iter().all(|place| place.is_finite()));
     let mut random = Random(!seed);
     let short = random.part().powi(3) * 2.0;
-    for (margin, by_tree) in [(0.0, true), (short, true), (short, false), (1.0e4, true)] {
+    for (margin, by_tree) in [(0.0, true), (short, true), (short, false), (1.0e5, true)] {
         let mut detection = scene.detect(margin, by_tree);
         let before = detection.requeries();
         let found = scene.run(&mut detection);

@@ -1,0 +1,369 @@
+//! The push of particles by analytic shapes, eight at a time, in plain loops that the compiler vectorises.
+//!
+//! A block is tested against the collider where it is at the end of the sub-step. What is inside of it is pushed out at once.
+//! Two kinds of particles ask for more, and their blocks are left to the caller: those that came so fast that they may have
+//! passed through, and those so deep that the nearest way out may be on the other side.
+//!
+//! A block that is clear is not looked at again before something can have come near: its clearance is kept, and compared with
+//! how far everything may have moved since. So most of a cloth costs a comparison for eight particles.
+
+use multiversion::multiversion;
+
+use super::{candidates::ContactBlock, response::PushOut};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
+
+/// A ball, or a capsule.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Round {
+    pub centre: [f32; 3],
+    pub axis: [f32; 3],
+    /// Half of the axis's length, 0 of a ball (m).
+    pub half_length: f32,
+    /// Of the shape and a particle (m).
+    pub reach: f32,
+}
+
+/// A box.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cuboid {
+    pub centre: [f32; 3],
+    pub axes: [[f32; 3]; 3],
+    pub half_size: [f32; 3],
+    /// Of a particle (m).
+    pub reach: f32,
+}
+
+/// All below a plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HalfSpace {
+    pub centre: [f32; 3],
+    pub normal: [f32; 3],
+    /// Of a particle (m).
+    pub reach: f32,
+}
+
+/// What is the same for all blocks of a collider in a sub-step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LaneMotion {
+    /// The collider's origin (m).
+    pub origin: [f32; 3],
+    /// How far it moves (m) and turns (rad) in the sub-step.
+    pub slide: [f32; 3],
+    pub spin: [f32; 3],
+    /// How far its turn alone moves any point of its core (m).
+    pub swing: f32,
+    pub particle_radius: f32,
+    /// What moves farther, or is deeper, is the caller's (m).
+    pub most: f32,
+    /// What comes as near as this counts as touching where it is fast (m).
+    pub tolerance: f32,
+    pub is_swept: bool,
+    pub friction: f32,
+    pub push_out: PushOut,
+    /// How far everything may have moved so far in the tick (m).
+    pub odometer: f32,
+    /// How deep anything counts as at most (m).
+    pub thickness: f32,
+}
+
+/// What all blocks come to, lane by lane.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Sums {
+    pub deepest: Lanes,
+    /// Squared (m²).
+    pub farthest_push: Lanes,
+    pub area: Lanes,
+    pub volume: Lanes,
+    /// Mass × displacement that the cloth has lost (kg m), and its moment about the collider's origin (kg m²).
+    pub linear: [Lanes; 3],
+    pub angular: [Lanes; 3],
+    /// How many blocks are left to the caller.
+    pub left: u32,
+    /// Of triangles, how far the farthest corner was pushed by one (m).
+    pub passed: f32,
+}
+
+/// How eight particles lie to a shape.
+struct Near {
+    /// How deep they are inside (m), negative outside.
+    depth: Lanes,
+    /// Away from the shape, of any length.
+    offset: [Lanes; 3],
+    length: Lanes,
+}
+
+#[inline(always)]
+fn near_round(view: &View, shape: &Round) -> Near {
+    let mut near = Near::NONE;
+    let ([cx, cy, cz], [ax, ay, az]) = (shape.centre, shape.axis);
+    for l in 0..LANES {
+        let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
+        let along = x * ax + y * ay + z * az;
+        let along = if along < shape.half_length {
+            along
+        } else {
+            shape.half_length
+        };
+        let along = if along > -shape.half_length {
+            along
+        } else {
+            -shape.half_length
+        };
+        let (x, y, z) = (x - ax * along, y - ay * along, z - az * along);
+        let length = (x * x + y * y + z * z).sqrt();
+        near.offset[0][l] = x;
+        near.offset[1][l] = y;
+        near.offset[2][l] = z;
+        near.length[l] = length;
+        near.depth[l] = shape.reach - length;
+    }
+    near
+}
+
+#[inline(always)]
+fn near_half_space(view: &View, shape: &HalfSpace) -> Near {
+    let mut near = Near::NONE;
+    let ([cx, cy, cz], [nx, ny, nz]) = (shape.centre, shape.normal);
+    for l in 0..LANES {
+        let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
+        near.offset[0][l] = nx;
+        near.offset[1][l] = ny;
+        near.offset[2][l] = nz;
+        near.length[l] = 1.0;
+        near.depth[l] = shape.reach - (x * nx + y * ny + z * nz);
+    }
+    near
+}
+
+/// How far to go out of a box along an axis: what is beyond its face, or inside 1 where no face is nearer.
+#[inline(always)]
+fn outward(over: f32, least: f32, is_in: bool) -> f32 {
+    let beyond = if over > 0.0 { over } else { 0.0 };
+    let nearest = if over >= least { 1.0 } else { 0.0 };
+    if is_in { nearest } else { beyond }
+}
+
+#[inline(always)]
+fn near_cuboid(view: &View, shape: &Cuboid) -> Near {
+    let mut near = Near::NONE;
+    let [cx, cy, cz] = shape.centre;
+    let [u, v, w] = shape.axes;
+    let [hu, hv, hw] = shape.half_size;
+    for l in 0..LANES {
+        let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
+        let a = x * u[0] + y * u[1] + z * u[2];
+        let b = x * v[0] + y * v[1] + z * v[2];
+        let c = x * w[0] + y * w[1] + z * w[2];
+        let (over_a, over_b, over_c) = (a.abs() - hu, b.abs() - hv, c.abs() - hw);
+        let largest = if over_a > over_b { over_a } else { over_b };
+        let largest = if largest > over_c { largest } else { over_c };
+        // Outside, what is beyond each face counts; inside, only the nearest face.
+        let least = if largest > 0.0 { 0.0 } else { largest };
+        let is_in = largest <= 0.0;
+        let pa = outward(over_a, least, is_in).copysign(a);
+        let pb = outward(over_b, least, is_in).copysign(b);
+        let pc = outward(over_c, least, is_in).copysign(c);
+        let length = (pa * pa + pb * pb + pc * pc).sqrt();
+        near.offset[0][l] = u[0] * pa + v[0] * pb + w[0] * pc;
+        near.offset[1][l] = u[1] * pa + v[1] * pb + w[1] * pc;
+        near.offset[2][l] = u[2] * pa + v[2] * pb + w[2] * pc;
+        near.length[l] = length;
+        let distance = if is_in { largest } else { length };
+        near.depth[l] = shape.reach - distance;
+    }
+    near
+}
+
+impl Near {
+    const NONE: Self = Self {
+        depth: [0.0; LANES],
+        offset: [[0.0; LANES]; 3],
+        length: [0.0; LANES],
+    };
+}
+
+/// Takes over how deep a block is and how far it is clear, and says whether its particles are to be pushed.
+#[inline(always)]
+fn survey(
+    view: &View,
+    near: &Near,
+    contact: &mut ContactBlock,
+    motion: &LaneMotion,
+    sums: &mut Sums,
+) -> bool {
+    let [sx, sy, sz] = motion.slide;
+    let (mut deepest, mut size) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    let mut is_left = [0_u32; LANES];
+    for l in 0..LANES {
+        let is_free = view[W + l] > 0.0;
+        let depth = near.depth[l];
+        let (x, y, z) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
+        let speed = (x * x + y * y + z * z).sqrt() + motion.swing;
+        let is_met = speed > motion.most && depth + speed > -motion.tolerance;
+        let is_left_out = is_free && (depth > motion.most || (is_met && motion.is_swept));
+        is_left[l] = if is_left_out { 1 } else { 0 };
+        let depth = if is_free { depth } else { f32::NEG_INFINITY };
+        deepest[l] = depth;
+        let away = view[X + l].abs() + view[Y + l].abs() + view[Z + l].abs();
+        size[l] = if is_free { away } else { 0.0 };
+    }
+    let (mut most, mut farthest, mut left) = (f32::NEG_INFINITY, 0.0_f32, 0);
+    for l in 0..LANES {
+        most = if deepest[l] > most { deepest[l] } else { most };
+        farthest = if size[l] > farthest {
+            size[l]
+        } else {
+            farthest
+        };
+        left |= is_left[l];
+    }
+    contact.is_left = left != 0;
+    if contact.is_left {
+        contact.clear_until = f32::NEG_INFINITY;
+        sums.left += 1;
+        return false;
+    }
+    for l in 0..LANES {
+        let depth = if deepest[l] < motion.thickness {
+            deepest[l]
+        } else {
+            motion.thickness
+        };
+        contact.depth[l] = if depth > contact.depth[l] {
+            depth
+        } else {
+            contact.depth[l]
+        };
+    }
+    // A little less than rounding, and than what counts as a touch.
+    let clear = -most - 2.0 * motion.tolerance - 1.0e-5 * (farthest - most + motion.odometer);
+    contact.clear_until = motion.odometer + clear;
+    most > 0.0
+}
+
+/// Pushes those out that are inside, as [`Contact::push`](super::response::Contact::push) does.
+#[inline(always)]
+fn push(view: &mut View, near: &Near, area: &Lanes, motion: &LaneMotion, sums: &mut Sums) {
+    let ([ox, oy, oz], [sx, sy, sz]) = (motion.origin, motion.slide);
+    let [wx, wy, wz] = motion.spin;
+    let out = motion.push_out;
+    for l in 0..LANES {
+        let (weight, depth) = (view[W + l], near.depth[l]);
+        let is_pushed = weight > 0.0 && depth > 0.0;
+        let length = near.length[l];
+        let nx = near.offset[0][l] / length;
+        let ny = near.offset[1][l] / length;
+        let nz = near.offset[2][l] / length;
+        let (px, py, pz) = (view[X + l], view[Y + l], view[Z + l]);
+        let gap = depth - motion.particle_radius;
+        let (ax, ay, az) = (px + nx * gap - ox, py + ny * gap - oy, pz + nz * gap - oz);
+        let rx = view[DX + l] - (sx + (wy * az - wz * ay));
+        let ry = view[DY + l] - (sy + (wz * ax - wx * az));
+        let rz = view[DZ + l] - (sz + (wx * ay - wy * ax));
+        let apart = nx * rx + ny * ry + nz * rz;
+        let (tx, ty, tz) = (rx - nx * apart, ry - ny * apart, rz - nz * apart);
+        let stopped = if depth < -apart { depth } else { -apart };
+        let stopped = if stopped > 0.0 { stopped } else { 0.0 };
+        let overlap = depth - stopped;
+        let let_out = overlap * out.rate;
+        let let_out = if let_out > out.slowest {
+            let_out
+        } else {
+            out.slowest
+        };
+        let let_out = if let_out < out.fastest {
+            let_out
+        } else {
+            out.fastest
+        };
+        let let_out = if let_out < overlap { let_out } else { overlap };
+        let slip = (tx * tx + ty * ty + tz * tz).sqrt();
+        let held = motion.friction * stopped;
+        let grip = if slip > held { held / slip } else { 1.0 };
+        let (fx, fy, fz) = (tx * grip, ty * grip, tz * grip);
+        let (dx, dy, dz) = (nx * stopped - fx, ny * stopped - fy, nz * stopped - fz);
+        let (mx, my, mz) = (dx + nx * let_out, dy + ny * let_out, dz + nz * let_out);
+        let mx = if is_pushed { mx } else { 0.0 };
+        let my = if is_pushed { my } else { 0.0 };
+        let mz = if is_pushed { mz } else { 0.0 };
+        let dx = if is_pushed { dx } else { 0.0 };
+        let dy = if is_pushed { dy } else { 0.0 };
+        let dz = if is_pushed { dz } else { 0.0 };
+        view[X + l] = px + mx;
+        view[Y + l] = py + my;
+        view[Z + l] = pz + mz;
+        view[DX + l] += dx;
+        view[DY + l] += dy;
+        view[DZ + l] += dz;
+        let depth = if is_pushed { depth } else { 0.0 };
+        sums.deepest[l] = if depth > sums.deepest[l] {
+            depth
+        } else {
+            sums.deepest[l]
+        };
+        let pushed = mx * mx + my * my + mz * mz;
+        sums.farthest_push[l] = if pushed > sums.farthest_push[l] {
+            pushed
+        } else {
+            sums.farthest_push[l]
+        };
+        let inside = if is_pushed { area[l] } else { 0.0 };
+        sums.area[l] += inside;
+        sums.volume[l] += inside * depth;
+        let mass = if is_pushed { 1.0 / weight } else { 0.0 };
+        let (gx, gy, gz) = (-dx * mass, -dy * mass, -dz * mass);
+        let (ax, ay, az) = (px + mx - ox, py + my - oy, pz + mz - oz);
+        sums.linear[0][l] += gx;
+        sums.linear[1][l] += gy;
+        sums.linear[2][l] += gz;
+        sums.angular[0][l] += ay * gz - az * gy;
+        sums.angular[1][l] += az * gx - ax * gz;
+        sums.angular[2][l] += ax * gy - ay * gx;
+    }
+}
+
+/// Makes the push by one kind of shape: for the widest instructions that the machine has, and for those that all have. The
+/// results are the same to the last bit.
+macro_rules! by_shape {
+    ($($near:ident, $widest:ident, $baseline:ident: $shape:ty;)*) => {$(
+        /// Pushes the particles of blocks out of the shape.
+        #[multiversion(targets("x86_64+avx+avx2"))]
+        pub(super) fn $widest(
+            blocks: &mut [Block],
+            contacts: &mut [ContactBlock],
+            shape: &$shape,
+            motion: &LaneMotion,
+            sums: &mut Sums,
+        ) {
+            $baseline(blocks, contacts, shape, motion, sums);
+        }
+
+        #[inline(always)]
+        pub(super) fn $baseline(
+            blocks: &mut [Block],
+            contacts: &mut [ContactBlock],
+            shape: &$shape,
+            motion: &LaneMotion,
+            sums: &mut Sums,
+        ) {
+            let mut own = *sums;
+            for contact in contacts {
+                if motion.odometer < contact.clear_until {
+                    continue;
+                }
+                let view = blocks[contact.block as usize].view_mut();
+                let near = $near(view, shape);
+                if survey(view, &near, contact, motion, &mut own) {
+                    push(view, &near, &contact.area, motion, &mut own);
+                }
+            }
+            *sums = own;
+        }
+    )*};
+}
+
+by_shape! {
+    near_round, push_round, push_round_baseline: Round;
+    near_cuboid, push_cuboid, push_cuboid_baseline: Cuboid;
+    near_half_space, push_half_space, push_half_space_baseline: HalfSpace;
+}
