@@ -84,7 +84,11 @@ impl ClothContacts {
         self.points.clear();
         for touch in detection.touches() {
             let first = self.points.len();
-            self.points.extend(detection.points(touch));
+            let points = detection.points(touch).map(|point| ContactPoint {
+                depth: point.depth.min(f32::MAX),
+                ..point
+            });
+            self.points.extend(points);
             let particles = self.points[first..]
                 .iter()
                 .filter(|point| point.depth > 0.0)

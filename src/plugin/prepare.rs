@@ -69,10 +69,6 @@ pub(super) fn prepare_cloths(
     mut commands: Commands,
 ) {
     for mut cloth in &mut cloths {
-        // Whatever is wrong, nothing of an earlier tick is done again.
-        cloth.scratch.step = None;
-        cloth.scratch.pins.clear();
-        cloth.scratch.pushed.clear();
         let inputs = Inputs::of(
             cloth.settings,
             cloth.material,
@@ -81,13 +77,16 @@ pub(super) fn prepare_cloths(
             gravity.0,
         );
         let outcome = inputs.and_then(|inputs| {
-            if cloth.sleeps_as_it_was(&inputs, &targets, &sources) {
+            if cloth.sleeps_as_it_was(&inputs, &targets, &sources, time.delta_secs()) {
                 return Ok(());
             }
+            // Nothing of an earlier tick is done again.
+            cloth.scratch.forget_tick();
             cloth.prepare(&inputs, &targets, &sources, &mut parts, time.delta_secs())
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
+            cloth.scratch.forget_tick();
             cloth.bounds.takes_part = false;
             cloth.bounds.is_stale |= cloth.bounds.is_searched;
             cloth.bounds.is_searched = false;
@@ -113,7 +112,13 @@ pub(super) fn prepare_cloths(
 
 impl PreparingItem<'_, '_> {
     /// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
-    fn sleeps_as_it_was(&self, inputs: &Inputs, targets: &Targets, sources: &Sources) -> bool {
+    fn sleeps_as_it_was(
+        &self,
+        inputs: &Inputs,
+        targets: &Targets,
+        sources: &Sources,
+        seconds: f32,
+    ) -> bool {
         let (state, built) = (&*self.state, &*self.built);
         if !(state.rest.is_asleep() && state.is_valid && self.stats.is_asleep) {
             return false;
@@ -131,7 +136,10 @@ impl PreparingItem<'_, '_> {
         );
         let source = built.source();
         let pins = self.pins.unwrap_or(&NO_PINS);
-        state.known == Some(known)
+        // What may wake it in this tick goes on with the step that it would have been prepared with.
+        let is_prepared = (self.scratch.step).is_some_and(|step| step.seconds == seconds);
+        is_prepared
+            && state.known == Some(known)
             && known_contact == (inputs.settings.particle_radius, inputs.material.friction)
             && state.written == Some(self.particles.last_changed())
             && state.attachments.is_empty()

@@ -48,3 +48,12 @@ pub struct ClothScratch {
     /// What the tick that was just done asked of the cloth.
     pub(super) limit_inputs: Option<LimitInputs>,
 }
+
+impl ClothScratch {
+    /// Forgets what was to be done in a tick.
+    pub(super) fn forget_tick(&mut self) {
+        self.step = None;
+        self.pins.clear();
+        self.pushed.clear();
+    }
+}

@@ -75,14 +75,12 @@ pub(super) fn rebuild_hierarchies(
     colliders: Query<Collider>,
     mut tree: ResMut<ColliderTree>,
 ) {
-    let taking_part = cloths
-        .iter()
-        .filter(|cloth| cloth.broad_phase.takes_part)
-        .count();
-    let is_search_wanted = cloths
-        .iter()
-        .any(|cloth| cloth.broad_phase.has_sleeping_contacts);
-    if taking_part == 0 || (tree.is_empty() && !is_search_wanted) {
+    let (mut taking_part, mut has_sleeping_contacts) = (0, false);
+    for cloth in &cloths {
+        taking_part += usize::from(cloth.broad_phase.takes_part);
+        has_sleeping_contacts |= cloth.broad_phase.has_sleeping_contacts;
+    }
+    if taking_part == 0 || (tree.is_empty() && !has_sleeping_contacts) {
         return;
     }
     tree.refit();

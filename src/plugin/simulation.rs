@@ -18,6 +18,7 @@ use bevy::{
     },
     log::error,
     time::Time,
+    transform::TransformSystems,
 };
 
 #[cfg(feature = "mesh")]
@@ -125,7 +126,11 @@ impl Plugin for ClothPlugin {
                     .in_set(ClothSystems::Prepare),
                 rebuild_hierarchies.in_set(ClothSystems::Rebuild),
                 query_collisions.in_set(ClothSystems::Query),
-                (integrate, push_bodies)
+                // Where the schedule is that of transforms, too, a body is drawn where it is pushed to a frame later.
+                (
+                    integrate,
+                    push_bodies.ambiguous_with(TransformSystems::Propagate),
+                )
                     .chain()
                     .in_set(ClothSystems::Integrate),
                 (send_touch_messages, report_limits, log_faults)

@@ -82,6 +82,8 @@ impl IntegratingItem<'_, '_> {
         let is_asleep = self.state.rest.is_asleep();
         self.stats.is_asleep = is_asleep;
         if is_asleep {
+            // It stays prepared while nothing changes.
+            self.scratch.step = Some(step);
             self.stats.integrate_ms = 0.0;
             self.stats.substeps = 0;
             return;
