@@ -45,21 +45,23 @@ pub mod prelude {
         Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, ClothShape, Corner, Pin,
         Pins, Surface,
     };
-    pub use crate::contact::{ClothCollider, ClothSelfCollision, ContactPoint, NarrowPhase};
+    pub use crate::contact::{
+        ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, NarrowPhase,
+    };
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
     #[cfg(feature = "egui")]
     pub use crate::plugin::ClothPanelPlugin;
-    #[cfg(feature = "rapier")]
-    pub use crate::plugin::RapierClothCollider;
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
-        ClothAttachment, ClothAttachments, ClothContact, ClothContacts, ClothFault, ClothFrame,
-        ClothGravity, ClothLimitExceeded, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
-        ClothTouchStarted, ClothTouchStopped, DrapePlugins,
+        ClothAttachment, ClothAttachments, ClothBody, ClothContact, ClothContacts, ClothFault,
+        ClothFrame, ClothGravity, ClothLimitExceeded, ClothPush, ClothStats, ClothSystems,
+        ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, DrapePlugins,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
+    #[cfg(feature = "rapier")]
+    pub use crate::plugin::{ClothPushBack, RapierClothCollider};
     pub use crate::solver::{ClothLimit, ClothSettings, Substepping, TimeOrder};
 }
 

@@ -13,6 +13,7 @@ mod bending;
 mod calls;
 mod chart;
 mod cloths;
+mod colliders;
 mod convergence;
 mod cpu;
 #[path = "../../benches/hierarchy/scene.rs"]
@@ -89,6 +90,8 @@ enum Name {
     Exactness,
     /// What a scene needs, and what it does not
     Needs,
+    /// What colliders cost, by number and shape
+    Colliders,
     /// Speed against accuracy
     Pareto,
     /// How it is hung: stretch against time for six ways of pinning
@@ -107,7 +110,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 13] = [
+const EXPERIMENTS: [(Name, Conduct); 14] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -115,6 +118,7 @@ const EXPERIMENTS: [(Name, Conduct); 13] = [
     (Name::Scaling, conduct::<scaling::Scaling>),
     (Name::Exactness, conduct::<exactness::Exactness>),
     (Name::Needs, conduct::<needs::Needs>),
+    (Name::Colliders, conduct::<colliders::Colliders>),
     (Name::Pareto, conduct::<pareto::Pareto>),
     (Name::Hung, conduct::<hung::Hung>),
     (Name::Convergence, conduct::<convergence::Convergence>),

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
-    MovingCollider, NarrowPhase,
+    BodyChange, MovingCollider, NarrowPhase,
+    body::{Before, Body},
     candidates::{Candidates, Ranges},
     faces::{Pushed, ResumePoint, SubstepMotion},
     kept::Kept,
@@ -58,6 +59,10 @@ pub struct Detection {
     requeries: u32,
     found: TopDownQuery,
     kept: Kept,
+    /// Those of the colliders that give way, and how far any of them may be from where it was searched for (m).
+    bodies: Vec<Body>,
+    deviation: f32,
+    before: Before,
 }
 
 impl Detection {
@@ -70,6 +75,8 @@ impl Detection {
         self.touches.clear();
         self.candidates.clear();
         self.colliders.clear();
+        self.bodies.clear();
+        self.deviation = 0.0;
         self.margin = margin;
         (self.moved, self.moved_now, self.odometer) = (0.0, 0.0, 0.0);
         self.has_origin = false;
@@ -124,6 +131,14 @@ impl Detection {
         self.hold(id, collider, narrow_phase, found, particles);
     }
 
+    /// What the cloth has changed of a collider's motion so far, if it gives way and was near.
+    pub fn body_change(&self, id: usize) -> Option<BodyChange> {
+        self.bodies
+            .iter()
+            .find(|body| body.id == id)
+            .map(Body::change)
+    }
+
     fn hold(
         &mut self,
         id: usize,
@@ -134,6 +149,9 @@ impl Detection {
     ) {
         if found.is_empty() {
             return;
+        }
+        if self.bodies.iter().all(|body| body.id != id) {
+            self.bodies.extend(Body::of(id, collider));
         }
         if !self.has_origin {
             // Pushes that balance springs add up to much in a tick, and lead nowhere: that is measured from here.
@@ -173,6 +191,10 @@ impl Detection {
         }
         self.candidates.restart();
         self.odometer = 0.0;
+        for body in &mut self.bodies {
+            let way = body.restart();
+            send_on(&mut self.touches, &mut self.colliders, body.id, &way);
+        }
         // What was searched for on the way was found where the particles were then.
         self.moved = if self.requeries > 0 {
             f32::INFINITY
@@ -191,7 +213,7 @@ impl Detection {
     fn is_outrun(&mut self, particles: &ClothParticles) -> bool {
         // NaN is no less.
         let is_beyond = |moved: f32, margin: f32| moved > margin || moved.is_nan();
-        if !is_beyond(self.moved, self.margin) {
+        if !is_beyond(self.moved + self.deviation, self.margin) {
             return false;
         }
         // Searching again widens the margin: cheaper than to measure for every push.
@@ -199,7 +221,7 @@ impl Detection {
             self.measured += 1;
             self.moved = particles.farthest_from(&self.origin);
         }
-        is_beyond(self.moved, self.margin)
+        is_beyond(self.moved + self.deviation, self.margin)
     }
 
     /// Searches for the candidates of all colliders again, among the particles as they are.
@@ -217,6 +239,12 @@ impl Detection {
         // The way of this sub-step lies behind.
         self.moved = moved_now;
         self.remember(particles);
+        self.deviation = 0.0;
+        for body in &mut self.bodies {
+            if let Some((_, way)) = self.colliders.iter().find(|(id, _)| *id == body.id) {
+                body.set_searched(way);
+            }
+        }
         self.kept.take(&self.touches, &self.candidates);
         for touch in &mut self.touches {
             touch.of = Ranges::default();
@@ -290,6 +318,11 @@ impl Detection {
             let collider = &touch.collider;
             let first = touch.of.blocks.start;
             let contacts = &mut blocks[touch.of.blocks.clone()];
+            let body = self.bodies.iter_mut().find(|body| body.id == touch.id);
+            if body.is_some() {
+                let blocks = contacts.iter().map(|contact| contact.block as usize);
+                self.before.save(blocks, particles);
+            }
             let odometer = self.odometer + touch.traveled;
             let travel = (collider.travel() + collider.swing()) / substep.count as f32;
             let shares = match touch.narrow_phase {
@@ -309,7 +342,7 @@ impl Detection {
                         (contacts, first),
                         &mut helds[touch.of.helds.clone()],
                         fans,
-                        [self.margin - self.moved, self.moved_now],
+                        [self.margin - self.moved - self.deviation, self.moved_now],
                         is_measured,
                     );
                     let stopped = pushed.push(particles, (&motion, &lanes), from);
@@ -320,6 +353,22 @@ impl Detection {
                     (push_particles(particles, contacts, at, &lanes), None)
                 }
             };
+            let mut given = found.given;
+            if let Some(body) = body
+                && found.farthest_push > 0.0
+            {
+                let mut way = touch.collider;
+                let [kept, gone] = body.share(&self.before, particles, &mut way, substep);
+                given.scale(f64::from(kept));
+                touch.traveled += gone;
+                self.deviation = self.deviation.max(body.deviation(&way, substep.end()));
+                send_on(
+                    std::slice::from_mut(touch),
+                    &mut self.colliders,
+                    body.id,
+                    &way,
+                );
+            }
             // One may be pushed by several.
             self.moved += found.farthest_push;
             self.moved_now += found.farthest_push;
@@ -327,8 +376,8 @@ impl Detection {
             is_pushed |= found.farthest_push > 0.0;
             touch.deepest = touch.deepest.max(found.deepest);
             let seconds = f64::from(particles.substep());
-            touch.impulse += (found.given.linear / seconds).as_vec3();
-            touch.angular_impulse += (found.given.angular / seconds).as_vec3();
+            touch.impulse += (given.linear / seconds).as_vec3();
+            touch.angular_impulse += (given.angular / seconds).as_vec3();
             area += found.area;
             volume += found.volume;
             from = stopped.unwrap_or_default();
@@ -370,5 +419,20 @@ impl Detection {
     /// How often in the tick particles moved farther than the margin.
     pub fn requeries(&self) -> u32 {
         self.requeries
+    }
+}
+
+/// Has a collider go another way from now on.
+fn send_on(
+    touches: &mut [Touch],
+    colliders: &mut [(usize, MovingCollider)],
+    id: usize,
+    way: &MovingCollider,
+) {
+    for touch in touches.iter_mut().filter(|touch| touch.id == id) {
+        touch.collider.clone_from(way);
+    }
+    for (_, collider) in colliders.iter_mut().filter(|(known, _)| *known == id) {
+        collider.clone_from(way);
     }
 }

@@ -2,7 +2,7 @@
 
 use bevy::math::{Isometry3d, Quat, Vec3, bounding::BoundingSphere};
 
-use super::{ColliderShape, shape::Nearest};
+use super::{BodyMass, ColliderShape, shape::Nearest};
 use crate::{
     hierarchy::{Core, Probe},
     solver::SubStep,
@@ -19,6 +19,8 @@ pub struct MovingCollider {
     pub to: Vec3,
     /// How far it turns in the tick: axis × angle (rad).
     pub turn: Vec3,
+    /// How it gives way where cloth pushes it; `None` if nothing can move it.
+    pub body: Option<BodyMass>,
 }
 
 impl MovingCollider {
@@ -29,6 +31,7 @@ impl MovingCollider {
             from: Isometry3d::from_translation(from),
             to,
             turn: Vec3::ZERO,
+            body: None,
         }
     }
 
@@ -39,6 +42,7 @@ impl MovingCollider {
             from: pose,
             to: pose.translation.into(),
             turn: Vec3::ZERO,
+            body: None,
         }
     }
 

@@ -103,6 +103,12 @@ impl Given {
         self.angular += arm.as_dvec3().cross(given);
     }
 
+    /// Leaves a part of it.
+    pub fn scale(&mut self, part: f64) {
+        self.linear *= part;
+        self.angular *= part;
+    }
+
     /// Adds what another one was given.
     pub fn merge(&mut self, other: &Self) {
         self.linear += other.linear;

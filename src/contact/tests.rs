@@ -1,5 +1,6 @@
 //! Contact against closed forms, against `f64`, and against brute force.
 
+mod body;
 mod deep;
 mod fast;
 mod impulse;

@@ -90,6 +90,23 @@ impl ClothBuilt {
         !particles.is_empty() && particles.matches(self.surface())
     }
 
+    /// The mesh that it was made from, if it was.
+    pub(super) fn source(&self) -> Option<Source> {
+        self.shared.recipe.as_ref().and_then(|recipe| recipe.source)
+    }
+
+    /// Whether it was made from a `Cloth` that was changed then, and from this material and these pins.
+    pub(super) fn is_made_from(
+        &self,
+        changed: Tick,
+        material: &ClothMaterial,
+        pins: &Pins,
+    ) -> bool {
+        self.from.as_ref().is_some_and(|from| {
+            from.changed == changed && from.material == *material && from.pins == *pins
+        })
+    }
+
     /// Gives particles the masses that material and pins give them.
     pub(super) fn give_masses(
         &self,

@@ -4,12 +4,13 @@ use bevy::{
     ecs::{
         component::Component,
         entity::{Entity, MapEntities},
-        lifecycle::Remove,
+        lifecycle::Discard,
         message::{Message, MessageWriter},
         observer::On,
         reflect::{ReflectComponent, ReflectMapEntities},
         system::Query,
     },
+    math::{Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
@@ -31,13 +32,18 @@ pub struct ClothContact {
     /// ∫ depth dA over that area (m³), the largest of the tick: what the cloth had cut off from the collider, while
     /// it is shallow.
     pub volume: f32,
+    /// What the cloth gave to the collider in the last tick, in the world (N·s): the sum of its pushes, as far as they are
+    /// momentum. The collider was pushed with this over the tick's length (N), in the mean.
+    pub impulse: Vec3,
+    /// Their moments about the collider's origin, in the world (N·m·s).
+    pub angular_impulse: Vec3,
     /// What the collider was tested against.
     pub narrow_phase: NarrowPhase,
     /// From where to where its points are.
     points: [usize; 2],
 }
 
-/// The colliders that a cloth touched in the last tick.
+/// The colliders that a cloth touched in the last tick in which it moved: while it sleeps, or no time passes, they stay.
 #[derive(Component, Reflect, MapEntities, Debug, Default, Clone)]
 #[reflect(Component, MapEntities, Default, Debug, Clone)]
 #[component(clone_behavior = Ignore)]
@@ -67,13 +73,22 @@ impl ClothContacts {
         self.points.get(first..end).unwrap_or_default()
     }
 
-    /// Takes the contacts of a new tick; those of no particle are none.
-    pub(super) fn renew(&mut self, near: &[(Entity, MovingCollider)], detection: &Detection) {
+    /// Takes the contacts of a new tick, found in a frame that is turned by `rotation`; those of no particle are none.
+    pub(super) fn renew(
+        &mut self,
+        near: &[(Entity, MovingCollider)],
+        detection: &Detection,
+        rotation: Quat,
+    ) {
         self.now.clear();
         self.points.clear();
         for touch in detection.touches() {
             let first = self.points.len();
-            self.points.extend(detection.points(touch));
+            let points = detection.points(touch).map(|point| ContactPoint {
+                depth: point.depth.min(f32::MAX),
+                ..point
+            });
+            self.points.extend(points);
             let particles = self.points[first..]
                 .iter()
                 .filter(|point| point.depth > 0.0)
@@ -85,14 +100,22 @@ impl ClothContacts {
             self.now.push(ClothContact {
                 collider: *collider,
                 particles,
-                deepest_penetration: touch.deepest,
-                area: touch.area,
-                volume: touch.volume,
+                // Beyond what a float can hold: the largest.
+                deepest_penetration: touch.deepest.min(f32::MAX),
+                area: touch.area.min(f32::MAX),
+                volume: touch.volume.min(f32::MAX),
+                impulse: finite(rotation * touch.impulse),
+                angular_impulse: finite(rotation * touch.angular_impulse),
                 narrow_phase: touch.narrow_phase,
                 points: [first, self.points.len()],
             });
         }
     }
+}
+
+/// What a float can't hold, of particles that are given up, is nothing.
+fn finite(value: Vec3) -> Vec3 {
+    if value.is_finite() { value } else { Vec3::ZERO }
 }
 
 /// A cloth and a collider have begun to touch.
@@ -166,9 +189,9 @@ pub(super) fn send_touch_messages(
     }
 }
 
-/// A cloth that goes takes its touches with it.
+/// A cloth that goes takes its touches with it, and so do contacts that a game replaces.
 pub(super) fn send_stopped_messages(
-    removed: On<Remove, ClothContacts>,
+    removed: On<Discard, ClothContacts>,
     contacts: Query<&ClothContacts>,
     mut stopped: MessageWriter<ClothTouchStopped>,
 ) {

@@ -58,6 +58,11 @@ impl ClothFrame {
         }
     }
 
+    /// Whether it is that of a global transform, to the last bit.
+    pub(super) fn is_of(&self, transform: &GlobalTransform) -> bool {
+        self.affine == transform.affine()
+    }
+
     /// From the particles' frame to the world.
     pub fn isometry(&self) -> Isometry3d {
         self.isometry

@@ -1,14 +1,11 @@
 //! All sub-steps of a tick.
 
-use bevy::ecs::{
-    entity::Entity,
-    system::{Query, ResMut},
-};
+use bevy::ecs::system::{Query, ResMut};
 
 use super::{
-    colliders::ColliderMotion,
     islands::Islands,
-    tick::{Integrating, threads},
+    threads::threads,
+    tick::{Colliders, Integrating},
     together::integrate_together,
 };
 
@@ -18,7 +15,7 @@ const MIN_TO_SHARE: usize = 64 * 64 * 20;
 /// Runs all sub-steps, of several cloths at once where there is enough to do; of those that may touch each other, together.
 pub(super) fn integrate(
     mut cloths: Query<Integrating>,
-    colliders: Query<(Entity, &ColliderMotion)>,
+    colliders: Colliders,
     mut islands: ResMut<Islands>,
 ) {
     for island in &mut islands.all {

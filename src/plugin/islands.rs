@@ -3,7 +3,7 @@
 use bevy::{
     ecs::{
         entity::Entity,
-        query::QueryData,
+        query::{QueryData, With},
         resource::Resource,
         system::{Query, ResMut},
     },
@@ -11,7 +11,7 @@ use bevy::{
 };
 
 use super::{ClothBuilt, ClothScratch, ClothState, components::BroadPhaseBounds};
-use crate::contact::MutualContact;
+use crate::contact::{ClothLayers, ClothSelfCollision, MutualContact};
 
 /// Cloths that may touch each other in the tick, island by island.
 #[derive(Resource, Debug, Default)]
@@ -39,6 +39,7 @@ struct Span {
     entity: Entity,
     centre: Vec3,
     radius: f32,
+    layers: ClothLayers,
 }
 
 const NONE: u32 = u32::MAX;
@@ -51,13 +52,18 @@ pub(super) struct Neighbour {
     bounds: &'static mut BroadPhaseBounds,
     state: &'static mut ClothState,
     scratch: &'static mut ClothScratch,
+    layers: Option<&'static ClothLayers>,
 }
 
+/// Those that touch cloth at all.
+type Neighbours<'w, 's> = Query<'w, 's, Neighbour, With<ClothSelfCollision>>;
+
 /// Finds which cloths may touch each other in the tick. What moves wakes those that sleep beside it.
-pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Query<Neighbour>) {
+pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours) {
     let islands = &mut *islands;
     islands.spans.clear();
-    for cloth in &cloths {
+    for mut cloth in &mut cloths {
+        cloth.scratch.is_in_island = false;
         if let Some(settings) = cloth.scratch.self_collision
             && cloth.bounds.takes_part
         {
@@ -65,6 +71,7 @@ pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Query<Neigh
                 entity: cloth.entity,
                 centre: cloth.bounds.centre,
                 radius: cloth.bounds.radius + settings.thickness,
+                layers: cloth.layers.copied().unwrap_or_default(),
             });
         }
     }
@@ -98,7 +105,9 @@ impl Islands {
                     break;
                 }
                 let reach = own.radius + other.radius;
-                if own.centre.distance_squared(other.centre) <= reach * reach {
+                if own.centre.distance_squared(other.centre) <= reach * reach
+                    && own.layers.interacts_with(other.layers)
+                {
                     let [a, b] = [a, b].map(|span| self.find(span as u32));
                     self.parent[a.max(b) as usize] = a.min(b);
                 }
@@ -149,7 +158,7 @@ impl Islands {
 }
 
 /// Wakes all cloths of an island of which one moves. One in which all sleep is none.
-fn wake(island: &mut Island, cloths: &mut Query<Neighbour>) {
+fn wake(island: &mut Island, cloths: &mut Neighbours) {
     let (mut is_awake, mut is_moving) = (false, false);
     for cloth in cloths.iter_many(&island.cloths) {
         let rest = &cloth.state.rest;

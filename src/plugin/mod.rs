@@ -2,10 +2,12 @@
 
 mod attach;
 mod attachments;
+mod body;
 mod broad_phase;
 mod build;
 mod built;
 mod clock;
+mod collider_tree;
 mod colliders;
 mod components;
 mod contacts;
@@ -28,8 +30,11 @@ mod naming;
 #[cfg(feature = "egui")]
 mod panel;
 mod prepare;
+mod push;
 #[cfg(feature = "rapier")]
 mod rapier;
+#[cfg(feature = "rapier")]
+mod rapier_body;
 mod scratch;
 mod search;
 mod sets;
@@ -38,6 +43,7 @@ mod simulation;
 mod source;
 mod state;
 mod stats;
+mod threads;
 mod tick;
 mod together;
 
@@ -47,6 +53,7 @@ use bevy::{
 };
 
 pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTeleport};
+pub use body::{ClothBody, ClothPush};
 pub use built::ClothBuilt;
 pub use components::ClothSearch;
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
@@ -68,6 +75,8 @@ pub use panel::ClothColliderSpeed;
 pub use panel::{ClothPanel, ClothPanelPlugin};
 #[cfg(feature = "rapier")]
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
+#[cfg(feature = "rapier")]
+pub use rapier_body::ClothPushBack;
 pub use scratch::ClothScratch;
 pub use sets::ClothSystems;
 pub use simulation::ClothPlugin;

@@ -73,9 +73,6 @@ pub(super) fn prepare_cloths(
     mut commands: Commands,
 ) {
     for mut cloth in &mut cloths {
-        // Whatever is wrong, nothing of an earlier tick is done again.
-        cloth.scratch.step = None;
-        cloth.scratch.pins.clear();
         let inputs = Inputs::of(
             cloth.settings,
             cloth.material,
@@ -85,10 +82,16 @@ pub(super) fn prepare_cloths(
             gravity.0,
         );
         let outcome = inputs.and_then(|inputs| {
+            if cloth.sleeps_as_it_was(&inputs, &targets, &sources, time.delta_secs()) {
+                return Ok(());
+            }
+            // Nothing of an earlier tick is done again.
+            cloth.scratch.forget_tick();
             cloth.prepare(&inputs, &targets, &sources, &mut parts, time.delta_secs())
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
+            cloth.scratch.forget_tick();
             cloth.bounds.takes_part = false;
             cloth.bounds.is_stale |= cloth.bounds.is_searched;
             cloth.bounds.is_searched = false;
@@ -113,6 +116,50 @@ pub(super) fn prepare_cloths(
 }
 
 impl PreparingItem<'_, '_> {
+    /// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
+    fn sleeps_as_it_was(
+        &self,
+        inputs: &Inputs,
+        targets: &Targets,
+        sources: &Sources,
+        seconds: f32,
+    ) -> bool {
+        let (state, built) = (&*self.state, &*self.built);
+        if !(state.rest.is_asleep() && state.is_valid && self.stats.is_asleep) {
+            return false;
+        }
+        let acceleration = self.frame.isometry().rotation.inverse() * inputs.gravity;
+        let known = (
+            inputs.settings,
+            inputs.search,
+            inputs.narrow_phase,
+            inputs.self_collision,
+            acceleration,
+        );
+        let known_contact = (
+            self.scratch.contact_settings.particle_radius,
+            self.scratch.contact_settings.friction,
+        );
+        let source = built.source();
+        let pins = self.pins.unwrap_or(&NO_PINS);
+        // What may wake it in this tick goes on with the step that it would have been prepared with.
+        let is_prepared = (self.scratch.step).is_some_and(|step| step.seconds == seconds);
+        is_prepared
+            && state.known == Some(known)
+            && known_contact == (inputs.settings.particle_radius, inputs.material.friction)
+            && state.written == Some(self.particles.last_changed())
+            && state.attachments.is_empty()
+            && self
+                .attachments
+                .is_none_or(|attachments| attachments.as_slice().is_empty())
+            && self.teleport.is_none()
+            && self.fault.is_none()
+            && built.is_made_from(self.cloth.last_changed(), &inputs.material, pins)
+            && sources.find(self.entity, &self.cloth, source) == Ok(source)
+            && global_transform(&targets.transforms, self.entity)
+                .is_ok_and(|transform| self.frame.is_of(&transform))
+    }
+
     fn prepare(
         &mut self,
         inputs: &Inputs,
@@ -129,11 +176,7 @@ impl PreparingItem<'_, '_> {
         let attachments = self.attachments.map_or(&[][..], ClothAttachments::as_slice);
         let (particles, state) = (&mut self.particles, &mut *self.state);
         let (built, scratch) = (&mut *self.built, &mut *self.scratch);
-        let known = built
-            .shared
-            .recipe
-            .as_ref()
-            .and_then(|recipe| recipe.source);
+        let known = built.source();
         let wanted = Wanted {
             cloth: &self.cloth,
             changed: self.cloth.last_changed(),

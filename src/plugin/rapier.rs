@@ -18,7 +18,7 @@ use bevy::{
 };
 use bevy_rapier3d::{geometry::Collider, plugin::PhysicsSet};
 
-use super::{ClothFault, ClothSystems, naming::Part};
+use super::{ClothFault, ClothSystems, naming::Part, rapier_body::add_push_back};
 use crate::{cloth::ClothError, contact::ClothCollider};
 
 /// Makes the rapier `Collider::ball` on the same entity a [`ClothCollider`], with the radius and scale that
@@ -51,6 +51,7 @@ impl ClothRapierPlugin {
 
 impl Plugin for ClothRapierPlugin {
     fn build(&self, app: &mut App) {
+        add_push_back(app, self.schedule);
         app.register_type::<RapierClothCollider>()
             .add_observer(release::<RapierClothCollider>)
             .add_observer(release::<Collider>)

@@ -10,7 +10,9 @@ use bevy::{
 
 use crate::{
     cloth::ClothParticles,
-    contact::{ClothSelfCollision, ContactSettings, Detection, MovingCollider, MutualContact},
+    contact::{
+        BodyChange, ClothSelfCollision, ContactSettings, Detection, MovingCollider, MutualContact,
+    },
     hierarchy::{NodeBounds, SearchMethod, TopDownQuery},
     solver::{LimitInputs, PinMotion, Substepping, TickStep},
 };
@@ -44,10 +46,21 @@ pub struct ClothScratch {
     pub(super) is_in_island: bool,
     /// Contact with itself alone.
     pub(super) mutual: Option<Box<MutualContact>>,
+    /// The bodies that the cloth pushed in the tick, and what it changed of their motion, in the world.
+    pub(super) pushed: Vec<(Entity, BodyChange)>,
     /// What a cloth that sleeps is searched with.
     pub(super) sleep_query: (NodeBounds, TopDownQuery),
     /// The particles as the tick began, for one that is done again.
     pub(super) backup: ClothParticles,
     /// What the tick that was just done asked of the cloth.
     pub(super) limit_inputs: Option<LimitInputs>,
+}
+
+impl ClothScratch {
+    /// Forgets what was to be done in a tick.
+    pub(super) fn forget_tick(&mut self) {
+        self.step = None;
+        self.pins.clear();
+        self.pushed.clear();
+    }
 }

@@ -1,18 +1,23 @@
 //! Which colliders are near each cloth, and which particles they may touch within the tick.
 
 use bevy::{
-    ecs::{entity::Entity, query::QueryData, system::Query},
-    math::bounding::BoundingSphere,
+    ecs::{
+        entity::Entity,
+        query::QueryData,
+        system::{Query, ResMut},
+    },
+    math::{Vec3, bounding::BoundingSphere},
     platform::time::Instant,
 };
 
 use super::{
     ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats, broad_phase::cover,
-    clock::milliseconds_since, colliders::ColliderMotion, components::BroadPhaseBounds,
+    clock::milliseconds_since, collider_tree::ColliderTree, colliders::ColliderMotion,
+    components::BroadPhaseBounds, threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
-    contact::{Detection, NarrowPhase, Touch, meets_triangles},
+    contact::{ClothLayers, Detection, MovingCollider, NarrowPhase, Touch, meets_triangles},
     hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
 };
 
@@ -27,38 +32,111 @@ pub(super) struct Searching {
     scratch: &'static mut ClothScratch,
     stats: &'static mut ClothStats,
     broad_phase: &'static mut BroadPhaseBounds,
+    layers: Option<&'static ClothLayers>,
 }
 
-type Colliders<'w, 's> = Query<'w, 's, (Entity, &'static ColliderMotion)>;
+/// A tick in which fewer cloths take part is not shared among threads: handing out work costs more than the search.
+const MIN_TO_SHARE: usize = 128;
 
-/// Finds the colliders near each cloth, by one test of its root each; chooses how to search, and brings the bounding
-/// volumes up to date where that asks for it. What comes near a cloth that sleeps, or leaves it, wakes it.
-pub(super) fn rebuild_hierarchies(mut cloths: Query<Searching>, colliders: Colliders) {
-    for mut cloth in &mut cloths {
+type Collider = (&'static ColliderMotion, Option<&'static ClothLayers>);
+
+/// The colliders, and the tree of their bounds.
+struct Colliders<'a, 'w, 's> {
+    tree: &'a ColliderTree,
+    all: Query<'w, 's, Collider>,
+}
+
+impl Colliders<'_, '_, '_> {
+    /// The colliders that may come within `reach` of a point of the world (m), and that may touch what is in some layers.
+    fn near(
+        &self,
+        point: Vec3,
+        reach: f32,
+        layers: ClothLayers,
+    ) -> impl Iterator<Item = (Entity, &ColliderMotion)> {
+        self.tree.near(point, reach).filter_map(move |entity| {
+            let motion = self.get(entity, layers)?;
+            motion.comes_near(point, reach).then_some((entity, motion))
+        })
+    }
+
+    /// How a collider moves, if it may touch what is in some layers.
+    fn get(&self, entity: Entity, layers: ClothLayers) -> Option<&ColliderMotion> {
+        let (motion, others) = self.all.get(entity).ok()?;
+        let others = others.copied().unwrap_or_default();
+        others.interacts_with(layers).then_some(motion)
+    }
+}
+
+/// Finds the colliders near each cloth; chooses how to search, and brings the bounding volumes up to date where that asks for
+/// it. What comes near a cloth that sleeps, or leaves it, wakes it.
+pub(super) fn rebuild_hierarchies(
+    mut cloths: Query<Searching>,
+    colliders: Query<Collider>,
+    mut tree: ResMut<ColliderTree>,
+) {
+    let (mut taking_part, mut has_sleeping_contacts) = (0, false);
+    for cloth in &cloths {
+        taking_part += usize::from(cloth.broad_phase.takes_part);
+        has_sleeping_contacts |= cloth.broad_phase.has_sleeping_contacts;
+    }
+    if taking_part == 0 || (tree.is_empty() && !has_sleeping_contacts) {
+        return;
+    }
+    tree.refit();
+    let colliders = Colliders {
+        tree: &tree,
+        all: colliders,
+    };
+    if taking_part >= MIN_TO_SHARE && threads() > 1 {
+        cloths
+            .par_iter_mut()
+            .for_each(|mut cloth| cloth.look_around(&colliders));
+    } else {
+        cloths
+            .iter_mut()
+            .for_each(|mut cloth| cloth.look_around(&colliders));
+    }
+}
+
+/// Finds the particles that each collider near may touch within the tick.
+pub(super) fn query_collisions(mut cloths: Query<Searching>) {
+    let searched = cloths
+        .iter()
+        .filter(|cloth| cloth.broad_phase.is_searched)
+        .count();
+    if searched == 0 {
+        return;
+    }
+    if searched >= MIN_TO_SHARE && threads() > 1 {
+        cloths.par_iter_mut().for_each(|mut cloth| cloth.query());
+    } else {
+        cloths.iter_mut().for_each(|mut cloth| cloth.query());
+    }
+}
+
+impl SearchingItem<'_, '_> {
+    /// Finds the colliders near, if the cloth takes part in the tick and there are any.
+    fn look_around(&mut self, colliders: &Colliders) {
         let BroadPhaseBounds {
             centre,
             radius,
             takes_part,
             has_sleeping_contacts,
             ..
-        } = *cloth.broad_phase;
-        let is_near = |(_, motion): (Entity, &ColliderMotion)| motion.comes_near(centre, radius);
-        if takes_part && (has_sleeping_contacts || colliders.iter().any(is_near)) {
-            cloth.find_near(&colliders);
+        } = *self.broad_phase;
+        let layers = self.layers();
+        if takes_part
+            && (has_sleeping_contacts || colliders.near(centre, radius, layers).next().is_some())
+        {
+            self.find_near(colliders);
         }
     }
-}
 
-/// Finds the particles that each collider near may touch within the tick.
-pub(super) fn query_collisions(mut cloths: Query<Searching>) {
-    for mut cloth in &mut cloths {
-        if cloth.broad_phase.is_searched && cloth.built.matches(cloth.particles) {
-            cloth.query();
-        }
+    fn layers(&self) -> ClothLayers {
+        self.layers.copied().unwrap_or_default()
     }
-}
 
-impl SearchingItem<'_, '_> {
     fn root(&self) -> BoundingSphere {
         self.built
             .tree()
@@ -77,6 +155,7 @@ impl SearchingItem<'_, '_> {
             self.state.rest.disturb();
         }
         let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
+        let layers = self.layers();
         let ClothScratch {
             near,
             detection,
@@ -87,13 +166,11 @@ impl SearchingItem<'_, '_> {
         let mut dragged = 0.0_f32;
         loop {
             near.clear();
-            let comes_near = colliders
-                .iter()
-                .filter(|(_, motion)| motion.comes_near(centre, radius + dragged));
             let seen = |(entity, motion): (Entity, &ColliderMotion)| {
                 Some((entity, motion.seen_from(self.frame)?))
             };
-            near.extend(comes_near.filter_map(seen));
+            let around = colliders.near(centre, radius + dragged, layers);
+            near.extend(around.filter_map(seen));
             let travels = near
                 .iter()
                 .map(|(_, near)| near.max_surface_travel(near.farthest_distance(&root)));
@@ -103,6 +180,8 @@ impl SearchingItem<'_, '_> {
             }
             dragged = farthest;
         }
+        // Whatever the order of the tree.
+        near.sort_unstable_by_key(|(entity, _)| entity.index_u32());
         detection.begin(self.built.surface(), *reach + dragged);
         let near = near.len();
         self.stats.colliders_near = near;
@@ -133,54 +212,67 @@ impl SearchingItem<'_, '_> {
 
     /// Whether all that touched a cloth as it fell asleep still rests where it did, and nothing else has come.
     fn sleeps_on(&mut self, root: &BoundingSphere, colliders: &Colliders) -> bool {
+        let layers = self.layers();
+        let rests_on = &self.state.rests_on;
+        let rests_still = |(entity, collider): &(Entity, MovingCollider)| {
+            let motion = colliders.get(*entity, layers);
+            motion
+                .and_then(|motion| motion.seen_from(self.frame))
+                .as_ref()
+                == Some(collider)
+        };
+        if !rests_on.iter().all(rests_still) {
+            return false;
+        }
         let ClothScratch {
             sleep_query,
             contact_settings,
             ..
         } = &mut *self.scratch;
         let stretch = self.state.stretch.bound;
-        let rests_on = &self.state.rests_on;
         let (bounds, query) = sleep_query;
         let (tree, surface) = (self.built.tree(), self.built.surface());
-        let rest_shape = (BoundingVolume::Sphere, BoundRule::RestShape);
-        let outcome = bounds.rebuild(rest_shape, tree, self.particles, stretch);
-        debug_assert!(outcome.is_ok(), "spheres have a rest shape");
         let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
         let cover = cover(contact_settings, stretch, surface);
-        let mut still = 0;
         // Nothing of the cloth moves towards anything.
         let sleep_detection = Detection::default();
-        for (entity, motion) in colliders {
-            let is_near = motion.comes_near(centre, radius);
-            if !is_near && rests_on.is_empty() {
+        let mut has_bounds = false;
+        for (entity, motion) in colliders.near(centre, radius, layers) {
+            if rests_on.iter().any(|(known, _)| *known == entity) {
                 continue;
             }
             let Some(collider) = motion.seen_from(self.frame) else {
                 continue;
             };
-            if rests_on.contains(&(entity, collider)) {
-                still += 1;
-            } else if is_near {
-                let (probe, narrow_phase) =
-                    sleep_detection.probe(&collider, contact_settings, surface, cover, root);
-                query.clear();
-                query.search(tree, bounds, self.particles, &probe);
-                let met = match narrow_phase {
-                    NarrowPhase::Triangles => {
-                        let bare = collider.probe(0.0, contact_settings.particle_radius, root);
-                        meets_triangles(surface, self.particles, query.candidates(), &bare)
-                    }
-                    NarrowPhase::Auto | NarrowPhase::Particles => !query.candidates().is_empty(),
-                };
-                if met {
-                    return false;
+            if !has_bounds {
+                let rest_shape = (BoundingVolume::Sphere, BoundRule::RestShape);
+                let outcome = bounds.rebuild(rest_shape, tree, self.particles, stretch);
+                debug_assert!(outcome.is_ok(), "spheres have a rest shape");
+                has_bounds = true;
+            }
+            let (probe, narrow_phase) =
+                sleep_detection.probe(&collider, contact_settings, surface, cover, root);
+            query.clear();
+            query.search(tree, bounds, self.particles, &probe);
+            let met = match narrow_phase {
+                NarrowPhase::Triangles => {
+                    let bare = collider.probe(0.0, contact_settings.particle_radius, root);
+                    meets_triangles(surface, self.particles, query.candidates(), &bare)
                 }
+                NarrowPhase::Auto | NarrowPhase::Particles => !query.candidates().is_empty(),
+            };
+            if met {
+                return false;
             }
         }
-        still == rests_on.len()
+        true
     }
 
+    /// Finds the particles that each collider near may touch, if there is any.
     fn query(&mut self) {
+        if !(self.broad_phase.is_searched && self.built.matches(self.particles)) {
+            return;
+        }
         let start = Instant::now();
         let root = self.root();
         let scratch = &mut *self.scratch;
@@ -219,3 +311,6 @@ impl SearchingItem<'_, '_> {
         self.stats.query_ms = milliseconds_since(start);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,15 +18,17 @@ use bevy::{
     },
     log::error,
     time::Time,
+    transform::TransformSystems,
 };
 
 #[cfg(feature = "mesh")]
 use super::source::{ChangedMeshes, note_changed_meshes};
 use super::{
-    ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-    ClothLimitExceeded, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
+    ClothAttachments, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
+    ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
     ClothTeleport, ClothTouchStarted, ClothTouchStopped,
-    colliders::{ColliderMotion, prepare_colliders},
+    collider_tree::ColliderTree,
+    colliders::{ColliderMotion, forget_collider, prepare_colliders},
     components::BroadPhaseBounds,
     contacts::{send_stopped_messages, send_touch_messages},
     envelope::report_limits,
@@ -35,12 +37,13 @@ use super::{
     islands::{Islands, find_islands},
     naming::Part,
     prepare::prepare_cloths,
+    push::push_bodies,
     search::{query_collisions, rebuild_hierarchies},
     shared::SharedParts,
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, Pins},
-    contact::{ClothCollider, ClothSelfCollision, NarrowPhase},
+    contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::ClothSettings,
 };
@@ -77,6 +80,9 @@ impl Plugin for ClothPlugin {
             .register_type::<NarrowPhase>()
             .register_type::<ClothSelfCollision>()
             .register_type::<ClothCollider>()
+            .register_type::<ClothLayers>()
+            .register_type::<ClothBody>()
+            .register_type::<ClothPush>()
             .register_type::<ClothContacts>()
             .register_type::<ClothFrame>()
             .register_type::<ClothStats>()
@@ -95,12 +101,14 @@ impl Plugin for ClothPlugin {
             .insert_resource(ClothPresence::Simulated)
             .init_resource::<SharedParts>()
             .init_resource::<Islands>()
+            .init_resource::<ColliderTree>()
             .add_observer(add_parts::<Cloth, ClothParts>)
             .add_observer(add_parts::<ClothCollider, ColliderMotion>)
             .add_observer(send_stopped_messages)
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
-            .add_observer(reset_motion);
+            .add_observer(reset_motion)
+            .add_observer(forget_collider);
         app.configure_sets(
             self.schedule,
             (
@@ -121,7 +129,13 @@ impl Plugin for ClothPlugin {
                     .in_set(ClothSystems::Prepare),
                 rebuild_hierarchies.in_set(ClothSystems::Rebuild),
                 query_collisions.in_set(ClothSystems::Query),
-                integrate.in_set(ClothSystems::Integrate),
+                // Where the schedule is that of transforms, too, a body is drawn where it is pushed to a frame later.
+                (
+                    integrate,
+                    push_bodies.ambiguous_with(TransformSystems::Propagate),
+                )
+                    .chain()
+                    .in_set(ClothSystems::Integrate),
                 (send_touch_messages, report_limits, log_faults)
                     .chain()
                     .in_set(ClothSystems::WriteBack),

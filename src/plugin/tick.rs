@@ -9,16 +9,18 @@ use bevy::{
     },
     math::{Isometry3d, Vec3},
     platform::time::Instant,
-    tasks::{ComputeTaskPool, available_parallelism},
 };
 
 use super::{
     ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState, ClothStats,
-    clock::milliseconds_since, colliders::ColliderMotion,
+    clock::milliseconds_since, colliders::ColliderMotion, threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
-    contact::{ClothSelfCollision, ColliderShape, MovingCollider, MutualContact, Participant},
+    contact::{
+        BodyChange, ClothLayers, ClothSelfCollision, ColliderShape, MovingCollider, MutualContact,
+        Participant,
+    },
     hierarchy::Core,
     solver::{LimitInputs, Stretch, SubStep, Substepping, TickStep},
 };
@@ -36,16 +38,22 @@ pub(super) struct Integrating {
     pub scratch: &'static mut ClothScratch,
     pub contacts: &'static mut ClothContacts,
     pub stats: &'static mut ClothStats,
+    pub layers: Option<&'static ClothLayers>,
 }
 
-/// Threads that work on a tick: those of Bevy's compute pool, and the one that waits for them.
-pub(super) fn threads() -> usize {
-    let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
-    (pool + 1).min(available_parallelism())
-}
+/// All colliders, however far.
+pub(super) type Colliders<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static ColliderMotion,
+        Option<&'static ClothLayers>,
+    ),
+>;
 
 impl IntegratingItem<'_, '_> {
-    pub fn integrate(&mut self, colliders: &Query<(Entity, &ColliderMotion)>) {
+    pub fn integrate(&mut self, colliders: &Colliders) {
         // Those that may touch each other have been moved.
         if self.scratch.is_in_island {
             return;
@@ -61,6 +69,8 @@ impl IntegratingItem<'_, '_> {
         let is_asleep = self.state.rest.is_asleep();
         self.stats.is_asleep = is_asleep;
         if is_asleep {
+            // It stays prepared while nothing changes.
+            self.scratch.step = Some(step);
             self.stats.integrate_ms = 0.0;
             self.stats.substeps = 0;
             return;
@@ -75,8 +85,10 @@ impl IntegratingItem<'_, '_> {
         self.stats.integrate_ms = milliseconds;
         self.state.written = Some(self.particles.last_changed());
         self.remember_contacts();
+        self.push_bodies();
+        let rotation = self.frame.isometry().rotation;
         self.contacts
-            .renew(&self.scratch.near, &self.scratch.detection);
+            .renew(&self.scratch.near, &self.scratch.detection, rotation);
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
@@ -93,8 +105,31 @@ impl IntegratingItem<'_, '_> {
         self.state.rests_on.extend(known);
     }
 
+    /// Notes what the cloth did to bodies. While it does something to one, it does not rest.
+    fn push_bodies(&mut self) {
+        let ClothScratch {
+            near,
+            detection,
+            pushed,
+            ..
+        } = &mut *self.scratch;
+        let rotation = self.frame.isometry().rotation;
+        for (id, (entity, _)) in near
+            .iter()
+            .enumerate()
+            .filter(|(_, near)| near.1.body.is_some())
+        {
+            if let Some(change) = detection.body_change(id)
+                && change != BodyChange::default()
+            {
+                pushed.push((*entity, change.turned(rotation)));
+                self.state.rest.disturb();
+            }
+        }
+    }
+
     /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
-    fn solve(&mut self, mut step: TickStep, colliders: &Query<(Entity, &ColliderMotion)>) {
+    fn solve(&mut self, mut step: TickStep, colliders: &Colliders) {
         let substepping = self.scratch.substepping;
         let bands = if self.particles.len() < MIN_TO_SPLIT {
             1
@@ -159,8 +194,9 @@ impl IntegratingItem<'_, '_> {
     }
 
     /// One way through the sub-steps.
-    fn advance(&mut self, step: TickStep, colliders: &Query<(Entity, &ColliderMotion)>) -> Stretch {
+    fn advance(&mut self, step: TickStep, colliders: &Colliders) -> Stretch {
         let mut alone = self.begin_alone();
+        let layers = self.layers.copied().unwrap_or_default();
         let ClothScratch {
             pins,
             near,
@@ -178,7 +214,7 @@ impl IntegratingItem<'_, '_> {
                 .advance(&mut self.particles, step, pins, |particles, substep| {
                     let settings = *contact_settings;
                     let numbered = |numbered: &mut Vec<(usize, MovingCollider)>| {
-                        add_far(near, near_set, frame, colliders, numbered);
+                        add_far(near, near_set, (frame, layers), colliders, numbered);
                     };
                     let is_touched = detection.respond(particles, &settings, substep, numbered);
                     let Some((mutual, settings)) = &mut alone else {
@@ -233,11 +269,7 @@ impl IntegratingItem<'_, '_> {
     }
 
     /// Pushes it out of what it touches that is no cloth. Returns whether anything moved.
-    pub(super) fn touch(
-        &mut self,
-        substep: SubStep,
-        colliders: &Query<(Entity, &ColliderMotion)>,
-    ) -> bool {
+    pub(super) fn touch(&mut self, substep: SubStep, colliders: &Colliders) -> bool {
         let ClothScratch {
             near,
             near_set,
@@ -246,8 +278,9 @@ impl IntegratingItem<'_, '_> {
             ..
         } = &mut *self.scratch;
         let frame = self.frame;
+        let layers = self.layers.copied().unwrap_or_default();
         detection.respond(&mut self.particles, contact_settings, substep, |numbered| {
-            add_far(near, near_set, frame, colliders, numbered);
+            add_far(near, near_set, (frame, layers), colliders, numbered);
         })
     }
 }
@@ -256,14 +289,15 @@ impl IntegratingItem<'_, '_> {
 fn add_far(
     near: &mut Vec<(Entity, MovingCollider)>,
     near_set: &mut EntityHashSet,
-    frame: &ClothFrame,
-    colliders: &Query<(Entity, &ColliderMotion)>,
+    (frame, layers): (&ClothFrame, ClothLayers),
+    colliders: &Colliders,
     numbered: &mut Vec<(usize, MovingCollider)>,
 ) {
     near_set.clear();
     near_set.extend(near.iter().map(|(known, _)| *known));
-    for (entity, motion) in colliders {
-        if !near_set.contains(&entity)
+    for (entity, motion, others) in colliders {
+        if others.copied().unwrap_or_default().interacts_with(layers)
+            && !near_set.contains(&entity)
             && let Some(collider) = motion.seen_from(frame)
         {
             numbered.push((near.len(), collider));

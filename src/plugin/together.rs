@@ -1,22 +1,18 @@
 //! The sub-steps of cloths that may touch each other, run together.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, EntityIndexSet},
-        system::Query,
-    },
+    ecs::{entity::EntityIndexSet, system::Query},
     math::Isometry3d,
     platform::time::Instant,
 };
 
 use super::{
     clock::milliseconds_since,
-    colliders::ColliderMotion,
     islands::Island,
-    tick::{Integrating, IntegratingItem},
+    tick::{Colliders, Integrating, IntegratingItem},
 };
 use crate::{
-    contact::{MutualContact, Participant},
+    contact::{ClothLayers, MutualContact, Participant},
     solver::{StartedTick, Stretch, Substepping, TickStep},
 };
 
@@ -32,14 +28,20 @@ struct Member<'w, 's> {
 pub(super) fn integrate_together(
     island: &mut Island,
     cloths: &mut Query<Integrating>,
-    colliders: &Query<(Entity, &ColliderMotion)>,
+    colliders: &Colliders,
 ) {
     let start = Instant::now();
     let entities: EntityIndexSet = island.cloths.iter().copied().collect();
     let mut members = Vec::new();
     let mut first = None;
     for mut cloth in cloths.iter_many_unique_mut(&entities) {
-        let Some(step) = cloth.scratch.step.take() else {
+        let is_asleep = cloth.state.rest.is_asleep();
+        // One that sleeps stays prepared while nothing changes.
+        let step = match is_asleep {
+            true => cloth.scratch.step,
+            false => cloth.scratch.step.take(),
+        };
+        let Some(step) = step else {
             continue;
         };
         if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
@@ -48,7 +50,6 @@ pub(super) fn integrate_together(
         let frame = cloth.frame.isometry();
         let to_common = first.map(|first: Isometry3d| first.inverse() * frame);
         first = first.or(Some(frame));
-        let is_asleep = cloth.state.rest.is_asleep();
         cloth.stats.is_asleep = is_asleep;
         (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
         members.push(Member {
@@ -106,7 +107,7 @@ fn advance(
     members: &mut [Member],
     substeps: u32,
     contact: &mut MutualContact,
-    colliders: &Query<(Entity, &ColliderMotion)>,
+    colliders: &Colliders,
 ) -> Option<u32> {
     let seconds = members.iter().find_map(|member| member.step)?.seconds;
     let dt = seconds / substeps as f32;
@@ -122,7 +123,11 @@ fn advance(
             Some(solver.begin(&mut cloth.particles, step, &cloth.scratch.pins))
         })
         .collect();
-    let meets = |_: usize, _: usize| true;
+    let layers: Vec<ClothLayers> = members
+        .iter()
+        .map(|member| member.cloth.layers.copied().unwrap_or_default())
+        .collect();
+    let meets = |a: usize, b: usize| layers[a].interacts_with(layers[b]);
     contact.begin(&participants(members), meets);
     let mut is_pushed = vec![false; members.len()];
     for _ in 0..substeps {

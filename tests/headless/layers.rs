@@ -1,206 +1,116 @@
-//! Cloth that touches cloth: itself, and others.
+//! Which cloths meet which colliders.
 
 use bevy::prelude::*;
-use bevy_drape::{
-    contact::intersections,
-    plugin::{ClothBuilt, ClothScratch},
-    prelude::*,
-};
+use bevy_drape::prelude::*;
 
 use crate::support::*;
 
-/// Triangles that intersect, among all cloths, by brute force.
-fn crossings(app: &mut App) -> usize {
-    let world = app.world_mut();
-    let mut cloths = world.query::<(&ClothBuilt, &ClothParticles, &ClothFrame)>();
-    let places: Vec<_> = cloths
-        .iter(world)
-        .map(|(built, particles, frame)| {
-            let places = particles.positions().map(|place| frame.to_world(place));
-            (built.surface().clone(), places.collect::<Vec<_>>())
-        })
-        .collect();
-    let cloths: Vec<_> = places
-        .iter()
-        .map(|(surface, places)| (&**surface, places.clone()))
-        .collect();
-    intersections(&cloths)
+/// A sheet that falls flat on a plane of the ground.
+fn spawn_sheet(app: &mut App) -> (Entity, Entity) {
+    let flat = Transform::from_xyz(0.0, 0.1, 0.0)
+        .with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2));
+    let sheet = (Cloth::new(8, 8, 0.1), Pins::none(), flat);
+    let sheet = app.world_mut().spawn(sheet).id();
+    let ground = app.world_mut().spawn(ClothCollider::plane()).id();
+    (sheet, ground)
 }
 
-/// A sheet that stands on its lower edge, leaning a little, and falls.
-fn standing(app: &mut App, place: Transform) -> Entity {
-    let cloth = Cloth::new(16, 24, 0.04).centred();
-    let layers = ClothSelfCollision::of_thickness(0.008);
-    let leaning = place.with_rotation(Quat::from_rotation_x(0.1));
-    let spawned = (cloth, Pins::none(), layers, leaning);
-    app.world_mut().spawn(spawned).id()
+fn height(app: &App, cloth: Entity) -> f32 {
+    let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+    frame.to_world(position(app, cloth, (3, 3))).y
 }
 
+/// Both must agree, and what neither names is all.
 #[test]
-fn a_sheet_that_falls_into_folds_does_not_pass_through_itself() {
-    let mut app = app();
-    app.world_mut().spawn(ClothCollider::plane());
-    let cloth = standing(&mut app, Transform::from_xyz(0.0, 0.55, 0.0));
-    let mut most = 0;
-    for passed in 0..150 {
-        tick(&mut app, 1);
-        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
-        most = most.max(
-            app.world()
-                .get::<ClothStats>(cloth)
-                .expect("stats")
-                .layer_pairs,
-        );
-    }
-    assert!(most > 100, "{most} pairs: it lies on itself");
-}
-
-/// What it does is tested as well.
-#[test]
-fn without_self_collision_it_does_and_nothing_is_looked_at() {
-    let mut app = app();
-    app.world_mut().spawn(ClothCollider::plane());
-    let cloth = standing(&mut app, Transform::from_xyz(0.0, 0.55, 0.0));
-    tick(&mut app, 1);
-    app.world_mut()
-        .entity_mut(cloth)
-        .remove::<ClothSelfCollision>();
-    let mut worst = 0;
-    for _ in 0..150 {
-        tick(&mut app, 1);
-        worst = worst.max(crossings(&mut app));
-        let stats = app.world().get::<ClothStats>(cloth).expect("stats");
-        assert_eq!((stats.layer_pairs, stats.layer_searches), (0, 0));
-    }
-    assert!(worst > 0, "the scene asks for it");
-}
-
-/// A sheet held by its edges, turned and moved in the world, and another that falls on it.
-#[test]
-fn a_cloth_lies_on_another_in_frames_that_differ() {
-    let mut app = app();
-    let layers = ClothSelfCollision::of_thickness(0.01);
-    let below = Cloth::new(24, 24, 0.04).lying().centred();
-    let held = Pins::new([Pin::Row(0), Pin::Row(23)]);
-    let turned = Transform::from_xyz(3.0, 1.0, -2.0).with_rotation(Quat::from_rotation_y(0.7));
-    let world = app.world_mut();
-    let below = world.spawn((below, held, layers, turned)).id();
-    let above = Cloth::new(12, 12, 0.04).lying().centred();
-    let place = Transform::from_xyz(3.0, 1.1, -2.0).with_rotation(Quat::from_rotation_x(0.2));
-    let above = world.spawn((above, Pins::none(), layers, place)).id();
-    for passed in 0..192 {
-        tick(&mut app, 1);
-        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
-    }
-    let height = |cloth| {
-        let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
-        let places = particles(&app, cloth).positions();
-        places.map(|place| frame.to_world(place).y).sum::<f32>()
-            / particles(&app, cloth).len() as f32
-    };
-    assert!(height(above) > 0.4, "{} m: it is held", height(above));
-    assert!(height(below) > 0.4, "{} m", height(below));
-}
-
-/// The stack sleeps, and wakes when what lies on it is pushed.
-#[test]
-fn ten_sheets_on_each_other_sleep_and_wake() {
-    let mut app = app();
-    app.world_mut().spawn(ClothCollider::plane());
-    let sheets: Vec<Entity> = (0..10)
-        .map(|index| {
-            let cloth = Cloth::new(10, 10, 0.05).lying().centred();
-            let layers = ClothSelfCollision::of_thickness(0.01);
-            let place = Transform::from_xyz(0.0, 0.01 + 0.015 * index as f32, 0.0)
-                .with_rotation(Quat::from_rotation_y(0.15 * index as f32));
-            let spawned = (cloth, Pins::none(), layers, place);
-            app.world_mut().spawn(spawned).id()
-        })
-        .collect();
-    let are_asleep = |app: &App| {
-        let is_asleep = |sheet: &Entity| {
-            app.world()
-                .get::<ClothStats>(*sheet)
-                .is_some_and(|stats| stats.is_asleep)
-        };
-        sheets.iter().all(is_asleep)
-    };
-    for passed in 0..640 {
-        tick(&mut app, 1);
-        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
-        if are_asleep(&app) {
-            break;
-        }
-    }
-    assert!(are_asleep(&app), "after ten seconds");
-    let top = *sheets.last().expect("ten");
-    change(&mut app, top, |particles: &mut ClothParticles| {
-        for index in 0..particles.len() {
-            let sideways = Vec3::new(1.0, 0.0, 0.0);
-            particles.set_velocity(index, sideways).expect("it exists");
-        }
-    });
-    tick(&mut app, 30);
-    let below = app.world().get::<ClothStats>(sheets[8]).expect("stats");
-    assert!(!below.is_asleep, "what lies on it moves");
-}
-
-#[test]
-fn bad_thickness_is_told_and_others_go_on() {
-    let mut app = app();
-    let good = standing(&mut app, Transform::IDENTITY);
-    let bad = standing(&mut app, Transform::from_xyz(9.0, 0.0, 0.0));
-    for (thickness, friction) in [
-        (0.0, 0.3),
-        (-1.0, 0.3),
-        (f32::NAN, 0.3),
-        (0.0201, 0.3),
-        (0.01, f32::NAN),
-        (0.01, -1.0),
+fn layers_that_agree_touch() {
+    let [first, second] = [0b01, 0b10];
+    for (of_cloth, of_collider, touches) in [
+        (None, None, true),
+        (Some(ClothLayers::new(first, second)), None, true),
+        (None, Some(ClothLayers::new(first, second)), true),
+        (
+            Some(ClothLayers::new(first, second)),
+            Some(ClothLayers::new(second, first)),
+            true,
+        ),
+        (
+            Some(ClothLayers::new(first, second)),
+            Some(ClothLayers::new(first, u32::MAX)),
+            false,
+        ),
+        (
+            Some(ClothLayers::new(first, second)),
+            Some(ClothLayers::new(second, second)),
+            false,
+        ),
+        (Some(ClothLayers::new(u32::MAX, 0)), None, false),
+        (None, Some(ClothLayers::NONE), false),
     ] {
-        app.world_mut().entity_mut(bad).insert(ClothSelfCollision {
-            thickness,
-            friction,
-            ..default()
-        });
-        tick(&mut app, 2);
-        let fault = app.world().get::<ClothFault>(bad);
-        let error = fault.map(|fault| fault.error.clone());
-        match thickness {
-            0.0201 => assert!(
-                matches!(error, Some(ClothError::TooThick { .. })),
-                "{error:?}"
-            ),
-            _ => assert!(
-                matches!(error, Some(ClothError::Quantity { .. })),
-                "{thickness} {friction} {error:?}"
-            ),
-        }
-        assert!(app.world().get::<ClothFault>(good).is_none());
-    }
-    app.world_mut()
-        .entity_mut(bad)
-        .insert(ClothSelfCollision::of_thickness(0.02));
-    tick(&mut app, 2);
-    assert!(app.world().get::<ClothFault>(bad).is_none());
-}
-
-/// As if nothing were remembered but what counts.
-#[test]
-fn what_was_found_may_be_forgotten() {
-    let run = |forgets: bool| {
         let mut app = app();
-        app.world_mut().spawn(ClothCollider::plane());
-        let cloth = standing(&mut app, Transform::from_xyz(0.0, 0.55, 0.0));
-        for _ in 0..100 {
-            tick(&mut app, 1);
-            if forgets {
-                change(&mut app, cloth, |scratch: &mut ClothScratch| {
-                    *scratch = default()
-                });
+        let (sheet, ground) = spawn_sheet(&mut app);
+        for (entity, layers) in [(sheet, of_cloth), (ground, of_collider)] {
+            if let Some(layers) = layers {
+                app.world_mut().entity_mut(entity).insert(layers);
             }
         }
-        particles(&app, cloth).clone()
-    };
-    assert!(run(true) == run(false), "the same bits");
+        tick(&mut app, 60);
+        assert_eq!(
+            height(&app, sheet) > 0.0,
+            touches,
+            "{of_cloth:?} {of_collider:?}"
+        );
+        let started = messages::<ClothTouchStarted>(&mut app);
+        assert_eq!(!started.is_empty(), touches);
+        for entity in [sheet, ground] {
+            assert!(app.world().get::<ClothFault>(entity).is_none());
+        }
+    }
+}
+
+/// A fast particle that was not expected to get so far does not find what it may not touch either.
+#[test]
+fn what_is_driven_far_keeps_to_its_layers() {
+    let mut app = app();
+    let (sheet, ground) = spawn_sheet(&mut app);
+    app.world_mut().entity_mut(ground).insert(ClothLayers::NONE);
+    // A ball that comes from below in one tick, and drives the sheet farther than it could foresee.
+    let ball = (ClothCollider::ball(0.3), Transform::from_xyz(0.4, 0.1, 0.4));
+    app.world_mut().spawn(ball);
+    tick(&mut app, 120);
+    assert!(height(&app, sheet) < 0.0, "{}", height(&app, sheet));
+    let contacts = app.world().get::<ClothContacts>(sheet).expect("contacts");
+    assert!(contacts.with(ground).is_none());
+}
+
+/// A sleeping cloth falls once it may no longer touch what it lies on; one in which something stands that it now meets
+/// wakes.
+#[test]
+fn a_change_of_layers_wakes() {
+    let mut app = app();
+    let (sheet, ground) = spawn_sheet(&mut app);
+    let place = Transform::from_xyz(0.35, 0.0, 0.35);
+    let ghost = (ClothCollider::ball(0.2), ClothLayers::NONE, place);
+    let ghost = app.world_mut().spawn(ghost).id();
+    let mut ticks = 0;
+    while !stats(&app, sheet).is_asleep {
+        tick(&mut app, 1);
+        ticks += 1;
+        assert!(ticks < 2_000, "it never sleeps");
+    }
+    tick(&mut app, 5);
+    assert!(stats(&app, sheet).is_asleep);
+    app.world_mut().entity_mut(ghost).remove::<ClothLayers>();
+    tick(&mut app, 1);
+    assert!(!stats(&app, sheet).is_asleep);
+    app.world_mut().entity_mut(ghost).insert(ClothLayers::NONE);
+    ticks = 0;
+    while !stats(&app, sheet).is_asleep {
+        tick(&mut app, 1);
+        ticks += 1;
+        assert!(ticks < 2_000, "it never sleeps again");
+    }
+    app.world_mut().entity_mut(ground).insert(ClothLayers::NONE);
+    tick(&mut app, 60);
+    assert!(height(&app, sheet) < -1.0, "{}", height(&app, sheet));
+    assert_eq!(messages::<ClothTouchStopped>(&mut app).len(), 2);
 }

@@ -98,6 +98,7 @@ impl Random {
             from,
             to: Vec3::from(from.translation) + self.direction() * travel * self.part(),
             turn: self.direction() * turn * self.part(),
+            body: None,
         }
     }
 }

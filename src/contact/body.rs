@@ -1,0 +1,222 @@
+//! Colliders that give way: bodies with a mass, which cloth pushes as it is pushed by them.
+
+use bevy::math::{DVec3, Isometry3d, Quat, Vec3};
+
+use super::{BodyMass, MovingCollider};
+use crate::{
+    cloth::{Block, ClothParticles, LANES},
+    solver::SubStep,
+};
+
+/// What cloth has changed of a body's motion.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub struct BodyChange {
+    /// Of the velocity of its centre of mass (m/s).
+    pub velocity: Vec3,
+    /// Of its angular velocity (rad/s).
+    pub angular_velocity: Vec3,
+    /// Of where its origin is as the tick ends (m).
+    pub translation: Vec3,
+    /// Of how it is turned then: axis × angle (rad).
+    pub rotation: Vec3,
+}
+
+impl BodyChange {
+    /// The same, seen from another frame.
+    pub fn turned(self, rotation: Quat) -> Self {
+        Self {
+            velocity: rotation * self.velocity,
+            angular_velocity: rotation * self.angular_velocity,
+            translation: rotation * self.translation,
+            rotation: rotation * self.rotation,
+        }
+    }
+}
+
+/// A body on its way through a tick, which each sub-step's pushes change.
+///
+/// A sub-step first pushes the particles as if nothing could move the body. That gives the impulse `g = Σ m Δx` and, with
+/// the body's inverse mass matrix W, what the body would have to do, `W g`. Both shall have a part in it: the particles go the
+/// part `s` of their way, and the body `s W g` of its own. What is left between them is least, weighted with the masses, for
+///
+/// ```text
+/// s = a / (a + gᵀ W g),   a = Σ m Δx²
+/// ```
+///
+/// A heavy body leaves s = 1; particles of the mass m that all go one way and a body of mass M share as M to m. Momentum is
+/// kept, and kinetic energy never grows: with what the whole push takes, `a`, it changes by `−s a + s² (a + gᵀ W g) / 2 ≤ 0`.
+#[derive(Debug, Clone)]
+pub(super) struct Body {
+    /// Which of the caller's colliders.
+    pub id: usize,
+    mass: BodyMass,
+    /// As it would go if nothing touched it.
+    start: MovingCollider,
+    /// As it went when candidates were last searched for.
+    searched: MovingCollider,
+    change: BodyChange,
+}
+
+/// Blocks of particles, as they were before a push.
+#[derive(Debug, Default, Clone)]
+pub(super) struct Before(Vec<(usize, Block)>);
+
+/// A push and a turn that particles have given (kg·m, kg·m²), about a centre, and `Σ m Δx²` (kg·m²).
+#[derive(Debug, Default, Clone, Copy)]
+struct Given {
+    push: DVec3,
+    turn: DVec3,
+    square: f64,
+}
+
+impl Given {
+    fn add(&mut self, mass: f64, offset: DVec3, way: Vec3) {
+        let way = way.as_dvec3();
+        self.push += mass * way;
+        self.turn += offset.cross(mass * way);
+        self.square += mass * way.length_squared();
+    }
+
+    /// The part of it that the particles keep, and what the body does: how far it goes and turns.
+    fn shared(&self, mass: &BodyMass) -> (f32, DVec3, DVec3) {
+        let go = f64::from(mass.inverse_mass) * self.push;
+        let turn = mass.inverse_inertia.as_dmat3() * self.turn;
+        let body = go.dot(self.push) + turn.dot(self.turn);
+        let part = self.square / (self.square + body);
+        // Nothing was pushed, or nothing can be said.
+        let part = if part.is_finite() { part } else { 1.0 };
+        (part as f32, -part * go, -part * turn)
+    }
+}
+
+impl Before {
+    /// Takes what is in these blocks, of which some may be named twice.
+    pub fn save(&mut self, blocks: impl Iterator<Item = usize>, particles: &ClothParticles) {
+        self.0.clear();
+        self.0
+            .extend(blocks.map(|block| (block, particles.blocks()[block])));
+        self.0.sort_unstable_by_key(|(block, _)| *block);
+        self.0.dedup_by_key(|(block, _)| *block);
+    }
+}
+
+impl Body {
+    /// Of a collider, if it gives way.
+    pub fn of(id: usize, collider: &MovingCollider) -> Option<Self> {
+        Some(Self {
+            id,
+            mass: collider.body?,
+            start: collider.clone(),
+            searched: collider.clone(),
+            change: BodyChange::default(),
+        })
+    }
+
+    /// What has changed of its motion so far in the tick.
+    pub fn change(&self) -> BodyChange {
+        self.change
+    }
+
+    /// Begins the tick again. Returns how it goes.
+    pub fn restart(&mut self) -> MovingCollider {
+        self.change = BodyChange::default();
+        self.start.clone()
+    }
+
+    /// Candidates have been searched for along this way.
+    pub fn set_searched(&mut self, way: &MovingCollider) {
+        self.searched = way.clone();
+    }
+
+    /// How far, at most, any point of its surface is from where it was expected in what is left of the tick (m).
+    pub fn deviation(&self, way: &MovingCollider, passed: f32) -> f32 {
+        let deviation = |part: f32| {
+            let (expected, is) = (self.searched.pose_at(part), way.pose_at(part));
+            let turned = is.rotation.angle_between(expected.rotation);
+            let swing = if turned > 0.0 {
+                turned * way.shape.core_extent()
+            } else {
+                0.0
+            };
+            Vec3::from(is.translation).distance(expected.translation.into()) + swing
+        };
+        deviation(passed).max(deviation(1.0))
+    }
+
+    /// Has particles, which were pushed as if the body could not move, and the body share in it, and sends the body on from
+    /// where it then is. Returns the part of the momentum that the particles keep, and how far the body gave way at once (m).
+    pub fn share(
+        &mut self,
+        before: &Before,
+        particles: &mut ClothParticles,
+        way: &mut MovingCollider,
+        substep: SubStep,
+    ) -> [f32; 2] {
+        let passed = substep.end();
+        let pose = way.pose_at(passed);
+        let turned = pose.rotation * self.start.from.rotation.inverse();
+        let arm = turned * self.mass.centre;
+        let centre = (Vec3::from(pose.translation) + arm).as_dvec3();
+        let (mut places, mut moves) = (Given::default(), Given::default());
+        for (index, old) in &before.0 {
+            let new = &particles.blocks()[*index];
+            for lane in 0..LANES {
+                let inverse_mass = new.inverse_mass(lane);
+                let position = new.position(lane);
+                if inverse_mass == 0.0 || position == old.position(lane) {
+                    continue;
+                }
+                let mass = 1.0 / f64::from(inverse_mass);
+                let offset = position.as_dvec3() - centre;
+                places.add(mass, offset, position - old.position(lane));
+                moves.add(
+                    mass,
+                    offset,
+                    new.displacement(lane) - old.displacement(lane),
+                );
+            }
+        }
+        let (place_part, go, turn) = places.shared(&self.mass);
+        let (move_part, push, spin) = moves.shared(&self.mass);
+        for (index, old) in &before.0 {
+            let new = &mut particles.blocks_mut()[*index];
+            for lane in 0..LANES {
+                let position = old.position(lane).lerp(new.position(lane), place_part);
+                let displacement = old
+                    .displacement(lane)
+                    .lerp(new.displacement(lane), move_part);
+                if new.position(lane) != old.position(lane) {
+                    new.set_position(lane, position);
+                    new.set_displacement(lane, displacement);
+                }
+            }
+        }
+        let substeps = substep.count as f32;
+        let dt = particles.substep();
+        let [go, turn, push, spin] = [go, turn, push, spin].map(|change| change.as_vec3());
+        self.change.velocity += push / dt;
+        self.change.angular_velocity += spin / dt;
+        // It goes on from where it is now, with the velocity that it has now.
+        let rotation = (Quat::from_scaled_axis(turn) * pose.rotation).normalize();
+        let here = Vec3::from(pose.translation) + go + arm - Quat::from_scaled_axis(turn) * arm;
+        let step = way.to - Vec3::from(way.from.translation) + (push - spin.cross(arm)) * substeps;
+        way.turn += spin * substeps;
+        way.from = Isometry3d::new(
+            here - step * passed,
+            (Quat::from_scaled_axis(-way.turn * passed) * rotation).normalize(),
+        );
+        way.to = here + step * (1.0 - passed);
+        let (end, expected) = (way.pose_at(1.0), self.start.pose_at(1.0));
+        self.change.translation = way.to - self.start.to;
+        let rotation = end.rotation * expected.rotation.inverse();
+        let rotation = if rotation.w < 0.0 {
+            -rotation
+        } else {
+            rotation
+        };
+        self.change.rotation = rotation.to_scaled_axis();
+        let swing = turn.length() * (way.shape.core_extent() + arm.length());
+        let swing = if swing > 0.0 { swing } else { 0.0 };
+        [move_part, go.length() + swing]
+    }
+}

@@ -1,0 +1,123 @@
+//! Rapier's bodies, pushed back by cloth.
+
+use bevy::{
+    app::App,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        intern::Interned,
+        lifecycle::Remove,
+        observer::On,
+        query::With,
+        reflect::ReflectComponent,
+        schedule::{IntoScheduleConfigs, ScheduleLabel},
+        system::{Commands, Query},
+    },
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+use bevy_rapier3d::{
+    dynamics::{LockedAxes, ReadMassProperties, RigidBody, Velocity},
+    plugin::PhysicsSet,
+};
+
+use super::{ClothBody, ClothPush, ClothSystems};
+
+/// Has cloth push a dynamic rapier body back: on the entity with the `RigidBody`, the rapier `Collider` and the
+/// [`RapierClothCollider`](super::RapierClothCollider). Rapier's mass of it becomes a [`ClothBody`], and what the cloth changes
+/// of its velocity is added to rapier's. Without this, rapier moves the body and the cloth alone gives way.
+///
+/// Of `LockedAxes` those of rotation count. Bodies that are not dynamic are moved by nothing, as ever.
+#[derive(Component, Reflect, Debug, Default, Clone, Copy)]
+#[reflect(Component, Default, Debug, Clone)]
+#[require(ReadMassProperties, Velocity)]
+pub struct ClothPushBack;
+
+/// Adds what this takes to the schedule that rapier and the cloth are in.
+pub(super) fn add_push_back(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
+    app.register_type::<ClothPushBack>()
+        .add_observer(release_body)
+        .add_systems(
+            schedule,
+            (
+                read_masses
+                    .after(PhysicsSet::Writeback)
+                    .before(ClothSystems::Prepare),
+                push_back.in_set(ClothSystems::WriteBack),
+            ),
+        );
+}
+
+fn release_body(removed: On<Remove, ClothPushBack>, mut commands: Commands) {
+    commands
+        .entity(removed.entity)
+        .try_remove::<(ClothBody, ClothPush)>();
+}
+
+/// Takes rapier's masses over.
+fn read_masses(
+    mut bodies: Query<
+        (
+            Entity,
+            &RigidBody,
+            &ReadMassProperties,
+            Option<&LockedAxes>,
+            Option<&mut ClothBody>,
+        ),
+        With<ClothPushBack>,
+    >,
+    mut commands: Commands,
+) {
+    for (entity, kind, mass, locked, known) in &mut bodies {
+        // Rapier knows the mass from its first step on.
+        if *kind != RigidBody::Dynamic || mass.mass <= 0.0 {
+            if known.is_some() {
+                commands
+                    .entity(entity)
+                    .try_remove::<(ClothBody, ClothPush)>();
+            }
+            continue;
+        }
+        let locked = locked.copied().unwrap_or(LockedAxes::empty());
+        let inertia = [
+            LockedAxes::ROTATION_LOCKED_X,
+            LockedAxes::ROTATION_LOCKED_Y,
+            LockedAxes::ROTATION_LOCKED_Z,
+        ];
+        let moments = mass.principal_inertia.to_array();
+        let moment = |axis: usize| {
+            let is_free = !locked.contains(inertia[axis]) && moments[axis] > 0.0;
+            if is_free {
+                moments[axis]
+            } else {
+                f32::INFINITY
+            }
+        };
+        let body = ClothBody {
+            mass: mass.mass,
+            inertia: Vec3::from_array([0, 1, 2].map(moment)),
+            axes: mass.principal_inertia_local_frame,
+            centre_of_mass: mass.local_center_of_mass,
+        };
+        match known {
+            Some(mut known) => {
+                if *known != body {
+                    *known = body;
+                }
+            }
+            None => {
+                commands.entity(entity).try_insert(body);
+            }
+        }
+    }
+}
+
+/// Adds what the cloth changed of a body's velocity to rapier's.
+fn push_back(mut bodies: Query<(&ClothPush, &mut Velocity), With<ClothPushBack>>) {
+    for (push, mut velocity) in &mut bodies {
+        if *push != ClothPush::default() {
+            velocity.linear += push.velocity;
+            velocity.angular += push.angular_velocity;
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Cloth that touches cloth: itself, and others.
+
+use bevy::prelude::*;
+use bevy_drape::{
+    contact::intersections,
+    plugin::{ClothBuilt, ClothScratch},
+    prelude::*,
+};
+
+use crate::support::*;
+
+/// Triangles that intersect, among all cloths, by brute force.
+fn crossings(app: &mut App) -> usize {
+    let world = app.world_mut();
+    let mut cloths = world.query::<(&ClothBuilt, &ClothParticles, &ClothFrame)>();
+    let places: Vec<_> = cloths
+        .iter(world)
+        .map(|(built, particles, frame)| {
+            let places = particles.positions().map(|place| frame.to_world(place));
+            (built.surface().clone(), places.collect::<Vec<_>>())
+        })
+        .collect();
+    let cloths: Vec<_> = places
+        .iter()
+        .map(|(surface, places)| (&**surface, places.clone()))
+        .collect();
+    intersections(&cloths)
+}
+
+/// A sheet that stands on its lower edge, leaning a little, and falls.
+fn standing(app: &mut App, place: Transform) -> Entity {
+    let cloth = Cloth::new(16, 24, 0.04).centred();
+    let layers = ClothSelfCollision::of_thickness(0.008);
+    let leaning = place.with_rotation(Quat::from_rotation_x(0.1));
+    let spawned = (cloth, Pins::none(), layers, leaning);
+    app.world_mut().spawn(spawned).id()
+}
+
+#[test]
+fn a_sheet_that_falls_into_folds_does_not_pass_through_itself() {
+    let mut app = app();
+    app.world_mut().spawn(ClothCollider::plane());
+    let cloth = standing(&mut app, Transform::from_xyz(0.0, 0.55, 0.0));
+    let mut most = 0;
+    for passed in 0..150 {
+        tick(&mut app, 1);
+        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
+        most = most.max(
+            app.world()
+                .get::<ClothStats>(cloth)
+                .expect("stats")
+                .layer_pairs,
+        );
+    }
+    assert!(most > 100, "{most} pairs: it lies on itself");
+}
+
+/// What it does is tested as well.
+#[test]
+fn without_self_collision_it_does_and_nothing_is_looked_at() {
+    let mut app = app();
+    app.world_mut().spawn(ClothCollider::plane());
+    let cloth = standing(&mut app, Transform::from_xyz(0.0, 0.55, 0.0));
+    tick(&mut app, 1);
+    app.world_mut()
+        .entity_mut(cloth)
+        .remove::<ClothSelfCollision>();
+    let mut worst = 0;
+    for _ in 0..150 {
+        tick(&mut app, 1);
+        worst = worst.max(crossings(&mut app));
+        let stats = app.world().get::<ClothStats>(cloth).expect("stats");
+        assert_eq!((stats.layer_pairs, stats.layer_searches), (0, 0));
+    }
+    assert!(worst > 0, "the scene asks for it");
+}
+
+/// A sheet held by its edges, turned and moved in the world, and another that falls on it.
+#[test]
+fn a_cloth_lies_on_another_in_frames_that_differ() {
+    let mut app = app();
+    let layers = ClothSelfCollision::of_thickness(0.01);
+    let below = Cloth::new(24, 24, 0.04).lying().centred();
+    let held = Pins::new([Pin::Row(0), Pin::Row(23)]);
+    let turned = Transform::from_xyz(3.0, 1.0, -2.0).with_rotation(Quat::from_rotation_y(0.7));
+    let world = app.world_mut();
+    let below = world.spawn((below, held, layers, turned)).id();
+    let above = Cloth::new(12, 12, 0.04).lying().centred();
+    let place = Transform::from_xyz(3.0, 1.1, -2.0).with_rotation(Quat::from_rotation_x(0.2));
+    let above = world.spawn((above, Pins::none(), layers, place)).id();
+    for passed in 0..192 {
+        tick(&mut app, 1);
+        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
+    }
+    let height = |cloth| {
+        let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+        let places = particles(&app, cloth).positions();
+        places.map(|place| frame.to_world(place).y).sum::<f32>()
+            / particles(&app, cloth).len() as f32
+    };
+    assert!(height(above) > 0.4, "{} m: it is held", height(above));
+    assert!(height(below) > 0.4, "{} m", height(below));
+}
+
+/// The stack sleeps, and wakes when what lies on it is pushed.
+#[test]
+fn ten_sheets_on_each_other_sleep_and_wake() {
+    let mut app = app();
+    app.world_mut().spawn(ClothCollider::plane());
+    let sheets: Vec<Entity> = (0..10)
+        .map(|index| {
+            let cloth = Cloth::new(10, 10, 0.05).lying().centred();
+            let layers = ClothSelfCollision::of_thickness(0.01);
+            let place = Transform::from_xyz(0.0, 0.01 + 0.015 * index as f32, 0.0)
+                .with_rotation(Quat::from_rotation_y(0.15 * index as f32));
+            let spawned = (cloth, Pins::none(), layers, place);
+            app.world_mut().spawn(spawned).id()
+        })
+        .collect();
+    let are_asleep = |app: &App| {
+        let is_asleep = |sheet: &Entity| {
+            app.world()
+                .get::<ClothStats>(*sheet)
+                .is_some_and(|stats| stats.is_asleep)
+        };
+        sheets.iter().all(is_asleep)
+    };
+    for passed in 0..640 {
+        tick(&mut app, 1);
+        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
+        if are_asleep(&app) {
+            break;
+        }
+    }
+    assert!(are_asleep(&app), "after ten seconds");
+    let top = *sheets.last().expect("ten");
+    change(&mut app, top, |particles: &mut ClothParticles| {
+        for index in 0..particles.len() {
+            let sideways = Vec3::new(1.0, 0.0, 0.0);
+            particles.set_velocity(index, sideways).expect("it exists");
+        }
+    });
+    tick(&mut app, 30);
+    let below = app.world().get::<ClothStats>(sheets[8]).expect("stats");
+    assert!(!below.is_asleep, "what lies on it moves");
+}
+
+#[test]
+fn bad_thickness_is_told_and_others_go_on() {
+    let mut app = app();
+    let good = standing(&mut app, Transform::IDENTITY);
+    let bad = standing(&mut app, Transform::from_xyz(9.0, 0.0, 0.0));
+    for (thickness, friction) in [
+        (0.0, 0.3),
+        (-1.0, 0.3),
+        (f32::NAN, 0.3),
+        (0.0201, 0.3),
+        (0.01, f32::NAN),
+        (0.01, -1.0),
+    ] {
+        app.world_mut().entity_mut(bad).insert(ClothSelfCollision {
+            thickness,
+            friction,
+            ..default()
+        });
+        tick(&mut app, 2);
+        let fault = app.world().get::<ClothFault>(bad);
+        let error = fault.map(|fault| fault.error.clone());
+        match thickness {
+            0.0201 => assert!(
+                matches!(error, Some(ClothError::TooThick { .. })),
+                "{error:?}"
+            ),
+            _ => assert!(
+                matches!(error, Some(ClothError::Quantity { .. })),
+                "{thickness} {friction} {error:?}"
+            ),
+        }
+        assert!(app.world().get::<ClothFault>(good).is_none());
+    }
+    app.world_mut()
+        .entity_mut(bad)
+        .insert(ClothSelfCollision::of_thickness(0.02));
+    tick(&mut app, 2);
+    assert!(app.world().get::<ClothFault>(bad).is_none());
+}
+
+/// As if nothing were remembered but what counts.
+#[test]
+fn what_was_found_may_be_forgotten() {
+    let run = |forgets: bool| {
+        let mut app = app();
+        app.world_mut().spawn(ClothCollider::plane());
+        let cloth = standing(&mut app, Transform::from_xyz(0.0, 0.55, 0.0));
+        for _ in 0..100 {
+            tick(&mut app, 1);
+            if forgets {
+                change(&mut app, cloth, |scratch: &mut ClothScratch| {
+                    *scratch = default()
+                });
+            }
+        }
+        particles(&app, cloth).clone()
+    };
+    assert!(run(true) == run(false), "the same bits");
+}
