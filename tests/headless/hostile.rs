@@ -233,8 +233,6 @@ proptest! {
         }
         let mut touching: HashSet<(Entity, Entity)> = HashSet::new();
         for (acts, is_paused) in ticks {
-            let is_left_alone = touching.is_empty() && acts.is_empty() && !is_paused;
-            let is_first = app.world().resource::<Time<Fixed>>().elapsed() == Duration::ZERO;
             for (which, what) in acts {
                 act(app.world_mut(), &mut entities, which, what);
             }
@@ -256,7 +254,6 @@ proptest! {
                 prop_assert!(touching.insert(pair), "{started:?} had started");
                 prop_assert!(started.particles > 0 && started.deepest_penetration.is_finite());
             }
-            prop_assert!(!(is_first && is_left_alone) || touching.len() == 2 * COLLIDERS);
             let mut cloths = app.world_mut().query::<(Entity, &ClothContacts)>();
             let mut now: HashMap<Entity, HashSet<Entity>> = HashMap::new();
             for (cloth, contacts) in cloths.iter(app.world()) {

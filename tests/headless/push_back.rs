@@ -54,15 +54,12 @@ fn flat(x: f32, y: f32, z: f32) -> Transform {
     Transform::from_xyz(x, y, z).with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2))
 }
 
-/// A sheet of 1 m that is held by two opposite edges or by all four, level at the height 0.
-fn spawn_held(app: &mut App, particles: u32, all_edges: bool) -> Entity {
+/// A sheet of 1 m that is held by its four edges, level at the height 0.
+fn spawn_trampoline(app: &mut App, particles: u32) -> Entity {
     let spacing = 1.0 / (particles - 1) as f32;
     let last = particles - 1;
-    let pins = if all_edges {
-        Pins::filter(move |row, column| row == 0 || row == last || column == 0 || column == last)
-    } else {
-        Pins::filter(move |_, column| column == 0 || column == last)
-    };
+    let pins =
+        Pins::filter(move |row, column| row == 0 || row == last || column == 0 || column == last);
     let sheet = Cloth::new(particles, particles, spacing).centred();
     let sheet = (sheet, pins, flat(0.0, 0.0, 0.0));
     app.world_mut().spawn(sheet).id()
@@ -95,128 +92,39 @@ fn cloth_energy(app: &App, cloth: Entity) -> f64 {
     each.sum()
 }
 
-/// Dropped from 0.2 m, a ball of any mass comes to rest in what holds it, and stays there without a jitter.
+/// Dropped from 0.2 m onto a trampoline, a light ball comes to rest: a minute later nothing but its roll is left, and at no time
+/// had ball and cloth more energy than the ball began with.
 #[test]
-fn a_ball_rests_on_what_holds_it() {
-    for (mass, particles, all_edges) in [
-        (0.2, 17, false),
-        (0.2, 17, true),
-        (0.02, 17, true),
-        (2.0, 17, false),
-        (0.2, 33, true),
-    ] {
-        let mut app = app_with_bodies();
-        let sheet = spawn_held(&mut app, particles, all_edges);
-        let radius = 0.15;
-        let ball = spawn_ball(&mut app, mass, radius, Vec3::new(0.02, radius + 0.2, 0.01));
-        let start = f64::from(mass * GRAVITY * (radius + 0.2));
-        let mut highest = f64::MIN;
-        let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
-        let mut fastest = 0.0_f32;
-        for count in 0..60 * 64 {
-            tick(&mut app, 1);
-            let (place, velocity) = (place(&app, ball), velocity(&app, ball));
-            let energy = f64::from(mass)
-                * (f64::from(velocity.length_squared()) / 2.0 + f64::from(GRAVITY * place.y));
-            highest = highest.max(energy + cloth_energy(&app, sheet) - start);
-            if count >= 50 * 64 {
-                (low, high) = (low.min(place), high.max(place));
-                fastest = fastest.max(velocity.length());
-            }
-        }
-        println!(
-            "{mass} {particles} {all_edges}: rest {:?} range {:?} speed {fastest} gain {highest}",
-            high,
-            high - low
-        );
-    }
-}
-
-/// A roller lies across a strip that is held at its ends: where, its weight, the strip's length and what the strip gives say.
-///
-/// From the pin at the distance a from the middle, the strip goes down straight at the angle θ, then around the roller: with
-/// half of its length l = t + Rθ, a = t cos θ + R sin θ. Its tension is T = W/(2 sin θ), and l = l₀ (1 + T α/(n h)) for n
-/// threads of springs of length h and compliance α.
-#[test]
-fn a_roller_sags_a_strip_by_its_weight() {
-    for (mass, compliance, slack) in [
-        (2.0, 0.0, 1.1),
-        (20.0, 0.0, 1.1),
-        (2.0, 2.0e-4, 1.0),
-        (20.0, 2.0e-4, 1.0),
-    ] {
-        let mut app = app_with_bodies();
-        let (columns, rows, spacing) = (61_u32, 5_u32, 0.02_f32);
-        let half = 0.5 * (columns - 1) as f32 * spacing;
-        let a = half / slack;
-        let pins = Pins::filter(move |_, column| column == 0 || column == columns - 1);
-        let material = ClothMaterial {
-            stretch_compliance: compliance,
-            shear_compliance: 1.0,
-            bend_rigidity: 0.0,
-            friction: 0.0,
-            areal_density: 0.05,
-            ..ClothMaterial::COTTON
-        };
-        let strip = Cloth::new(columns, rows, spacing).centred();
-        let strip = (strip, pins, material, flat(0.0, 0.0, 0.0));
-        let strip = app.world_mut().spawn(strip).id();
+fn a_ball_rests_on_a_trampoline() {
+    let mut app = app_with_bodies();
+    let sheet = spawn_trampoline(&mut app, 33);
+    let (mass, radius) = (0.2_f32, 0.15);
+    let ball = spawn_ball(&mut app, mass, radius, Vec3::new(0.02, radius + 0.2, 0.01));
+    let start = f64::from(mass * GRAVITY * (radius + 0.2));
+    let mut highest = f64::MIN;
+    let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
+    let mut fastest = 0.0_f32;
+    for count in 0..60 * 64 {
         tick(&mut app, 1);
-        change::<ClothParticles>(&mut app, strip, |particles| {
-            for row in 0..rows {
-                for column in [0, columns - 1] {
-                    let mut place = particles.position((row, column)).expect("it exists");
-                    place.x = a.copysign(place.x);
-                    particles
-                        .set_position((row, column), place)
-                        .expect("it exists");
-                }
-            }
-        });
-        let radius = 0.1;
-        let roller = (
-            ClothCollider::capsule(radius, 0.6),
-            ClothBody::new(mass, Vec3::INFINITY),
-            Body {
-                gravity: GRAVITY,
-                ..default()
-            },
-            Transform::from_xyz(0.0, radius + 0.05, 0.0)
-                .with_rotation(Quat::from_rotation_x(std::f32::consts::FRAC_PI_2)),
-        );
-        let roller = app.world_mut().spawn(roller).id();
-        tick(&mut app, 60 * 64);
-        let settings = ClothSettings::default();
-        let reach = f64::from(radius + settings.particle_radius);
-        let (a, l0) = (f64::from(a), f64::from(half));
-        let load = f64::from(mass * GRAVITY);
-        // A longer half by the tension; θ by bisection.
-        let half_span = |theta: f64| {
-            let tension = load / (2.0 * theta.sin());
-            let l = l0
-                * (1.0 + tension * f64::from(compliance) / (f64::from(rows) * f64::from(spacing)));
-            (l - reach * theta) * theta.cos() + reach * theta.sin()
-        };
-        let (mut low, mut high) = (1.0e-4_f64, 1.5);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            // The steeper, the shorter.
-            if half_span(middle) > a {
-                low = middle
-            } else {
-                high = middle
-            }
+        let (place, velocity) = (place(&app, ball), velocity(&app, ball));
+        let energy = f64::from(mass)
+            * (f64::from(velocity.length_squared()) / 2.0 + f64::from(GRAVITY * place.y));
+        highest = highest.max(energy + cloth_energy(&app, sheet));
+        if count >= 50 * 64 {
+            (low, high) = (low.min(place), high.max(place));
+            fastest = fastest.max(velocity.length());
         }
-        let theta = low;
-        let t = (a - reach * theta.sin()) / theta.cos();
-        let depth = t * theta.sin() + reach * (1.0 - theta.cos());
-        let height = reach - depth;
-        println!(
-            "{mass} {compliance}: theta {theta} expected {height} got {} v {}",
-            place(&app, roller),
-            velocity(&app, roller)
-        );
     }
+    assert!(highest < start, "{highest} J of {start}");
+    let range = high - low;
+    // Nothing slows the roll of a ball but the cloth's own damping.
+    assert!(range.y < 1.0e-4 && range.length() < 5.0e-3, "{range}");
+    assert!(
+        low.y > 0.5 * radius && high.y < radius + 0.02,
+        "{low} to {high}"
+    );
+    // What the engine's gravity gives in one go, the cloth takes back in the course of the tick: half of it is seen.
+    assert!(fastest < 0.6 * GRAVITY * TICK, "{fastest} m/s");
 }
 
 /// A heavy sheet that falls flat on a light ball in free fall takes it along: the ball is neither passed nor shot away.
@@ -291,10 +199,21 @@ fn a_light_ball_is_taken_along() {
             let ball_energy = f64::from(mass * velocity(&app, ball).length_squared() / 2.0);
             gain = gain.max(energy(&app) + ball_energy - start);
         }
-        let under = place(&app, ball);
-        println!(
-            "{mass} of {cloth_mass}: fastest {fastest} momentum off {worst} gain {gain} of {start} ball {under} mid {}",
-            position(&app, sheet, (8, 8)).z + 0.3
+        // Positions and velocities are floats: a part in 10⁷, some dozen times a tick.
+        assert!(worst < 1.0e-5, "{mass} kg: momentum is off by {worst}");
+        assert!(gain < 1.0e-6 * start, "{mass} kg: {gain} J of {start}");
+        // It is as fast as the sheet that carries it, which rings: no faster by a tenth.
+        assert!(fastest < 2.2, "{mass} kg: {fastest} m/s");
+        // What two bodies of these masses have in common after an impact without a bounce is less than the ball has.
+        let common = 2.0 * cloth_mass / (cloth_mass + f64::from(mass));
+        assert!(
+            f64::from(fastest) > 0.5 * common,
+            "{mass} kg: {fastest} m/s"
+        );
+        let sheet_height = position(&app, sheet, (8, 8)).z + 0.3;
+        assert!(
+            place(&app, ball).y + radius < sheet_height + 0.01,
+            "{mass} kg: the ball is below the sheet"
         );
     }
 }
@@ -360,9 +279,9 @@ fn what_a_cloth_gives_it_has_lost() {
             worst = worst.max((start + fall - given - momentum).length());
         }
         let gravity = mass * f64::from(GRAVITY) * 60.0;
-        println!(
-            "{narrow_phase:?} {friction}: worst {worst} of {gravity} = {:.2e}, on the ball {on_ball}",
-            worst / gravity
+        assert!(
+            worst < 1.0e-4 * gravity,
+            "{narrow_phase:?}, μ {friction}: {worst} of {gravity} N·s"
         );
         assert!(on_ball > 10, "{on_ball}");
     }
