@@ -45,7 +45,7 @@ pub mod prelude {
         Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, ClothShape, Corner, Pin,
         Pins, Surface,
     };
-    pub use crate::contact::{ClothCollider, ContactPoint, NarrowPhase};
+    pub use crate::contact::{ClothCollider, ContactPoint, MeshCollider, NarrowPhase};
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
     #[cfg(feature = "egui")]
     pub use crate::plugin::ClothPanelPlugin;

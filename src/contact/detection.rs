@@ -8,6 +8,7 @@ use super::{
     MovingCollider, NarrowPhase,
     faces::{ResumePoint, SubstepMotion, push_triangles},
     particle::push_particles,
+    shape_cache::{ShapeCache, push_shape},
     touch::{Candidate, ContactPoint, ContactSettings, Fans, Touch},
 };
 use crate::{
@@ -47,6 +48,7 @@ pub struct Detection {
     requeries: u32,
     found: TopDownQuery,
     known: Vec<(usize, ContactPoint)>,
+    shapes: ShapeCache,
 }
 
 impl Detection {
@@ -58,6 +60,7 @@ impl Detection {
         }
         self.touches.clear();
         self.candidates.clear();
+        self.shapes.clear();
         self.fans.clear();
         self.colliders.clear();
         self.margin = margin;
@@ -77,10 +80,9 @@ impl Detection {
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
         let spacing = surface.spacing().longest;
-        let narrow_phase =
-            settings
-                .narrow_phase
-                .chosen(collider.shape.radius(), collider.travel(), spacing);
+        let narrow_phase = settings
+            .narrow_phase
+            .of(collider, spacing, settings.particle_radius);
         let cover = match narrow_phase {
             NarrowPhase::Triangles => longest_edge,
             NarrowPhase::Auto | NarrowPhase::Particles => 0.0,
@@ -109,7 +111,7 @@ impl Detection {
         // Most callers count upwards.
         let is_new = self.colliders.last().is_none_or(|(last, _)| *last < id);
         if is_new || self.colliders.iter().all(|(known, _)| *known != id) {
-            self.colliders.push((id, *collider));
+            self.colliders.push((id, collider.clone()));
         }
         self.hold(id, collider, narrow_phase, found, particles);
     }
@@ -152,7 +154,7 @@ impl Detection {
                 at,
                 Touch {
                     id,
-                    collider: *collider,
+                    collider: collider.clone(),
                     narrow_phase,
                     deepest: 0.0,
                     area: 0.0,
@@ -165,6 +167,7 @@ impl Detection {
 
     /// Begins the tick again, from the same particles: for one that is done again.
     pub fn restart(&mut self) {
+        self.shapes.clear();
         for touch in &mut self.touches {
             (touch.deepest, touch.area, touch.volume) = (0.0, 0.0, 0.0);
         }
@@ -231,6 +234,7 @@ impl Detection {
             touch.candidates = 0..0;
         }
         self.candidates.clear();
+        self.shapes.clear();
         self.fans.clear();
         let cloth = particles.bounding_sphere();
         let longest_edge = particles.longest_face_reach(&self.surface);
@@ -287,6 +291,7 @@ impl Detection {
         mut others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
         self.moved += substep.farthest_move;
+        self.shapes.travelled += substep.farthest_move;
         self.moved_now = substep.farthest_move;
         self.measured = 0;
         let mut is_pushed = false;
@@ -301,9 +306,20 @@ impl Detection {
             let Some(touch) = self.touches.get_mut(at) else {
                 return is_pushed;
             };
+            let count = self.candidates.len();
             let candidates = &mut self.candidates[touch.candidates.clone()];
             let collider = &touch.collider;
             let (found, stopped) = match touch.narrow_phase {
+                _ if collider.shape.has_edges() => {
+                    self.shapes.make_room(count);
+                    let known = self.shapes.of(touch.candidates.clone());
+                    let edges = (touch.narrow_phase == NarrowPhase::Triangles)
+                        .then(|| (&self.fans, self.surface.spacing().longest));
+                    let found = push_shape(
+                        particles, candidates, known, edges, collider, settings, substep,
+                    );
+                    (found, None)
+                }
                 NarrowPhase::Triangles => {
                     let room = self.margin - self.moved;
                     let motion = SubstepMotion::new(collider, settings, substep);
@@ -317,6 +333,7 @@ impl Detection {
             // One may be pushed by several.
             self.moved += found.farthest_push;
             self.moved_now += found.farthest_push;
+            self.shapes.travelled += found.farthest_push;
             is_pushed |= found.farthest_push > 0.0;
             touch.deepest = touch.deepest.max(found.deepest);
             area += found.area;

@@ -1,26 +1,36 @@
 //! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
 
+mod boxes;
 mod collider;
 mod corners;
 mod depth;
 mod detection;
+mod edge_contact;
 mod faces;
+mod geometry;
+mod geometry_particles;
 mod moving;
 mod narrow_phase;
+mod nearest;
 mod particle;
 mod response;
 mod shape;
+mod shape_cache;
+mod sharp;
+mod source;
 #[cfg(test)]
 mod tests;
 mod touch;
 mod triangle;
 
-pub use collider::ClothCollider;
+pub use collider::{ClothCollider, MeshCollider};
 pub use corners::meets_triangles;
 #[doc(hidden)]
 pub use depth::deepest_penetration;
 pub use detection::Detection;
+pub use geometry::ColliderGeometry;
 pub use moving::MovingCollider;
 pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
 pub use shape::ColliderShape;
+pub use source::SharedCollider;
 pub use touch::{ContactPoint, ContactSettings, Touch};

@@ -1,7 +1,9 @@
 //! Contact against closed forms, against `f64`, and against brute force.
 
 mod deep;
+mod edges;
 mod fast;
+mod geometry;
 mod meshes;
 mod moving;
 mod particle;
@@ -25,6 +27,7 @@ use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Surface},
     solver::SubStep,
 };
+pub(super) use random::Random;
 
 /// The only sub-step of a tick in which nothing moves by itself.
 const ONLY: SubStep = SubStep {

@@ -158,7 +158,10 @@ impl SearchingItem<'_, '_> {
             let Some(collider) = motion.seen_from(self.frame) else {
                 continue;
             };
-            if rests_on.contains(&(entity, collider)) {
+            if rests_on
+                .iter()
+                .any(|(known, way)| *known == entity && *way == collider)
+            {
                 still += 1;
             } else if is_near {
                 let (probe, narrow_phase) =

@@ -21,7 +21,7 @@ use bevy::{
 };
 
 #[cfg(feature = "mesh")]
-use super::source::{ChangedMeshes, note_changed_meshes};
+use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
     ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
     ClothLimitExceeded, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
@@ -98,6 +98,8 @@ impl Plugin for ClothPlugin {
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
             .add_observer(reset_motion);
+        #[cfg(feature = "mesh")]
+        app.init_resource::<SharedMeshes>();
         app.configure_sets(
             self.schedule,
             (

@@ -102,7 +102,8 @@ impl IntegratingItem<'_, '_> {
             near, detection, ..
         } = &*self.scratch;
         let touches = detection.touches().iter();
-        let known = touches.filter_map(|touch| Some((near.get(touch.id)?.0, touch.collider)));
+        let known =
+            touches.filter_map(|touch| Some((near.get(touch.id)?.0, touch.collider.clone())));
         self.state.rests_on.clear();
         self.state.rests_on.extend(known);
     }
@@ -193,7 +194,7 @@ impl IntegratingItem<'_, '_> {
                     if !near_set.contains(&entity)
                         && let Some(collider) = motion.seen_from(frame)
                     {
-                        numbered.push((near.len(), collider));
+                        numbered.push((near.len(), collider.clone()));
                         near.push((entity, collider));
                     }
                 }

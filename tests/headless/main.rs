@@ -20,6 +20,7 @@ mod schedule;
 mod scratch;
 mod search;
 mod shapes;
+mod solids;
 mod spin;
 mod startup;
 mod substepping;
