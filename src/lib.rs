@@ -46,7 +46,7 @@ pub mod prelude {
         Pins, Surface,
     };
     pub use crate::contact::{
-        ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, NarrowPhase,
+        ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,
     };
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
     #[cfg(feature = "egui")]

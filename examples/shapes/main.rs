@@ -1,5 +1,7 @@
-//! A sheer cloth of 64 × 64 particles falls over every shape there is: a ball, a standing capsule, a box, and a ring of
-//! marbles so small that the cloth is tested against them by its triangles; below them, a floor that is a plane.
+//! Two sheer cloths of 64 × 64 particles fall over every shape there is. The first over a ball, a standing capsule, a box, and
+//! a ring of marbles so small that the cloth is tested against them by its triangles; the second over a cylinder, a cone, a stone
+//! by the convex hull of its mesh, a ring by the triangles of its own, and dunes that are a height field; below them, a floor that
+//! is a plane.
 //!
 //! Each is an entity with a `ClothCollider`, a `Transform` and a mesh. Nothing is asked of the search: the plugin
 //! chooses, and the panel and the report say what and why. Take the shapes' places from `scene.rs`.
@@ -34,11 +36,11 @@ use crate::shared::{start::Example, window};
 fn main() -> ExitCode {
     Example {
         name: "shapes",
-        about: "A cloth falls over every shape there is. Opens a window where it can, and runs headless otherwise.",
+        about: "Cloth falls over every shape there is. Opens a window where it can, and runs headless otherwise.",
         seconds: "6",
         particles: scene::PARTICLES,
         window: |grid| {
-            let title = "a cloth over every shape";
+            let title = "cloth over every shape";
             let mut app = window::app(title, scene::ScenePlugin, scene::SHOT, &[]);
             app.insert_resource(grid);
             window::run(app)

@@ -1,8 +1,8 @@
-//! The cloth and the shapes.
+//! The cloths and the shapes.
 
 use std::f32::consts::TAU;
 
-use bevy::{light::NotShadowCaster, prelude::*};
+use bevy::{light::NotShadowCaster, mesh::VertexAttributeValues, prelude::*};
 use bevy_drape::prelude::*;
 
 use crate::shared::{
@@ -19,11 +19,17 @@ const HEIGHT: f32 = 0.8;
 /// Radius of a marble: less than 2.5 spacings (m).
 const MARBLE: f32 = 0.08;
 
+/// Where the second cloth and its shapes are (m).
+const SECOND: Vec3 = Vec3::new(2.5, 0.0, 0.0);
+/// How far the dunes reach (m), and how many heights they have along either side.
+const DUNES: f32 = 0.9;
+const HEIGHTS: usize = 19;
+
 /// The whole of it, from a little above.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(0.9, 2.3, 3.5),
-    focus: Vec3::new(0.0, 0.1, 0.0),
-    fov: 0.5,
+    from: Vec3::new(2.0, 3.1, 4.9),
+    focus: Vec3::new(1.25, 0.0, 0.0),
+    fov: 0.56,
 };
 
 /// The scene, without a camera.
@@ -37,7 +43,7 @@ impl Plugin for ScenePlugin {
             light_from: Vec3::new(-3.5, 3.2, 2.2),
         };
         app.add_plugins((stage, DrapePlugins::default()))
-            .add_systems(Startup, (spawn_shapes, spawn_cloth));
+            .add_systems(Startup, (spawn_shapes, spawn_others, spawn_cloths));
     }
 }
 
@@ -90,7 +96,111 @@ fn spawn_shapes(
     }
 }
 
-fn spawn_cloth(
+/// Those that are more than a formula, below the second cloth: solids of Bevy's, a stone by the hull of its mesh, a ring by the
+/// triangles of its own, and dunes.
+fn spawn_others(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let mut spawn = |name: &str, collider: ClothCollider, mesh: Mesh, place: Transform, color| {
+        let material = materials.add(StandardMaterial {
+            base_color: color,
+            perceptual_roughness: 0.5,
+            ..default()
+        });
+        let place = place.with_translation(SECOND + place.translation);
+        let mesh = (Mesh3d(meshes.add(mesh)), MeshMaterial3d(material));
+        commands.spawn((Name::new(name.to_string()), collider, mesh, place));
+    };
+    let cylinder = Cylinder::new(0.2, 0.4);
+    spawn(
+        "cylinder",
+        cylinder.into(),
+        cylinder.mesh().resolution(64).into(),
+        Transform::from_xyz(-0.55, 0.2, -0.55),
+        Color::srgb(0.92, 0.42, 0.04),
+    );
+    let cone = Cone::new(0.25, 0.5);
+    spawn(
+        "cone",
+        cone.into(),
+        cone.mesh().resolution(64).into(),
+        Transform::from_xyz(0.6, 0.25, -0.6),
+        Color::srgb(0.05, 0.48, 0.28),
+    );
+    spawn(
+        "stone",
+        ClothCollider::mesh_hull(),
+        stone(),
+        Transform::from_xyz(0.0, 0.14, 0.05),
+        Color::srgb(0.35, 0.36, 0.40),
+    );
+    spawn(
+        "ring",
+        ClothCollider::mesh(),
+        Torus::new(0.12, 0.32).into(),
+        Transform::from_xyz(-0.6, 0.1, 0.55),
+        Color::srgb(0.72, 0.08, 0.14),
+    );
+    let heights: Vec<f32> = (0..HEIGHTS * HEIGHTS)
+        .map(|index| {
+            let along = |cell: usize| DUNES * (cell as f32 / (HEIGHTS - 1) as f32 - 0.5);
+            dune(along(index % HEIGHTS), along(index / HEIGHTS))
+        })
+        .collect();
+    spawn(
+        "dunes",
+        ClothCollider::heightfield(heights, HEIGHTS, Vec3::new(DUNES, 1.0, DUNES)),
+        dunes(),
+        Transform::from_xyz(0.6, 0.0, 0.55),
+        Color::srgb(0.80, 0.62, 0.34),
+    );
+}
+
+/// A ball of twenty sides, flattened and bent out of shape.
+fn stone() -> Mesh {
+    let mut mesh = Sphere::new(0.18)
+        .mesh()
+        .ico(0)
+        .expect("twenty sides are few");
+    change_positions(&mut mesh, |place| {
+        let bent = 1.0 + 0.25 * (17.0 * place.x + 29.0 * place.z).sin();
+        place * Vec3::new(bent, 0.75, 1.2)
+    });
+    mesh.duplicate_vertices();
+    mesh.compute_flat_normals();
+    mesh
+}
+
+/// How high the dunes are (m).
+fn dune(x: f32, z: f32) -> f32 {
+    let rim = ((1.0 - (2.0 * x / DUNES).powi(4)) * (1.0 - (2.0 * z / DUNES).powi(4))).max(0.0);
+    rim * (0.16 + 0.08 * (9.0 * x).sin() * (7.0 * z).cos())
+}
+
+fn dunes() -> Mesh {
+    let mut mesh = Plane3d::default()
+        .mesh()
+        .size(DUNES, DUNES)
+        .subdivisions(HEIGHTS as u32 - 2)
+        .build();
+    change_positions(&mut mesh, |place| place.with_y(dune(place.x, place.z)));
+    mesh.compute_smooth_normals();
+    mesh
+}
+
+fn change_positions(mesh: &mut Mesh, change: impl Fn(Vec3) -> Vec3) {
+    if let Some(VertexAttributeValues::Float32x3(positions)) =
+        mesh.attribute_mut(Mesh::ATTRIBUTE_POSITION)
+    {
+        for position in positions {
+            *position = change(Vec3::from(*position)).to_array();
+        }
+    }
+}
+
+fn spawn_cloths(
     mut commands: Commands,
     mut images: ResMut<Assets<Image>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
@@ -110,27 +220,28 @@ fn spawn_cloth(
         alpha_mode: AlphaMode::Blend,
         ..weave
     });
-    commands.spawn((
-        Name::new("cloth"),
-        Cloth::new(grid.0, grid.0, WIDTH / (grid.0 - 1) as f32)
-            .lying()
-            .centred(),
-        Pins::none(),
-        ClothMaterial {
-            friction: 0.4,
-            damping: 0.02,
-            ..ClothMaterial::SILK
-        },
-        ClothSettings {
-            // Keeps the flat triangles between the particles off the box's corners.
-            particle_radius: 0.015,
-            // So that it stays inside of its envelope as it lands.
-            ..ClothSettings::substeps(36)
-        },
-        MeshMaterial3d(material),
-        // Sheer fabric lets the light through.
-        NotShadowCaster,
-        ShowClothGizmos::nothing(),
-        Transform::from_xyz(0.0, HEIGHT, 0.0),
-    ));
+    for (name, place) in [("cloth", Vec3::ZERO), ("second cloth", SECOND)] {
+        commands.spawn((
+            Name::new(name),
+            Cloth::new(grid.0, grid.0, WIDTH / (grid.0 - 1) as f32)
+                .lying()
+                .centred(),
+            Pins::none(),
+            ClothMaterial {
+                friction: 0.4,
+                damping: 0.02,
+                ..ClothMaterial::SILK
+            },
+            ClothSettings {
+                particle_radius: 0.015,
+                // So that it stays inside of its envelope as it lands.
+                ..ClothSettings::substeps(36)
+            },
+            MeshMaterial3d(material.clone()),
+            // Sheer fabric lets the light through.
+            NotShadowCaster,
+            ShowClothGizmos::nothing(),
+            Transform::from_translation(place + Vec3::Y * HEIGHT),
+        ));
+    }
 }

@@ -93,21 +93,21 @@ pub enum ClothError {
     },
     /// The asset of a cloth from a mesh is not there, and nothing loads it.
     #[error(
-        "the cloth's mesh has not been loaded, and nothing is loading it: is there a `Mesh3d` with it?"
+        "the mesh has not been loaded, and nothing is loading it: is there a `Mesh3d` with it?"
     )]
     MeshNotLoaded,
     /// The asset of a cloth from a mesh is being loaded: the cloth waits for it. Neither logged nor marked.
-    #[error("the cloth's mesh is being loaded")]
+    #[error("the mesh is being loaded")]
     MeshLoading,
     /// The asset of a cloth from a mesh could not be loaded.
-    #[error("the cloth's mesh could not be loaded: {reason}")]
+    #[error("the mesh could not be loaded: {reason}")]
     MeshFailed {
         /// What the asset server says.
         reason: String,
     },
     /// A mesh whose vertices are in the render world alone.
     #[error(
-        "the cloth's mesh is in the render world only: load it with `RenderAssetUsages::MAIN_WORLD` too, as by default"
+        "the mesh is in the render world only: load it with `RenderAssetUsages::MAIN_WORLD` too, as by default"
     )]
     MeshNotReadable,
     /// A mesh of lines or points.
@@ -117,7 +117,7 @@ pub enum ClothError {
         topology: String,
     },
     /// A mesh without positions of three floats.
-    #[error("the cloth's mesh has no positions of three floats")]
+    #[error("the mesh has no positions of three floats")]
     MeshWithoutPositions,
     /// Indices that are not three for each triangle.
     #[error("{indices} indices are not three for each triangle")]
@@ -175,13 +175,35 @@ pub enum ClothError {
         /// Its inverse mass (1/kg), which may not be negative either.
         inverse_mass: f32,
     },
-    /// A rapier collider that a cloth cannot touch.
-    #[error(
-        "a rapier collider must be a ball, scaled alike along its axes, for cloth to touch it; this one is {shape}"
-    )]
-    NotABall {
-        /// The kind of shape that it is.
+    /// A shape that cloth cannot touch, such as a line.
+    #[error("cloth does not touch this shape: {shape}")]
+    NoSuchShape {
+        /// What it is.
         shape: String,
+    },
+    /// A convex hull of points that lie in one plane.
+    #[error("the convex hull of these {points} points encloses nothing: they lie in one plane")]
+    FlatHull {
+        /// How many points there are.
+        points: usize,
+    },
+    /// A height field of fewer than two rows or columns, or whose rows are not full.
+    #[error(
+        "a height field needs at least 2 full rows of at least 2 columns: {heights} heights in {columns} columns are not"
+    )]
+    HeightFieldSize {
+        /// How many heights there are.
+        heights: usize,
+        /// How many each row should have.
+        columns: usize,
+    },
+    /// A compound with a part that is turned, under a scale that is not the same along all axes.
+    #[error(
+        "a part of the compound is turned, which can't be stretched along one axis only: {scale}"
+    )]
+    SkewedPart {
+        /// The scale of the transform.
+        scale: Vec3,
     },
     /// Particles that are not those of the surface.
     #[error(

@@ -1,13 +1,20 @@
 //! What a cloth can touch.
 
+mod primitives;
+
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
+    math::{Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::components::Transform,
 };
+use parry3d::{math::Pose, shape::SharedShape};
 
-use super::ColliderShape;
+use super::{
+    ColliderShape, SharedCollider,
+    geometry::{ColliderGeometry, Parts},
+    source::check_scale,
+};
 use crate::cloth::ClothError;
 
 /// Something that every cloth collides with, at the entity's [`Transform`]. It moves however the game moves
@@ -18,8 +25,28 @@ use crate::cloth::ClothError;
 /// speed, a teleport, insert this component again.
 ///
 /// However fast it is: what moves farther in a sub-step than half of its thickness is tested all along its way, so that
-/// nothing that a ball or a capsule meets passes through it, nor any particle that a box or a plane meets.
-#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+/// nothing that it meets passes through it.
+///
+/// # Scale
+/// The transform's scale applies, also along one axis: a ball stays a ball of the largest, capsule, cylinder and cone stay
+/// round by the larger of x and z. Points, meshes and height fields take any. A negative scale mirrors: of what is the same in
+/// a mirror nothing changes, a cone points down, a mesh is mirrored and keeps its outer side. A part of a compound that is
+/// turned can't be stretched along one axis only. No scale may be zero.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// let table = ClothCollider::cylinder(0.6, 0.05);
+/// let stone = ClothCollider::convex_hull(vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+/// let stool = ClothCollider::compound([
+///     (Isometry3d::from_xyz(0.0, 0.5, 0.0), ClothCollider::cuboid(0.4, 0.04, 0.4)),
+///     (Isometry3d::from_xyz(0.0, 0.24, 0.0), ClothCollider::cylinder(0.05, 0.48)),
+/// ]);
+/// let head = ClothCollider::from(Sphere::new(0.12));
+/// # let _ = (table, stone, stool, head);
+/// ```
+#[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Transform)]
 #[non_exhaustive]
@@ -36,13 +63,44 @@ pub enum ClothCollider {
         /// Half of the length between the centres of its two half-balls (m), likewise.
         half_length: f32,
     },
-    /// A box, as Bevy's `Cuboid`. Cloth touches it with its particles alone: its corners may show between them.
+    /// A box, as Bevy's `Cuboid`.
     Cuboid {
         /// Half of its lengths (m), before the transform's scale.
         half_size: Vec3,
     },
     /// All below a plane, whose normal is the entity's y axis.
     Plane,
+    /// A cylinder along the entity's y axis, as Bevy's `Cylinder`.
+    Cylinder {
+        /// Radius (m), before the transform's scale.
+        radius: f32,
+        /// Half of its height (m), likewise.
+        half_height: f32,
+    },
+    /// A cone along the entity's y axis with its tip up, as Bevy's `Cone`; its origin is half-way up.
+    Cone {
+        /// Radius of its base (m), before the transform's scale.
+        radius: f32,
+        /// Half of its height (m), likewise.
+        half_height: f32,
+    },
+    /// The entity's `Mesh3d`, once its asset has been loaded; with feature `mesh`.
+    Mesh(MeshCollider),
+    /// Several shapes, each where it is in the entity's frame (m).
+    Compound(Vec<(Isometry3d, Self)>),
+    /// Points, triangles or heights, given in code: not stored in a scene file.
+    Shared(SharedCollider),
+}
+
+/// What is made of a mesh.
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[reflect(Default, Debug, Clone, PartialEq, Hash)]
+pub enum MeshCollider {
+    /// Its triangles: a closed mesh has an outer side only, an open one two.
+    #[default]
+    Triangles,
+    /// The convex hull of its vertices: cheaper, and for what is convex the same.
+    Hull,
 }
 
 impl Default for ClothCollider {
@@ -78,20 +136,131 @@ impl ClothCollider {
         Self::Plane
     }
 
+    /// A cylinder of a radius and a height (m).
+    pub const fn cylinder(radius: f32, height: f32) -> Self {
+        Self::Cylinder {
+            radius,
+            half_height: height / 2.0,
+        }
+    }
+
+    /// A cone whose base has a radius, and of a height (m).
+    pub const fn cone(radius: f32, height: f32) -> Self {
+        Self::Cone {
+            radius,
+            half_height: height / 2.0,
+        }
+    }
+
+    /// The smallest convex shape around points (m), which may not all lie in one plane.
+    pub fn convex_hull(points: impl Into<Vec<Vec3>>) -> Self {
+        Self::Shared(SharedCollider::hull(points.into()))
+    }
+
+    /// Triangles of vertices (m). If they are closed, each edge having two triangles, cloth stays outside, whichever way
+    /// they are turned; else they are a sheet 1 mm thick, which cloth touches from both sides. Vertices in one place are one.
+    ///
+    /// Built once for all clones.
+    pub fn trimesh(vertices: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
+        Self::Shared(SharedCollider::triangles(vertices.into(), triangles.into()))
+    }
+
+    /// Ground of given heights, row by row: rows lie along z, `columns` heights of each along x, around the entity's origin.
+    /// `size` (m) is how far it reaches along x and z, and what a height of 1 is. All below it is inside.
+    pub fn heightfield(heights: impl Into<Vec<f32>>, columns: usize, size: Vec3) -> Self {
+        Self::Shared(SharedCollider::height_field(heights.into(), columns, size))
+    }
+
+    /// Several shapes as one, each where it is in the entity's frame (m). Meshes that wait for an asset and planes can't be
+    /// parts.
+    pub fn compound(parts: impl IntoIterator<Item = (Isometry3d, Self)>) -> Self {
+        Self::Compound(parts.into_iter().collect())
+    }
+
+    /// The triangles of the entity's `Mesh3d`, once it has been loaded.
+    pub const fn mesh() -> Self {
+        Self::Mesh(MeshCollider::Triangles)
+    }
+
+    /// The convex hull of the entity's `Mesh3d`, once it has been loaded.
+    pub const fn mesh_hull() -> Self {
+        Self::Mesh(MeshCollider::Hull)
+    }
+
+    /// A shape of parry's, which is rapier's, as large as it is whatever the transform's scale.
+    pub fn parry(shape: SharedShape) -> Self {
+        Self::Shared(SharedCollider::parry(shape))
+    }
+
+    /// Where the shape's frame is in the entity's: not at its origin only for what is taken from parry.
+    pub fn offset(&self) -> Isometry3d {
+        match self {
+            Self::Shared(shared) => shared.offset(),
+            _ => Isometry3d::IDENTITY,
+        }
+    }
+
     /// The shape under a transform's `scale`: a ball stays one, so the largest axis counts, and so it does across a
     /// capsule.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for a length that is zero, negative or not finite, scaled or not. A capsule's may be
-    /// zero.
+    /// [`ClothError::Quantity`] for a length that is zero, negative or not finite, scaled or not; a capsule's may be
+    /// zero. [`ClothError::MeshNotLoaded`] of a mesh, as only the plugin knows the assets. What is wrong with points,
+    /// triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         let positive = |v: f32| v > 0.0 && v.is_finite();
         let length = |value: f32, scale: f32, quantity, scaled_quantity| {
             ClothError::check(value, positive, quantity, "positive")?;
             ClothError::check(value * scale, positive, scaled_quantity, "positive")
         };
+        let mirrored = scale;
         let scale = scale.abs();
         match *self {
+            Self::Shared(ref shared) => shared.scaled(mirrored),
+            Self::Compound(ref parts) => compound(parts, mirrored),
+            Self::Mesh(_) => Err(ClothError::MeshNotLoaded),
+            Self::Cylinder {
+                radius,
+                half_height,
+            } => {
+                let across = scale.x.max(scale.z);
+                let radius = length(
+                    radius,
+                    across,
+                    "the cylinder's radius (m)",
+                    "the cylinder's scaled radius (m)",
+                )?;
+                let half_height = length(
+                    half_height,
+                    scale.y,
+                    "half of the cylinder's height (m)",
+                    "half of the cylinder's scaled height (m)",
+                )?;
+                let mut parts = Parts::default();
+                parts.add_cylinder(half_height, radius)?;
+                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+            }
+            Self::Cone {
+                radius,
+                half_height,
+            } => {
+                let across = scale.x.max(scale.z);
+                let radius = length(
+                    radius,
+                    across,
+                    "the cone's radius (m)",
+                    "the cone's scaled radius (m)",
+                )?;
+                let half_height = length(
+                    half_height,
+                    scale.y,
+                    "half of the cone's height (m)",
+                    "half of the cone's scaled height (m)",
+                )?;
+                let mut parts = Parts::default();
+                parts.add_cone(half_height, radius, mirrored.y > 0.0)?;
+                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+            }
             Self::Ball { radius } => {
                 let largest = scale.max_element();
                 let radius = length(
@@ -143,55 +312,49 @@ impl ClothCollider {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shapes_are_scaled() {
-        let scale = Vec3::new(1.0, -3.0, 2.0);
-        let scaled = |collider: ClothCollider| collider.scaled(scale).expect("a valid collider");
-        assert_eq!(
-            scaled(ClothCollider::default()),
-            ColliderShape::Ball { radius: 3.0 }
-        );
-        assert_eq!(
-            scaled(ClothCollider::capsule(0.5, 2.0)),
+/// Several shapes as one.
+fn compound(
+    children: &[(Isometry3d, ClothCollider)],
+    scale: Vec3,
+) -> Result<ColliderShape, ClothError> {
+    check_scale(scale)?;
+    let no_such = |shape: &str| {
+        Err(ClothError::NoSuchShape {
+            shape: shape.to_string(),
+        })
+    };
+    if children.is_empty() {
+        return no_such("a compound of nothing");
+    }
+    let is_even = scale.abs_diff_eq(Vec3::splat(scale.x), 1.0e-5 * scale.length());
+    let mut parts = Parts::default();
+    for (pose, child) in children {
+        // What is turned and then stretched along one axis is sheared.
+        if !is_even && !pose.rotation.is_near_identity() {
+            return Err(ClothError::SkewedPart { scale });
+        }
+        let place = Vec3::from(pose.translation) * scale;
+        let pose = Isometry3d::new(place, pose.rotation) * child.offset();
+        let pose = Pose::from_parts(pose.translation.into(), pose.rotation);
+        let shape = match child.scaled(scale)? {
+            ColliderShape::Geometry(geometry) => {
+                parts.add_parts(pose, geometry.parts());
+                continue;
+            }
+            ColliderShape::HalfSpace => return no_such("a plane in a compound"),
+            ColliderShape::Ball { radius } => SharedShape::ball(radius),
             ColliderShape::Capsule {
-                radius: 1.0,
-                half_length: 3.0
+                radius,
+                half_length,
+            } => SharedShape::capsule_y(half_length, radius),
+            ColliderShape::Cuboid { half_size: half } => {
+                SharedShape::cuboid(half.x, half.y, half.z)
             }
-        );
-        assert_eq!(
-            scaled(ClothCollider::cuboid(2.0, 4.0, 6.0)),
-            ColliderShape::Cuboid {
-                half_size: Vec3::new(1.0, 6.0, 6.0)
-            }
-        );
-        assert_eq!(scaled(ClothCollider::plane()), ColliderShape::HalfSpace);
+        };
+        parts.add(pose, &shape)?;
     }
-
-    #[test]
-    fn lengths_are_checked() {
-        for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            for collider in [
-                ClothCollider::ball(bad),
-                ClothCollider::capsule(bad, 1.0),
-                ClothCollider::cuboid(1.0, bad, 1.0),
-            ] {
-                assert!(collider.scaled(Vec3::ONE).is_err(), "{collider:?}");
-            }
-            let short = ClothCollider::capsule(1.0, bad).scaled(Vec3::ONE);
-            assert_eq!(short.is_ok(), bad == 0.0, "{bad}");
-        }
-        for scale in [Vec3::ZERO, Vec3::INFINITY, Vec3::NAN] {
-            for collider in [
-                ClothCollider::ball(1.0),
-                ClothCollider::capsule(1.0, 1.0),
-                ClothCollider::cuboid(1.0, 1.0, 1.0),
-            ] {
-                assert!(collider.scaled(scale).is_err(), "{collider:?} {scale}");
-            }
-        }
-    }
+    Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,13 +1,13 @@
 //! How deep particles are inside of something: over all of them, in f64.
 
-use bevy::math::Isometry3d;
+use bevy::math::{DQuat, DVec3, Isometry3d, Vec3};
 
 use super::ColliderShape;
 use crate::cloth::ClothParticles;
 
 /// How deep the deepest free particle is inside of a shape in a pose of the cloth's frame (m), 0 if none is.
 ///
-/// A box has no depth of its own here: what is inside of it counts as deep as the particle's radius.
+/// Of a geometry it is as deep as parry says, in f32.
 pub fn deepest_penetration(
     particles: &ClothParticles,
     shape: &ColliderShape,
@@ -16,10 +16,26 @@ pub fn deepest_penetration(
 ) -> f64 {
     let (core, radius) = shape.core(pose);
     let reach = f64::from(radius) + f64::from(particle_radius);
+    let distance = |position: Vec3| match shape {
+        ColliderShape::Cuboid { half_size } => {
+            let beyond = seen_from(pose, position).abs() - half_size.as_dvec3();
+            beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
+        }
+        ColliderShape::Geometry(geometry) => {
+            let local = seen_from(pose, position).as_vec3();
+            f64::from(geometry.nearest(local).distance)
+        }
+        _ => core.distance(position),
+    };
     let free = particles
         .positions()
         .zip(particles.inverse_masses())
         .filter(|&(_, mass)| mass > 0.0);
-    let depth = free.map(|(position, _)| reach - core.distance(position));
+    let depth = free.map(|(position, _)| reach - distance(position));
     depth.fold(0.0, f64::max)
+}
+
+fn seen_from(pose: Isometry3d, point: Vec3) -> DVec3 {
+    let rotation = DQuat::from_array(pose.rotation.to_array().map(f64::from)).normalize();
+    rotation.inverse() * (point.as_dvec3() - Vec3::from(pose.translation).as_dvec3())
 }

@@ -11,7 +11,9 @@ use super::{
     faces::{Pushed, ResumePoint, SubstepMotion},
     kept::Kept,
     particle::{lane_motion, push_particles},
+    pushing::Pushing,
     response::PushOut,
+    shape_cache::{ShapeCache, push_shape},
     touch::{ContactPoint, ContactSettings, Touch},
 };
 use crate::{
@@ -63,6 +65,7 @@ pub struct Detection {
     bodies: Vec<Body>,
     deviation: f32,
     before: Before,
+    shapes: ShapeCache,
 }
 
 impl Detection {
@@ -74,6 +77,7 @@ impl Detection {
         }
         self.touches.clear();
         self.candidates.clear();
+        self.shapes.clear();
         self.colliders.clear();
         self.bodies.clear();
         self.deviation = 0.0;
@@ -94,10 +98,9 @@ impl Detection {
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
         let spacing = surface.spacing().longest;
-        let narrow_phase =
-            settings
-                .narrow_phase
-                .chosen(collider.shape.radius(), collider.travel(), spacing);
+        let narrow_phase = settings
+            .narrow_phase
+            .of(collider, spacing, settings.particle_radius);
         let cover = match narrow_phase {
             NarrowPhase::Triangles => longest_edge,
             NarrowPhase::Auto | NarrowPhase::Particles => 0.0,
@@ -126,7 +129,7 @@ impl Detection {
         // Most callers count upwards.
         let is_new = self.colliders.last().is_none_or(|(last, _)| *last < id);
         if is_new || self.colliders.iter().all(|(known, _)| *known != id) {
-            self.colliders.push((id, *collider));
+            self.colliders.push((id, collider.clone()));
         }
         self.hold(id, collider, narrow_phase, found, particles);
     }
@@ -168,7 +171,7 @@ impl Detection {
                 at,
                 Touch {
                     id,
-                    collider: *collider,
+                    collider: collider.clone(),
                     narrow_phase,
                     deepest: 0.0,
                     area: 0.0,
@@ -184,6 +187,7 @@ impl Detection {
 
     /// Begins the tick again, from the same particles: for one that is done again.
     pub fn restart(&mut self) {
+        self.shapes.clear();
         for touch in &mut self.touches {
             (touch.deepest, touch.area, touch.volume) = (0.0, 0.0, 0.0);
             (touch.impulse, touch.angular_impulse) = (Vec3::ZERO, Vec3::ZERO);
@@ -250,6 +254,7 @@ impl Detection {
             touch.of = Ranges::default();
         }
         self.candidates.clear();
+        self.shapes.clear();
         let cloth = particles.bounding_sphere();
         let longest_edge = particles.longest_face_reach(&self.surface);
         let mut found = std::mem::take(&mut self.found);
@@ -289,6 +294,7 @@ impl Detection {
         mut others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
         self.moved += substep.farthest_move;
+        self.shapes.travelled += substep.farthest_move;
         self.moved_now = substep.farthest_move;
         self.odometer += substep.farthest_move;
         self.measured = 0;
@@ -308,6 +314,7 @@ impl Detection {
             let Some(touch) = self.touches.get_mut(at) else {
                 return is_pushed;
             };
+            let count = self.candidates.all.len();
             let Candidates {
                 all,
                 blocks,
@@ -326,8 +333,8 @@ impl Detection {
             let odometer = self.odometer + touch.traveled;
             let travel = (collider.travel() + collider.swing()) / substep.count as f32;
             let shares = match touch.narrow_phase {
-                NarrowPhase::Triangles => TRIANGLES_A_PUSH,
-                NarrowPhase::Auto | NarrowPhase::Particles => 1.0,
+                NarrowPhase::Triangles if !collider.shape.has_edges() => TRIANGLES_A_PUSH,
+                _ => 1.0,
             };
             let push_out = PushOut::new(particles.substep(), travel, shares);
             let lanes = lane_motion(collider, settings, substep, push_out, odometer);
@@ -335,6 +342,22 @@ impl Detection {
                 || (substep.index + 1).is_multiple_of(MEASURED_EACH)
                 || substep.index + 1 == substep.count;
             let (found, stopped) = match touch.narrow_phase {
+                _ if collider.shape.has_edges() => {
+                    self.shapes.make_room(count);
+                    let known = self.shapes.of(touch.of.candidates.clone());
+                    let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
+                    let edges = by_triangles.then(|| (&*fans, self.surface.spacing().longest));
+                    let mut pushing = Pushing {
+                        candidates: &all[touch.of.candidates.clone()],
+                        contacts,
+                        first,
+                        collider,
+                        settings,
+                        substep,
+                        lanes: &lanes,
+                    };
+                    (push_shape(particles, &mut pushing, known, edges), None)
+                }
                 NarrowPhase::Triangles => {
                     let motion = SubstepMotion::new(collider, settings, substep);
                     let mut pushed = Pushed::new(
@@ -357,7 +380,7 @@ impl Detection {
             if let Some(body) = body
                 && found.farthest_push > 0.0
             {
-                let mut way = touch.collider;
+                let mut way = touch.collider.clone();
                 let [kept, gone] = body.share(&self.before, particles, &mut way, substep);
                 given.scale(f64::from(kept));
                 touch.traveled += gone;
@@ -373,6 +396,7 @@ impl Detection {
             self.moved += found.farthest_push;
             self.moved_now += found.farthest_push;
             self.odometer += found.farthest_push;
+            self.shapes.travelled += found.farthest_push;
             is_pushed |= found.farthest_push > 0.0;
             touch.deepest = touch.deepest.max(found.deepest);
             let seconds = f64::from(particles.substep());

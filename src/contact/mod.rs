@@ -1,15 +1,19 @@
 //! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
 
 mod body;
+mod boxes;
 mod candidates;
 mod cells;
 mod collider;
 mod corners;
 mod depth;
 mod detection;
+mod edge_contact;
 mod eight;
 mod faces;
 mod friction;
+mod geometry;
+mod geometry_particles;
 mod held;
 mod kept;
 mod lanes;
@@ -18,20 +22,26 @@ mod mass;
 mod moving;
 mod mutual;
 mod narrow_phase;
+mod nearest;
 mod particle;
+mod pushing;
 mod response;
 mod shape;
+mod shape_cache;
+mod sharp;
+mod source;
 #[cfg(test)]
 mod tests;
 mod touch;
 mod triangle;
 
 pub use body::BodyChange;
-pub use collider::ClothCollider;
+pub use collider::{ClothCollider, MeshCollider};
 pub use corners::meets_triangles;
 #[doc(hidden)]
 pub use depth::deepest_penetration;
 pub use detection::Detection;
+pub use geometry::ColliderGeometry;
 pub use layers::ClothLayers;
 pub use mass::BodyMass;
 pub use moving::MovingCollider;
@@ -39,4 +49,5 @@ pub use mutual::{ClothSelfCollision, intersections};
 pub(crate) use mutual::{MutualContact, Participant, Sheet};
 pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
 pub use shape::ColliderShape;
+pub use source::SharedCollider;
 pub use touch::{ContactPoint, ContactSettings, Touch};

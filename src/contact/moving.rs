@@ -2,14 +2,14 @@
 
 use bevy::math::{Isometry3d, Quat, Vec3, bounding::BoundingSphere};
 
-use super::{BodyMass, ColliderShape, shape::Nearest};
+use super::{BodyMass, ColliderShape, nearest::Nearest};
 use crate::{
     hierarchy::{Core, Probe},
     solver::SubStep,
 };
 
 /// A collider on its way through a tick, in the cloth's frame: along a straight line, turning evenly.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MovingCollider {
     /// What it is.
     pub shape: ColliderShape,
@@ -116,7 +116,8 @@ impl MovingCollider {
             ColliderShape::Ball { radius } => (Core::Segment([self.start(), self.to]), radius),
             ColliderShape::Capsule { .. }
             | ColliderShape::Cuboid { .. }
-            | ColliderShape::HalfSpace => {
+            | ColliderShape::HalfSpace
+            | ColliderShape::Geometry(_) => {
                 let pose = self.pose_at(0.5);
                 let (core, radius) = self.shape.core(pose);
                 // Particles may leave the sphere as far as the margin.

@@ -147,6 +147,13 @@ fn push_lanes(
             };
             push_half_space(blocks, contacts, &half_space, motion, sums);
         }
+        // One by one.
+        ColliderShape::Geometry(_) => {
+            for contact in contacts.iter_mut() {
+                contact.is_left = true;
+            }
+            sums.left += contacts.len() as u32;
+        }
     }
 }
 

@@ -5,10 +5,15 @@ use bevy::{
     reflect::Reflect,
 };
 
+pub(super) use super::nearest::Nearest;
+use super::{
+    boxes,
+    geometry::{ColliderGeometry, SharpEdge},
+};
 use crate::hierarchy::Core;
 
 /// The shape of a collider, scaled, in its own frame.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[derive(Reflect, Debug, Clone, PartialEq)]
 pub enum ColliderShape {
     /// A ball around the origin.
     Ball {
@@ -29,22 +34,24 @@ pub enum ColliderShape {
     },
     /// All below the plane through the origin whose normal is the y axis.
     HalfSpace,
-}
-
-/// How a point lies to a shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Nearest {
-    /// Distance from the surface (m), negative inside.
-    pub distance: f32,
-    /// Away from the shape, of length 1.
-    pub normal: Vec3,
+    /// Anything else.
+    Geometry(ColliderGeometry),
 }
 
 impl ColliderShape {
-    /// The shape in a pose, as the neighbourhood of a core.
+    /// The shape in a pose, as the neighbourhood of a core; of a geometry, the box around it.
     pub fn core(&self, pose: Isometry3d) -> (Core, f32) {
         let centre = Vec3::from(pose.translation);
         match *self {
+            Self::Geometry(ref geometry) => {
+                let [lower, upper] = geometry.bounds();
+                let pose = Isometry3d::new(
+                    centre + pose.rotation * lower.midpoint(upper),
+                    pose.rotation,
+                );
+                let half_size = (upper - lower) / 2.0;
+                (Core::Cuboid { pose, half_size }, 0.0)
+            }
             Self::Ball { radius } => (Core::Point(centre), radius),
             Self::Capsule {
                 radius,
@@ -77,6 +84,10 @@ impl ColliderShape {
             } => radius + half_length,
             Self::Cuboid { half_size } => half_size.length(),
             Self::HalfSpace => f32::INFINITY,
+            Self::Geometry(ref geometry) => {
+                let [lower, upper] = geometry.bounds();
+                lower.abs().max(upper.abs()).length()
+            }
         }
     }
 
@@ -85,7 +96,7 @@ impl ColliderShape {
         match *self {
             Self::Ball { .. } => 0.0,
             Self::Capsule { half_length, .. } => half_length,
-            Self::Cuboid { .. } | Self::HalfSpace => self.extent(),
+            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) => self.extent(),
         }
     }
 
@@ -95,14 +106,38 @@ impl ColliderShape {
             Self::Ball { radius } | Self::Capsule { radius, .. } => radius,
             Self::Cuboid { half_size } => half_size.min_element(),
             Self::HalfSpace => f32::INFINITY,
+            Self::Geometry(ref geometry) => geometry.thickness(),
         }
     }
 
-    /// The radius that triangles are tested against (m); a box and a half-space have none.
+    /// The radius that triangles are tested against (m); only balls and capsules have one.
     pub fn radius(&self) -> Option<f32> {
         match *self {
             Self::Ball { radius } | Self::Capsule { radius, .. } => Some(radius),
-            Self::Cuboid { .. } | Self::HalfSpace => None,
+            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) => None,
+        }
+    }
+
+    /// Whether it has edges that may come through a triangle whose corners are all outside.
+    pub fn has_edges(&self) -> bool {
+        matches!(self, Self::Cuboid { .. } | Self::Geometry(_))
+    }
+
+    /// Hands out the edges that may come into a box of the shape's frame.
+    pub(super) fn edges_near(&self, within: [Vec3; 2], visit: impl FnMut(&SharpEdge)) {
+        match self {
+            Self::Cuboid { half_size } => boxes::edges(*half_size).iter().for_each(visit),
+            Self::Geometry(geometry) => geometry.edges_near(within, visit),
+            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => {}
+        }
+    }
+
+    /// How far a point of the shape's frame is from its nearest edge (m); infinite if none is within so far.
+    pub(super) fn edge_distance(&self, point: Vec3, within: f32) -> f32 {
+        match self {
+            Self::Cuboid { half_size } => boxes::edge_distance(*half_size, point),
+            Self::Geometry(geometry) => geometry.edge_distance(point, within),
+            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => f32::INFINITY,
         }
     }
 
@@ -111,6 +146,13 @@ impl ColliderShape {
     pub(super) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
         let offset = point - Vec3::from(pose.translation);
         match *self {
+            Self::Geometry(ref geometry) => {
+                let nearest = geometry.nearest(pose.rotation.inverse() * offset);
+                Nearest {
+                    normal: pose.rotation * nearest.normal,
+                    ..nearest
+                }
+            }
             Self::Ball { radius } => around(offset, radius),
             Self::Capsule {
                 radius,

@@ -2,7 +2,9 @@
 
 mod body;
 mod deep;
+mod edges;
 mod fast;
+mod geometry;
 mod impulse;
 mod lanes;
 mod meshes;
@@ -29,6 +31,7 @@ use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Surface},
     solver::SubStep,
 };
+pub(super) use random::Random;
 
 /// The only sub-step of a tick in which nothing moves by itself.
 const ONLY: SubStep = SubStep {

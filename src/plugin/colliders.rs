@@ -21,6 +21,7 @@ use super::{
     collider_tree::{Bounds, ColliderTree},
     frame::global_transform,
     naming::Part,
+    source::{ColliderMeshes, Source},
 };
 use crate::{
     cloth::ClothError,
@@ -50,6 +51,27 @@ pub(super) struct ColliderMotion {
     bounds: Bounds,
     /// How many cloths pushed it in the last tick, if it is a body.
     cloths: u32,
+    /// The shape and what it was built from, as a mesh of many triangles is built but once.
+    built: Option<BuiltShape>,
+}
+
+/// A shape, and the collider and scale that it is of.
+#[derive(Debug)]
+struct BuiltShape {
+    collider: ClothCollider,
+    source: Option<Source>,
+    scale: Vec3,
+    shape: ColliderShape,
+    offset: Isometry3d,
+}
+
+impl BuiltShape {
+    fn is_of(&self, collider: &ClothCollider, source: Option<Source>, scale: Vec3) -> bool {
+        // A scale that is read out of a rotating transform changes by rounding.
+        self.collider == *collider
+            && self.source == source
+            && self.scale.abs_diff_eq(scale, 1.0e-5 * scale.length())
+    }
 }
 
 /// A box around what is nearer than `radius` to a core (m).
@@ -83,12 +105,32 @@ impl ColliderMotion {
         collider: &ClothCollider,
         body: Option<&ClothBody>,
         transforms: &TransformHelper,
+        meshes: &ColliderMeshes,
         entity: Entity,
         time_passes: bool,
     ) -> Result<(), ClothError> {
         let transform = global_transform(transforms, entity)?;
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-        let shape = collider.scaled(scale)?;
+        let known = self.built.as_ref().and_then(|built| built.source);
+        let source = meshes.find(entity, collider, known)?;
+        let is_built = self
+            .built
+            .as_ref()
+            .is_some_and(|built| built.is_of(collider, source, scale));
+        if !is_built {
+            self.built = None;
+            let made = meshes.resolve(collider, source)?;
+            self.built = Some(BuiltShape {
+                shape: made.scaled(scale)?,
+                offset: made.offset(),
+                collider: collider.clone(),
+                source,
+                scale,
+            });
+        }
+        let Some(BuiltShape { shape, offset, .. }) = &self.built else {
+            return Ok(());
+        };
         // An infinite extent is a half-space's.
         let extent = shape.extent();
         if extent.is_finite() {
@@ -106,13 +148,14 @@ impl ColliderMotion {
                 transform: format!("{transform:?}"),
             });
         }
-        let pose = Isometry3d::new(translation, rotation.normalize());
+        let pose = Isometry3d::new(translation, rotation.normalize()) * *offset;
+        let translation = Vec3::from(pose.translation);
         let from = self.last.unwrap_or(pose);
         let turned = pose.rotation * from.rotation.inverse();
         // Of the two quaternions of a rotation, the one of the shorter way round.
         let turned = if turned.w < 0.0 { -turned } else { turned };
         let way = MovingCollider {
-            shape,
+            shape: shape.clone(),
             from,
             to: translation,
             turn: turned.to_scaled_axis(),
@@ -124,7 +167,7 @@ impl ColliderMotion {
         self.middle = translation.midpoint(from.translation.into());
         self.reach = way.travel() / 2.0 + shape.extent();
         self.normal = None;
-        if shape == ColliderShape::HalfSpace && way.turn == Vec3::ZERO {
+        if *shape == ColliderShape::HalfSpace && way.turn == Vec3::ZERO {
             self.reach = way.travel() / 2.0;
             self.normal = Some(pose.rotation * Vec3::Y);
         }
@@ -170,6 +213,12 @@ impl ColliderMotion {
         }
     }
 
+    /// The mesh asset that its shape is made of.
+    #[cfg(feature = "mesh")]
+    pub fn source(&self) -> Option<Source> {
+        self.built.as_ref()?.source
+    }
+
     /// Whether the collider may come within `reach` of a point of the world (m).
     pub fn comes_near(&self, point: Vec3, reach: f32) -> bool {
         let offset = point - self.middle;
@@ -190,10 +239,10 @@ impl ColliderMotion {
 
     /// The collider's way through the tick in a cloth's frame.
     pub fn seen_from(&self, frame: &ClothFrame) -> Option<MovingCollider> {
-        let way = self.way?;
+        let way = self.way.as_ref()?;
         let inverse = frame.isometry().inverse();
         Some(MovingCollider {
-            shape: way.shape,
+            shape: way.shape.clone(),
             from: inverse * way.from,
             to: inverse * way.to,
             turn: inverse.rotation * way.turn,
@@ -281,6 +330,7 @@ pub(super) fn prepare_colliders(
     mut colliders: Query<Reading, Allow<Disabled>>,
     mut tree: ResMut<ColliderTree>,
     transforms: TransformHelper,
+    meshes: ColliderMeshes,
     time: Res<Time>,
     mut commands: Commands,
 ) {
@@ -291,14 +341,20 @@ pub(super) fn prepare_colliders(
         let Ok((collider, mut motion, body, fault)) = colliders.get_mut(entity) else {
             continue;
         };
-        let outcome = motion.follow(collider, body, &transforms, entity, time_passes);
+        let outcome = motion.follow(collider, body, &transforms, &meshes, entity, time_passes);
         if outcome.is_err() {
             *motion = ColliderMotion::default();
         }
         tree.set(entity, motion.bounds);
-        if motion.is_moving() {
+        // What is made of an asset has to be there, and may become another.
+        if motion.is_moving() || matches!(collider, ClothCollider::Mesh(_)) {
             moving.push(entity);
         }
+        // What is on its way is no fault.
+        let outcome = match outcome {
+            Err(ClothError::MeshLoading) => Ok(()),
+            outcome => outcome,
+        };
         ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
     }
 }

@@ -1,4 +1,4 @@
-//! The bridge to rapier: it moves the balls and does nothing else.
+//! The bridge to rapier: it moves the colliders and does nothing else.
 
 use bevy::{
     app::{App, FixedUpdate, Plugin},
@@ -19,15 +19,16 @@ use bevy::{
 use bevy_rapier3d::{geometry::Collider, plugin::PhysicsSet};
 
 use super::{ClothFault, ClothSystems, naming::Part, rapier_body::add_push_back};
-use crate::{cloth::ClothError, contact::ClothCollider};
+use crate::contact::ClothCollider;
 
-/// Makes the rapier `Collider::ball` on the same entity a [`ClothCollider`], with the radius and scale that
-/// rapier uses.
+/// Makes the rapier `Collider` on the same entity a [`ClothCollider`], whatever its shape, at the scale and with the offsets
+/// that rapier uses: compounds, convex hulls, meshes and height fields too. Only lines and shapes that are not rapier's own
+/// can't be touched.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct RapierClothCollider;
 
-/// Adopts rapier's balls, and has rapier run before the cloth. `RapierPhysicsPlugin` belongs in the same
+/// Adopts rapier's colliders, and has rapier run before the cloth. `RapierPhysicsPlugin` belongs in the same
 /// schedule: `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothRapierPlugin {
@@ -57,7 +58,7 @@ impl Plugin for ClothRapierPlugin {
             .add_observer(release::<Collider>)
             .add_systems(
                 self.schedule,
-                adopt_balls
+                adopt_colliders
                     .after(PhysicsSet::Writeback)
                     .before(ClothSystems::Prepare),
             );
@@ -78,48 +79,35 @@ fn release<C: Component>(
     }
 }
 
-fn adopt_balls(
-    mut adopted: Query<
-        (
-            Entity,
-            &Collider,
-            Option<&mut ClothCollider>,
-            Option<&ClothFault>,
-        ),
-        With<RapierClothCollider>,
-    >,
+fn adopt_colliders(
+    mut adopted: Query<(Entity, &Collider, Option<&mut ClothCollider>), With<RapierClothCollider>>,
     transforms: TransformHelper,
     mut commands: Commands,
 ) {
-    for (entity, collider, cloth_collider, fault) in &mut adopted {
-        let Some(ball) = collider.as_ball() else {
-            let shape = format!("{:?}", collider.raw.shape_type());
-            if cloth_collider.is_some() {
-                commands.entity(entity).try_remove::<ClothCollider>();
+    for (entity, collider, cloth_collider) in &mut adopted {
+        let wanted = match collider.as_ball() {
+            // A ball is one of ours, to be read and changed; ours is before the transform's scale.
+            Some(ball) => {
+                let scale = transforms
+                    .compute_global_transform(entity)
+                    .map_or(1.0, |transform| transform.scale().abs().max_element());
+                let unscaled = if scale > 0.0 {
+                    ball.radius() / scale
+                } else {
+                    ball.radius()
+                };
+                ClothCollider::ball(unscaled)
             }
-            ClothFault::report(
-                &mut commands,
-                entity,
-                fault,
-                Part::Collider,
-                Err(ClothError::NotABall { shape }),
-            );
-            continue;
+            None => ClothCollider::parry(collider.raw.clone()),
         };
-        // Rapier's radius has its scale in it, which need not be the transform's; ours is before the scale.
-        let scale = transforms
-            .compute_global_transform(entity)
-            .map_or(1.0, |transform| transform.scale().abs().max_element());
-        let unscaled = if scale > 0.0 {
-            ball.radius() / scale
-        } else {
-            ball.radius()
-        };
-        let wanted = ClothCollider::ball(unscaled);
         match cloth_collider {
-            Some(mut cloth_collider) => {
-                if *cloth_collider != wanted {
-                    *cloth_collider = wanted;
+            Some(mut known) => {
+                let is_known = match &*known {
+                    ClothCollider::Shared(shared) => shared.is_of(&collider.raw),
+                    known => *known == wanted,
+                };
+                if !is_known {
+                    *known = wanted;
                 }
             }
             None => {

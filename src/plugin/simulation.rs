@@ -22,7 +22,7 @@ use bevy::{
 };
 
 #[cfg(feature = "mesh")]
-use super::source::{ChangedMeshes, note_changed_meshes};
+use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
     ClothAttachments, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
     ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
@@ -109,6 +109,8 @@ impl Plugin for ClothPlugin {
             .add_observer(clear_removed_collider)
             .add_observer(reset_motion)
             .add_observer(forget_collider);
+        #[cfg(feature = "mesh")]
+        app.init_resource::<SharedMeshes>();
         app.configure_sets(
             self.schedule,
             (

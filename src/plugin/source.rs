@@ -1,15 +1,23 @@
-//! Where the triangles of a cloth from a mesh come from.
+//! Where the triangles of a cloth or a collider from a mesh come from.
 
 #[cfg(feature = "mesh")]
 mod asset;
+#[cfg(feature = "mesh")]
+mod changes;
+#[cfg(feature = "mesh")]
+mod collider;
 #[cfg(feature = "mesh")]
 mod id;
 #[cfg(not(feature = "mesh"))]
 mod none;
 
 #[cfg(feature = "mesh")]
-pub(super) use asset::{ChangedMeshes, Sources, note_changed_meshes};
+pub(super) use asset::{ChangedMeshes, Sources};
+#[cfg(feature = "mesh")]
+pub(super) use changes::note_changed_meshes;
+#[cfg(feature = "mesh")]
+pub(super) use collider::{ColliderMeshes, SharedMeshes};
 #[cfg(feature = "mesh")]
 pub(super) use id::Source;
 #[cfg(not(feature = "mesh"))]
-pub(super) use none::{Source, Sources};
+pub(super) use none::{ColliderMeshes, Source, Sources};

@@ -100,7 +100,8 @@ impl IntegratingItem<'_, '_> {
             near, detection, ..
         } = &*self.scratch;
         let touches = detection.touches().iter();
-        let known = touches.filter_map(|touch| Some((near.get(touch.id)?.0, touch.collider)));
+        let known =
+            touches.filter_map(|touch| Some((near.get(touch.id)?.0, touch.collider.clone())));
         self.state.rests_on.clear();
         self.state.rests_on.extend(known);
     }
@@ -300,7 +301,7 @@ fn add_far(
             && !near_set.contains(&entity)
             && let Some(collider) = motion.seen_from(frame)
         {
-            numbered.push((near.len(), collider));
+            numbered.push((near.len(), collider.clone()));
             near.push((entity, collider));
         }
     }

@@ -25,6 +25,7 @@ mod scratch;
 mod search;
 mod self_collision;
 mod shapes;
+mod solids;
 mod spin;
 mod startup;
 mod substepping;

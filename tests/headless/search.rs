@@ -319,7 +319,7 @@ fn every_search_is_drawn() {
             let cloth = app.world_mut().spawn(cloth).id();
             // Its surface is where half of the particles' radius is.
             let place = Transform::from_xyz(0.7, -0.9, 0.305);
-            let ball = app.world_mut().spawn((collider, place)).id();
+            let ball = app.world_mut().spawn((collider.clone(), place)).id();
             tick(&mut app, 2);
             let colors = drawn(&app);
             for color in [look.touching, look.untouched] {

@@ -18,8 +18,35 @@ fn lying(cloth: Cloth, height: f32) -> (Cloth, Transform) {
 }
 
 /// Every shape, and how high it reaches (m), unturned.
-fn shapes() -> [(ClothCollider, f32); 4] {
-    [
+fn shapes() -> Vec<(ClothCollider, f32)> {
+    let pyramid = [
+        Vec3::new(-0.3, -0.2, -0.3),
+        Vec3::new(0.3, -0.2, -0.3),
+        Vec3::new(0.3, -0.2, 0.3),
+        Vec3::new(-0.3, -0.2, 0.3),
+        Vec3::Y * 0.2,
+    ];
+    let sides = [
+        [0, 1, 2],
+        [0, 2, 3],
+        [0, 4, 1],
+        [1, 4, 2],
+        [2, 4, 3],
+        [3, 4, 0],
+    ];
+    let stool = [
+        (
+            Isometry3d::from_xyz(0.0, 0.15, 0.0),
+            ClothCollider::cylinder(0.3, 0.1),
+        ),
+        (Isometry3d::IDENTITY, ClothCollider::cuboid(0.1, 0.3, 0.1)),
+    ];
+    vec![
+        (ClothCollider::cylinder(0.3, 0.4), 0.2),
+        (ClothCollider::cone(0.3, 0.5), 0.25),
+        (ClothCollider::convex_hull(pyramid), 0.2),
+        (ClothCollider::trimesh(pyramid, sides), 0.2),
+        (ClothCollider::compound(stool), 0.2),
         (ClothCollider::ball(0.3), 0.3),
         (ClothCollider::capsule(0.2, 0.4), 0.4),
         (ClothCollider::cuboid(0.5, 0.4, 0.6), 0.2),
@@ -55,7 +82,7 @@ fn drop_on(collider: ClothCollider, height: f32, at: impl Fn(f32) -> Transform) 
     let mut app = app();
     let cloth = (lying(Cloth::new(24, 24, 0.05), height + 0.05), Pins::none());
     let cloth = app.world_mut().spawn(cloth).id();
-    let entity = app.world_mut().spawn((collider, at(0.0))).id();
+    let entity = app.world_mut().spawn((collider.clone(), at(0.0))).id();
     let (mut deepest, mut most) = (0.0_f64, 0);
     for step in 1..=96 {
         change::<Transform>(&mut app, entity, |transform| *transform = at(step as f32));
@@ -222,11 +249,12 @@ fn small_colliders_are_tested_against_triangles_and_large_ones_against_particles
         (capsule, Auto, Triangles),
         (ball(0.2), Particles, Particles),
         (ball(0.4), Triangles, Triangles),
-        (cuboid, Auto, Particles),
-        (cuboid, Triangles, Particles),
+        (cuboid.clone(), Auto, Triangles),
+        (cuboid.clone(), Particles, Particles),
+        (cuboid, Triangles, Triangles),
         (plane, Triangles, Particles),
     ] {
-        let (mut app, [cloth, collider_entity]) = sheet_and(collider, at, asked);
+        let (mut app, [cloth, collider_entity]) = sheet_and(collider.clone(), at, asked);
         tick(&mut app, 2);
         let contact = contact(&app, cloth, collider_entity).expect("a contact");
         assert_eq!(contact.narrow_phase, expected, "{collider:?} {asked:?}");

@@ -31,7 +31,7 @@ fn a_sheet_is_not_split_by_a_ball_that_appears_in_it() {
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&ball), &settings, &surface, &particles);
         for index in 0..3 {
             let substep = SubStep {
                 index,

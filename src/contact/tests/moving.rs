@@ -19,6 +19,7 @@ fn inside(random: &mut Random, collider: &MovingCollider, part: f32, beyond: f32
             along + random.direction() * radius * random.part().sqrt()
         }
         ColliderShape::Cuboid { half_size } => random.within(1.0) * half_size,
+        ColliderShape::Geometry(_) => Vec3::ZERO,
         ColliderShape::HalfSpace => {
             let point = random.within(beyond);
             Vec3::new(point.x, -point.y.abs() * random.part(), point.z)
@@ -38,7 +39,7 @@ proptest! {
     fn whatever_it_passes_is_met(seed in any::<u64>()) {
         let mut random = Random(seed);
         let shape = random.shape(2.0);
-        let collider = random.moving(shape, 4.0, 6.0, 3.0);
+        let collider = random.moving(shape.clone(), 4.0, 6.0, 3.0);
         let cloth = BoundingSphere::new(random.within(4.0), random.between(0.5, 4.0));
         let probe = collider.probe(0.0, 0.0, &cloth);
         for time in 0..=32 {
@@ -59,7 +60,7 @@ proptest! {
     fn whatever_comes_into_its_way_is_met(seed in any::<u64>()) {
         let mut random = Random(seed);
         let shape = random.shape(2.0);
-        let collider = random.moving(shape, 4.0, 6.0, 1.5);
+        let collider = random.moving(shape.clone(), 4.0, 6.0, 1.5);
         let cloth = BoundingSphere::new(random.within(4.0), random.between(0.5, 2.0));
         let margin = random.between(0.0, 3.0);
         let probe = collider.probe(margin, 0.0, &cloth);

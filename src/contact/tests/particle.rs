@@ -84,7 +84,7 @@ fn a_turning_ball_carries_what_sticks() {
         turn: Vec3::new(0.0, 0.0, -0.02),
         ..still()
     };
-    let carried = slide(0.0, 2.0, turning);
+    let carried = slide(0.0, 2.0, turning.clone());
     // The first sub-step's surface speed has to be gained from μ g Δt, which 0.02/0.1 rad/s is below
     // after three of the 20 sub-steps.
     assert!(carried > 0.017 && carried <= 0.0201, "{carried}");
@@ -105,7 +105,7 @@ fn pushes_out_exactly_and_leaves_pins_and_neighbours() {
         narrow_phase: NarrowPhase::Particles,
         ..ContactSettings::default()
     };
-    let mut detection = all_of(&[ball], &settings, &surface, &particles);
+    let mut detection = all_of(std::slice::from_ref(&ball), &settings, &surface, &particles);
     let last = SubStep {
         index: 9,
         count: 10,
@@ -156,7 +156,7 @@ fn a_particle_in_the_centre_finds_a_way_out() {
         },
     ] {
         let mut particles = loose(&[Vec3::ZERO], &[]);
-        let collider = MovingCollider::still(shape, at(Vec3::ZERO));
+        let collider = MovingCollider::still(shape.clone(), at(Vec3::ZERO));
         let mut detection = first_against(&collider, &particles, NarrowPhase::Particles);
         let settings = ContactSettings {
             friction: 0.5,

@@ -3,7 +3,7 @@
 use bevy::math::{Isometry3d, Quat, Vec3};
 use proptest::prelude::ProptestConfig;
 
-use crate::contact::{ColliderShape, MovingCollider};
+use crate::contact::{ClothCollider, ColliderShape, MovingCollider};
 
 /// This many cases, that are the same each time.
 pub fn cases(cases: u32) -> ProptestConfig {
@@ -81,6 +81,27 @@ impl Random {
                 half_size: Vec3::new(length(), length(), length()),
             },
             _ => ColliderShape::HalfSpace,
+        }
+    }
+
+    /// A cylinder, a cone, a hull, or several, up to about 1 m.
+    pub fn geometry(&mut self) -> ClothCollider {
+        match self.below(4) {
+            0 => ClothCollider::cylinder(self.between(0.1, 0.8), self.between(0.1, 1.5)),
+            1 => ClothCollider::cone(self.between(0.1, 0.8), self.between(0.2, 1.5)),
+            2 => {
+                let points: Vec<Vec3> = (0..9).map(|_| self.within(0.8)).collect();
+                ClothCollider::convex_hull(points)
+            }
+            _ => {
+                let apart = Isometry3d::from_xyz(0.0, 2.0, 0.0);
+                let cone = ClothCollider::cone(self.between(0.1, 0.8), 1.0);
+                let part = (
+                    self.pose(0.2),
+                    ClothCollider::cuboid(0.5, self.between(0.2, 1.0), 0.7),
+                );
+                ClothCollider::compound([part, (apart, cone)])
+            }
         }
     }
 

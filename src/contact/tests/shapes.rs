@@ -71,7 +71,7 @@ proptest! {
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[collider], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&collider), &settings, &surface, &particles);
         let substep = SubStep {
             index: 1,
             count: 3,
@@ -89,7 +89,7 @@ proptest! {
         let mut random = Random(seed);
         let shape = random.shape(1.0);
         let pose = random.pose(1.0);
-        let collider = MovingCollider::still(shape, pose);
+        let collider = MovingCollider::still(shape.clone(), pose);
         let mut positions = Vec::new();
         while positions.len() < 8 {
             let point = Vec3::from(pose.translation) + random.within(1.5);
@@ -107,7 +107,7 @@ proptest! {
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[collider], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&collider), &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let deepest = deepest_at(&particles, &collider, 1.0, 0.0);
         prop_assert!(deepest < f64::from(ROUNDING), "{collider:?} {deepest}");

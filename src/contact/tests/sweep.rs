@@ -12,7 +12,7 @@ use crate::contact::{
 };
 
 /// One particle against one collider: where it ends, and its displacement.
-fn meet(collider: MovingCollider, place: Vec3, moved: Vec3, is_swept: bool) -> [Vec3; 2] {
+fn meet(collider: &MovingCollider, place: Vec3, moved: Vec3, is_swept: bool) -> [Vec3; 2] {
     let mut particles = loose(&[place + moved, Vec3::splat(99.0)], &[moved]);
     let (surface, _) = build(2, 2, 0.1);
     let settings = ContactSettings {
@@ -20,7 +20,12 @@ fn meet(collider: MovingCollider, place: Vec3, moved: Vec3, is_swept: bool) -> [
         is_swept,
         ..ContactSettings::default()
     };
-    let mut detection = all_of(&[collider], &settings, &surface, &particles);
+    let mut detection = all_of(
+        std::slice::from_ref(collider),
+        &settings,
+        &surface,
+        &particles,
+    );
     detection.respond(&mut particles, &settings, ONLY, |_| {});
     [
         particles.position(0).expect("it exists"),
@@ -35,21 +40,21 @@ fn nothing_passes_a_thin_board() {
     let board = ColliderShape::Cuboid {
         half_size: Vec3::new(1.0, 1.0, 0.01),
     };
-    let still = MovingCollider::still(board, at(Vec3::ZERO));
+    let still = MovingCollider::still(board.clone(), at(Vec3::ZERO));
     let swung = MovingCollider {
         to: Vec3::Z * 2.0,
         ..MovingCollider::still(board, at(Vec3::NEG_Z))
     };
     let start = Vec3::new(0.2, 0.3, 1.0);
-    let [end, moved] = meet(still, start, Vec3::NEG_Z * 3.0, true);
+    let [end, moved] = meet(&still, start, Vec3::NEG_Z * 3.0, true);
     // Rounding of 3 m.
     assert!(end.distance(Vec3::new(0.2, 0.3, 0.01)) < 1e-6, "{end}");
     assert!((moved.z + 0.99).abs() < 1e-5, "as far as it went: {moved}");
-    let [end, _] = meet(still, start, Vec3::NEG_Z * 3.0, false);
+    let [end, _] = meet(&still, start, Vec3::NEG_Z * 3.0, false);
     assert_eq!(end.z, -2.0);
-    let [end, _] = meet(swung, start, Vec3::ZERO, true);
+    let [end, _] = meet(&swung, start, Vec3::ZERO, true);
     assert!((end.z - 2.01).abs() < 1e-6, "{end}");
-    let [end, _] = meet(swung, start, Vec3::ZERO, false);
+    let [end, _] = meet(&swung, start, Vec3::ZERO, false);
     assert_eq!(end, start);
 }
 
@@ -66,7 +71,7 @@ fn a_turning_rod_takes_along_what_it_meets() {
     };
     // Half a radian ahead of the rod's upper half.
     let start = Vec3::new(-0.5_f32.sin(), 0.5_f32.cos(), 0.0) * 0.8;
-    let [end, _] = meet(turning, start, Vec3::ZERO, true);
+    let [end, _] = meet(&turning, start, Vec3::ZERO, true);
     let ahead = turning.shape.nearest(turning.pose_at(1.0), end);
     assert!(ahead.distance.abs() < 1e-5, "on its surface: {ahead:?}");
     let forward = turning.pose_at(1.0).rotation * Vec3::NEG_X;
@@ -101,7 +106,7 @@ proptest! {
         let centre = Vec3::from(collider.from.translation);
         let way = random.direction();
         let start = centre - way * random.between(1.5, 3.0);
-        let [end, _] = meet(collider, start, way * random.between(3.0, 6.0), true);
+        let [end, _] = meet(&collider, start, way * random.between(3.0, 6.0), true);
         // Along a slanted face, it may slide past the middle.
         let is_before = (end - centre).dot(way) < 0.0;
         prop_assert!(kind > 0 || is_before, "{collider:?} {start} {end}");

@@ -62,7 +62,7 @@ fn scene(seed: u64, narrow_phase: NarrowPhase) -> Scene {
             if shape == ColliderShape::HalfSpace && random.below(3) > 0 {
                 shape = ColliderShape::Ball { radius: 0.2 };
             }
-            let mut collider = random.moving(shape, 0.7, 3.0, 1.5);
+            let mut collider = random.moving(shape.clone(), 0.7, 3.0, 1.5);
             if random.below(3) == 0 {
                 collider = MovingCollider::still(shape, collider.from);
             }
@@ -137,7 +137,7 @@ impl Scene {
             detection.respond(particles, &self.settings, substep, |known| {
                 for other in others {
                     if known.iter().all(|(id, _)| *id != other.0) {
-                        known.push(*other);
+                        known.push(other.clone());
                     }
                 }
             })
@@ -154,7 +154,8 @@ impl Scene {
     }
 
     fn brute(&self) -> Outcome {
-        let colliders: Vec<MovingCollider> = self.colliders.iter().map(|(_, c)| *c).collect();
+        let colliders: Vec<MovingCollider> =
+            self.colliders.iter().map(|(_, c)| c.clone()).collect();
         let mut detection = all_of(&colliders, &self.settings, &self.surface, &self.particles);
         let (positions, mut touched) = self.run(&mut detection);
         assert_eq!(detection.requeries(), 0);

@@ -49,7 +49,7 @@ proptest! {
         let ball = MovingCollider::ball(radius, centre, centre);
         let settings = ContactSettings { particle_radius: 0.001, ..settings() };
         let before: Vec<Vec3> = particles.positions().collect();
-        let mut detection = all_of(&[ball], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&ball), &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let reach = radius + 0.001;
         let depth = reach - height * SPACING;
@@ -85,7 +85,7 @@ proptest! {
         let centre = Vec3::new(u, -v, 0.1) * SPACING;
         let ball = MovingCollider::ball(0.15 * SPACING, centre, centre);
         let settings = ContactSettings { is_swept: false, ..settings() };
-        let mut detection = all_of(&[ball], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&ball), &settings, &surface, &particles);
         let is_moved = detection.respond(&mut particles, &settings, ONLY, |_| {});
         prop_assert!(is_moved);
         let gained: Vec3 = particles.displacements().zip(before).map(|(a, b)| a - b).sum();
@@ -108,7 +108,12 @@ fn pinned_corners_hold() {
             }
         }
         let before: Vec<Vec3> = particles.positions().collect();
-        let mut detection = all_of(&[ball], &settings(), &surface, &particles);
+        let mut detection = all_of(
+            std::slice::from_ref(&ball),
+            &settings(),
+            &surface,
+            &particles,
+        );
         let moved = detection.respond(&mut particles, &settings(), ONLY, |_| {});
         assert_eq!(moved, free.is_some());
         for (index, before) in before.into_iter().enumerate() {

@@ -21,7 +21,7 @@ fn a_ball_cuts_a_disc() {
             narrow_phase: NarrowPhase::Particles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&ball), &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let touch = &detection.touches()[0];
         let (h, a) = (height.abs(), (radius * radius - height * height).sqrt());
@@ -52,7 +52,7 @@ fn a_small_ball_cuts_a_disc_out_of_a_triangle() {
             narrow_phase: NarrowPhase::Triangles,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[ball], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&ball), &settings, &surface, &particles);
         detection.respond(&mut particles, &settings, ONLY, |_| {});
         let touch = &detection.touches()[0];
         let area = PI * (0.04 - height * height);
@@ -80,7 +80,12 @@ fn a_half_space_holds_area_times_depth() {
         particle_radius: 0.05,
         ..ContactSettings::default()
     };
-    let mut detection = all_of(&[plane], &settings, &surface, &particles);
+    let mut detection = all_of(
+        std::slice::from_ref(&plane),
+        &settings,
+        &surface,
+        &particles,
+    );
     detection.respond(&mut particles, &settings, ONLY, |_| {});
     let touch = &detection.touches()[0];
     assert!((touch.area - 4.0).abs() < 4.0 * 6e-4, "{}", touch.area);

@@ -1,56 +1,33 @@
-//! The meshes of cloths that are made from assets.
+//! The meshes of cloths and colliders that are made from assets.
 
 use bevy::{
-    asset::{AssetEvent, AssetId, AssetServer, Assets, LoadState},
+    asset::{AssetId, AssetServer, Assets, LoadState},
     ecs::{
         entity::Entity,
-        message::MessageReader,
         resource::Resource,
-        system::{Query, Res, ResMut, SystemParam},
+        system::{Query, Res, SystemParam},
     },
     math::Vec3,
     mesh::{Mesh, Mesh3d},
-    platform::collections::{HashMap, HashSet},
+    platform::collections::HashMap,
 };
 
-use super::{
-    super::{ClothBuilt, ClothMesh},
-    id::Source,
-};
+use super::{super::ClothMesh, id::Source};
 use crate::cloth::{Cloth, ClothError, ClothShape, Surface, TriangleMesh};
 
 /// How often meshes have been changed since they were loaded; those that never were are not in it.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
 
-/// Takes over which meshes a game has changed: cloths that are made from them are built again.
-pub(crate) fn note_changed_meshes(
-    mut events: MessageReader<AssetEvent<Mesh>>,
-    mut changed: ResMut<ChangedMeshes>,
-    cloths: Query<&ClothBuilt>,
-) {
-    if events.is_empty() {
-        return;
+impl ChangedMeshes {
+    /// A mesh has been changed.
+    pub fn note(&mut self, mesh: AssetId<Mesh>) {
+        *self.0.entry(mesh).or_default() += 1;
     }
-    let source = |built: &ClothBuilt| {
-        built
-            .shared
-            .recipe
-            .as_ref()?
-            .source
-            .map(|source| source.mesh)
-    };
-    let sources: HashSet<AssetId<Mesh>> = cloths.iter().filter_map(source).collect();
-    for event in events.read() {
-        match event {
-            AssetEvent::Modified { id } | AssetEvent::Removed { id } if sources.contains(id) => {
-                *changed.0.entry(*id).or_default() += 1;
-            }
-            AssetEvent::Unused { id } => {
-                changed.0.remove(id);
-            }
-            _ => {}
-        }
+
+    /// Nobody has it any more.
+    pub fn forget(&mut self, mesh: AssetId<Mesh>) {
+        self.0.remove(&mesh);
     }
 }
 
@@ -86,20 +63,27 @@ impl Sources<'_, '_> {
             (None, drawn) => drawn.and_then(ClothMesh::source),
         };
         let handle = handle.ok_or(ClothError::MeshNotLoaded)?;
-        let id = handle.id();
+        self.loaded(handle.id(), known).map(Some)
+    }
+
+    /// Which mesh it is, and which version of it, once it has been loaded. `known` is what was made last.
+    ///
+    /// # Errors
+    /// As for [`find`](Self::find).
+    pub fn loaded(&self, id: AssetId<Mesh>, known: Option<Source>) -> Result<Source, ClothError> {
         if self
             .meshes
             .as_ref()
             .is_some_and(|meshes| meshes.contains(id))
         {
             let version = self.changed.as_ref().and_then(|changed| changed.0.get(&id));
-            return Ok(Some(Source {
+            return Ok(Source {
                 mesh: id,
                 version: version.copied().unwrap_or(0),
-            }));
+            });
         }
-        // A cloth outlasts the asset that it was made from.
-        if known.is_some_and(|known| known.mesh == id) {
+        // What was made outlasts the asset that it was made from.
+        if let Some(known) = known.filter(|known| known.mesh == id) {
             return Ok(known);
         }
         match self
@@ -115,6 +99,15 @@ impl Sources<'_, '_> {
         }
     }
 
+    /// The triangles of a mesh that has been loaded.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, ClothError> {
+        let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
+        TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)
+    }
+
     /// The surface of a cloth.
     ///
     /// # Errors
@@ -128,11 +121,6 @@ impl Sources<'_, '_> {
         let (ClothShape::Mesh { weld }, Some(source)) = (&cloth.shape, source) else {
             return cloth.surface(scale);
         };
-        let mesh = self
-            .meshes
-            .as_ref()
-            .and_then(|meshes| meshes.get(source.mesh));
-        let mesh = TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)?;
-        Surface::of_mesh(&mesh, *weld, scale)
+        Surface::of_mesh(&self.triangles(source.mesh)?, *weld, scale)
     }
 }

@@ -7,7 +7,10 @@ use bevy::{
     math::Vec3,
 };
 
-use crate::cloth::{Cloth, ClothError, Surface};
+use crate::{
+    cloth::{Cloth, ClothError, Surface},
+    contact::ClothCollider,
+};
 
 /// There is none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,5 +41,32 @@ impl Sources<'_> {
         scale: Vec3,
     ) -> Result<Surface, ClothError> {
         cloth.surface(scale)
+    }
+}
+
+/// No assets for colliders either.
+#[derive(SystemParam)]
+pub(crate) struct ColliderMeshes<'w> {
+    none: PhantomData<&'w ()>,
+}
+
+impl ColliderMeshes<'_> {
+    /// No collider has one.
+    pub fn find(
+        &self,
+        _: Entity,
+        _: &ClothCollider,
+        _: Option<Source>,
+    ) -> Result<Option<Source>, ClothError> {
+        Ok(None)
+    }
+
+    /// The collider itself.
+    pub fn resolve(
+        &self,
+        collider: &ClothCollider,
+        _: Option<Source>,
+    ) -> Result<ClothCollider, ClothError> {
+        Ok(collider.clone())
     }
 }

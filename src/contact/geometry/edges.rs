@@ -1,0 +1,166 @@
+//! The sharp edges of a shape: where it may come through a triangle of the cloth whose corners are all outside.
+
+use bevy::math::Vec3;
+use parry3d::{
+    bounding_volume::Aabb,
+    partitioning::{Bvh, BvhBuildStrategy, BvhNode},
+    query::PointQuery,
+};
+
+/// Faces at a smaller angle than this have no edge between them (sine).
+const SHARP: f32 = 1.0e-3;
+
+/// An edge of a shape, or the middle line of a round part of one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::contact) struct SharpEdge {
+    /// Its ends (m).
+    pub ends: [Vec3; 2],
+    /// Between the normals of the faces beside it, of length 1; 0 where there is no inner side.
+    pub outward: Vec3,
+    /// How far around the line the shape reaches (m).
+    pub radius: f32,
+}
+
+/// The edges of a shape, in a tree.
+#[derive(Debug, Clone)]
+pub(super) struct SharpEdges {
+    edges: Vec<SharpEdge>,
+    tree: Bvh,
+}
+
+impl SharpEdge {
+    fn bounds(&self) -> Aabb {
+        let [a, b] = self.ends;
+        let around = Vec3::splat(self.radius);
+        Aabb::new(a.min(b) - around, a.max(b) + around)
+    }
+
+    /// How far a point is from it (m), negative inside.
+    pub fn distance(&self, point: Vec3) -> f32 {
+        let [a, b] = self.ends;
+        let (offset, along) = (point - a, b - a);
+        let t = (offset.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        // A line of no length is its first end.
+        let nearest = if t > 0.0 { along * t } else { Vec3::ZERO };
+        offset.distance(nearest) - self.radius
+    }
+}
+
+impl SharpEdges {
+    pub fn of(edges: Vec<SharpEdge>) -> Self {
+        let leaves: Vec<Aabb> = edges.iter().map(SharpEdge::bounds).collect();
+        Self {
+            tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves),
+            edges,
+        }
+    }
+
+    pub fn as_slice(&self) -> &[SharpEdge] {
+        &self.edges
+    }
+
+    /// Hands out those whose boxes come into a box.
+    pub fn near(&self, [lower, upper]: [Vec3; 2], mut visit: impl FnMut(&SharpEdge)) {
+        let around = Aabb::new(lower, upper);
+        for edge in self.tree.intersect_aabb(&around) {
+            visit(&self.edges[edge as usize]);
+        }
+    }
+
+    /// How far the nearest is (m); infinite if there is none within so far.
+    pub fn distance(&self, point: Vec3, within: f32) -> f32 {
+        self.tree
+            .find_best(
+                within,
+                |node: &BvhNode, _| node.aabb().distance_to_local_point(point, true),
+                |edge, _| Some(self.edges[edge as usize].distance(point).max(0.0)),
+            )
+            .map_or(f32::INFINITY, |(_, distance)| distance)
+    }
+}
+
+/// A side of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    /// Its vertices, the smaller first.
+    vertices: [u32; 2],
+    is_forward: bool,
+    face: u32,
+}
+
+/// The sides of all triangles of a mesh, those of one edge one after the other.
+pub(super) struct MeshEdges(Vec<Side>);
+
+impl MeshEdges {
+    pub fn of(triangles: &[[u32; 3]]) -> Self {
+        let sides = triangles.iter().zip(0_u32..).flat_map(|(triangle, face)| {
+            [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
+                let (from, to) = (triangle[from], triangle[to]);
+                Side {
+                    vertices: [from.min(to), from.max(to)],
+                    is_forward: from < to,
+                    face,
+                }
+            })
+        });
+        let mut sides: Vec<Side> = sides.collect();
+        sides.sort_unstable();
+        Self(sides)
+    }
+
+    fn edges(&self) -> impl Iterator<Item = &[Side]> {
+        self.0.chunk_by(|a, b| a.vertices == b.vertices)
+    }
+
+    /// Whether the mesh encloses something: each edge has two triangles, which go through it in opposite directions.
+    pub fn are_closed(&self) -> bool {
+        self.edges()
+            .all(|sides| matches!(sides, [a, b] if a.is_forward != b.is_forward))
+    }
+
+    /// Those that are sharp; of a mesh with an inner side, only those that stick out.
+    pub fn sharp(
+        &self,
+        vertices: &[Vec3],
+        triangles: &[[u32; 3]],
+        has_inside: bool,
+    ) -> Vec<SharpEdge> {
+        let corners = |face: u32| triangles[face as usize].map(|vertex| vertices[vertex as usize]);
+        let normal = |face: u32| {
+            let [a, b, c] = corners(face);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        let sharp = self.edges().filter_map(|sides| {
+            let ends = sides[0].vertices.map(|vertex| vertices[vertex as usize]);
+            let edge = |outward| {
+                Some(SharpEdge {
+                    ends,
+                    outward,
+                    radius: 0.0,
+                })
+            };
+            let [a, b] = sides else {
+                // A rim, or where several sheets meet.
+                return edge(Vec3::ZERO);
+            };
+            let mut normals = [normal(a.face), normal(b.face)];
+            if a.is_forward == b.is_forward {
+                normals[1] = -normals[1];
+            }
+            let across = normals[0].cross(normals[1]);
+            // One of two faces turned onto each other is no flat one.
+            if across.length() < SHARP && normals[0].dot(normals[1]) > 0.0 {
+                return None;
+            }
+            if !has_inside {
+                return edge(Vec3::ZERO);
+            }
+            // The other face of what sticks out lies behind this one.
+            let beyond = corners(b.face).map(|corner| normals[0].dot(corner - ends[0]));
+            let sticks_out = beyond.iter().sum::<f32>() < 0.0;
+            let outward = (normals[0] + normals[1]).normalize_or_zero();
+            if sticks_out { edge(outward) } else { None }
+        });
+        sharp.collect()
+    }
+}

@@ -1,0 +1,104 @@
+//! From positions and triangles to a mesh that is welded, oriented and has its edges.
+
+use bevy::math::{DVec3, Vec3};
+use parry3d::shape::{TriMesh, TriMeshFlags};
+
+use super::{
+    edges::{MeshEdges, SharpEdge},
+    solid::MeshSides,
+};
+use crate::cloth::ClothError;
+
+/// Farther from the origin than this is nothing that can be measured with (m).
+const FARTHEST: f32 = 1.0e12;
+
+/// A mesh, what is inside of it, and its sharp edges.
+pub(in crate::contact) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
+
+/// Whether all vertices can be measured with.
+///
+/// # Errors
+/// [`ClothError::VertexNotFinite`] names the first that can't.
+pub(in crate::contact) fn check_vertices(vertices: &[Vec3]) -> Result<(), ClothError> {
+    let is_beyond = |vertex: &Vec3| !(vertex.is_finite() && vertex.abs().max_element() < FARTHEST);
+    match vertices.iter().position(is_beyond) {
+        Some(vertex) => Err(ClothError::VertexNotFinite {
+            vertex,
+            position: vertices[vertex],
+        }),
+        None => Ok(()),
+    }
+}
+
+/// A mesh of triangles, which encloses what it has inside if it is closed. Turned inside out, it is turned back.
+///
+/// # Errors
+/// Of a vertex that is not finite or missing, and if no triangle has an area.
+pub(in crate::contact) fn build(
+    mut vertices: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    ground: bool,
+) -> Result<Built, ClothError> {
+    check_vertices(&vertices)?;
+    let count = triangles.len();
+    let is_beyond = |triangle: &[u32; 3]| {
+        triangle
+            .iter()
+            .any(|&corner| corner as usize >= vertices.len())
+    };
+    if let Some(triangle) = triangles.iter().position(is_beyond) {
+        return Err(ClothError::TriangleOutOfRange {
+            triangle,
+            corners: triangles[triangle],
+            vertices: vertices.len(),
+        });
+    }
+    // Equal vertices become one: −0 and 0 are.
+    vertices.iter_mut().for_each(|vertex| *vertex += Vec3::ZERO);
+    let area: f32 = triangles
+        .iter()
+        .map(|triangle| {
+            let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
+            (b - a).cross(c - a).length()
+        })
+        .sum();
+    let without_area = ClothError::MeshWithoutArea { triangles: count };
+    if area <= 0.0 {
+        return Err(without_area);
+    }
+    let welded = TriMeshFlags::MERGE_DUPLICATE_VERTICES
+        | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
+        | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;
+    let Ok(mut mesh) = TriMesh::with_flags(vertices, triangles, welded) else {
+        return Err(without_area);
+    };
+    let edges = MeshEdges::of(mesh.indices());
+    let sides = if ground {
+        MeshSides::Ground
+    } else if edges.are_closed() {
+        MeshSides::Closed
+    } else {
+        MeshSides::Open
+    };
+    if sides == MeshSides::Closed && volume(&mesh) < 0.0 {
+        mesh.reverse();
+    }
+    if sides != MeshSides::Open {
+        // Only a mesh whose topology is asked for can be refused.
+        let _ = mesh.set_flags(welded | TriMeshFlags::ORIENTED);
+    }
+    let sharp = edges.sharp(mesh.vertices(), mesh.indices(), sides != MeshSides::Open);
+    Ok((mesh, sides, sharp))
+}
+
+/// The volume that a closed mesh encloses (m³), negative if it is inside out.
+pub(in crate::contact) fn volume(mesh: &TriMesh) -> f64 {
+    // Seen from the middle of it, as it may be far from the origin.
+    let middle = mesh.local_aabb().center().as_dvec3();
+    let parts = mesh.indices().iter().map(|triangle| {
+        let [a, b, c]: [DVec3; 3] =
+            triangle.map(|corner| mesh.vertices()[corner as usize].as_dvec3() - middle);
+        a.dot(b.cross(c)) / 6.0
+    });
+    parts.sum()
+}

@@ -1,0 +1,117 @@
+//! Shapes that are more than a formula: solids, meshes, and several of them at once.
+
+mod edges;
+mod mesh;
+mod parts;
+mod solid;
+
+use std::sync::Arc;
+
+use bevy::{math::Vec3, reflect::Reflect};
+pub(super) use edges::SharpEdge;
+use edges::SharpEdges;
+pub(super) use parts::{Parts, turn_up};
+
+use super::nearest::Nearest;
+use solid::Solid;
+
+/// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with all that is worked
+/// out once for it. Clones share it; two are equal if they are clones of one.
+#[derive(Reflect, Debug, Clone)]
+#[reflect(opaque, Debug, Clone, PartialEq)]
+pub struct ColliderGeometry(Arc<Geometry>);
+
+impl PartialEq for ColliderGeometry {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+#[derive(Debug)]
+struct Geometry {
+    /// What particles are tested against.
+    solids: Vec<Solid>,
+    /// What triangles are tested against besides.
+    edges: SharpEdges,
+    /// The corners of the box around it (m).
+    bounds: [Vec3; 2],
+    /// How deep a point may get without being nearer to the other side, at least (m).
+    thickness: f32,
+}
+
+impl ColliderGeometry {
+    /// Made of parts, of which there is at least one.
+    pub(super) fn of(parts: Parts) -> Self {
+        let Parts { solids, edges } = parts;
+        let bounds = solids
+            .iter()
+            .map(|solid| solid.bounds)
+            .reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+            .unwrap_or_default();
+        let thickness = solids.iter().map(Solid::thickness);
+        let thickness = thickness.fold(f32::INFINITY, f32::min);
+        Self(Arc::new(Geometry {
+            edges: SharpEdges::of(edges),
+            solids,
+            bounds,
+            thickness,
+        }))
+    }
+
+    /// The corners of the box around it (m).
+    pub fn bounds(&self) -> [Vec3; 2] {
+        self.0.bounds
+    }
+
+    /// How many triangles its meshes have.
+    pub fn triangles(&self) -> usize {
+        self.0.solids.iter().map(Solid::triangles).sum()
+    }
+
+    /// Whether any of it is an open mesh, which has two sides.
+    pub fn is_two_sided(&self) -> bool {
+        self.0.solids.iter().any(Solid::is_open)
+    }
+
+    pub(super) fn thickness(&self) -> f32 {
+        self.0.thickness
+    }
+
+    /// Its parts, to be put into another.
+    pub(super) fn parts(&self) -> Parts {
+        Parts {
+            solids: self.0.solids.clone(),
+            edges: self.0.edges.as_slice().to_vec(),
+        }
+    }
+
+    /// How a point lies to it: the deepest, or nearest, of its solids. NaN of a point that is not finite.
+    pub(super) fn nearest(&self, point: Vec3) -> Nearest {
+        let mut found = Nearest {
+            distance: f32::MAX,
+            normal: Vec3::Y,
+        };
+        for solid in &self.0.solids {
+            let [lower, upper] = solid.bounds;
+            let beyond = point.distance_squared(point.clamp(lower, upper));
+            if found.distance < f32::MAX && beyond > found.distance.max(0.0).powi(2) {
+                continue;
+            }
+            let nearest = solid.nearest(point);
+            if nearest.distance < found.distance {
+                found = nearest;
+            }
+        }
+        found
+    }
+
+    /// Hands out the edges whose boxes come into a box.
+    pub(super) fn edges_near(&self, [lower, upper]: [Vec3; 2], visit: impl FnMut(&SharpEdge)) {
+        self.0.edges.near([lower, upper], visit);
+    }
+
+    /// How far the nearest edge is (m); infinite if there is none within so far.
+    pub(super) fn edge_distance(&self, point: Vec3, within: f32) -> f32 {
+        self.0.edges.distance(point, within)
+    }
+}

@@ -1,0 +1,125 @@
+//! A part of a geometry, and how a point lies to it.
+
+use std::sync::Arc;
+
+use bevy::math::Vec3;
+use parry3d::{
+    math::Pose,
+    query::PointQueryWithLocation,
+    shape::{SharedShape, TriMesh},
+};
+
+use crate::contact::nearest::Nearest;
+
+/// Half of the thickness of a two-sided mesh (m): without any, what lies exactly on it would be on neither side.
+pub(in crate::contact) const HALF_SHEET: f32 = 0.0005;
+
+/// A part that particles are tested against.
+#[derive(Debug, Clone)]
+pub(in crate::contact) struct Solid {
+    pub pose: Pose,
+    /// The corners of the box around it, in the frame of the whole (m).
+    pub bounds: [Vec3; 2],
+    pub kind: SolidKind,
+}
+
+#[derive(Debug, Clone)]
+pub(in crate::contact) enum SolidKind {
+    /// What parry knows the nearest point of by a formula, or by its support.
+    Convex(SharedShape),
+    Mesh(Arc<TriMesh>, MeshSides),
+}
+
+/// What is inside of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::contact) enum MeshSides {
+    /// All that it encloses: it has an outer side only.
+    Closed,
+    /// Nothing: it is open, and has two sides.
+    Open,
+    /// All below it.
+    Ground,
+}
+
+impl Solid {
+    /// How many triangles it has, if it is a mesh.
+    pub fn triangles(&self) -> usize {
+        match &self.kind {
+            SolidKind::Convex(_) => 0,
+            SolidKind::Mesh(mesh, _) => mesh.num_triangles(),
+        }
+    }
+
+    pub fn is_open(&self) -> bool {
+        matches!(&self.kind, SolidKind::Mesh(_, MeshSides::Open))
+    }
+
+    /// How deep a point may get without being nearer to the other side, at least (m).
+    pub fn thickness(&self) -> f32 {
+        match &self.kind {
+            SolidKind::Convex(shape) => shape.ccd_thickness(),
+            SolidKind::Mesh(_, MeshSides::Open) => HALF_SHEET,
+            SolidKind::Mesh(_, MeshSides::Closed | MeshSides::Ground) => 0.0,
+        }
+    }
+
+    /// How a point lies to it.
+    pub fn nearest(&self, point: Vec3) -> Nearest {
+        let local = self.pose.inverse_transform_point(point);
+        let mut nearest = match &self.kind {
+            SolidKind::Convex(shape) => {
+                let projection = shape.project_local_point(local, false);
+                let fallback = local.normalize_or(Vec3::Y);
+                towards(local, projection.point, projection.is_inside, fallback)
+            }
+            SolidKind::Mesh(mesh, sides) => nearest_of_mesh(mesh, *sides, local),
+        };
+        nearest.normal = self.pose.rotation * nearest.normal;
+        nearest
+    }
+}
+
+fn nearest_of_mesh(mesh: &TriMesh, sides: MeshSides, point: Vec3) -> Nearest {
+    let (projection, (face, _)) = mesh.project_local_point_and_get_location(point, false);
+    let bounds = mesh.local_aabb();
+    let is_inside = match sides {
+        MeshSides::Closed => projection.is_inside,
+        MeshSides::Open => false,
+        // Beside it nothing is below it.
+        MeshSides::Ground => {
+            let beside = point.clamp(bounds.mins, bounds.maxs).with_y(point.y);
+            projection.is_inside && beside == point
+        }
+    };
+    let fallback = mesh.triangle(face).scaled_normal().normalize_or(Vec3::Y);
+    let mut nearest = towards(point, projection.point, is_inside, fallback);
+    if sides == MeshSides::Open {
+        nearest.distance -= HALF_SHEET;
+    }
+    nearest
+}
+
+/// How a point lies to a surface whose nearest point is known. `fallback` is the normal of what lies on it.
+fn towards(point: Vec3, surface: Vec3, is_inside: bool, fallback: Vec3) -> Nearest {
+    let offset = point - surface;
+    let distance = offset.length();
+    // What is nearer than this is all rounding.
+    if distance <= 1.0e-6 * point.length().max(1.0e-3) {
+        return Nearest {
+            distance: 0.0,
+            normal: fallback,
+        };
+    }
+    let away = offset / distance;
+    if is_inside {
+        Nearest {
+            distance: -distance,
+            normal: -away,
+        }
+    } else {
+        Nearest {
+            distance,
+            normal: away,
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! What is near a shape with edges.
+
+use super::{
+    MovingCollider,
+    candidates::{Candidate, ContactBlock},
+    lanes::LaneMotion,
+    touch::ContactSettings,
+};
+use crate::{cloth::Slot, solver::SubStep};
+
+/// The particles near a shape with edges, at the end of a sub-step.
+pub(super) struct Pushing<'a> {
+    pub candidates: &'a [Candidate],
+    /// Their blocks, of which the first has this number among all.
+    pub contacts: &'a mut [ContactBlock],
+    pub first: usize,
+    pub collider: &'a MovingCollider,
+    pub settings: &'a ContactSettings,
+    pub substep: SubStep,
+    pub lanes: &'a LaneMotion,
+}
+
+impl Pushing<'_> {
+    /// Where a candidate is among the blocks, and among the cloth's.
+    pub fn place(&self, candidate: &Candidate) -> (usize, Slot) {
+        let (block, lane) = candidate.lane();
+        let index = block - self.first;
+        let block = self.contacts[index].block as usize;
+        (index, Slot { block, lane })
+    }
+
+    /// Notes how deep a candidate was found (m).
+    pub fn note_depth(&mut self, index: usize, lane: usize, depth: f32) {
+        let known = &mut self.contacts[index].depth[lane];
+        *known = known.max(depth);
+    }
+}

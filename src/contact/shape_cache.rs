@@ -1,0 +1,82 @@
+//! What is known of particles and triangles near a shape from an earlier sub-step, so that most are not tested again.
+
+use std::ops::Range;
+
+use super::{
+    ColliderShape,
+    candidates::Fans,
+    geometry_particles::{KnownParticle, push_particles_out},
+    particle::{Found, push_particles},
+    pushing::Pushing,
+    sharp::{EdgeMotion, push_off_edges},
+};
+use crate::cloth::ClothParticles;
+
+/// What is known of each candidate of a tick. Only kept for what has edges: it stays empty in a scene without.
+#[derive(Debug, Default, Clone)]
+pub(super) struct ShapeCache {
+    particles: Vec<KnownParticle>,
+    /// How far anything may have moved before the triangles of a candidate can touch an edge (m), as `travelled` counts it.
+    clear: Vec<f32>,
+    /// How far any particle may have moved since the candidates were found (m).
+    pub travelled: f32,
+}
+
+impl ShapeCache {
+    /// Forgets all: the candidates are others.
+    pub fn clear(&mut self) {
+        self.particles.clear();
+        self.clear.clear();
+        self.travelled = 0.0;
+    }
+
+    /// Makes room for so many candidates.
+    pub fn make_room(&mut self, candidates: usize) {
+        if self.clear.len() < candidates {
+            self.particles.resize(candidates, KnownParticle::default());
+            self.clear.resize(candidates, f32::NEG_INFINITY);
+        }
+    }
+
+    /// What is known of some of them.
+    pub fn of(&mut self, candidates: Range<usize>) -> Known<'_> {
+        Known {
+            particles: &mut self.particles[candidates.clone()],
+            clear: &mut self.clear[candidates],
+            travelled: self.travelled,
+        }
+    }
+}
+
+/// What is known of a collider's candidates.
+pub(super) struct Known<'a> {
+    particles: &'a mut [KnownParticle],
+    clear: &'a mut [f32],
+    travelled: f32,
+}
+
+/// Pushes particles out of a shape with edges and, with the fans and the spacing (m) of its triangles, those off its edges.
+pub(super) fn push_shape(
+    particles: &mut ClothParticles,
+    pushing: &mut Pushing,
+    known: Known,
+    triangles: Option<(&Fans, f32)>,
+) -> Found {
+    // Particles come last, so that none is inside at the end.
+    let mut by_edges = Found::default();
+    if let Some((fans, spacing)) = triangles {
+        let motion = EdgeMotion::new(pushing, spacing, known.travelled);
+        by_edges = push_off_edges(particles, pushing, fans, known.clear, &motion);
+    }
+    let mut found = match pushing.collider.shape {
+        ColliderShape::Geometry(_) => push_particles_out(particles, pushing, known.particles),
+        _ => {
+            let at = (pushing.collider, pushing.settings, pushing.substep);
+            push_particles(particles, pushing.contacts, at, pushing.lanes)
+        }
+    };
+    found.deepest = found.deepest.max(by_edges.deepest);
+    found.farthest_push += by_edges.farthest_push;
+    found.given.merge(&by_edges.given);
+    found
+}

@@ -1,0 +1,266 @@
+//! Triangles against what comes through them between particles: the sharp edges and corners of a shape.
+//!
+//! A triangle whose corners are all outside of a solid can only come to cut it where one of the solid's edges comes through
+//! the triangle. So beside the particles only edges are tested, and of flat surfaces nothing.
+
+use bevy::math::{Isometry3d, Vec3};
+
+use super::{
+    MovingCollider,
+    candidates::{Candidate, Fans},
+    corners::Corners,
+    edge_contact::{EdgeContact, deepest_edge, nearest_edge},
+    particle::Found,
+    pushing::Pushing,
+    response::{Contact, Given, PushOut, first_touch},
+    touch::ContactSettings,
+    triangle::at,
+};
+use crate::{
+    cloth::{ClothParticles, Slot},
+    solver::SubStep,
+};
+
+/// Triangles keep at least this part of a spacing from edges, for particles without a radius.
+const SKIN: f32 = 0.02;
+/// How many times as far as a triangle's point one of its corners is pushed at most.
+const MAX_SHARE: f32 = 2.0;
+
+/// A shape's way through a sub-step, as triangles are tested against its edges.
+pub(super) struct EdgeMotion<'a> {
+    pub collider: &'a MovingCollider,
+    pub settings: &'a ContactSettings,
+    pub substep: SubStep,
+    /// How near an edge may come (m).
+    reach: f32,
+    pose: Isometry3d,
+    to_local: Isometry3d,
+    /// How far it moves in the sub-step, and any of its points turns (m).
+    slide: Vec3,
+    swing: f32,
+    push_out: PushOut,
+    /// How far its surface has moved in the tick (m).
+    carried: f32,
+}
+
+impl<'a> EdgeMotion<'a> {
+    /// On a cloth of a spacing (m), whose particles have moved so far since they were searched for (m).
+    pub fn new(pushing: &Pushing<'a>, spacing: f32, travelled: f32) -> Self {
+        let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
+        let count = substep.count as f32;
+        let pose = collider.pose_at(substep.end());
+        Self {
+            collider,
+            settings,
+            substep,
+            reach: settings.particle_radius.max(SKIN * spacing),
+            pose,
+            to_local: pose.inverse(),
+            slide: (collider.to - Vec3::from(collider.from.translation)) / count,
+            swing: collider.swing() / count,
+            push_out: pushing.lanes.push_out,
+            carried: travelled + substep.end() * collider.max_surface_travel(f32::INFINITY),
+        }
+    }
+
+    fn speed(&self, displacements: [Vec3; 3]) -> f32 {
+        let speeds = displacements.map(|displacement| (displacement - self.slide).length());
+        speeds[0].max(speeds[1]).max(speeds[2]) + self.swing
+    }
+
+    /// Where the nearest edge was when a fast triangle first came to it.
+    fn hit(&self, corners: &Corners) -> Option<(Vec3, Vec3)> {
+        let speed = self.speed(corners.displacements);
+        if !self.settings.is_swept || speed <= self.reach / 2.0 || !speed.is_finite() {
+            return None;
+        }
+        let count = self.substep.count as f32;
+        let begin = self.substep.index as f32 / count;
+        let around = speed + self.reach;
+        let closest = |part: f32| {
+            let pose = self.collider.pose_at(begin + part / count);
+            let triangle = [0, 1, 2].map(|corner| {
+                let gone = corners.displacements[corner] * (1.0 - part);
+                pose.inverse() * (corners.positions[corner] - gone)
+            });
+            let (distance, offset, centre) = nearest_edge(&self.collider.shape, triangle, around);
+            (distance, pose.rotation * offset, pose * centre)
+        };
+        // From what cut an edge already, nobody knows from which side it came.
+        if closest(0.0).0 < self.reach / 2.0 {
+            return None;
+        }
+        let tolerance = 1.0e-2 * self.reach;
+        let part = first_touch(speed, self.reach, tolerance, |part| closest(part).0)?;
+        let (_, offset, centre) = closest(part);
+        let way = [begin + part / count, self.substep.end()];
+        let (centre, normal) = self.collider.carry(way, centre, offset.normalize_or_zero());
+        Some((centre, normal))
+    }
+}
+
+/// Pushes triangles off the edges of a shape that come through them, by moving their corners as much as they have a part in
+/// the point, and mass allows. `clear` says until when a candidate's triangles can't touch any.
+pub(super) fn push_off_edges(
+    particles: &mut ClothParticles,
+    pushing: &mut Pushing,
+    fans: &Fans,
+    clear: &mut [f32],
+    motion: &EdgeMotion,
+) -> Found {
+    let shape = &motion.collider.shape;
+    let reach = motion.reach;
+    let mut found = Found::default();
+    // The farthest that one triangle has pushed (m).
+    let mut farthest = 0.0_f32;
+    for (candidate, clear) in pushing.candidates.iter().zip(clear) {
+        if *clear > motion.carried {
+            continue;
+        }
+        let place = |slot: Slot| particles.blocks()[slot.block].position(slot.lane);
+        let (index, slot) = pushing.place(candidate);
+        let own = place(slot);
+        let corners = fans.corners(candidate.corners).iter();
+        let extent = corners.map(|&slot| place(slot).distance_squared(own));
+        let extent = extent.fold(0.0, f32::max).sqrt();
+        // Far enough to leave it alone for a while.
+        let within = 3.0 * extent + 2.0 * reach;
+        let distance = shape
+            .edge_distance(motion.to_local * own, within)
+            .min(within);
+        let room = (distance - extent) * (1.0 - 1.0e-4) - reach;
+        if room > 0.0 {
+            *clear = motion.carried + room;
+            if room > fan_speed(particles, candidate, fans, motion) {
+                continue;
+            }
+        }
+        for &slots in fans.faces(candidate.faces) {
+            let corners = Corners::of(particles, slots);
+            let local = corners.positions.map(|position| motion.to_local * position);
+            let (pushed, depth) = if let Some((centre, normal)) = motion.hit(&corners) {
+                push_in_front(
+                    particles,
+                    &corners,
+                    centre,
+                    normal,
+                    motion,
+                    &mut found.given,
+                )
+            } else if let Some(contact) = deepest_edge(shape, local, reach) {
+                push_point(particles, &corners, &contact, motion, &mut found.given)
+            } else {
+                continue;
+            };
+            pushing.note_depth(index, slot.lane, depth);
+            found.deepest = found.deepest.max(depth);
+            farthest = farthest.max(pushed);
+        }
+    }
+    found.farthest_push = farthest * fans.max_faces;
+    found
+}
+
+/// How far any of a candidate's triangles moved past the shape in the sub-step, if so far that it is tested on its way (m).
+fn fan_speed(
+    particles: &ClothParticles,
+    candidate: &Candidate,
+    fans: &Fans,
+    motion: &EdgeMotion,
+) -> f32 {
+    let speeds = fans.corners(candidate.corners).iter().map(|slot| {
+        let displacement = particles.blocks()[slot.block].displacement(slot.lane);
+        (displacement - motion.slide).length() + motion.swing
+    });
+    let speed = speeds.fold(0.0, f32::max);
+    if speed > motion.reach / 2.0 {
+        speed
+    } else {
+        0.0
+    }
+}
+
+/// Pushes a triangle's point along its normal. Returns how far the farthest corner has moved, and how deep it was (m).
+fn push_point(
+    particles: &mut ClothParticles,
+    corners: &Corners,
+    contact: &EdgeContact,
+    motion: &EdgeMotion,
+    given: &mut Given,
+) -> (f32, f32) {
+    let EdgeContact {
+        weights,
+        normal,
+        depth,
+    } = *contact;
+    let normal = motion.pose.rotation * normal;
+    let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
+    let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
+    // One that hardly has a part, beside pins, can't make up for them: it would be thrown away.
+    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
+    if mobility == 0.0 {
+        return (0.0, depth);
+    }
+    let point = at(corners.positions, weights) + normal * (depth - motion.reach);
+    let origin = Vec3::from(motion.pose.translation);
+    let surface = motion
+        .collider
+        .surface_motion(motion.substep, origin, point);
+    let push = Contact {
+        normal,
+        depth,
+        relative: at(corners.displacements, weights) - surface,
+    }
+    .push(motion.settings.friction, &motion.push_out);
+    let mut farthest = 0.0_f32;
+    for (corner, part) in parts.into_iter().enumerate() {
+        let share = part / mobility;
+        if share > 0.0 {
+            let push = [push.position * share, push.displacement * share];
+            farthest = farthest.max(push[0].length());
+            let pushed = corners.push(corner, particles, push);
+            given.add(pushed - origin, push[1], corners.inverse_masses[corner]);
+        }
+    }
+    (farthest, depth)
+}
+
+/// Pushes each corner of a triangle in front of the plane of a point that it hit. Returns how far the farthest has moved,
+/// and how deep it was (m).
+fn push_in_front(
+    particles: &mut ClothParticles,
+    corners: &Corners,
+    centre: Vec3,
+    normal: Vec3,
+    motion: &EdgeMotion,
+    given: &mut Given,
+) -> (f32, f32) {
+    let origin = Vec3::from(motion.pose.translation);
+    let (mut farthest, mut deepest) = (0.0_f32, 0.0_f32);
+    for corner in 0..3 {
+        let position = corners.positions[corner];
+        let depth = motion.reach - normal.dot(position - centre);
+        if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
+            continue;
+        }
+        let point = position + normal * (depth - motion.reach);
+        let surface = motion
+            .collider
+            .surface_motion(motion.substep, origin, point);
+        let push = Contact {
+            normal,
+            depth,
+            relative: corners.displacements[corner] - surface,
+        }
+        .push(motion.settings.friction, &motion.push_out);
+        deepest = deepest.max(depth);
+        farthest = farthest.max(push.position.length());
+        let pushed = corners.push(corner, particles, [push.position, push.displacement]);
+        given.add(
+            pushed - origin,
+            push.displacement,
+            corners.inverse_masses[corner],
+        );
+    }
+    (farthest, deepest)
+}
