@@ -40,9 +40,8 @@ struct Sum {
 }
 
 impl Zones {
-    /// Has no pair that is `close` pass through itself. Returns how far any particle was moved at most (m), and whether some had
-    /// to move as one.
-    pub fn certify(&mut self, pairs: &[Pair], close: &[u32], members: &mut Members) -> (f32, bool) {
+    /// Has no pair that is `close` pass through itself. Returns how far any particle was moved at most (m).
+    pub fn certify(&mut self, pairs: &[Pair], close: &[u32], members: &mut Members) -> f32 {
         let mut farthest = 0.0_f32;
         let mut has_zones = false;
         for round in 0..PUSHES + ZONES {
@@ -70,7 +69,7 @@ impl Zones {
                 farthest = farthest.max(self.move_as_one(members));
             }
         }
-        (farthest, has_zones)
+        farthest
     }
 
     fn clear(&mut self, members: usize) {

@@ -70,7 +70,6 @@ pub(crate) struct MutualContact {
     close: Vec<u32>,
     zones: Zones,
     searches: u32,
-    has_zones: bool,
 }
 
 const NOBODY: u32 = u32::MAX;
@@ -83,7 +82,7 @@ impl MutualContact {
 
     /// Begins a tick of these cloths, of which `meets` says which two of them touch.
     pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
-        (self.searches, self.has_zones) = (0, false);
+        self.searches = 0;
         let is_known = self.is_searched && self.origin.is_of(cloths);
         if is_known {
             self.nearer = self.origin.approach(cloths);
@@ -97,12 +96,6 @@ impl MutualContact {
     /// How often in the tick features were searched for.
     pub fn searches(&self) -> u32 {
         self.searches
-    }
-
-    /// Whether some particles had to be moved as one in the tick, so that they do not pass through each other.
-    #[cfg(test)]
-    pub fn has_zones(&self) -> bool {
-        self.has_zones
     }
 
     /// Pairs of features that may come near each other, as found last.
@@ -157,11 +150,9 @@ impl MutualContact {
             if round == 0 {
                 farthest = push(&self.pairs, &self.close, &mut self.members, dt);
             }
-            let (moved, has_zones) =
-                self.zones
-                    .certify(&self.pairs, &self.close, &mut self.members);
+            let zones = &mut self.zones;
+            let moved = zones.certify(&self.pairs, &self.close, &mut self.members);
             farthest = farthest.max(moved);
-            self.has_zones |= has_zones;
             // What was pushed has come nearer to others.
             let after = self.members.approach();
             if after <= approach {

@@ -123,12 +123,6 @@ impl Scene {
             .collect();
         intersections(&cloths)
     }
-
-    pub fn largest_speed(&self) -> f32 {
-        let each = self.cloths.iter();
-        each.map(|cloth| cloth.particles.largest_speed())
-            .fold(0.0, f32::max)
-    }
 }
 
 pub(super) fn settings(thickness: f32) -> ClothSelfCollision {

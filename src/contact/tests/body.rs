@@ -66,7 +66,7 @@ fn an_impact_shares_by_mass() {
         assert!(detection.respond(&mut particles, &SETTINGS, substep, |_| {}));
         let change = detection.body_change(0).expect("it was touched");
         let touch = &detection.touches()[0];
-        let way = touch.collider;
+        let way = touch.collider.clone();
         let top = way.pose_at(substep.end()).translation.y + 0.5;
         for index in 0..9 {
             let position = particles.position(index).expect("it exists");

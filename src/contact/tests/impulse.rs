@@ -95,13 +95,13 @@ fn the_cloth_lost_what_the_collider_got() {
     let ball = MovingCollider::ball(0.3, centre, centre);
     let spinning = MovingCollider {
         turn: Vec3::new(0.02, 0.0, 0.05),
-        ..ball
+        ..ball.clone()
     };
     for (collider, narrow_phase, ticks) in [
         (floor, NarrowPhase::Particles, 60 * 64),
-        (ball, NarrowPhase::Particles, 128),
+        (ball.clone(), NarrowPhase::Particles, 128),
         (ball, NarrowPhase::Triangles, 128),
-        (spinning, NarrowPhase::Particles, 128),
+        (spinning.clone(), NarrowPhase::Particles, 128),
         (spinning, NarrowPhase::Triangles, 128),
     ] {
         let [off, spun] = balance(&collider, narrow_phase, ticks);

@@ -100,7 +100,7 @@ fn make(world: &mut World, entity: Entity, change: Change, parents: [Entity; 2])
             world.entity_mut(entity).remove::<ClothCollider>();
         }
         Change::InsertAgain => {
-            if let Some(collider) = world.get::<ClothCollider>(entity).copied() {
+            if let Some(collider) = world.get::<ClothCollider>(entity).cloned() {
                 world.entity_mut(entity).insert(collider);
             }
         }
