@@ -73,20 +73,20 @@ impl Experiment for Colliders {
         let turns = run.either(20, 300);
         let many = run.either(50, 1000);
         let numbers = run.either(&[1, 10, 100][..], &[1, 10, 100, 1000, 10_000]);
-        let ball = shapes()[0];
+        let [ball, ..] = shapes();
         let mut scenes = Vec::new();
         for state in [State::Awake, State::Moving] {
             scenes.extend(
                 numbers
                     .iter()
-                    .map(|&number| ([1, SMALL], number, state, ball)),
+                    .map(|&number| ([1, SMALL], number, state, ball.clone())),
             );
         }
         for state in [State::Awake, State::Asleep, State::AsleepMoving] {
             scenes.extend(
                 numbers
                     .iter()
-                    .map(|&number| ([many, SMALL], number, state, ball)),
+                    .map(|&number| ([many, SMALL], number, state, ball.clone())),
             );
         }
         for shape in shapes() {
@@ -99,7 +99,7 @@ impl Experiment for Colliders {
         run.begin(Self::NAME, scenes.len());
         let mut rows = Vec::new();
         for (cloths, colliders, state, (name, shape)) in scenes {
-            let mut stages = [0, colliders].map(|number| Stage::new(cloths, number, state, shape));
+            let mut stages = [0, colliders].map(|number| Stage::new(cloths, number, state, &shape));
             // Until cloths sleep that shall, and lie that fall.
             stages.iter_mut().for_each(|stage| stage.warm_up(150));
             for _ in 0..turns {

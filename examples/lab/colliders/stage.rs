@@ -61,7 +61,7 @@ impl Stage {
         [cloths, side]: [u32; 2],
         colliders: u32,
         state: State,
-        shape: ClothCollider,
+        shape: &ClothCollider,
     ) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
@@ -103,7 +103,7 @@ impl Stage {
         let below = if is_touching { 0.42 } else { BELOW };
         for at in places(colliders) {
             let place = Transform::from_translation(at - Vec3::Y * below);
-            let collider = world.spawn((shape, place)).id();
+            let collider = world.spawn((shape.clone(), place)).id();
             if matches!(state, State::Moving | State::AsleepMoving) {
                 world.entity_mut(collider).insert(Mover);
             }
