@@ -76,8 +76,12 @@ fn left_inside(app: &App, cloth: Entity, collider: Entity) -> f64 {
     )
 }
 
+/// How deep a particle may be inside after a tick (m): half of its radius. What came in within a sub-step is pushed out at its end; an
+/// older overlap, as the edges of a shape that turns leave one, is let out slowly, so that it throws nothing.
+const LEFT: f64 = 0.005;
+
 /// Drops a free cloth on a collider whose transform goes as `at` says of the tick; after each tick, none of its
-/// particles may be inside, since what pushes them out comes last in a sub-step.
+/// particles may be inside by more than what is let out slowly.
 fn drop_on(collider: ClothCollider, height: f32, at: impl Fn(f32) -> Transform) {
     let mut app = app();
     let cloth = (lying(Cloth::new(24, 24, 0.05), height + 0.05), Pins::none());
@@ -90,7 +94,7 @@ fn drop_on(collider: ClothCollider, height: f32, at: impl Fn(f32) -> Transform) 
         deepest = deepest.max(left_inside(&app, cloth, entity));
         most = most.max(contact(&app, cloth, entity).map_or(0, |contact| contact.particles));
     }
-    assert!(deepest < ROUNDING, "{collider:?}: {deepest} m left inside");
+    assert!(deepest < LEFT, "{collider:?}: {deepest} m left inside");
     assert!(most > 4, "{collider:?}: {most} particles");
     let started = messages::<ClothTouchStarted>(&mut app);
     let first = started.first().expect("a touch");

@@ -111,9 +111,10 @@ fn layers_slide_from_the_angle_of_friction_on() {
         let (sin, cos) = slope.atan().sin_cos();
         let wanted = 9.81 * (sin - 0.3 * cos) * ticks as f32 * scene.step.seconds;
         if slides {
-            // The first sub-step falls freely, and the sheet bends a little over the edges of the one below.
+            // Friction is off by at most 5 %: a push on one particle leaves less for the next to hold against.
+            let held = 9.81 * 0.3 * cos * ticks as f32 * scene.step.seconds;
             assert!(
-                (speed - wanted).abs() < 0.1 * wanted + 0.01,
+                (speed - wanted).abs() < 0.05 * held,
                 "{slope}: {speed}, {wanted}"
             );
         } else {
