@@ -193,7 +193,7 @@ impl Body {
         }
         let substeps = substep.count as f32;
         let dt = particles.substep();
-        let [go, turn, push, spin] = [go, turn, push, spin].map(|change| change.as_vec3());
+        let [go, turn, push, spin] = [go, turn, push, spin].map(DVec3::as_vec3);
         self.change.velocity += push / dt;
         self.change.angular_velocity += spin / dt;
         // It goes on from where it is now, with the velocity that it has now.

@@ -29,9 +29,9 @@ impl Origin {
                         for (axis, place) in [X, Y, Z].into_iter().zip(&mut place) {
                             place.copy_from_slice(&block.view()[axis..axis + LANES]);
                         }
-                        for lane in 0..LANES {
+                        for (lane, x) in place[0].iter_mut().enumerate() {
                             if layout.column(index % layout.strip as usize, lane).is_none() {
-                                place[0][lane] = f32::NAN;
+                                *x = f32::NAN;
                             }
                         }
                         place
