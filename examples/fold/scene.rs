@@ -103,9 +103,8 @@ fn spawn_cloth(
     // Broad stripes across: each fold shows another.
     let weave = woven(&mut images, 3, |runs_down, yarn| {
         match (runs_down, yarn / 16) {
-            (true, _) => Color::srgb(0.86, 0.84, 0.78),
+            (true, _) | (false, 1) => Color::srgb(0.86, 0.84, 0.78),
             (false, 0 | 2) => Color::srgb(0.13, 0.36, 0.52),
-            (false, 1) => Color::srgb(0.86, 0.84, 0.78),
             (false, _) => Color::srgb(0.80, 0.42, 0.20),
         }
     });

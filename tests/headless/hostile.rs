@@ -132,9 +132,9 @@ fn act(world: &mut World, entities: &mut [Entity], which: usize, act: Act) {
         }
         Act::Despawn => {
             entity.despawn();
-            for which in 0..entities.len() {
-                if world.get_entity(entities[which]).is_err() {
-                    entities[which] = if which < CLOTHS {
+            for (which, entity) in entities.iter_mut().enumerate() {
+                if world.get_entity(*entity).is_err() {
+                    *entity = if which < CLOTHS {
                         world.spawn(cloth()).id()
                     } else {
                         world.spawn(ClothCollider::ball(0.2)).id()

@@ -196,7 +196,7 @@ fn what_was_found_may_be_forgotten() {
             tick(&mut app, 1);
             if forgets {
                 change(&mut app, cloth, |scratch: &mut ClothScratch| {
-                    *scratch = default()
+                    *scratch = default();
                 });
             }
         }

@@ -40,7 +40,7 @@ fn shows_through(app: &App, cloth: Entity, edges: &[[Vec3; 2]]) -> f64 {
     for [a, b, c] in triangles(app, cloth) {
         let normal = (b - a).cross(c - a).normalize();
         for ends in edges {
-            let [from, to] = ends.map(|end| end.as_dvec3());
+            let [from, to] = ends.map(Vec3::as_dvec3);
             let (before, after) = (normal.dot(from - a), normal.dot(to - a));
             if before * after >= 0.0 {
                 continue;

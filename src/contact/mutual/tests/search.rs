@@ -102,7 +102,7 @@ fn no_pair_is_lost() {
         let places: Vec<DVec3> = cloths[0]
             .particles
             .positions()
-            .map(|at| at.as_dvec3())
+            .map(Vec3::as_dvec3)
             .collect();
         let mut found = Vec::new();
         Search::default().find(
