@@ -16,6 +16,7 @@ mod motion;
 mod near;
 mod parents;
 mod push_back;
+mod push_rapier;
 mod rapier;
 mod reflection;
 mod rest;

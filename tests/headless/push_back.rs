@@ -7,14 +7,14 @@ use crate::support::*;
 
 /// A body of a test: what a physics engine would know of it.
 #[derive(Component, Default, Clone, Copy)]
-struct Body {
-    velocity: Vec3,
-    spin: Vec3,
-    gravity: f32,
+pub struct Body {
+    pub velocity: Vec3,
+    pub spin: Vec3,
+    pub gravity: f32,
 }
 
 /// An app that moves bodies as an engine does: by their velocities, which the cloth's pushes change.
-fn app_with_bodies() -> App {
+pub fn app_with_bodies() -> App {
     let mut app = app();
     app.add_systems(
         FixedUpdate,
@@ -41,21 +41,21 @@ fn app_with_bodies() -> App {
     app
 }
 
-fn place(app: &App, body: Entity) -> Vec3 {
+pub fn place(app: &App, body: Entity) -> Vec3 {
     let transform = app.world().get::<Transform>(body).expect("a transform");
     transform.translation
 }
 
-fn velocity(app: &App, body: Entity) -> Vec3 {
+pub fn velocity(app: &App, body: Entity) -> Vec3 {
     app.world().get::<Body>(body).expect("a body").velocity
 }
 
-fn flat(x: f32, y: f32, z: f32) -> Transform {
+pub fn flat(x: f32, y: f32, z: f32) -> Transform {
     Transform::from_xyz(x, y, z).with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2))
 }
 
 /// A sheet of 1 m that is held by its four edges, level at the height 0.
-fn spawn_trampoline(app: &mut App, particles: u32) -> Entity {
+pub fn spawn_trampoline(app: &mut App, particles: u32) -> Entity {
     let spacing = 1.0 / (particles - 1) as f32;
     let last = particles - 1;
     let pins =
@@ -65,7 +65,7 @@ fn spawn_trampoline(app: &mut App, particles: u32) -> Entity {
     app.world_mut().spawn(sheet).id()
 }
 
-fn spawn_ball(app: &mut App, mass: f32, radius: f32, place: Vec3) -> Entity {
+pub fn spawn_ball(app: &mut App, mass: f32, radius: f32, place: Vec3) -> Entity {
     let ball = (
         ClothCollider::ball(radius),
         ClothBody::ball(mass, radius),
@@ -79,7 +79,7 @@ fn spawn_ball(app: &mut App, mass: f32, radius: f32, place: Vec3) -> Entity {
 }
 
 /// Kinetic energy of a cloth, and its energy of height (J).
-fn cloth_energy(app: &App, cloth: Entity) -> f64 {
+pub fn cloth_energy(app: &App, cloth: Entity) -> f64 {
     let particles = particles(app, cloth);
     let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
     let each = (0..particles.len()).filter_map(|index| {
@@ -219,7 +219,7 @@ fn a_light_ball_is_taken_along() {
 }
 
 /// Momentum of a cloth in the world, and its mass (kg·m/s, kg).
-fn cloth_momentum(app: &App, cloth: Entity) -> (DVec3, f64) {
+pub fn cloth_momentum(app: &App, cloth: Entity) -> (DVec3, f64) {
     let particles = particles(app, cloth);
     let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
     let rotation = frame.isometry().rotation.as_dquat();
