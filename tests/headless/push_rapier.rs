@@ -2,9 +2,7 @@
 
 use bevy::{math::DVec3, prelude::*};
 use bevy_drape::prelude::*;
-use bevy_rapier3d::prelude::{
-    Collider, ColliderMassProperties, GravityScale, RigidBody, Velocity,
-};
+use bevy_rapier3d::prelude::{Collider, ColliderMassProperties, GravityScale, RigidBody, Velocity};
 
 use crate::{push_back::cloth_momentum, rapier::app_with_rapier, support::*};
 
@@ -56,9 +54,7 @@ fn throw(app: &mut App, sheet: Entity, velocity: Vec3) {
     let velocity = frame.isometry().rotation.inverse() * velocity;
     change::<ClothParticles>(app, sheet, |particles| {
         for index in 0..particles.len() {
-            particles
-                .set_velocity(index, velocity)
-                .expect("it exists");
+            particles.set_velocity(index, velocity).expect("it exists");
         }
     });
 }
@@ -94,7 +90,10 @@ fn a_rapier_body_gets_what_the_cloth_lost() {
         }
         let relative = worst / start.length();
         println!("{mass} kg: off by {relative}");
-        assert!(relative < 1.0e-5, "{mass} kg: momentum is off by {relative}");
+        assert!(
+            relative < 1.0e-5,
+            "{mass} kg: momentum is off by {relative}"
+        );
         let gone = velocity(&app, ball).linear.dot(speed.normalize());
         let common = speed.length() * sheet_mass as f32 / (sheet_mass as f32 + mass);
         // It strikes beside the middle, and some of the sheet goes past.
@@ -130,7 +129,10 @@ fn two_cloths_push_one_rapier_body() {
         let relative = worst / start.length();
         println!("{mass} kg: off by {relative}, {together} ticks together");
         assert!(together > 5, "{mass} kg: {together} ticks together");
-        assert!(relative < 1.0e-5, "{mass} kg: momentum is off by {relative}");
+        assert!(
+            relative < 1.0e-5,
+            "{mass} kg: momentum is off by {relative}"
+        );
         // Each has pushed along its way.
         let velocity = velocity(&app, ball).linear;
         let (_, sheet_mass) = cloth_momentum(&app, first);
