@@ -229,9 +229,7 @@ impl IntegratingItem<'_, '_> {
                         is_fixed: false,
                     };
                     let mut is_pushed = [false];
-                    let moved = (!is_touched).then_some(substep.farthest_move);
-                    let farthest =
-                        mutual.respond(&mut [itself], |_, _| true, dt, moved, &mut is_pushed);
+                    let farthest = mutual.respond(&mut [itself], |_, _| true, dt, &mut is_pushed);
                     detection.note_push(farthest);
                     is_touched | is_pushed[0]
                 });

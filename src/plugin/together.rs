@@ -144,7 +144,7 @@ fn advance(
             }
         }
         is_pushed.fill(false);
-        let farthest = contact.respond(&mut participants(members), meets, dt, None, &mut is_pushed);
+        let farthest = contact.respond(&mut participants(members), meets, dt, &mut is_pushed);
         for ((member, tick), is_pushed) in members.iter_mut().zip(&mut ticks).zip(&is_pushed) {
             if let Some(tick) = tick
                 && *is_pushed

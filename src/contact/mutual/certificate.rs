@@ -10,7 +10,7 @@ use bevy::math::Vec3;
 use super::{members::Members, pair::Pair};
 
 /// Of the thickness, and of the distance as the sub-step began, what has to be left between features.
-const LEFT_OF_THICKNESS: f32 = 0.05;
+pub(super) const LEFT_OF_THICKNESS: f32 = 0.05;
 const LEFT_OF_DISTANCE: f32 = 0.25;
 
 /// How often those that would pass are pushed apart, before they are made to move as one.
@@ -40,13 +40,13 @@ struct Sum {
 }
 
 impl Zones {
-    /// Has no pair that is `close` pass through itself. Returns how far any particle was moved at most (m).
-    pub fn certify(&mut self, pairs: &[Pair], close: &[u32], members: &mut Members) -> f32 {
+    /// Has no pair that is `near` pass through itself. Returns how far any particle was moved at most (m).
+    pub fn certify(&mut self, pairs: &[Pair], near: &[u32], members: &mut Members) -> f32 {
         let mut farthest = 0.0_f32;
         let mut has_zones = false;
         for round in 0..PUSHES + ZONES {
             let mut is_certain = true;
-            for &index in close {
+            for &index in near {
                 let pair = &pairs[index as usize];
                 let Some(lack) = lack(pair, members) else {
                     continue;

@@ -11,6 +11,7 @@ mod certificate;
 mod flat;
 mod intersections;
 mod members;
+mod near;
 mod origin;
 mod pair;
 mod participant;
@@ -26,9 +27,10 @@ use bevy::math::Vec3;
 use self::{
     certificate::Zones,
     members::Members,
+    near::NearPairs,
     origin::Origin,
-    pair::{Nearest, Pair},
-    response::{push, select},
+    pair::{Nearest, Pair, VERTEX_AND_FACE},
+    response::push,
     search::{Found, Search},
 };
 
@@ -43,6 +45,11 @@ const SUBSTEPS: f32 = 8.0;
 /// How often in a sub-step what has been pushed is compared with what was too far away before.
 const ROUNDS: u32 = 3;
 
+/// As long as no two features are near each other, particles are looked at again in this many sub-steps at most, and before they
+/// may have come, as fast as lately, this part of the way that is free.
+const LONGEST_WAIT: u32 = 16;
+const PART_OF_WAY: f32 = 0.5;
+
 /// The margin of a search, at least and, unless things are faster than that, at most: as a part of the shortest spacing.
 const MARGINS: [f32; 2] = [0.02, 0.1];
 
@@ -55,9 +62,13 @@ pub(crate) struct MutualContact {
     members: Members,
     /// Which member each particle of each cloth is, if any.
     member_of: Vec<Vec<u32>>,
+    /// The last pair that names each member as its vertex, if any.
+    last_of: Vec<u32>,
     /// The same before the last search.
     members_before: Members,
     member_of_before: Vec<Vec<u32>>,
+    /// Where all particles were at the search before the last one.
+    origin_before: Origin,
     /// Where all particles were at the last search, and how much nearer to each other any two may come before the next (m).
     origin: Origin,
     margin: f32,
@@ -66,12 +77,15 @@ pub(crate) struct MutualContact {
     is_searched: bool,
     /// By how much any two members can have come nearer to each other since the last search, at most (m).
     odometer: f32,
-    /// Pairs that may touch in this sub-step.
-    close: Vec<u32>,
+    near: NearPairs,
     zones: Zones,
+    /// For how many sub-steps nothing has to be looked at, and since how many nothing was.
+    wait: u32,
+    waited: u32,
     searches: u32,
 }
 
+/// No member, no pair.
 const NOBODY: u32 = u32::MAX;
 
 impl MutualContact {
@@ -87,10 +101,14 @@ impl MutualContact {
         if is_known {
             self.nearer = self.origin.approach(cloths);
         }
-        if !is_known || self.nearer > self.margin {
-            self.search(cloths, meets, 0.0);
-        }
+        (self.wait, self.waited) = (0, 0);
         self.members.begin(cloths);
+        if !is_known {
+            self.is_searched = false;
+            self.search(cloths, meets, 0.0);
+        } else if self.nearer > self.margin {
+            self.search(cloths, meets, self.nearer - self.margin);
+        }
     }
 
     /// How often in the tick features were searched for.
@@ -105,53 +123,55 @@ impl MutualContact {
 
     /// Pairs of features that were looked at in the last sub-step.
     #[cfg(test)]
-    pub fn close(&self) -> usize {
-        self.close.len()
+    pub fn near(&self) -> usize {
+        self.near.pushed.len()
     }
 
-    /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s), in which no particle has moved farther than `moved`
-    /// (m), if that is known. Says of each cloth whether any of it was pushed. Returns the farthest that anything was pushed (m).
+    /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s). Says of each cloth whether any of it was pushed.
+    /// Returns the farthest that anything was pushed (m).
     pub fn respond(
         &mut self,
         cloths: &mut [Participant],
         meets: impl Fn(usize, usize) -> bool,
         dt: f32,
-        moved: Option<f32>,
         is_pushed: &mut [bool],
     ) -> f32 {
-        self.nearer += 2.0 * moved.unwrap_or(f32::INFINITY);
-        // What all have in common is no approach: that is measured where it may matter.
-        if self.nearer > self.margin || !self.pairs.is_empty() {
-            self.nearer = self.origin.approach(cloths);
+        self.waited += 1;
+        if self.waited <= self.wait {
+            return 0.0;
         }
+        let before = self.nearer;
+        self.nearer = self.origin.approach(cloths);
         if self.nearer > self.margin {
             // Some may have met on the way to here.
             self.search(cloths, &meets, self.nearer - self.margin);
         }
-        self.close.clear();
         if self.pairs.is_empty() {
+            self.wait = self.free_substeps((self.nearer - before).max(0.0) / self.waited as f32);
+            self.waited = 0;
             return 0.0;
         }
+        (self.wait, self.waited) = (0, 0);
         self.members.gather(cloths);
         let mut approach = self.members.approach();
         self.odometer += approach;
         let mut farthest = 0.0_f32;
         for round in 0..ROUNDS {
-            select(
+            self.near.update(
                 &mut self.pairs,
                 &self.members,
+                &self.last_of,
                 approach,
                 self.odometer,
-                &mut self.close,
             );
-            if self.close.is_empty() {
+            if self.near.is_empty() {
                 break;
             }
             if round == 0 {
-                farthest = push(&self.pairs, &self.close, &mut self.members, dt);
+                farthest = push(&self.pairs, &self.near.pushed, &mut self.members, dt);
             }
             let zones = &mut self.zones;
-            let moved = zones.certify(&self.pairs, &self.close, &mut self.members);
+            let moved = zones.certify(&self.pairs, &self.near.certified, &mut self.members);
             farthest = farthest.max(moved);
             // What was pushed has come nearer to others.
             let after = self.members.approach();
@@ -160,6 +180,9 @@ impl MutualContact {
             }
             self.odometer += after - approach;
             approach = after;
+            if self.near.covers(self.odometer) {
+                break;
+            }
         }
         self.members.scatter(cloths, is_pushed);
         self.nearer += 2.0 * farthest;
@@ -168,6 +191,13 @@ impl MutualContact {
             self.search(cloths, &meets, 0.0);
         }
         farthest
+    }
+
+    /// For how many sub-steps particles that come nearer to each other by `pace` (m) in each have far to go.
+    fn free_substeps(&self, pace: f32) -> u32 {
+        let free = PART_OF_WAY * (self.margin - self.nearer);
+        // At no pace, or one that is not finite, too.
+        ((free / pace) as u32).min(LONGEST_WAIT)
     }
 
     /// Searches for all pairs that may come near each other before any two particles have come nearer by a margin, besides those
@@ -179,8 +209,11 @@ impl MutualContact {
         missed: f32,
     ) {
         self.searches += 1;
+        // While no pair was known, none was near where the search before this one was made.
+        let were_apart = self.is_searched && self.pairs.is_empty();
         self.is_searched = true;
         self.odometer = 0.0;
+        self.near.forget();
         let spacing = cloths
             .iter()
             .map(|cloth| cloth.sheet.surface().spacing().shortest)
@@ -191,6 +224,7 @@ impl MutualContact {
             .clamp(least, most)
             .max(1.5 * substep)
             .min(spacing);
+        std::mem::swap(&mut self.origin, &mut self.origin_before);
         self.origin.set(cloths);
         self.nearer = 0.0;
         if let Some(room) = room_in_flat(cloths)
@@ -215,6 +249,8 @@ impl MutualContact {
                 of.resize(cloth.particles.len(), NOBODY);
             }
         }
+        let mut last_of = std::mem::take(&mut self.last_of);
+        last_of.clear();
         for found in &self.found {
             let mut members = [0; 4];
             for (index, &particle) in found.particles.iter().enumerate() {
@@ -229,6 +265,7 @@ impl MutualContact {
                         Some(member) if member != NOBODY => {
                             self.members_before.start[member as usize]
                         }
+                        _ if were_apart => of.point(self.origin_before.place(cloth, slot)),
                         _ => of.start(slot),
                     };
                     *place = self.members.add(cloth as u32, slot, start);
@@ -236,15 +273,23 @@ impl MutualContact {
                 members[index] = *place;
             }
             let [a, b] = found.cloths.map(|cloth| cloths[cloth as usize].settings);
+            last_of.resize(self.members.len(), NOBODY);
+            let mut before = NOBODY;
+            if found.split == VERTEX_AND_FACE {
+                before = last_of[members[0] as usize];
+                last_of[members[0] as usize] = self.pairs.len() as u32;
+            }
             self.pairs.push(Pair {
                 members,
                 split: found.split,
                 thickness: found.thickness,
                 friction: (a.friction * b.friction).sqrt(),
+                before,
                 far_until: f32::NEG_INFINITY,
                 nearest: Nearest::default(),
             });
         }
+        self.last_of = last_of;
     }
 }
 

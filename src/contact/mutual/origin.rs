@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 
 use super::participant::Participant;
-use crate::cloth::{LANES, Lanes, X, Y, Z};
+use crate::cloth::{LANES, Lanes, Slot, X, Y, Z};
 
 /// Where all particles of some cloths were, each in its own frame, block by block (m). What is no particle is nowhere (NaN).
 #[derive(Debug, Default, Clone)]
@@ -38,6 +38,13 @@ impl Origin {
                     }),
             );
         }
+    }
+
+    /// Where a particle of a cloth was, in that cloth's frame (m).
+    pub fn place(&self, cloth: usize, slot: Slot) -> Vec3 {
+        self.cloths[cloth][slot.block]
+            .map(|axis| axis[slot.lane])
+            .into()
     }
 
     /// Whether it is one of as many particles.

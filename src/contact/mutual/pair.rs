@@ -15,9 +15,11 @@ pub(super) struct Pair {
     pub thickness: f32,
     /// Coulomb's μ.
     pub friction: f32,
+    /// The pair before this one of the same vertex with another face; none for `u32::MAX`.
+    pub before: u32,
     /// What the odometer says when they can first be that near (m).
     pub far_until: f32,
-    /// How the nearest points were as the sub-step began.
+    /// How the nearest points were when they were last found.
     pub nearest: Nearest,
 }
 

@@ -17,35 +17,11 @@ const KEPT: f32 = 0.3;
 /// How often all pairs are gone through: of one that is still nearer than half of its thickness, once more.
 const PASSES: u32 = 2;
 
-/// Finds the nearest points of all pairs that may touch in this sub-step, in which any two particles come nearer to each other by
-/// at most `approach` (m). The others are passed over until the `odometer` says that they may.
-pub(super) fn select(
-    pairs: &mut [Pair],
-    members: &Members,
-    approach: f32,
-    odometer: f32,
-    close: &mut Vec<u32>,
-) {
-    close.clear();
-    for (index, pair) in pairs.iter_mut().enumerate() {
-        if pair.far_until > odometer {
-            continue;
-        }
-        pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
-        let spare = pair.nearest.distance - pair.thickness - approach;
-        if spare > 0.0 {
-            pair.far_until = odometer + spare;
-        } else {
-            close.push(index as u32);
-        }
-    }
-}
-
-/// Keeps those that are `close` apart. Returns the farthest that a particle was pushed by one of them (m).
-pub(super) fn push(pairs: &[Pair], close: &[u32], members: &mut Members, dt: f32) -> f32 {
+/// Keeps those that are `near` apart. Returns the farthest that a particle was pushed by one of them (m).
+pub(super) fn push(pairs: &[Pair], near: &[u32], members: &mut Members, dt: f32) -> f32 {
     let mut farthest = 0.0_f32;
     for pass in 0..PASSES {
-        for &index in close {
+        for &index in near {
             let pair = &pairs[index as usize];
             let floor = if pass == 0 {
                 pair.thickness
@@ -63,9 +39,7 @@ pub(super) fn push(pairs: &[Pair], close: &[u32], members: &mut Members, dt: f32
 #[inline]
 fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> f32 {
     let Nearest {
-        weights,
-        normal,
-        distance,
+        weights, normal, ..
     } = pair.nearest;
     let between = pair.nearest.between(members.places(pair.members));
     let gap = normal.dot(between);
@@ -82,10 +56,12 @@ fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> f32 {
     let depth = pair.thickness - gap;
     // Of the way, and of velocity, what brought them nearer.
     let nearing = -normal.dot(pair.nearest.between(members.motions(pair.members)));
-    let [came, stopped] = [distance - gap, nearing].map(|nearer| depth.min(nearer).max(0.0));
+    let start = pair.nearest.between(members.starts(pair.members));
+    let [came, stopped] =
+        [normal.dot(start) - gap, nearing].map(|nearer| depth.min(nearer).max(0.0));
     let released = (depth - came).min(RELEASE * dt);
     let least = (KEPT * pair.thickness - gap - came - released).max(0.0);
-    let slid = between - pair.nearest.between(members.starts(pair.members));
+    let slid = between - start;
     let tangential = slid - normal * normal.dot(slid);
     let (slip, most) = (tangential.length(), pair.friction * (came + released));
     let grip = if slip > most { most / slip } else { 1.0 };

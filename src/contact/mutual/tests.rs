@@ -100,7 +100,7 @@ impl Scene {
             let mut participants = participants(&mut self.cloths, settings);
             let mut is_pushed = vec![false; participants.len()];
             self.contact
-                .respond(&mut participants, |_, _| true, dt, None, &mut is_pushed);
+                .respond(&mut participants, |_, _| true, dt, &mut is_pushed);
             drop(participants);
             for ((cloth, tick), is_pushed) in self.cloths.iter_mut().zip(&mut ticks).zip(is_pushed)
             {

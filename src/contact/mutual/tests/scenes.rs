@@ -30,5 +30,5 @@ fn sheets_that_fall_on_each_other_stay_apart() {
         scene.tick(|_, particles, _| floor(particles));
     }
     assert_eq!(scene.worst, 0);
-    assert!(scene.contact.close() > 100, "they lie on each other");
+    assert!(scene.contact.near() > 30, "they lie on each other");
 }

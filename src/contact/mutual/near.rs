@@ -1,0 +1,119 @@
+//! Which of all pairs have to be looked at in a sub-step, and which of these may be left out.
+
+use super::{
+    NOBODY,
+    certificate::LEFT_OF_THICKNESS,
+    members::Members,
+    pair::{Nearest, Pair, VERTEX_AND_FACE},
+};
+
+/// By how much of a pair's thickness features may come nearer to each other before the nearest points are found anew.
+const SLACK: f32 = 0.1;
+
+/// Pairs that are near each other, with their nearest points, until particles have come nearer to each other by a little.
+///
+/// A plane across the line between the nearest points stays between two features as long as it is measured again in each sub-step,
+/// whichever sub-step the points are of: so the proof that nothing passes does not need new ones.
+#[derive(Debug, Default, Clone)]
+pub(super) struct NearPairs {
+    /// Those that may come nearer to each other than their thickness.
+    pub pushed: Vec<u32>,
+    /// Those that might meet, as far as distances say.
+    pub certified: Vec<u32>,
+    /// Until the odometer says this (m), no others are near.
+    until: f32,
+    is_known: bool,
+}
+
+impl NearPairs {
+    /// Forgets them: the pairs are others.
+    pub fn forget(&mut self) {
+        self.pushed.clear();
+        self.certified.clear();
+        self.is_known = false;
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.pushed.is_empty() && self.certified.is_empty()
+    }
+
+    /// Whether they are still all that are near when the odometer says this (m).
+    pub fn covers(&self, odometer: f32) -> bool {
+        self.is_known && odometer <= self.until
+    }
+
+    /// Finds them anew from where the sub-step began, unless those that are known are all. In the sub-step any two particles have
+    /// come nearer to each other by at most `approach` (m), and the `odometer` says so already. The last pair of each vertex with a
+    /// face begins its list.
+    pub fn update(
+        &mut self,
+        pairs: &mut [Pair],
+        members: &Members,
+        last_of: &[u32],
+        approach: f32,
+        odometer: f32,
+    ) {
+        if self.covers(odometer) {
+            return;
+        }
+        self.forget();
+        self.is_known = true;
+        let thinnest = pairs
+            .iter()
+            .map(|pair| pair.thickness)
+            .fold(f32::INFINITY, f32::min);
+        let slack = (SLACK * thinnest).max(0.5 * approach);
+        self.until = odometer + slack;
+        for (index, pair) in pairs.iter_mut().enumerate() {
+            if pair.far_until > self.until {
+                continue;
+            }
+            pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
+            let distance = pair.nearest.distance;
+            let spare = distance - pair.thickness - approach;
+            if spare > slack {
+                pair.far_until = odometer + spare;
+                continue;
+            }
+            self.pushed.push(index as u32);
+            if distance < LEFT_OF_THICKNESS * pair.thickness + approach + slack {
+                self.certified.push(index as u32);
+            }
+        }
+        let pairs = &*pairs;
+        let until = self.until;
+        self.pushed.retain(|&index| {
+            let pair = &pairs[index as usize];
+            pair.split != VERTEX_AND_FACE
+                || !is_implied(pairs, last_of[pair.members[0] as usize], index, until)
+        });
+    }
+}
+
+/// Whether a vertex is kept away from a face by keeping it away from another one, which is nearer: the face's nearest point is on
+/// its edge, and that is the other's edge too.
+fn is_implied(pairs: &[Pair], last: u32, index: u32, until: f32) -> bool {
+    let pair = &pairs[index as usize];
+    let nearest = &pair.nearest;
+    if nearest.weights.iter().all(|&weight| weight != 0.0) {
+        return false;
+    }
+    let mut next = last;
+    while next != NOBODY {
+        let other = &pairs[next as usize];
+        let is_nearer = other.nearest.distance < nearest.distance
+            || (other.nearest.distance == nearest.distance && next < index);
+        if next != index
+            && other.far_until <= until
+            && other.thickness >= pair.thickness
+            && is_nearer
+            && (1..4).all(|corner| {
+                nearest.weights[corner] == 0.0 || other.members[1..].contains(&pair.members[corner])
+            })
+        {
+            return true;
+        }
+        next = other.before;
+    }
+    false
+}
