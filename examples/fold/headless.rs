@@ -10,12 +10,15 @@ use crate::{
     measured::{Figures, MeasuringPlugin},
     scene::{self, Crossings, ScenePlugin},
     shared::{
-        headless::{Picture, Run, print},
+        headless::{Picture, Run, print, ticks_in},
         stage::Grid,
         start::Options,
         view::View,
     },
 };
+
+/// When the picture is drawn (s): some of the cloth lies in folds, the rest hangs.
+const DRAWN_AT: f64 = 1.65;
 
 /// What is printed.
 #[derive(Serialize)]
@@ -48,8 +51,10 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
             .add_systems(FixedLast, measure);
         app.world_mut().resource_mut::<Crossings>().is_thorough = true;
     });
-    run.to_end();
+    let moment = ticks_in(&run.app, DRAWN_AT);
+    run.until(moment.min(run.ticks));
     let picture = run.take_picture(scene::SHOT, &options.out, "fold.png");
+    run.to_end();
     let figures = Figures::of(&mut run);
     let world = run.app.world_mut();
     let mut cloths = world.query::<(&ClothParticles, &ClothFrame)>();

@@ -27,8 +27,8 @@ const TICKS_A_COUNT: u32 = 16;
 
 /// From the side, where the folds show.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(0.75, 0.55, 1.05),
-    focus: Vec3::new(0.0, 0.06, 0.02),
+    from: Vec3::new(0.8, 0.6, 1.15),
+    focus: Vec3::new(0.0, 0.18, 0.0),
     fov: 0.5,
 };
 
