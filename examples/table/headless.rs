@@ -30,7 +30,7 @@ struct Report {
     /// The most triangles that an edge of the table passed through after any tick: until it was pulled, and in all.
     edges_through_at_rest: usize,
     edges_through: usize,
-    /// The deepest that any particle was in the table or a thing as a tick ended, by brute force in f64 (mm).
+    /// The deepest that any particle was in the table or the floor as a tick ended, by brute force in f64 (mm).
     deepest_left: Vec<(String, f64)>,
     things: Vec<Row>,
     /// How many of the cloth's particles are still above the table at last.
