@@ -33,7 +33,7 @@ use bevy_drape::prelude::*;
 use serde::Serialize;
 
 use crate::shared::{
-    headless::{Picture, Run, median, print, ticks_in},
+    headless::{Picture, Run, median, print},
     stage::{Grid, Shot, StagePlugin},
     start::{Example, Options},
     view::View,
@@ -194,14 +194,12 @@ fn measure(mut cloths: Query<(&ClothStats, &mut Measured)>) {
 }
 
 fn headless(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let mut app = App::new();
-    app.add_plugins((view.plugins("volumes"), ScenePlugin))
-        .insert_resource(grid)
-        .register_required_components::<Cloth, Measured>()
-        .add_systems(FixedLast, measure);
-    let ticks = ticks_in(&app, options.seconds).max(1);
-    let mut run = Run::new(app, view, ticks);
-    run.until(ticks);
+    let scene = ("volumes", ScenePlugin);
+    let mut run = Run::new(scene, view, grid, options, |app| {
+        app.register_required_components::<Cloth, Measured>()
+            .add_systems(FixedLast, measure);
+    });
+    run.to_end();
     let picture = run.take_picture(SHOT, &options.out, "volumes.png");
     let world = run.app.world_mut();
     let mut cloths = world.query::<(&SearchMethod, &mut Measured, &ClothParticles)>();
@@ -222,7 +220,7 @@ fn headless(view: View, grid: Grid, options: &Options) -> ExitCode {
         same &= *first.get_or_insert_with(|| positions.clone()) == positions;
     }
     let report = Report {
-        ticks,
+        ticks: run.ticks,
         particles: grid.0 * grid.0,
         cloths: rows,
         same,

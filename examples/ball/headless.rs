@@ -8,6 +8,7 @@ use bevy_rapier3d::prelude::PhysicsSet;
 use serde::Serialize;
 
 use crate::{
+    measured::{Figures, MeasuringPlugin},
     scene::{self, Ball, ScenePlugin},
     shared::{
         headless::{Picture, Run, median, print, ticks_in},
@@ -20,25 +21,18 @@ use crate::{
 /// What is printed: times are medians over all ticks, the rest is the largest of any tick.
 #[derive(Serialize)]
 struct Report {
-    ticks: u64,
-    simulated_seconds: f64,
-    wall_seconds: f64,
-    particles: usize,
+    #[serde(flatten)]
+    figures: Figures,
     springs: usize,
-    /// The most of any tick.
-    substeps: u32,
     /// All of `FixedUpdate`.
     tick_ms: f64,
     /// Rapier's part of it.
     rapier_ms: f64,
     /// The cloth's five system sets.
     cloth_ms: f64,
-    /// The solver's call alone.
-    solver_ms: f64,
     /// Largest number of particles that touched.
     contacts: usize,
     nodes_visited: usize,
-    largest_stretch_percent: f32,
     /// How deep a particle was found in the ball before it was pushed out.
     deepest_penetration_mm: f32,
     /// How deep any particle was at the end of a tick, by brute force in f64.
@@ -55,11 +49,8 @@ struct Measured {
     tick_ms: Vec<f64>,
     rapier_ms: Vec<f64>,
     cloth_ms: Vec<f64>,
-    solver_ms: Vec<f64>,
     contacts: usize,
     nodes_visited: usize,
-    substeps: u32,
-    largest_stretch: f32,
     deepest: f32,
     deepest_left: f64,
 }
@@ -69,104 +60,68 @@ const WRAPPED: f32 = 1.2;
 
 /// Simulates, prints the report, and saves `ball.png` if `view` can draw.
 pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let mut app = App::new();
-    app.add_plugins((view.plugins("the ball and the cloth"), ScenePlugin))
-        .insert_resource(grid)
-        .init_resource::<Measured>()
-        .add_systems(
-            FixedUpdate,
-            (
-                start_tick.before(scene::drive_ball),
-                start_cloth
-                    .after(PhysicsSet::Writeback)
-                    .before(ClothSystems::Prepare),
-                end_tick.after(ClothSystems::WriteBack),
-            ),
-        )
-        .add_systems(FixedLast, look_at_the_worst);
-    let ticks = ticks_in(&app, options.seconds).max(1);
-    let picture_tick =
-        ticks_in(&app, scene::moment_beyond(WRAPPED, options.seconds)).clamp(1, ticks);
-    let mut run = Run::new(app, view, ticks);
-    let start = Instant::now();
-    run.until(picture_tick);
-    let before = Instant::now();
+    let scene = ("the ball and the cloth", ScenePlugin);
+    let mut run = Run::new(scene, view, grid, options, |app| {
+        app.add_plugins(MeasuringPlugin)
+            .init_resource::<Measured>()
+            .add_systems(
+                FixedUpdate,
+                (
+                    start_tick.before(scene::drive_ball),
+                    start_cloth
+                        .after(PhysicsSet::Writeback)
+                        .before(ClothSystems::Prepare),
+                    end_tick.after(ClothSystems::WriteBack),
+                ),
+            )
+            .add_systems(FixedLast, look_at_the_worst);
+    });
+    let moment = scene::moment_beyond(WRAPPED, options.seconds);
+    run.until(ticks_in(&run.app, moment).clamp(1, run.ticks));
     let picture = run.take_picture(scene::SHOT, &options.out, "ball.png");
-    let drawing = before.elapsed();
-    run.until(ticks);
-    let wall_seconds = (start.elapsed() - drawing).as_secs_f64();
-    let report = report(&mut run.app, ticks, options.seconds, wall_seconds, picture);
-    print(&report, options.json, print_report)
-}
-
-fn report(
-    app: &mut App,
-    ticks: u64,
-    simulated_seconds: f64,
-    wall_seconds: f64,
-    picture: Picture,
-) -> Report {
-    let mut cloths = app.world_mut().query::<&ClothBuilt>();
-    let (particles, springs) = cloths
-        .iter(app.world())
-        .map(|built| (built.surface().len(), built.springs().len()))
-        .next()
-        .unwrap_or_default();
-    let mut measured = app.world_mut().resource_mut::<Measured>();
-    Report {
-        ticks,
-        simulated_seconds,
-        wall_seconds,
-        particles,
+    run.to_end();
+    let figures = Figures::of(&mut run);
+    let world = run.app.world_mut();
+    let mut cloths = world.query::<&ClothBuilt>();
+    let springs = cloths.iter(world).map(|built| built.springs().len()).sum();
+    let mut measured = world.resource_mut::<Measured>();
+    let report = Report {
+        figures,
         springs,
-        substeps: measured.substeps,
         tick_ms: median(&mut measured.tick_ms),
         rapier_ms: median(&mut measured.rapier_ms),
         cloth_ms: median(&mut measured.cloth_ms),
-        solver_ms: median(&mut measured.solver_ms),
         contacts: measured.contacts,
         nodes_visited: measured.nodes_visited,
-        largest_stretch_percent: 100.0 * measured.largest_stretch,
         deepest_penetration_mm: 1.0e3 * measured.deepest,
         deepest_left_mm: 1.0e3 * measured.deepest_left,
         picture,
-    }
+    };
+    print(&report, options.json, print_report)
 }
 
 fn print_report(report: &Report) {
-    let speed = report.simulated_seconds / report.wall_seconds;
-    let over = |milliseconds| 100.0 * (milliseconds / report.solver_ms - 1.0);
-    println!("The ball and the cloth, headless");
+    let over = |milliseconds| 100.0 * (milliseconds / report.figures.solver_ms - 1.0);
+    report.figures.print("The ball and the cloth");
+    println!("  springs          {}", report.springs);
     println!(
-        "  cloth                {} particles, {} springs, {} sub-steps a tick at most",
-        report.particles, report.springs, report.substeps
+        "  all of it        {:.4} ms a tick: cloth's systems {:.4} ms, rapier {:.4} ms (medians)",
+        report.tick_ms, report.cloth_ms, report.rapier_ms
     );
     println!(
-        "  ticks                {} ({} s simulated in {:.2} s, {speed:.0} × real time)",
-        report.ticks, report.simulated_seconds, report.wall_seconds
-    );
-    println!(
-        "  a tick (median)      {:.4} ms: solver {:.4} ms, cloth's systems in all {:.4} ms, rapier {:.4} ms",
-        report.tick_ms, report.solver_ms, report.cloth_ms, report.rapier_ms
-    );
-    println!(
-        "  beyond the solver    {:.0} % for the cloth's systems, {:.0} % for the whole tick",
+        "  beyond solving   {:.0} % for the cloth's systems, {:.0} % for the whole tick",
         over(report.cloth_ms),
         over(report.tick_ms)
     );
     println!(
-        "  contacts             {} particles at most, {} nodes visited at most",
+        "  contacts         {} particles at most, {} nodes visited at most",
         report.contacts, report.nodes_visited
     );
     println!(
-        "  largest stretch      {:.2} %",
-        report.largest_stretch_percent
-    );
-    println!(
-        "  deepest penetration  {:.2} mm found within a tick, {:.4} mm left after one",
+        "  penetration      {:.2} mm found within a tick, {:.4} mm left after one, at most",
         report.deepest_penetration_mm, report.deepest_left_mm
     );
-    println!("  picture              {}", report.picture);
+    println!("  picture          {}", report.picture);
 }
 
 fn start_tick(mut measured: ResMut<Measured>) {
@@ -201,11 +156,8 @@ fn look_at_the_worst(
     mut measured: ResMut<Measured>,
 ) {
     for (stats, contacts, frame, particles, settings) in &cloths {
-        measured.solver_ms.push(stats.integrate_ms);
         measured.contacts = measured.contacts.max(stats.contacts);
-        measured.substeps = measured.substeps.max(stats.substeps);
         measured.nodes_visited = measured.nodes_visited.max(stats.nodes_visited);
-        measured.largest_stretch = measured.largest_stretch.max(stats.stretch.structural);
         for contact in contacts.iter() {
             measured.deepest = measured.deepest.max(contact.deepest_penetration);
         }

@@ -26,6 +26,10 @@
 
 mod controls;
 mod headless;
+#[path = "../shared/measured.rs"]
+mod measured;
+#[path = "../shared/physics.rs"]
+mod physics;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;

@@ -2,14 +2,15 @@
 
 use bevy::prelude::*;
 use bevy_drape::{plugin::ClothColliderSpeed, prelude::*};
-use bevy_rapier3d::prelude::{
-    Collider, NoUserData, PhysicsSet, RapierPhysicsPlugin, RigidBody, TimestepMode, Velocity,
-};
-use bevy_transform_interpolation::prelude::{TransformInterpolation, TransformInterpolationPlugin};
+use bevy_rapier3d::prelude::{Collider, PhysicsSet, RigidBody, Velocity};
+use bevy_transform_interpolation::prelude::TransformInterpolation;
 
-use crate::shared::{
-    stage::{Grid, Shot, StagePlugin},
-    woven::woven,
+use crate::{
+    physics::PhysicsPlugin,
+    shared::{
+        stage::{Grid, Shot, StagePlugin},
+        woven::woven,
+    },
 };
 
 /// Width of the cloth (m): 16 particles of the paper, 0.2 m apart.
@@ -30,17 +31,9 @@ pub struct ScenePlugin;
 
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
-        // Rapier steps with the cloth, once a fixed tick.
-        let dt = app
-            .world()
-            .resource::<Time<Fixed>>()
-            .timestep()
-            .as_secs_f32();
         app.init_resource::<Grid>()
-            .insert_resource(TimestepMode::Fixed { dt, substeps: 1 })
             .add_plugins((
-                RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
-                TransformInterpolationPlugin::default(),
+                PhysicsPlugin,
                 DrapePlugins::default(),
                 StagePlugin {
                     has_floor: true,

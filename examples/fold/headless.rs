@@ -7,120 +7,93 @@ use bevy_drape::prelude::*;
 use serde::Serialize;
 
 use crate::{
+    measured::{Figures, MeasuringPlugin},
     scene::{self, Crossings, ScenePlugin},
     shared::{
-        headless::{Picture, Run, median, print, ticks_in},
+        headless::{Picture, Run, print, ticks_in},
         stage::Grid,
         start::Options,
         view::View,
     },
 };
 
+/// When the picture is drawn (s): some of the cloth lies in folds, the rest hangs.
+const DRAWN_AT: f64 = 1.65;
+
 /// What is printed.
 #[derive(Serialize)]
 struct Report {
-    ticks: u64,
-    simulated_seconds: f64,
-    particles: usize,
+    #[serde(flatten)]
+    figures: Figures,
     /// The most triangles that passed through each other after any tick: pairs.
     crossings: usize,
     counts: u32,
     /// The most pairs of features near each other, and how often they were searched for, in all.
     pairs: usize,
     searches: u64,
-    /// Medians over the ticks in which it was awake.
-    solver_ms: f64,
-    largest_stretch_percent: f32,
     /// Height of the pile (mm).
     height_mm: f32,
-    is_asleep: bool,
     #[serde(flatten)]
     picture: Picture,
 }
 
 #[derive(Resource, Default)]
-struct Measured {
+struct Contact {
     pairs: usize,
     searches: u64,
-    solver_ms: Vec<f64>,
-    largest_stretch: f32,
 }
 
 /// Simulates, prints the report, and saves `fold.png` if `view` can draw.
 pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let mut app = App::new();
-    app.add_plugins((view.plugins("folds"), ScenePlugin))
-        .insert_resource(grid)
-        .init_resource::<Measured>()
-        .add_systems(FixedLast, measure);
-    app.world_mut().resource_mut::<Crossings>().is_thorough = true;
-    let ticks = ticks_in(&app, options.seconds).max(1);
-    let mut run = Run::new(app, view, ticks);
-    run.until(ticks);
+    let mut run = Run::new(("folds", ScenePlugin), view, grid, options, |app| {
+        app.add_plugins(MeasuringPlugin)
+            .init_resource::<Contact>()
+            .add_systems(FixedLast, measure);
+        app.world_mut().resource_mut::<Crossings>().is_thorough = true;
+    });
+    let moment = ticks_in(&run.app, DRAWN_AT);
+    run.until(moment.min(run.ticks));
     let picture = run.take_picture(scene::SHOT, &options.out, "fold.png");
-
+    run.to_end();
+    let figures = Figures::of(&mut run);
     let world = run.app.world_mut();
-    let mut cloths = world.query::<(&ClothParticles, &ClothFrame, &ClothStats)>();
-    let (mut particles, mut height, mut is_asleep) = (0, 0.0_f32, true);
-    for (cloth, frame, stats) in cloths.iter(world) {
-        particles += cloth.len();
-        is_asleep &= stats.is_asleep;
-        let heights = cloth.positions().map(|place| frame.to_world(place).y);
-        height = heights.fold(height, f32::max);
-    }
-    let (most, counts) = {
-        let crossings = world.resource::<Crossings>();
-        (crossings.most, crossings.counts)
-    };
-    let mut measured = world.resource_mut::<Measured>();
+    let mut cloths = world.query::<(&ClothParticles, &ClothFrame)>();
+    let heights = cloths.iter(world).flat_map(|(cloth, frame)| {
+        let places = cloth.positions();
+        places.map(|place| frame.to_world(place).y)
+    });
+    let height = heights.fold(0.0, f32::max);
+    let crossings = world.resource::<Crossings>();
+    let contact = world.resource::<Contact>();
     let report = Report {
-        ticks,
-        simulated_seconds: options.seconds,
-        particles,
-        crossings: most,
-        counts,
-        pairs: measured.pairs,
-        searches: measured.searches,
-        solver_ms: median(&mut measured.solver_ms),
-        largest_stretch_percent: 100.0 * measured.largest_stretch,
+        figures,
+        crossings: crossings.most,
+        counts: crossings.counts,
+        pairs: contact.pairs,
+        searches: contact.searches,
         height_mm: 1.0e3 * height,
-        is_asleep,
         picture,
     };
     print(&report, options.json, print_report)
 }
 
 fn print_report(report: &Report) {
-    println!("A cloth let down into folds, headless");
+    report.figures.print("A cloth let down into folds");
     println!(
-        "  cloth          {} particles, stretched by {:.2} % at most",
-        report.particles, report.largest_stretch_percent
-    );
-    println!(
-        "  ticks          {} ({} s simulated)",
-        report.ticks, report.simulated_seconds
-    );
-    println!(
-        "  intersections  {} pairs of triangles at most, counted {} times by brute force",
+        "  intersections    {} pairs of triangles at most, counted {} times by brute force",
         report.crossings, report.counts
     );
     println!(
-        "  contact        {} pairs of features near each other at most, searched for {} times",
+        "  contact          {} pairs of features near each other at most, searched for {} times",
         report.pairs, report.searches
     );
-    println!("  a tick         {:.3} ms (median)", report.solver_ms);
-    let sleeps = if report.is_asleep { ", asleep" } else { "" };
-    println!("  the pile       {:.0} mm high{sleeps}", report.height_mm);
-    println!("  picture        {}", report.picture);
+    println!("  the pile         {:.0} mm high", report.height_mm);
+    println!("  picture          {}", report.picture);
 }
 
-fn measure(cloths: Query<&ClothStats>, mut measured: ResMut<Measured>) {
+fn measure(cloths: Query<&ClothStats>, mut contact: ResMut<Contact>) {
     for stats in &cloths {
-        measured.pairs = measured.pairs.max(stats.layer_pairs);
-        measured.searches += u64::from(stats.layer_searches);
-        if !stats.is_asleep {
-            measured.solver_ms.push(stats.integrate_ms);
-        }
-        measured.largest_stretch = measured.largest_stretch.max(stats.stretch.structural);
+        contact.pairs = contact.pairs.max(stats.layer_pairs);
+        contact.searches += u64::from(stats.layer_searches);
     }
 }

@@ -23,13 +23,19 @@
 //! | R | new cloth, which is let down again |
 //! | P | panel on and off |
 
+#[path = "../shared/figure.rs"]
+mod figure;
 mod headless;
+#[path = "../shared/measured.rs"]
+mod measured;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
-mod shown;
 
 use std::process::ExitCode;
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
 
 use crate::shared::{start::Example, window};
 
@@ -37,15 +43,33 @@ fn main() -> ExitCode {
     Example {
         name: "fold",
         about: "A cloth is let down into folds that lie on each other. Opens a window where it can, and runs headless otherwise.",
-        seconds: "6",
+        seconds: "5",
         particles: scene::PARTICLES,
         window: |grid| {
             let keys = [("S", "contact with itself on, off")];
             let mut app = window::app("folds", scene::ScenePlugin, scene::SHOT, &keys);
-            app.add_plugins(shown::ShownPlugin).insert_resource(grid);
+            app.insert_resource(grid).add_systems(Update, press_key);
             window::run(app)
         },
         headless: headless::run,
     }
     .run()
+}
+
+/// Without contact with itself the cloth passes through itself, and the figure says so.
+fn press_key(
+    keys: Res<ButtonInput<KeyCode>>,
+    cloths: Query<(Entity, Has<ClothSelfCollision>), With<Cloth>>,
+    mut commands: Commands,
+) {
+    if !keys.just_pressed(KeyCode::KeyS) {
+        return;
+    }
+    for (cloth, touches_itself) in &cloths {
+        if touches_itself {
+            commands.entity(cloth).remove::<ClothSelfCollision>();
+        } else {
+            commands.entity(cloth).insert(scene::contact());
+        }
+    }
 }

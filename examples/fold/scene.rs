@@ -3,18 +3,21 @@
 use bevy::prelude::*;
 use bevy_drape::{contact::intersections, plugin::ClothBuilt, prelude::*};
 
-use crate::shared::{
-    stage::{Grid, Shot, StagePlugin},
-    woven::woven,
+use crate::{
+    figure::{Figure, FigurePlugin},
+    shared::{
+        stage::{Grid, Shot, StagePlugin},
+        woven::woven,
+    },
 };
 
-/// Particles across the cloth; down it there are twice as many.
-pub const PARTICLES: u32 = 32;
+/// Particles across the cloth; down it there are half as many again.
+pub const PARTICLES: u32 = 24;
 /// Width of the cloth (m).
-const WIDTH: f32 = 0.7;
+const WIDTH: f32 = 0.6;
 /// How high the bar begins, and where it lets go (m).
-const TOP: f32 = 1.5;
-const BOTTOM: f32 = 0.12;
+const TOP: f32 = 1.05;
+const BOTTOM: f32 = 0.1;
 /// How fast it sinks (m/s).
 const SPEED: f32 = 0.45;
 /// How far the middles of two layers are kept apart (m).
@@ -24,8 +27,8 @@ const TICKS_A_COUNT: u32 = 16;
 
 /// From the side, where the folds show.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.5, 0.75, 1.5),
-    focus: Vec3::new(0.0, 0.22, 0.0),
+    from: Vec3::new(0.8, 0.6, 1.15),
+    focus: Vec3::new(0.0, 0.18, 0.0),
     fov: 0.5,
 };
 
@@ -38,7 +41,7 @@ impl Plugin for ScenePlugin {
             has_floor: true,
             light_from: Vec3::new(-2.0, 3.2, 2.6),
         };
-        app.add_plugins((stage, DrapePlugins::default()))
+        app.add_plugins((stage, FigurePlugin, DrapePlugins::default()))
             .init_resource::<Crossings>()
             .add_systems(Startup, (spawn_bar, spawn_cloth).chain())
             .add_systems(
@@ -101,7 +104,7 @@ fn spawn_cloth(
     grid: Res<Grid>,
 ) {
     // Broad stripes across: each fold shows another.
-    let weave = woven(&mut images, 3, |runs_down, yarn| {
+    let weave = woven(&mut images, 5, |runs_down, yarn| {
         match (runs_down, yarn / 16) {
             (true, _) | (false, 1) => Color::srgb(0.86, 0.84, 0.78),
             (false, 0 | 2) => Color::srgb(0.13, 0.36, 0.52),
@@ -109,24 +112,30 @@ fn spawn_cloth(
         }
     });
     let spacing = WIDTH / (grid.0 - 1) as f32;
+    let rows = (3 * grid.0 / 2).max(2);
     commands.spawn((
         Name::new("cloth"),
-        Cloth::new(grid.0, 2 * grid.0, spacing).centred(),
+        Cloth::new(grid.0, rows, spacing).centred(),
         Pins::none(),
         held(),
-        ClothSelfCollision {
-            thickness: THICKNESS.min(0.5 * spacing),
-            friction: 0.4,
-            ..default()
-        },
+        contact(),
         ClothSettings {
             particle_radius: 0.003,
             ..default()
         },
         MeshMaterial3d(materials.add(weave)),
         ShowClothGizmos::nothing(),
-        Transform::from_xyz(0.0, TOP - (grid.0 as f32 - 0.5) * spacing, 0.0),
+        Transform::from_xyz(0.0, TOP - 0.5 * (rows - 1) as f32 * spacing, 0.0),
     ));
+}
+
+/// Of the cloth with itself.
+pub fn contact() -> ClothSelfCollision {
+    ClothSelfCollision {
+        thickness: THICKNESS,
+        friction: 0.4,
+        ..default()
+    }
 }
 
 /// By its upper edge, to the bar.
@@ -134,7 +143,7 @@ fn held() -> ClothAttachments {
     ClothAttachments::new([(Pin::Row(0), "bar")])
 }
 
-/// The bar sinks with what it holds, and lets go above the floor. A new cloth is held from the top again.
+/// The bar sinks with what it holds, lets go above the floor, and goes up. A new cloth is held from the top again.
 fn sink(
     bar: Single<&mut Transform, With<Bar>>,
     cloth: Single<(Entity, Ref<ClothParticles>, Has<ClothAttachments>), With<Cloth>>,
@@ -148,15 +157,14 @@ fn sink(
         commands.entity(cloth).insert(held());
         return;
     }
-    let height = bar.translation.y;
-    if height > BOTTOM {
-        bar.translation.y = height - SPEED * time.delta_secs();
-    } else if is_held {
-        commands.entity(cloth).remove::<ClothAttachments>();
-    } else if height > BOTTOM - 0.5 {
+    let step = SPEED * time.delta_secs();
+    if !is_held {
         // Out of the way.
-        bar.translation.z -= SPEED * time.delta_secs();
-        bar.translation.z = bar.translation.z.max(-0.8);
+        bar.translation.y = (bar.translation.y + step).min(TOP);
+    } else if bar.translation.y > BOTTOM {
+        bar.translation.y -= step;
+    } else {
+        commands.entity(cloth).remove::<ClothAttachments>();
     }
 }
 
@@ -164,6 +172,7 @@ fn sink(
 fn count_crossings(
     cloths: Query<(&ClothBuilt, &ClothParticles)>,
     mut crossings: ResMut<Crossings>,
+    mut figure: ResMut<Figure>,
 ) {
     crossings.ticks += 1;
     if !crossings.is_thorough && !crossings.ticks.is_multiple_of(TICKS_A_COUNT) {
@@ -177,4 +186,6 @@ fn count_crossings(
         .sum();
     crossings.most = crossings.most.max(crossings.now);
     crossings.counts += 1;
+    figure.is_good = crossings.now == 0;
+    figure.lines = vec![format!("intersections: {}", crossings.now)];
 }

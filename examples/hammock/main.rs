@@ -1,5 +1,5 @@
-//! A ball in a hammock: rapier moves the ball, it falls into a cloth that hangs between two bars, and the cloth pushes it back
-//! until it rests. All that this takes is a `ClothPushBack` beside the ball's `RigidBody`: see `scene.rs`.
+//! A ball in a hammock: rapier moves the ball, it falls into a canvas that hangs by its four corners, and the canvas pushes it
+//! back and keeps it. All that this takes is a `ClothPushBack` beside the ball's `RigidBody`: see `scene.rs`.
 //!
 //! ```sh
 //! cargo run --example hammock                                    # a window, or a report where there is none
@@ -23,6 +23,10 @@
 
 mod controls;
 mod headless;
+#[path = "../shared/measured.rs"]
+mod measured;
+#[path = "../shared/physics.rs"]
+mod physics;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;

@@ -1,35 +1,39 @@
-//! The hammock, its bars, and the ball that rapier moves.
+//! The hammock, its posts, and the ball that rapier moves.
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{
-    Ccd, Collider, ColliderMassProperties, NoUserData, PhysicsSet, RapierPhysicsPlugin, RigidBody,
-    TimestepMode, Velocity,
+    Ccd, Collider, ColliderMassProperties, PhysicsSet, RigidBody, Velocity,
 };
-use bevy_transform_interpolation::prelude::{TransformInterpolation, TransformInterpolationPlugin};
+use bevy_transform_interpolation::prelude::TransformInterpolation;
 
-use crate::shared::{
-    stage::{Grid, Shot, StagePlugin},
-    woven::woven,
+use crate::{
+    physics::PhysicsPlugin,
+    shared::{
+        stage::{Grid, Shot, StagePlugin},
+        woven::woven,
+    },
 };
 
 /// Particles along the hammock; across it half as many.
 pub const PARTICLES: u32 = 48;
-/// Length of the cloth, and of how much less the bars are apart once it hangs (m).
+/// Length of the cloth, and in which part of its size its posts stand once it hangs.
 const LENGTH: f32 = 2.4;
-const SLACK: f32 = 0.24;
-/// How long the bars take to come together (s).
-const HANGING: f32 = 0.5;
-/// Height of the bars (m).
+const SLACK: f32 = 0.86;
+/// How long the posts take to come together (s).
+const HANGING: f32 = 0.8;
+/// Height of the posts (m).
 const HEIGHT: f32 = 1.3;
 /// The ball (m, kg).
 const RADIUS: f32 = 0.2;
-pub const MASS: f32 = 1.5;
+pub const MASS: f32 = 1.0;
+/// How far it is above the cloth at first (m).
+const DROP: f32 = 0.1;
 
 /// The whole of it, from the side and a little above.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.5, 1.9, 4.2),
-    focus: Vec3::new(0.0, 0.85, 0.0),
+    from: Vec3::new(1.6, 2.1, 4.3),
+    focus: Vec3::new(0.0, 0.72, 0.0),
     fov: 0.52,
 };
 
@@ -38,17 +42,9 @@ pub struct ScenePlugin;
 
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
-        // Rapier steps with the cloth, once a fixed tick.
-        let dt = app
-            .world()
-            .resource::<Time<Fixed>>()
-            .timestep()
-            .as_secs_f32();
         app.init_resource::<Grid>()
-            .insert_resource(TimestepMode::Fixed { dt, substeps: 1 })
             .add_plugins((
-                RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
-                TransformInterpolationPlugin::default(),
+                PhysicsPlugin,
                 DrapePlugins::default(),
                 StagePlugin {
                     has_floor: true,
@@ -60,9 +56,9 @@ impl Plugin for ScenePlugin {
     }
 }
 
-/// A bar that the hammock hangs from, and on which side it is.
+/// A post that a corner of the hammock hangs from, and where it is while the cloth is flat.
 #[derive(Component)]
-struct Bar(f32);
+struct Post(Vec3);
 
 fn spawn_hammock(
     mut commands: Commands,
@@ -80,26 +76,25 @@ fn spawn_hammock(
         perceptual_roughness: 0.7,
         ..default()
     });
-    let rod = meshes.add(Cylinder::new(0.025, width + 0.1));
-    let post = meshes.add(Cylinder::new(0.03, HEIGHT));
-    let bars = [-1.0, 1.0].map(|side| {
-        let place = Transform::from_xyz(0.5 * side * LENGTH, HEIGHT, 0.0);
-        let bar = (
-            Bar(side),
+    let pole = meshes.add(Cylinder::new(0.03, HEIGHT + 0.04));
+    let corners = [
+        (Corner::TopLeft, -1.0, -1.0),
+        (Corner::TopRight, 1.0, -1.0),
+        (Corner::BottomLeft, -1.0, 1.0),
+        (Corner::BottomRight, 1.0, 1.0),
+    ];
+    let posts = corners.map(|(corner, x, z)| {
+        let place = Vec3::new(0.5 * x * LENGTH, HEIGHT, 0.5 * z * width);
+        let post = (
+            Post(place),
             TransformInterpolation,
-            place,
+            Transform::from_translation(place),
             Visibility::default(),
         );
-        let across = Transform::from_rotation(Quat::from_rotation_x(std::f32::consts::FRAC_PI_2));
-        let bar = commands.spawn(bar).id();
-        let rod = (Mesh3d(rod.clone()), MeshMaterial3d(wood.clone()), across);
-        commands.entity(bar).with_child(rod);
-        for end in [-0.5, 0.5] {
-            let place = Transform::from_xyz(0.0, -0.5 * HEIGHT, end * (width + 0.1));
-            let post = (Mesh3d(post.clone()), MeshMaterial3d(wood.clone()), place);
-            commands.entity(bar).with_child(post);
-        }
-        bar
+        let below = Transform::from_xyz(0.0, -0.5 * HEIGHT, 0.0);
+        let pole = (Mesh3d(pole.clone()), MeshMaterial3d(wood.clone()), below);
+        let post = commands.spawn(post).with_child(pole).id();
+        (Pin::Corner(corner), post)
     });
     // Stripes across, as hammocks have.
     let weave = woven(&mut images, 3, |runs_down, yarn| {
@@ -109,36 +104,30 @@ fn spawn_hammock(
             _ => Color::srgb(0.94, 0.90, 0.80),
         }
     });
-    let last = columns - 1;
-    let [left, right] = bars;
     commands.spawn((
         Name::new("hammock"),
         Cloth::new(columns, rows, spacing).lying().centred(),
         Pins::none(),
-        ClothAttachments::new([
-            (Pin::filter(|_, column| column == 0), left),
-            (Pin::filter(move |_, column| column == last), right),
-        ]),
-        ClothMaterial {
-            friction: 0.5,
-            damping: 0.02,
-            ..ClothMaterial::COTTON
-        },
+        ClothAttachments::new(posts),
+        ClothMaterial::CANVAS,
+        // What is held by four points and carries something needs more of them than by default.
+        ClothSettings::substeps(40),
         MeshMaterial3d(materials.add(weave)),
         ShowClothGizmos::nothing(),
         Transform::from_xyz(0.0, HEIGHT, 0.0),
     ));
 }
 
-/// Brings the bars together, for the cloth between them to sag.
-fn hang_up(mut bars: Query<(&Bar, &mut Transform)>, time: Res<Time>) {
+/// Brings the posts together, for the cloth between them to sag.
+fn hang_up(mut posts: Query<(&Post, &mut Transform)>, time: Res<Time>) {
     let part = (time.elapsed_secs() / HANGING).min(1.0);
     // They start and stop gently.
     let part = part * part * (3.0 - 2.0 * part);
-    for (bar, mut transform) in &mut bars {
-        let x = 0.5 * bar.0 * (LENGTH - SLACK * part);
-        if transform.translation.x != x {
-            transform.translation.x = x;
+    for (post, mut transform) in &mut posts {
+        let narrower = 1.0 - (1.0 - SLACK) * part;
+        let place = post.0 * Vec3::new(narrower, 1.0, narrower);
+        if transform.translation != place {
+            transform.translation = place;
         }
     }
 }
@@ -171,7 +160,7 @@ fn spawn_ball(
             RapierClothCollider,
             // The cloth pushes it back.
             ClothPushBack,
-            Transform::from_xyz(0.15, HEIGHT + 0.7, 0.05),
+            Transform::from_xyz(0.15, HEIGHT + RADIUS + DROP, 0.05),
             Visibility::default(),
         ))
         .with_child((Mesh3d(mesh), MeshMaterial3d(material)));

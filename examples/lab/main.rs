@@ -28,6 +28,8 @@ mod needs;
 mod pareto;
 #[path = "../../benches/hierarchy/parry.rs"]
 mod parry;
+#[path = "../shared/physics.rs"]
+mod physics;
 mod record;
 #[path = "../ball/scene.rs"]
 mod scene;

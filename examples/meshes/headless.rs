@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::{
     scene::{SHOTS, ScenePlugin},
     shared::{
-        headless::{Picture, Run, median, print, ticks_in},
+        headless::{Picture, Run, median, print},
         stage::Grid,
         start::Options,
         view::View,
@@ -63,15 +63,13 @@ fn measure(mut cloths: Query<(&ClothStats, &mut Measured)>) {
 
 /// Simulates, prints the report, and saves a picture of each cloth if `view` can draw.
 pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
-    let mut app = App::new();
-    app.add_plugins((view.plugins("meshes as cloth"), ScenePlugin))
-        .insert_resource(fineness)
-        .register_required_components::<Cloth, Measured>()
-        .add_systems(FixedLast, measure);
-    let ticks = ticks_in(&app, options.seconds).max(1);
-    let mut run = Run::new(app, view, ticks);
+    let scene = ("meshes as cloth", ScenePlugin);
+    let mut run = Run::new(scene, view, fineness, options, |app| {
+        app.register_required_components::<Cloth, Measured>()
+            .add_systems(FixedLast, measure);
+    });
     wait_for_assets(&mut run.app);
-    run.until(ticks);
+    run.to_end();
     let pictures = SHOTS.map(|(file, shot)| run.take_picture(shot, &options.out, file));
     let world = run.app.world_mut();
     let mut cloths = world.query::<(
@@ -108,7 +106,7 @@ pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
         .iter()
         .all(|row| row.fault.is_none() && row.particles > 0);
     let report = Report {
-        ticks,
+        ticks: run.ticks,
         cloths,
         pictures: pictures.into(),
     };

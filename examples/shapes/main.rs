@@ -25,6 +25,8 @@
 //! | P | panel on and off |
 
 mod headless;
+#[path = "../shared/measured.rs"]
+mod measured;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;

@@ -4,7 +4,7 @@ use std::{
     fmt, fs,
     path::{Path, PathBuf},
     process::ExitCode,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use bevy::{
@@ -19,7 +19,11 @@ use bevy::{
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::{stage::Shot, view::View};
+use super::{
+    stage::{Grid, Shot},
+    start::Options,
+    view::View,
+};
 
 /// Frames that a renderer gets to finish a picture in.
 const FRAMES_FOR_A_PICTURE: usize = 60;
@@ -32,13 +36,29 @@ const TICKS_AN_UPDATE: u64 = 16;
 pub struct Run {
     pub app: App,
     view: View,
+    /// In all, and as asked for (s).
+    pub ticks: u64,
+    pub seconds: f64,
+    /// How long what is done took, without pictures (s).
+    pub wall_seconds: f64,
     done: u64,
     bar: ProgressBar,
 }
 
 impl Run {
-    /// Of an app with all its plugins and systems, for this many ticks.
-    pub fn new(mut app: App, view: View, ticks: u64) -> Self {
+    /// Of a scene, with what measures it, for as long as the options say.
+    pub fn new(
+        (title, scene): (&str, impl Plugin),
+        view: View,
+        grid: Grid,
+        options: &Options,
+        measure: impl FnOnce(&mut App),
+    ) -> Self {
+        let mut app = App::new();
+        app.add_plugins((view.plugins(title), scene))
+            .insert_resource(grid);
+        measure(&mut app);
+        let ticks = ticks_in(&app, options.seconds).max(1);
         app.finish();
         app.cleanup();
         let bar = ProgressBar::new(ticks).with_style(
@@ -48,13 +68,22 @@ impl Run {
         Self {
             app,
             view,
+            ticks,
+            seconds: options.seconds,
+            wall_seconds: 0.0,
             done: 0,
             bar,
         }
     }
 
+    /// Goes on to the end.
+    pub fn to_end(&mut self) {
+        self.until(self.ticks);
+    }
+
     /// Goes on until this many ticks are done.
     pub fn until(&mut self, ticks: u64) {
+        let start = Instant::now();
         while self.done < ticks {
             let together = (ticks - self.done).min(TICKS_AN_UPDATE) as u32;
             self.app
@@ -64,6 +93,7 @@ impl Run {
             self.done = ticks_in(&self.app, time.elapsed_secs_f64());
             self.bar.set_position(self.done);
         }
+        self.wall_seconds += start.elapsed().as_secs_f64();
     }
 
     /// Draws one frame into an image and saves it, while time stands still.

@@ -131,7 +131,8 @@ fn image(
         mag_filter: ImageFilterMode::Linear,
         min_filter: ImageFilterMode::Linear,
         mipmap_filter: ImageFilterMode::Linear,
-        anisotropy_clamp: 8,
+        // More of it leaves dots of other places' colours on Mesa's software driver.
+        anisotropy_clamp: 1,
         ..default()
     });
     image

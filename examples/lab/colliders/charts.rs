@@ -17,7 +17,10 @@ pub fn all(rows: &[Row]) -> Chart {
         Axis::log("colliders, all far, log"),
         Axis::log("ms a tick, log"),
     );
-    for (style, (cloths, state)) in groups.iter().enumerate() {
+    // A state looks the same in both panels: the legend names each once.
+    let states = crate::measure::distinct(groups.iter().map(|(_, state)| state));
+    for (cloths, state) in &groups {
+        let style = states.iter().position(|each| *each == state).unwrap_or(0);
         let points = of(rows, *cloths, state).map(|row| Point {
             at: [f64::from(row.colliders), row.ms_per_tick],
             across: None,

@@ -1,0 +1,286 @@
+//! The table, its cloth, and the hand that pulls it away.
+
+use bevy::prelude::*;
+use bevy_drape::{plugin::ClothBuilt, prelude::*};
+use bevy_rapier3d::prelude::{Collider, Friction, PhysicsSet, RigidBody, Velocity};
+use bevy_transform_interpolation::prelude::TransformInterpolation;
+
+use crate::{
+    edges::edges_through,
+    figure::{Figure, FigurePlugin},
+    physics::PhysicsPlugin,
+    shared::{
+        stage::{Grid, Shot, StagePlugin},
+        woven::woven,
+    },
+    things::{Thing, spawn_things},
+};
+
+/// Particles along the cloth; across it in proportion.
+pub const PARTICLES: u32 = 40;
+/// Length and width of the cloth (m).
+const LENGTH: f32 = 1.7;
+const WIDTH: f32 = 1.3;
+/// Half of the size of the table's top, and how high its surface is (m).
+const TOP: Vec3 = Vec3::new(0.6, 0.02, 0.4);
+const HEIGHT: f32 = 0.72;
+/// Radius of a particle (m): half of the place that the cloth takes.
+const RADIUS: f32 = 0.002;
+/// How much more there is, so that it is not held fast between (m).
+const SPARE: f32 = 0.001;
+/// What things stand on, as long as the cloth is there (m).
+pub const SURFACE: f32 = HEIGHT + 2.0 * RADIUS + SPARE;
+/// How fast the hand becomes (m/s), how soon (m/s²), and after which way it lets go (m).
+const SPEED: f32 = 4.0;
+const ACCELERATION: f32 = 12.0;
+const WAY: f32 = 1.9;
+
+/// From the side from which the cloth is pulled.
+pub const SHOT: Shot = Shot {
+    from: Vec3::new(1.45, 1.6, 2.0),
+    focus: Vec3::new(0.05, 0.58, 0.0),
+    fov: 0.5,
+};
+
+/// The scene, without a camera.
+pub struct ScenePlugin;
+
+impl Plugin for ScenePlugin {
+    fn build(&self, app: &mut App) {
+        let stage = StagePlugin {
+            has_floor: true,
+            light_from: Vec3::new(-2.6, 3.6, 2.4),
+        };
+        app.add_plugins((stage, PhysicsPlugin, FigurePlugin, DrapePlugins::default()))
+            .init_resource::<Pull>()
+            .init_resource::<Shown>()
+            .add_systems(Startup, (spawn_table, spawn_cloth, spawn_things))
+            .add_systems(
+                FixedUpdate,
+                (
+                    (lay_again, pull).chain().before(PhysicsSet::SyncBackend),
+                    count_edges.after(ClothSystems::WriteBack),
+                ),
+            )
+            .add_systems(Update, write_figure);
+    }
+}
+
+/// How the cloth is pulled.
+#[derive(Resource, Default, Clone, Copy, PartialEq)]
+pub enum Pull {
+    /// It lies.
+    #[default]
+    Not,
+    /// It is taken hold of in the next tick.
+    Begins,
+    /// The hand has this speed (m/s) and has come this far (m).
+    Goes(f32, f32),
+    /// It is let go.
+    Done,
+}
+
+impl Pull {
+    /// If it lies.
+    pub fn begin(&mut self) {
+        if *self == Self::Not {
+            *self = Self::Begins;
+        }
+    }
+}
+
+/// What pulls the cloth's right edge.
+#[derive(Component)]
+struct Hand;
+
+/// The table's top, as the cloth touches it.
+#[derive(Component)]
+pub struct Top;
+
+/// The same as things stand on it: higher by the cloth.
+#[derive(Component)]
+struct Support;
+
+fn spawn_table(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    commands.spawn((Name::new("floor"), ClothCollider::plane()));
+    commands.spawn((
+        RigidBody::Fixed,
+        Collider::cuboid(50.0, 0.5, 50.0),
+        Transform::from_xyz(0.0, -0.5, 0.0),
+    ));
+    let wood = materials.add(StandardMaterial {
+        base_color: Color::srgb(0.36, 0.21, 0.11),
+        perceptual_roughness: 0.55,
+        ..default()
+    });
+    let size = 2.0 * TOP;
+    let middle = Transform::from_xyz(0.0, HEIGHT - TOP.y, 0.0);
+    commands.spawn((
+        Name::new("table"),
+        Top,
+        ClothCollider::cuboid(size.x, size.y, size.z),
+        Mesh3d(meshes.add(Cuboid::from_size(size))),
+        MeshMaterial3d(wood.clone()),
+        middle,
+    ));
+    commands.spawn((
+        Support,
+        RigidBody::Fixed,
+        Collider::cuboid(TOP.x, TOP.y, TOP.z),
+        Friction::coefficient(0.5),
+        middle.with_translation(middle.translation + Vec3::Y * (SURFACE - HEIGHT)),
+    ));
+    let leg = Vec3::new(0.05, HEIGHT - size.y, 0.05);
+    for (x, z) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+        commands.spawn((
+            ClothCollider::cuboid(leg.x, leg.y, leg.z),
+            Mesh3d(meshes.add(Cuboid::from_size(leg))),
+            MeshMaterial3d(wood.clone()),
+            Transform::from_xyz(x * (TOP.x - 0.08), 0.5 * leg.y, z * (TOP.z - 0.08)),
+        ));
+    }
+    commands.spawn((
+        Name::new("hand"),
+        Hand,
+        TransformInterpolation,
+        Transform::from_xyz(0.5 * LENGTH, HEIGHT, 0.0),
+    ));
+}
+
+fn spawn_cloth(
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    grid: Res<Grid>,
+) {
+    // Linen with a red check.
+    let weave = woven(&mut images, 10, |_, yarn| {
+        if yarn < 24 {
+            Color::srgb(0.70, 0.10, 0.12)
+        } else {
+            Color::srgb(0.92, 0.90, 0.85)
+        }
+    });
+    let spacing = LENGTH / (grid.0 - 1) as f32;
+    let rows = (WIDTH / spacing).round() as u32 + 1;
+    commands.spawn((
+        Name::new("tablecloth"),
+        Cloth::new(grid.0, rows, spacing).lying().centred(),
+        Pins::none(),
+        ClothMaterial {
+            friction: 0.3,
+            damping: 0.02,
+            ..ClothMaterial::COTTON
+        },
+        ClothSettings {
+            particle_radius: RADIUS,
+            ..ClothSettings::substeps(24)
+        },
+        MeshMaterial3d(materials.add(weave)),
+        ShowClothGizmos::nothing(),
+        Transform::from_xyz(0.0, HEIGHT + RADIUS, 0.0),
+    ));
+}
+
+/// Whether a place is on the table or above.
+pub fn is_on_table(place: Vec3) -> bool {
+    place.x.abs() < TOP.x && place.z.abs() < TOP.z && place.y > HEIGHT - TOP.y
+}
+
+/// A new cloth is laid under things that stand as at first.
+fn lay_again(
+    particles: Single<&ClothParticles>,
+    mut things: Query<(&Thing, &mut Transform, &mut Velocity)>,
+    support: Single<&mut Transform, (With<Support>, Without<Thing>)>,
+    mut pull: ResMut<Pull>,
+) {
+    if !particles.is_empty() {
+        return;
+    }
+    *pull = Pull::Not;
+    support.into_inner().translation.y = SURFACE - TOP.y;
+    for (thing, mut transform, mut velocity) in &mut things {
+        *transform = thing.0;
+        *velocity = Velocity::default();
+    }
+}
+
+/// The hand takes the right edge where it hangs, goes away with it, and lets go.
+fn pull(
+    cloth: Single<Entity, With<Cloth>>,
+    hand: Single<&mut Transform, (With<Hand>, Without<Support>)>,
+    support: Single<&mut Transform, With<Support>>,
+    grid: Res<Grid>,
+    time: Res<Time>,
+    mut pull: ResMut<Pull>,
+    mut commands: Commands,
+) {
+    let mut hand = hand.into_inner();
+    match *pull {
+        Pull::Not => {
+            hand.translation.x = 0.5 * LENGTH;
+            commands.entity(*cloth).remove::<ClothAttachments>();
+        }
+        Pull::Begins => {
+            let edge = ClothAttachments::new([(Pin::Column(grid.0 - 1), "hand")]);
+            commands.entity(*cloth).insert(edge);
+            *pull = Pull::Goes(0.0, 0.0);
+        }
+        Pull::Goes(speed, way) => {
+            let dt = time.delta_secs();
+            let speed = (speed + ACCELERATION * dt).min(SPEED);
+            let step = speed * dt;
+            hand.translation.x += step;
+            *pull = if way + step < WAY {
+                Pull::Goes(speed, way + step)
+            } else {
+                commands.entity(*cloth).remove::<ClothAttachments>();
+                // Nothing is below things any more: they come down by the cloth's thickness.
+                support.into_inner().translation.y = HEIGHT - TOP.y;
+                Pull::Done
+            };
+        }
+        Pull::Done => {}
+    }
+}
+
+/// Triangles that an edge of the table passes through: now, and the most after any tick.
+#[derive(Resource, Default)]
+pub struct Shown {
+    pub now: usize,
+    pub most: usize,
+}
+
+fn count_edges(
+    cloth: Single<(&ClothBuilt, &ClothParticles, &ClothFrame)>,
+    top: Single<&Transform, With<Top>>,
+    mut shown: ResMut<Shown>,
+) {
+    let (built, particles, frame) = *cloth;
+    let to_table = top.to_isometry().inverse();
+    let place = |position| to_table * frame.to_world(position);
+    let places: Vec<Vec3> = particles.positions().map(place).collect();
+    shown.now = edges_through(TOP, &places, built.surface().triangles());
+    shown.most = shown.most.max(shown.now);
+}
+
+fn write_figure(
+    shown: Res<Shown>,
+    things: Query<(&Thing, &Transform)>,
+    mut figure: ResMut<Figure>,
+) {
+    let away = |(thing, now): (&Thing, &Transform)| {
+        let away = now.translation - thing.0.translation;
+        away.with_y(0.0).length()
+    };
+    let farthest = things.iter().map(away).fold(0.0, f32::max);
+    figure.is_good = shown.now == 0;
+    figure.lines = vec![
+        format!("edges that show: {}", shown.now),
+        format!("farthest moved: {:.0} mm", 1.0e3 * farthest),
+    ];
+}
