@@ -23,6 +23,7 @@ mod exactness;
 mod experiment;
 mod frames;
 mod hung;
+mod layers;
 mod measure;
 mod needs;
 mod pareto;
@@ -94,6 +95,9 @@ enum Name {
     Needs,
     /// What colliders cost, by number and shape
     Colliders,
+    /// Cloth on cloth: what it costs, and what passes through
+    #[value(name = "self")]
+    Layers,
     /// Speed against accuracy
     Pareto,
     /// How it is hung: stretch against time for six ways of pinning
@@ -112,7 +116,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 14] = [
+const EXPERIMENTS: [(Name, Conduct); 15] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -121,6 +125,7 @@ const EXPERIMENTS: [(Name, Conduct); 14] = [
     (Name::Exactness, conduct::<exactness::Exactness>),
     (Name::Needs, conduct::<needs::Needs>),
     (Name::Colliders, conduct::<colliders::Colliders>),
+    (Name::Layers, conduct::<layers::Layers>),
     (Name::Pareto, conduct::<pareto::Pareto>),
     (Name::Hung, conduct::<hung::Hung>),
     (Name::Convergence, conduct::<convergence::Convergence>),
