@@ -104,7 +104,8 @@ impl Play {
         scene.spawn(app.world_mut(), side, layers);
         app.finish();
         app.cleanup();
-        app.update();
+        // Time begins with the second.
+        (0..2).for_each(|_| app.update());
         let mut play = Self {
             app,
             scene,
@@ -261,7 +262,7 @@ impl Scene {
                 });
                 let rows = side.div_ceil(3);
                 let spacing = 1.2 / (side - 1) as f32;
-                let strip = Cloth::new(rows, side, spacing).centred();
+                let strip = Cloth::new(side, rows, spacing).centred();
                 let held =
                     ClothAttachments::new([(Pin::Column(0), left), (Pin::Column(side - 1), right)]);
                 cloths.push(world.spawn((strip, Pins::none(), held)).id());
