@@ -18,6 +18,9 @@ pub(super) struct Members {
     pub moved: Vec<Vec3>,
     /// Inverse masses (1/kg).
     pub inverse_mass: Vec<f32>,
+    /// How far each has travelled since it became one, besides what all have in common, up to this sub-step and in it (m).
+    travelled: Vec<f32>,
+    step: Vec<f32>,
     /// Places and motions as they were gathered, to find what has been changed.
     gathered: Vec<[Vec3; 2]>,
 }
@@ -32,6 +35,8 @@ impl Members {
     pub fn clear(&mut self) {
         self.of.clear();
         self.start.clear();
+        self.travelled.clear();
+        self.step.clear();
     }
 
     pub fn len(&self) -> usize {
@@ -42,6 +47,8 @@ impl Members {
     pub fn add(&mut self, cloth: u32, slot: Slot, start: Vec3) -> u32 {
         self.of.push(Member { cloth, slot });
         self.start.push(start);
+        self.travelled.push(0.0);
+        self.step.push(0.0);
         self.of.len() as u32 - 1
     }
 
@@ -95,6 +102,7 @@ impl Members {
                 block.set_displacement(lane, moved);
             }
             self.start[index] = place;
+            self.travelled[index] += self.step[index];
         }
     }
 
@@ -122,15 +130,24 @@ impl Members {
         of.map(|member| self.inverse_mass[member as usize])
     }
 
-    /// How far any two of them can have come nearer to each other in the sub-step (m).
-    pub fn approach(&self) -> f32 {
+    /// How far the four particles of a pair have travelled, all together: up to this sub-step, and with it (m).
+    #[inline]
+    pub fn travelled(&self, of: [u32; 4]) -> [f32; 2] {
+        let sum = |each: &[f32]| of.iter().map(|&member| each[member as usize]).sum::<f32>();
+        let before = sum(&self.travelled);
+        [before, before + sum(&self.step)]
+    }
+
+    /// Measures how far each has come in the sub-step. Returns how far any two of them can have come nearer to each other (m).
+    pub fn approach(&mut self) -> f32 {
         let sum = |of: &[Vec3]| of.iter().sum::<Vec3>();
         let drift = (sum(&self.place) - sum(&self.start)) / self.len().max(1) as f32;
-        let squares = self
-            .place
-            .iter()
-            .zip(&self.start)
-            .map(|(place, start)| (place - start - drift).length_squared());
-        2.0 * squares.fold(0.0, f32::max).sqrt()
+        let mut farthest = 0.0_f32;
+        let both = self.place.iter().zip(&self.start);
+        for ((place, start), step) in both.zip(&mut self.step) {
+            *step = (place - start - drift).length();
+            farthest = farthest.max(*step);
+        }
+        2.0 * farthest
     }
 }

@@ -51,7 +51,7 @@ const LONGEST_WAIT: u32 = 16;
 const PART_OF_WAY: f32 = 0.5;
 
 /// The margin of a search, at least and, unless things are faster than that, at most: as a part of the shortest spacing.
-const MARGINS: [f32; 2] = [0.02, 0.1];
+const MARGINS: [f32; 2] = [0.05, 0.25];
 
 /// Contact of cloths with themselves and with each other, from tick to tick. May be dropped at any time.
 #[derive(Debug, Default, Clone)]
@@ -168,7 +168,10 @@ impl MutualContact {
                 break;
             }
             if round == 0 {
-                farthest = push(&self.pairs, &self.near.pushed, &mut self.members, dt);
+                let NearPairs {
+                    pushed, touched, ..
+                } = &mut self.near;
+                farthest = push(&self.pairs, pushed, touched, &mut self.members, dt);
             }
             let zones = &mut self.zones;
             let moved = zones.certify(&self.pairs, &self.near.certified, &mut self.members);
@@ -185,9 +188,8 @@ impl MutualContact {
             }
         }
         self.members.scatter(cloths, is_pushed);
-        self.nearer += 2.0 * farthest;
         // Better from here than on the way.
-        if self.nearer + 1.5 * approach > self.margin {
+        if self.nearer + approach > self.margin {
             self.search(cloths, &meets, 0.0);
         }
         farthest
@@ -286,6 +288,8 @@ impl MutualContact {
                 friction: (a.friction * b.friction).sqrt(),
                 before,
                 far_until: f32::NEG_INFINITY,
+                fresh_until: f32::NEG_INFINITY,
+                is_near: false,
                 nearest: Nearest::default(),
             });
         }

@@ -7,8 +7,12 @@ use super::{
     pair::{Nearest, Pair, VERTEX_AND_FACE},
 };
 
-/// By how much of a pair's thickness features may come nearer to each other before the nearest points are found anew.
-const SLACK: f32 = 0.1;
+/// How far the four particles of a pair may travel, taken together, before its nearest points are found anew: as a part of its
+/// thickness.
+const FRESH: f32 = 0.5;
+
+/// By how much of the smallest thickness particles may come nearer to each other before all pairs are gone through again.
+const SLACK: f32 = 0.25;
 
 /// Pairs that are near each other, with their nearest points, until particles have come nearer to each other by a little.
 ///
@@ -18,6 +22,8 @@ const SLACK: f32 = 0.1;
 pub(super) struct NearPairs {
     /// Those that may come nearer to each other than their thickness.
     pub pushed: Vec<u32>,
+    /// Those of the first that did, in the last sub-step.
+    pub touched: Vec<u32>,
     /// Those that might meet, as far as distances say.
     pub certified: Vec<u32>,
     /// Until the odometer says this (m), no others are near.
@@ -64,35 +70,48 @@ impl NearPairs {
             .fold(f32::INFINITY, f32::min);
         let slack = (SLACK * thinnest).max(0.5 * approach);
         self.until = odometer + slack;
+        // Each of four particles travels half as far as two come nearer to each other.
+        let ahead = 2.0 * slack;
         for (index, pair) in pairs.iter_mut().enumerate() {
-            if pair.far_until > self.until {
+            let [before, now] = members.travelled(pair.members);
+            pair.is_near = false;
+            if pair.far_until > now + ahead {
                 continue;
             }
-            pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
-            let distance = pair.nearest.distance;
-            let spare = distance - pair.thickness - approach;
-            if spare > slack {
-                pair.far_until = odometer + spare;
-                continue;
+            if now > pair.fresh_until {
+                pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
+                pair.far_until = before + pair.nearest.distance - pair.thickness;
+                pair.fresh_until = before + FRESH * pair.thickness;
+                if pair.far_until > now + ahead {
+                    continue;
+                }
             }
+            pair.is_near = true;
             self.pushed.push(index as u32);
-            if distance < LEFT_OF_THICKNESS * pair.thickness + approach + slack {
+            let met = pair.far_until + (1.0 - LEFT_OF_THICKNESS) * pair.thickness;
+            if met <= now + ahead {
                 self.certified.push(index as u32);
             }
         }
         let pairs = &*pairs;
-        let until = self.until;
         self.pushed.retain(|&index| {
             let pair = &pairs[index as usize];
-            pair.split != VERTEX_AND_FACE
-                || !is_implied(pairs, last_of[pair.members[0] as usize], index, until)
+            if pair.split == VERTEX_AND_FACE {
+                !is_implied(pairs, last_of[pair.members[0] as usize], index)
+            } else {
+                // Ends of edges are vertices, which are kept away from faces by more.
+                pair.nearest
+                    .weights
+                    .iter()
+                    .all(|weight| weight.abs() > 0.0 && weight.abs() < 1.0)
+            }
         });
     }
 }
 
 /// Whether a vertex is kept away from a face by keeping it away from another one, which is nearer: the face's nearest point is on
 /// its edge, and that is the other's edge too.
-fn is_implied(pairs: &[Pair], last: u32, index: u32, until: f32) -> bool {
+fn is_implied(pairs: &[Pair], last: u32, index: u32) -> bool {
     let pair = &pairs[index as usize];
     let nearest = &pair.nearest;
     if nearest.weights.iter().all(|&weight| weight != 0.0) {
@@ -104,7 +123,7 @@ fn is_implied(pairs: &[Pair], last: u32, index: u32, until: f32) -> bool {
         let is_nearer = other.nearest.distance < nearest.distance
             || (other.nearest.distance == nearest.distance && next < index);
         if next != index
-            && other.far_until <= until
+            && other.is_near
             && other.thickness >= pair.thickness
             && is_nearer
             && (1..4).all(|corner| {

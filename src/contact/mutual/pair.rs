@@ -17,8 +17,12 @@ pub(super) struct Pair {
     pub friction: f32,
     /// The pair before this one of the same vertex with another face; none for `u32::MAX`.
     pub before: u32,
-    /// What the odometer says when they can first be that near (m).
+    /// How far its particles have travelled, all together, when they can first be that near (m).
     pub far_until: f32,
+    /// Likewise, when the nearest points are to be found anew (m).
+    pub fresh_until: f32,
+    /// Whether it was near when pairs were last gone through.
+    pub is_near: bool,
     /// How the nearest points were when they were last found.
     pub nearest: Nearest,
 }

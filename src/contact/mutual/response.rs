@@ -14,44 +14,54 @@ const RELEASE: f32 = 0.25;
 /// Of the thickness, what is always kept of it at once: so much no sub-step may leave for the next.
 const KEPT: f32 = 0.3;
 
-/// How often all pairs are gone through: of one that is still nearer than half of its thickness, once more.
-const PASSES: u32 = 2;
+/// Pairs that touched are gone through once more where they are still nearer than this part of their thickness.
+const AGAIN: f32 = 0.5;
 
 /// Keeps those that are `near` apart. Returns the farthest that a particle was pushed by one of them (m).
-pub(super) fn push(pairs: &[Pair], near: &[u32], members: &mut Members, dt: f32) -> f32 {
+pub(super) fn push(
+    pairs: &[Pair],
+    near: &[u32],
+    touched: &mut Vec<u32>,
+    members: &mut Members,
+    dt: f32,
+) -> f32 {
     let mut farthest = 0.0_f32;
-    for pass in 0..PASSES {
-        for &index in near {
-            let pair = &pairs[index as usize];
-            let floor = if pass == 0 {
-                pair.thickness
-            } else {
-                0.5 * pair.thickness
-            };
-            farthest = farthest.max(push_pair(pair, floor, members, dt));
+    touched.clear();
+    for &index in near {
+        let pair = &pairs[index as usize];
+        if let Some(pushed) = push_pair(pair, pair.thickness, members, dt) {
+            farthest = farthest.max(pushed);
+            touched.push(index);
+        }
+    }
+    for &index in &*touched {
+        let pair = &pairs[index as usize];
+        if let Some(pushed) = push_pair(pair, AGAIN * pair.thickness, members, dt) {
+            farthest = farthest.max(pushed);
         }
     }
     farthest
 }
 
 /// Pushes two features apart that are nearer than `floor` (m), and slows them against each other by Coulomb's law. What both came
-/// towards each other in the sub-step is what velocity has to lose; an older overlap gives no more of it than is slow.
+/// towards each other in the sub-step is what velocity has to lose; an older overlap gives no more of it than is slow. Returns how
+/// far a particle was pushed at most (m), if they touch.
 #[inline]
-fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> f32 {
+fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> Option<f32> {
     let Nearest {
         weights, normal, ..
     } = pair.nearest;
     let between = pair.nearest.between(members.places(pair.members));
     let gap = normal.dot(between);
     if gap >= floor || normal == Vec3::ZERO {
-        return 0.0;
+        return None;
     }
     let inverse_masses = members.inverse_masses(pair.members);
     let mobility: f32 = (0..4)
         .map(|index| weights[index] * weights[index] * inverse_masses[index])
         .sum();
     if mobility == 0.0 {
-        return 0.0;
+        return None;
     }
     let depth = pair.thickness - gap;
     // Of the way, and of velocity, what brought them nearer.
@@ -76,5 +86,5 @@ fn push_pair(pair: &Pair, floor: f32, members: &mut Members, dt: f32) -> f32 {
         members.moved[member] += motion * share;
         farthest = farthest.max(share.abs());
     }
-    farthest * all.length()
+    Some(farthest * all.length())
 }
