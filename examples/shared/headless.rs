@@ -36,9 +36,8 @@ const TICKS_AN_UPDATE: u64 = 16;
 pub struct Run {
     pub app: App,
     view: View,
-    /// In all, and as asked for (s).
+    /// In all.
     pub ticks: u64,
-    pub seconds: f64,
     /// How long what is done took, without pictures (s).
     pub wall_seconds: f64,
     done: u64,
@@ -69,7 +68,6 @@ impl Run {
             app,
             view,
             ticks,
-            seconds: options.seconds,
             wall_seconds: 0.0,
             done: 0,
             bar,

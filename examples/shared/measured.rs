@@ -55,7 +55,9 @@ fn measure(cloths: Query<&ClothStats>, mut measured: ResMut<Measured>) {
 impl Figures {
     /// Of a run with a [`MeasuringPlugin`].
     pub fn of(run: &mut Run) -> Self {
-        let (ticks, simulated_seconds, wall_seconds) = (run.ticks, run.seconds, run.wall_seconds);
+        let (ticks, wall_seconds) = (run.ticks, run.wall_seconds);
+        let timestep = run.app.world().resource::<Time<Fixed>>().timestep();
+        let simulated_seconds = ticks as f64 * timestep.as_secs_f64();
         let world = run.app.world_mut();
         let mut cloths = world.query::<(&ClothParticles, &ClothStats)>();
         let particles = cloths.iter(world).map(|(cloth, _)| cloth.len()).sum();

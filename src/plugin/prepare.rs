@@ -32,7 +32,7 @@ use crate::{
     solver::{ClothSettings, PinMotion, Substepping, TickStep},
 };
 
-/// Sub-steps of a cloth with layers near each other, unless it asks for a number of its own.
+/// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
 const FOR_LAYERS: u32 = 16;
 
 /// The pins of a cloth from which the game took its [`Pins`].
@@ -276,7 +276,7 @@ impl PreparingItem<'_, '_> {
         };
         // Layers may come nearer in a sub-step by a part of their thickness alone.
         let needed = match inputs.self_collision {
-            Some(_) if self.stats.layer_pairs > 0 => needed.max(FOR_LAYERS),
+            Some(_) if state.touches_cloth => needed.max(FOR_LAYERS),
             _ => needed,
         };
         scratch.step = Some(TickStep {

@@ -22,6 +22,8 @@ pub struct ClothState {
     /// Of the coming tick's sub-steps.
     pub(super) control: Control,
     pub(super) rest: Rest,
+    /// Whether layers of it, or it and other cloth, touched in the last tick.
+    pub(super) touches_cloth: bool,
     /// As of the positions present: what `RestShape` relies on.
     pub(super) stretch: Stretch,
     /// Speed of the fastest particle as the tick begins (m/s).

@@ -234,6 +234,7 @@ impl IntegratingItem<'_, '_> {
                     is_touched | is_pushed[0]
                 });
         if let Some((mutual, _)) = alone {
+            self.state.touches_cloth = mutual.has_touched();
             self.stats.layer_pairs = mutual.pairs();
             self.stats.layer_searches = mutual.searches();
             self.scratch.mutual = Some(mutual);

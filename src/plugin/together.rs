@@ -96,6 +96,7 @@ pub(super) fn integrate_together(
         if let Some(step) = step {
             cloth.scratch.limit_inputs = Some(cloth.limit_inputs(TickStep { substeps, ..*step }));
             cloth.finish(milliseconds);
+            cloth.state.touches_cloth = island.contact.has_touched();
             cloth.stats.layer_pairs = island.contact.pairs();
             cloth.stats.layer_searches = island.contact.searches();
         }

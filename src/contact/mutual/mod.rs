@@ -83,6 +83,18 @@ pub(crate) struct MutualContact {
     wait: u32,
     waited: u32,
     searches: u32,
+    has_touched: bool,
+}
+
+/// Where particles that become members were last known to be apart.
+#[derive(Debug, Clone, Copy)]
+enum Starts {
+    /// Where they are: what is under way has been looked at.
+    Here,
+    /// As the sub-step began that they have just gone through.
+    SubStep,
+    /// At the search before this one, which found nobody near.
+    LastSearch,
 }
 
 /// No member, no pair.
@@ -97,6 +109,7 @@ impl MutualContact {
     /// Begins a tick of these cloths, of which `meets` says which two of them touch.
     pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
         self.searches = 0;
+        self.has_touched = false;
         let is_known = self.is_searched && self.origin.is_of(cloths);
         if is_known {
             self.nearer = self.origin.approach(cloths);
@@ -104,16 +117,25 @@ impl MutualContact {
         (self.wait, self.waited) = (0, 0);
         self.members.begin(cloths);
         if !is_known {
-            self.is_searched = false;
-            self.search(cloths, meets, 0.0);
+            self.search(cloths, meets, 0.0, Starts::Here);
         } else if self.nearer > self.margin {
-            self.search(cloths, meets, self.nearer - self.margin);
+            let starts = if self.pairs.is_empty() {
+                Starts::LastSearch
+            } else {
+                Starts::Here
+            };
+            self.search(cloths, meets, self.nearer - self.margin, starts);
         }
     }
 
     /// How often in the tick features were searched for.
     pub fn searches(&self) -> u32 {
         self.searches
+    }
+
+    /// Whether anything touched in the tick.
+    pub fn has_touched(&self) -> bool {
+        self.has_touched
     }
 
     /// Pairs of features that may come near each other, as found last.
@@ -144,11 +166,21 @@ impl MutualContact {
         self.nearer = self.origin.approach(cloths);
         if self.nearer > self.margin {
             // Some may have met on the way to here.
-            self.search(cloths, &meets, self.nearer - self.margin);
+            let starts = if self.waited > 1 && self.pairs.is_empty() {
+                Starts::LastSearch
+            } else {
+                Starts::SubStep
+            };
+            self.search(cloths, &meets, self.nearer - self.margin, starts);
         }
         if self.pairs.is_empty() {
-            self.wait = self.free_substeps((self.nearer - before).max(0.0) / self.waited as f32);
+            let pace = (self.nearer - before).max(0.0) / self.waited as f32;
             self.waited = 0;
+            self.wait = self.free_substeps(pace);
+            // Better from here than on the way.
+            if self.nearer + pace > self.margin {
+                self.search(cloths, &meets, 0.0, Starts::Here);
+            }
             return 0.0;
         }
         (self.wait, self.waited) = (0, 0);
@@ -172,6 +204,7 @@ impl MutualContact {
                     pushed, touched, ..
                 } = &mut self.near;
                 farthest = push(&self.pairs, pushed, touched, &mut self.members, dt);
+                self.has_touched |= !touched.is_empty();
             }
             let zones = &mut self.zones;
             let moved = zones.certify(&self.pairs, &self.near.certified, &mut self.members);
@@ -190,7 +223,7 @@ impl MutualContact {
         self.members.scatter(cloths, is_pushed);
         // Better from here than on the way.
         if self.nearer + approach > self.margin {
-            self.search(cloths, &meets, 0.0);
+            self.search(cloths, &meets, 0.0, Starts::Here);
         }
         farthest
     }
@@ -209,10 +242,9 @@ impl MutualContact {
         cloths: &[Participant],
         meets: impl Fn(usize, usize) -> bool,
         missed: f32,
+        starts: Starts,
     ) {
         self.searches += 1;
-        // While no pair was known, none was near where the search before this one was made.
-        let were_apart = self.is_searched && self.pairs.is_empty();
         self.is_searched = true;
         self.odometer = 0.0;
         self.near.forget();
@@ -267,8 +299,11 @@ impl MutualContact {
                         Some(member) if member != NOBODY => {
                             self.members_before.start[member as usize]
                         }
-                        _ if were_apart => of.point(self.origin_before.place(cloth, slot)),
-                        _ => of.start(slot),
+                        _ => match starts {
+                            Starts::Here => of.place(slot),
+                            Starts::SubStep => of.start(slot),
+                            Starts::LastSearch => of.point(self.origin_before.place(cloth, slot)),
+                        },
                     };
                     *place = self.members.add(cloth as u32, slot, start);
                 }
@@ -288,7 +323,6 @@ impl MutualContact {
                 friction: (a.friction * b.friction).sqrt(),
                 before,
                 far_until: f32::NEG_INFINITY,
-                fresh_until: f32::NEG_INFINITY,
                 is_near: false,
                 nearest: Nearest::default(),
             });

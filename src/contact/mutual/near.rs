@@ -7,19 +7,14 @@ use super::{
     pair::{Nearest, Pair, VERTEX_AND_FACE},
 };
 
-/// How far the four particles of a pair may travel, taken together, before its nearest points are found anew: as a part of its
-/// thickness.
-const FRESH: f32 = 0.5;
-
 /// By how much of the smallest thickness particles may come nearer to each other before all pairs are gone through again.
 const SLACK: f32 = 0.25;
 
-/// Pairs that are near each other, with their nearest points, until particles have come nearer to each other by a little.
-///
-/// A plane across the line between the nearest points stays between two features as long as it is measured again in each sub-step,
-/// whichever sub-step the points are of: so the proof that nothing passes does not need new ones.
+/// Pairs that are near each other, until particles have come nearer to each other by a little. What is done to them in a sub-step
+/// follows from where that began and ended alone, whatever was known before.
 #[derive(Debug, Default, Clone)]
 pub(super) struct NearPairs {
+    listed: Vec<u32>,
     /// Those that may come nearer to each other than their thickness.
     pub pushed: Vec<u32>,
     /// Those of the first that did, in the last sub-step.
@@ -34,6 +29,7 @@ pub(super) struct NearPairs {
 impl NearPairs {
     /// Forgets them: the pairs are others.
     pub fn forget(&mut self) {
+        self.listed.clear();
         self.pushed.clear();
         self.certified.clear();
         self.is_known = false;
@@ -48,9 +44,9 @@ impl NearPairs {
         self.is_known && odometer <= self.until
     }
 
-    /// Finds them anew from where the sub-step began, unless those that are known are all. In the sub-step any two particles have
-    /// come nearer to each other by at most `approach` (m), and the `odometer` says so already. The last pair of each vertex with a
-    /// face begins its list.
+    /// Finds those that may touch in the sub-step, with their nearest points where it began. In it any two particles have come nearer
+    /// to each other by at most `approach` (m), and the `odometer` says so already. The last pair of each vertex with a face begins
+    /// its list.
     pub fn update(
         &mut self,
         pairs: &mut [Pair],
@@ -59,9 +55,44 @@ impl NearPairs {
         approach: f32,
         odometer: f32,
     ) {
-        if self.covers(odometer) {
-            return;
+        if !self.covers(odometer) {
+            self.list(pairs, members, approach, odometer);
         }
+        self.pushed.clear();
+        self.certified.clear();
+        for &index in &self.listed {
+            let pair = &mut pairs[index as usize];
+            let [before, now] = members.travelled(pair.members);
+            pair.is_near = false;
+            if pair.far_until > now {
+                continue;
+            }
+            pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
+            pair.far_until = before + pair.nearest.distance - pair.thickness;
+            if pair.far_until > now {
+                continue;
+            }
+            pair.is_near = true;
+            self.pushed.push(index);
+            if pair.far_until + (1.0 - LEFT_OF_THICKNESS) * pair.thickness <= now {
+                self.certified.push(index);
+            }
+        }
+        let pairs = &*pairs;
+        self.pushed.retain(|&index| {
+            let pair = &pairs[index as usize];
+            if pair.split == VERTEX_AND_FACE {
+                !is_implied(pairs, last_of[pair.members[0] as usize], index)
+            } else {
+                // Ends of edges are vertices, which are kept away from faces by more.
+                let mut weights = pair.nearest.weights.iter();
+                weights.all(|weight| weight.abs() > 0.0 && weight.abs() < 1.0)
+            }
+        });
+    }
+
+    /// Goes through all pairs for those that may touch before particles have come nearer to each other by a little.
+    fn list(&mut self, pairs: &[Pair], members: &Members, approach: f32, odometer: f32) {
         self.forget();
         self.is_known = true;
         let thinnest = pairs
@@ -72,40 +103,12 @@ impl NearPairs {
         self.until = odometer + slack;
         // Each of four particles travels half as far as two come nearer to each other.
         let ahead = 2.0 * slack;
-        for (index, pair) in pairs.iter_mut().enumerate() {
-            let [before, now] = members.travelled(pair.members);
-            pair.is_near = false;
-            if pair.far_until > now + ahead {
-                continue;
-            }
-            if now > pair.fresh_until {
-                pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
-                pair.far_until = before + pair.nearest.distance - pair.thickness;
-                pair.fresh_until = before + FRESH * pair.thickness;
-                if pair.far_until > now + ahead {
-                    continue;
-                }
-            }
-            pair.is_near = true;
-            self.pushed.push(index as u32);
-            let met = pair.far_until + (1.0 - LEFT_OF_THICKNESS) * pair.thickness;
-            if met <= now + ahead {
-                self.certified.push(index as u32);
+        for (index, pair) in pairs.iter().enumerate() {
+            let [_, now] = members.travelled(pair.members);
+            if pair.far_until <= now + ahead {
+                self.listed.push(index as u32);
             }
         }
-        let pairs = &*pairs;
-        self.pushed.retain(|&index| {
-            let pair = &pairs[index as usize];
-            if pair.split == VERTEX_AND_FACE {
-                !is_implied(pairs, last_of[pair.members[0] as usize], index)
-            } else {
-                // Ends of edges are vertices, which are kept away from faces by more.
-                pair.nearest
-                    .weights
-                    .iter()
-                    .all(|weight| weight.abs() > 0.0 && weight.abs() < 1.0)
-            }
-        });
     }
 }
 

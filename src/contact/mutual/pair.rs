@@ -19,9 +19,7 @@ pub(super) struct Pair {
     pub before: u32,
     /// How far its particles have travelled, all together, when they can first be that near (m).
     pub far_until: f32,
-    /// Likewise, when the nearest points are to be found anew (m).
-    pub fresh_until: f32,
-    /// Whether it was near when pairs were last gone through.
+    /// Whether they might touch in the last sub-step in which they were looked at.
     pub is_near: bool,
     /// How the nearest points were when they were last found.
     pub nearest: Nearest,

@@ -50,6 +50,11 @@ impl Participant<'_> {
         }
     }
 
+    /// Where a particle is, in the common frame (m).
+    pub(super) fn place(&self, Slot { block, lane }: Slot) -> Vec3 {
+        self.point(self.particles.blocks()[block].position(lane))
+    }
+
     /// Where a particle was as the sub-step began that it has just gone through, in the common frame (m).
     pub(super) fn start(&self, Slot { block, lane }: Slot) -> Vec3 {
         let block = &self.particles.blocks()[block];
