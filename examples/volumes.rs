@@ -199,7 +199,7 @@ fn headless(view: View, grid: Grid, options: &Options) -> ExitCode {
         app.register_required_components::<Cloth, Measured>()
             .add_systems(FixedLast, measure);
     });
-    run.to_end();
+    run.finish();
     let picture = run.take_picture(SHOT, &options.out, "volumes.png");
     let world = run.app.world_mut();
     let mut cloths = world.query::<(&SearchMethod, &mut Measured, &ClothParticles)>();

@@ -79,7 +79,7 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let moment = scene::moment_beyond(WRAPPED, options.seconds);
     run.until(ticks_in(&run.app, moment).clamp(1, run.ticks));
     let picture = run.take_picture(scene::SHOT, &options.out, "ball.png");
-    run.to_end();
+    run.finish();
     let figures = Figures::of(&mut run);
     let world = run.app.world_mut();
     let mut cloths = world.query::<&ClothBuilt>();

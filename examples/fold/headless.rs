@@ -54,7 +54,7 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let moment = ticks_in(&run.app, DRAWN_AT);
     run.until(moment.min(run.ticks));
     let picture = run.take_picture(scene::SHOT, &options.out, "fold.png");
-    run.to_end();
+    run.finish();
     let figures = Figures::of(&mut run);
     let world = run.app.world_mut();
     let mut cloths = world.query::<(&ClothParticles, &ClothFrame)>();

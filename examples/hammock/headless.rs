@@ -50,7 +50,7 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
             .init_resource::<Way>()
             .add_systems(FixedLast, follow);
     });
-    run.to_end();
+    run.finish();
     let picture = run.take_picture(scene::SHOT, &options.out, "hammock.png");
     let report = report(&mut run, picture);
     print(&report, options.json, print_report)

@@ -69,7 +69,7 @@ pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
             .add_systems(FixedLast, measure);
     });
     wait_for_assets(&mut run.app);
-    run.to_end();
+    run.finish();
     let pictures = SHOTS.map(|(file, shot)| run.take_picture(shot, &options.out, file));
     let world = run.app.world_mut();
     let mut cloths = world.query::<(

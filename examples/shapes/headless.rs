@@ -76,7 +76,7 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
             .init_resource::<Measured>()
             .add_systems(FixedLast, measure);
     });
-    run.to_end();
+    run.finish();
     let picture = run.take_picture(scene::SHOT, &options.out, "shapes.png");
     let figures = Figures::of(&mut run);
     let world = run.app.world_mut();

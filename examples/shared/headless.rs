@@ -75,7 +75,7 @@ impl Run {
     }
 
     /// Goes on to the end.
-    pub fn to_end(&mut self) {
+    pub fn finish(&mut self) {
         self.until(self.ticks);
     }
 

@@ -67,7 +67,7 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let drawn = pulled + ticks_in(&run.app, DRAWN_AFTER);
     run.until(drawn.min(run.ticks));
     let pulled = run.take_picture(scene::SHOT, &options.out, "table_pulled.png");
-    run.to_end();
+    run.finish();
 
     let figures = Figures::of(&mut run);
     let world = run.app.world_mut();

@@ -29,7 +29,7 @@ use self::{
     members::Members,
     near::NearPairs,
     origin::Origin,
-    pair::{Nearest, Pair, VERTEX_AND_FACE},
+    pair::{NOBODY, Nearest, Pair, VERTEX_AND_FACE},
     response::push,
     search::{Found, Search},
 };
@@ -96,9 +96,6 @@ enum Starts {
     /// At the search before this one, which found nobody near.
     LastSearch,
 }
-
-/// No member, no pair.
-const NOBODY: u32 = u32::MAX;
 
 impl MutualContact {
     /// Forgets what was found: the particles are others, or somewhere else.

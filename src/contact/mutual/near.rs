@@ -1,10 +1,9 @@
 //! Which of all pairs have to be looked at in a sub-step, and which of these may be left out.
 
 use super::{
-    NOBODY,
     certificate::LEFT_OF_THICKNESS,
     members::Members,
-    pair::{Nearest, Pair, VERTEX_AND_FACE},
+    pair::{NOBODY, Nearest, Pair, VERTEX_AND_FACE},
 };
 
 /// By how much of the smallest thickness particles may come nearer to each other before all pairs are gone through again.

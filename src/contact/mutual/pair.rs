@@ -15,7 +15,7 @@ pub(super) struct Pair {
     pub thickness: f32,
     /// Coulomb's μ.
     pub friction: f32,
-    /// The pair before this one of the same vertex with another face; none for `u32::MAX`.
+    /// The pair before this one of the same vertex with another face; or [`NOBODY`].
     pub before: u32,
     /// How far its particles have travelled, all together, when they can first be that near (m).
     pub far_until: f32,
@@ -36,6 +36,8 @@ pub(super) struct Nearest {
     pub distance: f32,
 }
 
+/// No member, no pair.
+pub(super) const NOBODY: u32 = u32::MAX;
 /// The vertices of a face count as the second feature.
 pub(super) const VERTEX_AND_FACE: usize = 1;
 /// Two ends are the first edge's.
