@@ -2,7 +2,7 @@
 
 use bevy::math::{Mat3, Quat, Vec3};
 
-/// How hard a collider is to move. In the frame of its [`MovingCollider`], as the tick begins.
+/// How hard a collider is to move. In the frame in which the cloth moves, as the tick begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyMass {
     /// One over its mass (1/kg).

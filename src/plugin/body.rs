@@ -13,7 +13,7 @@ use crate::{cloth::ClothError, contact::BodyMass};
 ///
 /// Whatever moves the body, a physics engine or the game itself, does so before
 /// [`ClothSystems::Prepare`](super::ClothSystems). In the tick's sub-steps the body gives way to the cloth by its mass, and it
-/// is then taken from where it was sent to where the cloth has left it: that is written into its [`Transform`], if it is no
+/// is then taken from where it was sent to where the cloth has left it: that is written into its `Transform`, if it is no
 /// child of another entity. What became of its velocity is in [`ClothPush`], to be added by whoever moves it. With feature
 /// `rapier` a `ClothPushBack` on a rapier body does all of this.
 ///
