@@ -423,6 +423,8 @@ impl Detection {
     pub fn note_push(&mut self, farthest: f32) {
         self.moved += farthest;
         self.moved_now += farthest;
+        self.odometer += farthest;
+        self.shapes.travelled += farthest;
     }
 
     /// The colliders that may touch.

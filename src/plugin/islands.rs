@@ -26,7 +26,7 @@ pub(super) struct Islands {
     island_of: Vec<u32>,
 }
 
-/// Cloths that may touch each other, of which at least one is awake.
+/// Cloths that may touch each other. If all sleep, one may be woken in the tick.
 #[derive(Debug, Default)]
 pub(super) struct Island {
     /// Ascending.
@@ -85,7 +85,6 @@ pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours)
     for island in &mut islands.all {
         wake(island, &mut cloths);
     }
-    islands.all.retain(|island| !island.cloths.is_empty());
 }
 
 impl Islands {
@@ -157,17 +156,15 @@ impl Islands {
     }
 }
 
-/// Wakes all cloths of an island of which one moves. One in which all sleep is none.
+/// Wakes all cloths of an island of which one moves.
 fn wake(island: &mut Island, cloths: &mut Neighbours) {
-    let (mut is_awake, mut is_moving) = (false, false);
+    let mut is_moving = false;
     for cloth in cloths.iter_many(&island.cloths) {
         let rest = &cloth.state.rest;
-        is_awake |= !rest.is_asleep();
         is_moving |= !rest.is_asleep() && !rest.is_calm();
-    }
-    if !is_awake {
-        island.cloths.clear();
-        return;
+        if cloth.scratch.was_put {
+            island.contact.forget();
+        }
     }
     let mut each = cloths.iter_many_mut(&island.cloths);
     while let Some(mut cloth) = each.fetch_next() {

@@ -261,8 +261,9 @@ impl PreparingItem<'_, '_> {
             state.known = known;
             state.rest.disturb();
         } else if !state.rest.is_asleep() {
-            let (diagonal, pull) = (surface.diagonal(), acceleration.length());
-            state.rest.observe(seconds, particles, diagonal, pull);
+            let scale = (surface.diagonal(), acceleration.length());
+            let lies_on_cloth = inputs.self_collision.is_some() && state.touches_cloth;
+            state.rest.observe(seconds, particles, scale, lies_on_cloth);
         }
         // The plugin's own writing, up to here.
         state.written = Some(particles.last_changed());
@@ -279,6 +280,10 @@ impl PreparingItem<'_, '_> {
             Some(_) if state.touches_cloth => needed.max(FOR_LAYERS),
             _ => needed,
         };
+        if !state.rest.is_asleep() {
+            // The tick says so again.
+            state.touches_cloth = false;
+        }
         scratch.step = Some(TickStep {
             seconds,
             substeps: state.control.substeps(settings.substepping, needed),
@@ -290,10 +295,11 @@ impl PreparingItem<'_, '_> {
         scratch.substepping = settings.substepping;
         scratch.is_in_island = false;
         scratch.self_collision = inputs.self_collision;
+        scratch.was_put = was_written || !was_built || scratch.teleports;
         if inputs.self_collision.is_none() {
             scratch.mutual = None;
         } else if let Some(mutual) = &mut scratch.mutual
-            && (was_written || !was_built || scratch.teleports)
+            && scratch.was_put
         {
             mutual.forget();
         }

@@ -46,6 +46,8 @@ pub struct ClothScratch {
     pub(super) is_in_island: bool,
     /// Contact with itself alone.
     pub(super) mutual: Option<Box<MutualContact>>,
+    /// Whether its particles are others since the last tick, or somewhere else.
+    pub(super) was_put: bool,
     /// The bodies that the cloth pushed in the tick, and what it changed of their motion, in the world.
     pub(super) pushed: Vec<(Entity, BodyChange)>,
     /// What a cloth that sleeps is searched with.

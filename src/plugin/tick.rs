@@ -153,6 +153,9 @@ impl IntegratingItem<'_, '_> {
             step.substeps = more;
             self.particles.copy_from(&self.scratch.backup);
             self.scratch.detection.restart();
+            if let Some(mutual) = &mut self.scratch.mutual {
+                mutual.forget();
+            }
         }
         self.scratch.limit_inputs = Some(self.limit_inputs(step));
     }
@@ -217,18 +220,15 @@ impl IntegratingItem<'_, '_> {
                     let numbered = |numbered: &mut Vec<(usize, MovingCollider)>| {
                         add_far(near, near_set, (frame, layers), colliders, numbered);
                     };
+                    let Some((mutual, layers)) = &mut alone else {
+                        return detection.respond(particles, &settings, substep, numbered);
+                    };
+                    let sheet = sheet.sheet();
+                    let itself = Participant::alone(particles, sheet, *layers);
+                    mutual.note_before_colliders(&[itself]);
                     let is_touched = detection.respond(particles, &settings, substep, numbered);
-                    let Some((mutual, settings)) = &mut alone else {
-                        return is_touched;
-                    };
-                    let itself = Participant {
-                        particles,
-                        sheet: sheet.sheet(),
-                        to_common: None,
-                        settings: *settings,
-                        is_fixed: false,
-                    };
                     let mut is_pushed = [false];
+                    let itself = Participant::alone(particles, sheet, *layers);
                     let farthest = mutual.respond(&mut [itself], |_, _| true, dt, &mut is_pushed);
                     detection.note_push(farthest);
                     is_touched | is_pushed[0]

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     contact::{ClothLayers, MutualContact, Participant},
-    solver::{StartedTick, Stretch, Substepping, TickStep},
+    solver::{StartedTick, Stretch, SubStep, Substepping, TickStep},
 };
 
 /// A cloth of an island, in its tick.
@@ -131,17 +131,22 @@ fn advance(
     let meets = |a: usize, b: usize| layers[a].interacts_with(layers[b]);
     contact.begin(&participants(members), meets);
     let mut is_pushed = vec![false; members.len()];
+    let mut moved: Vec<Option<SubStep>> = Vec::with_capacity(members.len());
     for _ in 0..substeps {
+        moved.clear();
         for (Member { cloth, .. }, tick) in members.iter_mut().zip(&mut ticks) {
-            let Some(tick) = tick else {
-                continue;
-            };
-            let solver = &mut cloth.built.solver;
-            let pins = &cloth.scratch.pins;
-            if let Some(substep) = solver.substep(&mut cloth.particles, pins, tick)
-                && cloth.touch(substep, colliders)
+            let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);
+            let substep = tick
+                .as_mut()
+                .and_then(|tick| solver.substep(&mut cloth.particles, pins, tick));
+            moved.push(substep);
+        }
+        contact.note_before_colliders(&participants(members));
+        for ((member, tick), substep) in members.iter_mut().zip(&mut ticks).zip(&moved) {
+            if let (Some(tick), Some(substep)) = (tick, *substep)
+                && member.cloth.touch(substep, colliders)
             {
-                tick.note_push(&mut cloth.particles);
+                tick.note_push(&mut member.cloth.particles);
             }
         }
         is_pushed.fill(false);

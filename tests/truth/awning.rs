@@ -54,7 +54,12 @@ fn strips_and_awnings_sag_by_what_they_give_and_sleep() {
         let mut passed = 0.0;
         while !rest.is_asleep() && passed < PATIENCE {
             sheet.tick(|_, _| {});
-            rest.observe(step.seconds, &sheet.particles, diagonal, GRAVITY as f32);
+            rest.observe(
+                step.seconds,
+                &sheet.particles,
+                (diagonal, GRAVITY as f32),
+                false,
+            );
             passed += step.seconds;
             let middle = sheet.particles.position((rows / 2, columns / 2));
             sags.push(-f64::from(middle.expect("it exists").y));

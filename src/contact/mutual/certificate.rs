@@ -1,13 +1,15 @@
 //! The proof, in each sub-step, that no features have passed through each other; and what is done where it can't be given.
 //!
-//! As a sub-step begins, the nearest points of two features have a plane between them, across the line that joins them, with all of
-//! one feature on one side and all of the other on the other. Particles move along straight lines, so if all of them are on the
-//! same sides of a plane of that direction as the sub-step ends, they were so all along, and the features have not met. Where that
-//! is so of all vertices with faces and of all edges with edges that were near enough, no two triangles intersect.
+//! When nearest points of two features are found, there is a plane between them, across the line that joins them, with all of one
+//! feature on one side and all of the other on the other. Particles move along straight lines, so if all of them are on the same
+//! sides of a plane of that direction as a sub-step ends, they were so all along, and the features have not met. The same direction
+//! then does for the next sub-step, until nearest points are found anew. Features that were farther from each other than any two
+//! particles have come nearer since have such a plane without being looked at. Where that is so of all vertices with faces and of all
+//! edges with edges, no two triangles intersect.
 
-use bevy::math::Vec3;
+use bevy::math::Vec3A;
 
-use super::{members::Members, pair::Pair};
+use super::{members::Members, pair::NearPair};
 
 /// Of the thickness, and of the distance as the sub-step began, what has to be left between features.
 pub(super) const LEFT_OF_THICKNESS: f32 = 0.05;
@@ -34,26 +36,27 @@ pub(super) struct Zones {
 struct Sum {
     count: u32,
     mass: f32,
-    momentum: Vec3,
+    momentum: Vec3A,
     pinned: u32,
-    carried: Vec3,
+    carried: Vec3A,
 }
 
 impl Zones {
-    /// Has no pair that is `near` pass through itself. Returns how far any particle was moved at most (m).
-    pub fn certify(&mut self, pairs: &[Pair], near: &[u32], members: &mut Members) -> f32 {
-        let mut farthest = 0.0_f32;
+    /// Has no pair pass through itself of those that can have met: all that were found when they were no nearer to it than `nearer` (m).
+    pub fn certify(&mut self, pairs: &[NearPair], nearer: f32, members: &mut Members) {
         let mut has_zones = false;
         for round in 0..PUSHES + ZONES {
             let mut is_certain = true;
-            for &index in near {
-                let pair = &pairs[index as usize];
+            for pair in pairs {
+                if pair.until_met(LEFT_OF_THICKNESS) > nearer {
+                    continue;
+                }
                 let Some(lack) = lack(pair, members) else {
                     continue;
                 };
                 is_certain = false;
                 if round < PUSHES {
-                    farthest = farthest.max(part(pair, lack, members));
+                    part(pair, lack, members);
                 } else {
                     if !has_zones {
                         self.clear(members.len());
@@ -66,10 +69,9 @@ impl Zones {
                 break;
             }
             if has_zones {
-                farthest = farthest.max(self.move_as_one(members));
+                self.move_as_one(members);
             }
         }
-        farthest
     }
 
     fn clear(&mut self, members: usize) {
@@ -94,20 +96,20 @@ impl Zones {
         }
     }
 
-    /// Has each zone move from where it was by the mean of its motions, which keeps its momentum; or as its pins do. Returns how far
-    /// that took a particle away from where it was going (m).
-    fn move_as_one(&mut self, members: &mut Members) -> f32 {
+    /// Has each zone move from where it was by the mean of its motions, which keeps its momentum; or as its pins do.
+    fn move_as_one(&mut self, members: &mut Members) {
         let count = members.len() as u32;
         self.sums.clear();
         self.sums.resize(count as usize, Sum::default());
         for member in 0..count {
             let root = self.find(member) as usize;
             let index = member as usize;
-            let moved = members.place[index] - members.start[index];
+            let moved = members.states[index].place - members.states[index].start;
             let sum = &mut self.sums[root];
             sum.count += 1;
-            if members.inverse_mass[index] > 0.0 {
-                let mass = 1.0 / members.inverse_mass[index];
+            let inverse_mass = members.states[index].inverse_mass;
+            if inverse_mass > 0.0 {
+                let mass = 1.0 / inverse_mass;
                 sum.mass += mass;
                 sum.momentum += moved * mass;
             } else {
@@ -115,12 +117,11 @@ impl Zones {
                 sum.carried += moved;
             }
         }
-        let mut farthest = 0.0_f32;
         for member in 0..count {
             let root = self.find(member) as usize;
             let sum = self.sums[root];
             let index = member as usize;
-            if sum.count < 2 || members.inverse_mass[index] == 0.0 {
+            if sum.count < 2 || members.states[index].inverse_mass == 0.0 {
                 continue;
             }
             let moved = if sum.pinned > 0 {
@@ -128,51 +129,48 @@ impl Zones {
             } else {
                 sum.momentum / sum.mass
             };
-            let place = members.start[index] + moved;
-            farthest = farthest.max(place.distance(members.place[index]));
-            members.place[index] = place;
-            members.moved[index] = moved;
+            let state = &mut members.states[index];
+            state.place = state.start + moved;
+            state.moved = moved;
         }
-        farthest
     }
 }
 
 /// How much two features lack of having a plane between them (m), if they do.
 #[inline]
-fn lack(pair: &Pair, members: &Members) -> Option<f32> {
-    let distance = pair.nearest.distance;
+fn lack(pair: &NearPair, members: &Members) -> Option<f32> {
+    let distance = pair.distance;
     if distance <= MET {
         return None;
     }
     let wanted = (LEFT_OF_THICKNESS * pair.thickness).min(LEFT_OF_DISTANCE * distance);
-    let left = pair.clearance(members.places(pair.members));
+    let left = pair.clearance(members.states(pair.members));
     // NaN is no lack.
     (left < wanted).then_some(2.0 * wanted - left)
 }
 
-/// Pushes those two particles apart, one of each feature, that are farthest beyond the plane. Returns how far (m).
-fn part(pair: &Pair, lack: f32, members: &mut Members) -> f32 {
-    let normal = pair.nearest.normal;
-    let along = members.places(pair.members).map(|place| normal.dot(place));
+/// Pushes those two particles apart, one of each feature, that are farthest beyond the plane.
+fn part(pair: &NearPair, lack: f32, members: &mut Members) {
+    let normal = pair.normal;
+    let states = members.states(pair.members);
+    let along = states.map(|state| normal.dot(state.place));
     let first = (0..pair.split).min_by(|&a, &b| along[a].total_cmp(&along[b]));
     let second = (pair.split..4).max_by(|&a, &b| along[a].total_cmp(&along[b]));
     let (Some(first), Some(second)) = (first, second) else {
-        return 0.0;
+        return;
     };
-    let [a, b] = [first, second].map(|index| pair.members[index] as usize);
-    let [wa, wb] = [members.inverse_mass[a], members.inverse_mass[b]];
-    let mobility = wa + wb;
+    let [a, b] = [first, second].map(|index| states[index]);
+    let mobility = a.inverse_mass + b.inverse_mass;
     if mobility == 0.0 {
-        return 0.0;
+        return;
     }
     let push = normal * (lack / mobility);
-    members.place[a] += push * wa;
-    members.place[b] -= push * wb;
-    let nearing = -normal.dot(members.moved[a] - members.moved[b]);
-    if nearing > 0.0 {
-        let stop = normal * (nearing / mobility);
-        members.moved[a] += stop * wa;
-        members.moved[b] -= stop * wb;
+    let nearing = -normal.dot(a.moved - b.moved);
+    let stop = normal * (nearing.max(0.0) / mobility);
+    for (index, sign) in [(first, 1.0), (second, -1.0)] {
+        let state = &mut members.states[pair.members[index] as usize];
+        let share = sign * state.inverse_mass;
+        state.place += push * share;
+        state.moved += stop * share;
     }
-    push.length() * wa.max(wb)
 }

@@ -1,6 +1,6 @@
 //! The particles of all pairs, side by side.
 
-use bevy::math::Vec3;
+use bevy::math::{Vec3, Vec3A};
 
 use super::participant::Participant;
 use crate::cloth::Slot;
@@ -10,19 +10,15 @@ use crate::cloth::Slot;
 #[derive(Debug, Default, Clone)]
 pub(super) struct Members {
     of: Vec<Member>,
-    /// Where they were as the sub-step began (m).
-    pub start: Vec<Vec3>,
-    /// Where they are (m).
-    pub place: Vec<Vec3>,
-    /// What the sub-step moved them by, as far as it is motion (m).
-    pub moved: Vec<Vec3>,
-    /// Inverse masses (1/kg).
-    pub inverse_mass: Vec<f32>,
-    /// How far each has travelled since it became one, besides what all have in common, up to this sub-step and in it (m).
-    travelled: Vec<f32>,
-    step: Vec<f32>,
+    /// How they move in the sub-step.
+    pub states: Vec<State>,
+    /// Where they were before colliders pushed them in the sub-step (m), if that was noted.
+    before_colliders: Vec<Vec3A>,
     /// Places and motions as they were gathered, to find what has been changed.
-    gathered: Vec<[Vec3; 2]>,
+    gathered: Vec<[Vec3A; 2]>,
+    /// How far each has travelled since it became one, besides what all have in common, and where it was when that was measured (m).
+    travelled: Vec<f32>,
+    measured: Vec<Vec3A>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,123 +27,149 @@ struct Member {
     slot: Slot,
 }
 
+/// A particle in a sub-step.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct State {
+    /// Where it is (m).
+    pub place: Vec3A,
+    /// Where it was as the sub-step began (m).
+    pub start: Vec3A,
+    /// What the sub-step moved it by, as far as it is motion (m).
+    pub moved: Vec3A,
+    /// Which way a collider pushed it in the sub-step, of length 1; 0 if none did. Against that it does not give way.
+    pub support: Vec3A,
+    /// Inverse mass (1/kg).
+    pub inverse_mass: f32,
+}
+
 impl Members {
     pub fn clear(&mut self) {
         self.of.clear();
-        self.start.clear();
+        self.states.clear();
         self.travelled.clear();
-        self.step.clear();
+        self.measured.clear();
+        self.before_colliders.clear();
     }
 
     pub fn len(&self) -> usize {
         self.of.len()
     }
 
+    /// Where one was as the sub-step began (m).
+    pub fn start(&self, member: u32) -> Vec3 {
+        self.states[member as usize].start.into()
+    }
+
     /// Adds a particle of a cloth that was there as the sub-step began (m). Returns its place.
     pub fn add(&mut self, cloth: u32, slot: Slot, start: Vec3) -> u32 {
+        let start = start.into();
         self.of.push(Member { cloth, slot });
-        self.start.push(start);
+        self.states.push(State {
+            start,
+            ..State::default()
+        });
         self.travelled.push(0.0);
-        self.step.push(0.0);
+        self.measured.push(start);
         self.of.len() as u32 - 1
     }
 
     /// Takes where they are for where the coming sub-step begins.
     pub fn begin(&mut self, cloths: &[Participant]) {
-        self.start.clear();
-        self.start.extend(self.of.iter().map(|member| {
-            let cloth = &cloths[member.cloth as usize];
-            cloth.point(cloth.particles.blocks()[member.slot.block].position(member.slot.lane))
-        }));
+        for (state, member) in self.states.iter_mut().zip(&self.of) {
+            state.start = cloths[member.cloth as usize].place(member.slot).into();
+        }
+    }
+
+    /// Notes where they are before colliders push them.
+    pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
+        self.before_colliders.clear();
+        let each = self.of.iter();
+        let places =
+            each.map(|member| Vec3A::from(cloths[member.cloth as usize].place(member.slot)));
+        self.before_colliders.extend(places);
     }
 
     /// Takes over where particles are now.
     pub fn gather(&mut self, cloths: &[Participant]) {
-        self.place.clear();
-        self.moved.clear();
-        self.inverse_mass.clear();
-        for member in &self.of {
+        let is_noted = self.before_colliders.len() == self.len();
+        self.gathered.clear();
+        for (index, (state, member)) in self.states.iter_mut().zip(&self.of).enumerate() {
             let cloth = &cloths[member.cloth as usize];
             let Slot { block, lane } = member.slot;
             let block = &cloth.particles.blocks()[block];
-            self.place.push(cloth.point(block.position(lane)));
-            self.moved.push(cloth.vector(block.displacement(lane)));
-            let inverse_mass = if cloth.is_fixed {
+            state.place = cloth.point(block.position(lane)).into();
+            state.moved = cloth.vector(block.displacement(lane)).into();
+            state.inverse_mass = if cloth.is_fixed {
                 0.0
             } else {
                 block.inverse_mass(lane)
             };
-            self.inverse_mass.push(inverse_mass);
+            state.support = Vec3A::ZERO;
+            if is_noted {
+                let push = state.place - self.before_colliders[index];
+                if push != Vec3A::ZERO {
+                    state.support = push.normalize_or_zero();
+                }
+            }
+            self.gathered.push([state.place, state.moved]);
         }
-        self.gathered.clear();
-        let both = self.place.iter().zip(&self.moved);
-        self.gathered
-            .extend(both.map(|(&place, &moved)| [place, moved]));
+        self.before_colliders.clear();
     }
 
     /// Gives the particles back what was changed, and begins the next sub-step there. Marks the cloths of which any was.
     pub fn scatter(&mut self, cloths: &mut [Participant], is_pushed: &mut [bool]) {
-        for (index, member) in self.of.iter().enumerate() {
-            let place = self.place[index];
-            let [was, moved_by] = self.gathered[index];
-            let push = place - was;
-            if push != Vec3::ZERO || self.moved[index] != moved_by {
+        let each = self.of.iter().zip(&mut self.states);
+        for ((member, state), &[was, moved_by]) in each.zip(&self.gathered) {
+            let push = state.place - was;
+            if push != Vec3A::ZERO || state.moved != moved_by {
                 let cloth = &mut cloths[member.cloth as usize];
                 is_pushed[member.cloth as usize] = true;
-                let push = cloth.own_vector(push);
-                let moved = cloth.own_vector(self.moved[index]);
+                let push = cloth.own_vector(push.into());
+                let moved = cloth.own_vector(state.moved.into());
                 let Slot { block, lane } = member.slot;
                 let block = &mut cloth.particles.blocks_mut()[block];
                 block.set_position(lane, block.position(lane) + push);
                 block.set_displacement(lane, moved);
             }
-            self.start[index] = place;
-            self.travelled[index] += self.step[index];
+            state.start = state.place;
         }
     }
 
-    /// The four particles of a pair, at the start of the sub-step (m).
+    /// The four particles of a pair.
+    #[inline]
+    pub fn states(&self, of: [u32; 4]) -> [&State; 4] {
+        of.map(|member| &self.states[member as usize])
+    }
+
+    /// Likewise, where they were as the sub-step began (m).
     #[inline]
     pub fn starts(&self, of: [u32; 4]) -> [Vec3; 4] {
-        of.map(|member| self.start[member as usize])
+        of.map(|member| self.start(member))
     }
 
-    /// Likewise, where they are now (m).
+    /// How far the four particles of a pair have travelled, all together, when that was last measured (m).
     #[inline]
-    pub fn places(&self, of: [u32; 4]) -> [Vec3; 4] {
-        of.map(|member| self.place[member as usize])
+    pub fn travelled(&self, of: [u32; 4]) -> f32 {
+        let [a, b, c, d] = of.map(|member| self.travelled[member as usize]);
+        a + b + c + d
     }
 
-    /// Likewise, what the sub-step moved them by (m).
-    #[inline]
-    pub fn motions(&self, of: [u32; 4]) -> [Vec3; 4] {
-        of.map(|member| self.moved[member as usize])
-    }
-
-    /// Likewise, their inverse masses (1/kg).
-    #[inline]
-    pub fn inverse_masses(&self, of: [u32; 4]) -> [f32; 4] {
-        of.map(|member| self.inverse_mass[member as usize])
-    }
-
-    /// How far the four particles of a pair have travelled, all together: up to this sub-step, and with it (m).
-    #[inline]
-    pub fn travelled(&self, of: [u32; 4]) -> [f32; 2] {
-        let sum = |each: &[f32]| of.iter().map(|&member| each[member as usize]).sum::<f32>();
-        let before = sum(&self.travelled);
-        [before, before + sum(&self.step)]
-    }
-
-    /// Measures how far each has come in the sub-step. Returns how far any two of them can have come nearer to each other (m).
-    pub fn approach(&mut self) -> f32 {
-        let sum = |of: &[Vec3]| of.iter().sum::<Vec3>();
-        let drift = (sum(&self.place) - sum(&self.start)) / self.len().max(1) as f32;
-        let mut farthest = 0.0_f32;
-        let both = self.place.iter().zip(&self.start);
-        for ((place, start), step) in both.zip(&mut self.step) {
-            *step = (place - start - drift).length();
-            farthest = farthest.max(*step);
+    /// Measures how far each has travelled up to where the sub-step begins.
+    pub fn note_travel(&mut self) {
+        let from: Vec3A = self.measured.iter().sum();
+        let to: Vec3A = self.states.iter().map(|state| state.start).sum();
+        let drift = (to - from) / self.len().max(1) as f32;
+        let each = self.states.iter().zip(&mut self.measured);
+        for ((state, measured), travelled) in each.zip(&mut self.travelled) {
+            *travelled += (state.start - *measured - drift).length();
+            *measured = state.start;
         }
-        2.0 * farthest
+    }
+
+    /// How far the one that was pushed farthest has been pushed since all were gathered (m).
+    pub fn farthest_push(&self) -> f32 {
+        let each = self.states.iter().zip(&self.gathered);
+        let squares = each.map(|(state, [was, _])| (state.place - *was).length_squared());
+        squares.fold(0.0, f32::max).sqrt()
     }
 }

@@ -8,6 +8,7 @@
 
 mod bounds;
 mod certificate;
+mod circumstances;
 mod flat;
 mod intersections;
 mod members;
@@ -26,6 +27,7 @@ use bevy::math::Vec3;
 
 use self::{
     certificate::Zones,
+    circumstances::Circumstances,
     members::Members,
     near::NearPairs,
     origin::Origin,
@@ -43,7 +45,7 @@ pub(crate) use sheet::Sheet;
 const SUBSTEPS: f32 = 8.0;
 
 /// How often in a sub-step what has been pushed is compared with what was too far away before.
-const ROUNDS: u32 = 3;
+const ROUNDS: u32 = 4;
 
 /// As long as no two features are near each other, particles are looked at again in this many sub-steps at most, and before they
 /// may have come, as fast as lately, this part of the way that is free.
@@ -56,6 +58,7 @@ const MARGINS: [f32; 2] = [0.05, 0.25];
 /// Contact of cloths with themselves and with each other, from tick to tick. May be dropped at any time.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct MutualContact {
+    circumstances: Circumstances,
     search: Search,
     found: Vec<Found>,
     pairs: Vec<Pair>,
@@ -75,13 +78,13 @@ pub(crate) struct MutualContact {
     /// How much nearer to each other any two may have come by now, at most (m).
     nearer: f32,
     is_searched: bool,
-    /// By how much any two members can have come nearer to each other since the last search, at most (m).
-    odometer: f32,
     near: NearPairs,
     zones: Zones,
     /// For how many sub-steps nothing has to be looked at, and since how many nothing was.
     wait: u32,
     waited: u32,
+    /// Where all particles were when layers were last kept apart: as the sub-step began.
+    passed: Origin,
     searches: u32,
     has_touched: bool,
 }
@@ -91,8 +94,8 @@ pub(crate) struct MutualContact {
 enum Starts {
     /// Where they are: what is under way has been looked at.
     Here,
-    /// As the sub-step began that they have just gone through.
-    SubStep,
+    /// When layers were last kept apart.
+    LastPass,
     /// At the search before this one, which found nobody near.
     LastSearch,
 }
@@ -107,12 +110,17 @@ impl MutualContact {
     pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
         self.searches = 0;
         self.has_touched = false;
-        let is_known = self.is_searched && self.origin.is_of(cloths);
+        let is_same = self.circumstances.renew(cloths, &meets);
+        let is_known = is_same && self.is_searched && self.origin.is_of(cloths);
         if is_known {
             self.nearer = self.origin.approach(cloths);
         }
         (self.wait, self.waited) = (0, 0);
         self.members.begin(cloths);
+        self.near.renew();
+        if !self.pairs.is_empty() {
+            self.passed.set(cloths);
+        }
         if !is_known {
             self.search(cloths, meets, 0.0, Starts::Here);
         } else if self.nearer > self.margin {
@@ -143,7 +151,14 @@ impl MutualContact {
     /// Pairs of features that were looked at in the last sub-step.
     #[cfg(test)]
     pub fn near(&self) -> usize {
-        self.near.pushed.len()
+        self.near.contacts.len()
+    }
+
+    /// Notes where particles are in a sub-step before colliders push them: against that they do not give way.
+    pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
+        if !self.pairs.is_empty() {
+            self.members.note_before_colliders(cloths);
+        }
     }
 
     /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s). Says of each cloth whether any of it was pushed.
@@ -163,17 +178,16 @@ impl MutualContact {
         self.nearer = self.origin.approach(cloths);
         if self.nearer > self.margin {
             // Some may have met on the way to here.
-            let starts = if self.waited > 1 && self.pairs.is_empty() {
+            let starts = if self.pairs.is_empty() {
                 Starts::LastSearch
             } else {
-                Starts::SubStep
+                Starts::LastPass
             };
             self.search(cloths, &meets, self.nearer - self.margin, starts);
         }
         if self.pairs.is_empty() {
             let pace = (self.nearer - before).max(0.0) / self.waited as f32;
-            self.waited = 0;
-            self.wait = self.free_substeps(pace);
+            (self.wait, self.waited) = (self.free_substeps(pace), 0);
             // Better from here than on the way.
             if self.nearer + pace > self.margin {
                 self.search(cloths, &meets, 0.0, Starts::Here);
@@ -182,44 +196,46 @@ impl MutualContact {
         }
         (self.wait, self.waited) = (0, 0);
         self.members.gather(cloths);
-        let mut approach = self.members.approach();
-        self.odometer += approach;
-        let mut farthest = 0.0_f32;
+        let thinnest = thinnest(cloths);
+        // How much nearer any two have come, in the sub-step and since near pairs were found.
+        let in_substep = self.passed.approach(cloths);
+        let mut since = self.near.approach(cloths).unwrap_or(in_substep);
+        let mut pushed = 0.0;
         for round in 0..ROUNDS {
-            self.near.update(
-                &mut self.pairs,
-                &self.members,
-                &self.last_of,
-                approach,
-                self.odometer,
-            );
-            if self.near.is_empty() {
-                break;
+            if !self.near.covers(since + pushed) {
+                since = in_substep;
+                self.near.find(
+                    &mut self.pairs,
+                    &mut self.members,
+                    &self.last_of,
+                    (&self.passed, since + pushed),
+                    thinnest,
+                );
             }
             if round == 0 {
                 let NearPairs {
-                    pushed, touched, ..
+                    contacts, touched, ..
                 } = &mut self.near;
-                farthest = push(&self.pairs, pushed, touched, &mut self.members, dt);
+                push(contacts, touched, &mut self.members, dt);
                 self.has_touched |= !touched.is_empty();
+            } else if let Some(nearer) = self.near.may_meet_within(since + pushed) {
+                self.zones
+                    .certify(&self.near.contacts, nearer, &mut self.members);
             }
-            let zones = &mut self.zones;
-            let moved = zones.certify(&self.pairs, &self.near.certified, &mut self.members);
-            farthest = farthest.max(moved);
             // What was pushed has come nearer to others.
-            let after = self.members.approach();
-            if after <= approach {
+            let farther = 2.0 * self.members.farthest_push();
+            if round > 0 && farther <= pushed {
                 break;
             }
-            self.odometer += after - approach;
-            approach = after;
-            if self.near.covers(self.odometer) {
-                break;
-            }
+            pushed = farther;
         }
+        let (after, in_substep) = (since + pushed, in_substep + pushed);
+        let farthest = self.members.farthest_push();
+        self.near.pass(after);
         self.members.scatter(cloths, is_pushed);
+        self.passed.set(cloths);
         // Better from here than on the way.
-        if self.nearer + approach > self.margin {
+        if self.nearer + in_substep > self.margin {
             self.search(cloths, &meets, 0.0, Starts::Here);
         }
         farthest
@@ -243,7 +259,6 @@ impl MutualContact {
     ) {
         self.searches += 1;
         self.is_searched = true;
-        self.odometer = 0.0;
         self.near.forget();
         let spacing = cloths
             .iter()
@@ -293,12 +308,10 @@ impl MutualContact {
                     let of = &cloths[cloth];
                     let slot = of.particles.layout().slot_of(particle as usize);
                     let start = match known {
-                        Some(member) if member != NOBODY => {
-                            self.members_before.start[member as usize]
-                        }
+                        Some(member) if member != NOBODY => self.members_before.start(member),
                         _ => match starts {
                             Starts::Here => of.place(slot),
-                            Starts::SubStep => of.start(slot),
+                            Starts::LastPass => of.point(self.passed.place(cloth, slot)),
                             Starts::LastSearch => of.point(self.origin_before.place(cloth, slot)),
                         },
                     };
@@ -325,7 +338,22 @@ impl MutualContact {
             });
         }
         self.last_of = last_of;
+        if self.pairs.is_empty() {
+            return;
+        }
+        self.wait = 0;
+        match starts {
+            Starts::Here => self.passed.set(cloths),
+            Starts::LastPass => {}
+            Starts::LastSearch => self.passed.clone_from(&self.origin_before),
+        }
     }
+}
+
+/// The smallest thickness of any (m).
+fn thinnest(cloths: &[Participant]) -> f32 {
+    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
+    each.fold(f32::INFINITY, f32::min)
 }
 
 /// By how much any two particles come nearer to each other in a sub-step as long as the last, at most (m).

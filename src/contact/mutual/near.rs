@@ -3,108 +3,148 @@
 use super::{
     certificate::LEFT_OF_THICKNESS,
     members::Members,
-    pair::{NOBODY, Nearest, Pair, VERTEX_AND_FACE},
+    origin::Origin,
+    pair::{NOBODY, NearPair, Nearest, Pair, VERTEX_AND_FACE},
+    participant::Participant,
 };
+
+/// By how much of the smallest thickness particles may come nearer to each other before nearest points are found anew: so far
+/// their normals and weights stand for what they were.
+const FRESH: f32 = 0.1;
 
 /// By how much of the smallest thickness particles may come nearer to each other before all pairs are gone through again.
 const SLACK: f32 = 0.25;
 
-/// Pairs that are near each other, until particles have come nearer to each other by a little. What is done to them in a sub-step
-/// follows from where that began and ended alone, whatever was known before.
+/// Pairs that are near each other, until particles have come nearer to each other by a little. Within a tick, which they are and
+/// where their nearest points lie follows from the motion of the particles alone, whatever was known before.
 #[derive(Debug, Default, Clone)]
 pub(super) struct NearPairs {
     listed: Vec<u32>,
+    found: Vec<u32>,
     /// Those that may come nearer to each other than their thickness.
-    pub pushed: Vec<u32>,
-    /// Those of the first that did, in the last sub-step.
+    pub contacts: Vec<NearPair>,
+    /// Those of them that did, in the last sub-step.
     pub touched: Vec<u32>,
-    /// Those that might meet, as far as distances say.
-    pub certified: Vec<u32>,
-    /// Until the odometer says this (m), no others are near.
+    /// How near any two of them were to passing through each other when they were found (m).
+    closest: f32,
+    /// Where all particles were when contacts were found; how much nearer to each other any two may come from there, and can have
+    /// come up to where the sub-step began (m).
+    origin: Origin,
+    room: f32,
+    used: f32,
+    /// How much nearer to each other any two particles can have come when the list has to be made anew, and by the time contacts
+    /// were found last (m).
     until: f32,
-    is_known: bool,
+    odometer: f32,
+    is_listed: bool,
+    is_found: bool,
 }
 
 impl NearPairs {
     /// Forgets them: the pairs are others.
     pub fn forget(&mut self) {
         self.listed.clear();
-        self.pushed.clear();
-        self.certified.clear();
-        self.is_known = false;
+        (self.odometer, self.is_listed) = (0.0, false);
+        self.renew();
     }
 
-    pub fn is_empty(&self) -> bool {
-        self.pushed.is_empty() && self.certified.is_empty()
+    /// Has those that are near be found anew.
+    pub fn renew(&mut self) {
+        self.contacts.clear();
+        self.is_found = false;
     }
 
-    /// Whether they are still all that are near when the odometer says this (m).
-    pub fn covers(&self, odometer: f32) -> bool {
-        self.is_known && odometer <= self.until
+    /// How much nearer to each other any two particles can have come since contacts were found (m); none if they are not.
+    pub fn approach(&self, cloths: &[Participant]) -> Option<f32> {
+        self.is_found.then(|| self.origin.approach(cloths))
     }
 
-    /// Finds those that may touch in the sub-step, with their nearest points where it began. In it any two particles have come nearer
-    /// to each other by at most `approach` (m), and the `odometer` says so already. The last pair of each vertex with a face begins
-    /// its list.
-    pub fn update(
+    /// Whether they are still all that are near when any two particles can have come nearer to each other by this much since they
+    /// were found (m).
+    pub fn covers(&self, approach: f32) -> bool {
+        self.is_found && approach <= self.room
+    }
+
+    /// Of those that were found no nearer than this to each other (m), none can have passed through another in the sub-step, since
+    /// which began any two particles can have come nearer by `approach` since they were found (m).
+    pub fn may_meet_within(&self, approach: f32) -> Option<f32> {
+        let nearer = approach.max(self.used);
+        (self.closest <= nearer).then_some(nearer)
+    }
+
+    /// The sub-step ends, and any two particles can have come nearer to each other by `approach` since contacts were found (m).
+    pub fn pass(&mut self, approach: f32) {
+        self.used = approach;
+    }
+
+    /// Finds those that may touch before any two particles have come nearer to each other by `approach` (m) and a little of the
+    /// thickness, with their nearest points where the sub-step began. The last pair of each vertex with a face begins its list.
+    pub fn find(
         &mut self,
         pairs: &mut [Pair],
-        members: &Members,
+        members: &mut Members,
         last_of: &[u32],
-        approach: f32,
-        odometer: f32,
+        (origin, approach): (&Origin, f32),
+        thinnest: f32,
     ) {
-        if !self.covers(odometer) {
-            self.list(pairs, members, approach, odometer);
+        members.note_travel();
+        self.odometer += self.used;
+        (self.used, self.is_found) = (0.0, true);
+        self.origin.clone_from(origin);
+        self.room = approach + FRESH * thinnest;
+        if !self.is_listed || self.odometer + self.room > self.until {
+            self.list(pairs, members, thinnest);
         }
-        self.pushed.clear();
-        self.certified.clear();
+        self.found.clear();
+        // Each of four particles travels half as far as two come nearer to each other.
         for &index in &self.listed {
             let pair = &mut pairs[index as usize];
-            let [before, now] = members.travelled(pair.members);
+            let travelled = members.travelled(pair.members);
             pair.is_near = false;
-            if pair.far_until > now {
+            if pair.far_until > travelled + self.room {
                 continue;
             }
             pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
-            pair.far_until = before + pair.nearest.distance - pair.thickness;
-            if pair.far_until > now {
-                continue;
-            }
-            pair.is_near = true;
-            self.pushed.push(index);
-            if pair.far_until + (1.0 - LEFT_OF_THICKNESS) * pair.thickness <= now {
-                self.certified.push(index);
+            let apart = pair.nearest.distance - pair.thickness;
+            pair.far_until = travelled + apart;
+            if apart <= self.room {
+                pair.is_near = true;
+                self.found.push(index);
             }
         }
-        let pairs = &*pairs;
-        self.pushed.retain(|&index| {
+        self.contacts.clear();
+        self.closest = f32::INFINITY;
+        for &index in &self.found {
             let pair = &pairs[index as usize];
-            if pair.split == VERTEX_AND_FACE {
-                !is_implied(pairs, last_of[pair.members[0] as usize], index)
+            let near = NearPair::of(pair);
+            let left = near.until_met(LEFT_OF_THICKNESS);
+            self.closest = self.closest.min(left);
+            let is_left_out = if pair.split == VERTEX_AND_FACE {
+                is_implied(pairs, last_of[pair.members[0] as usize], index)
             } else {
                 // Ends of edges are vertices, which are kept away from faces by more.
                 let mut weights = pair.nearest.weights.iter();
-                weights.all(|weight| weight.abs() > 0.0 && weight.abs() < 1.0)
+                !weights.all(|weight| weight.abs() > 0.0 && weight.abs() < 1.0)
+            };
+            // Whatever may be passed through has to be certain.
+            if !is_left_out || left <= self.room {
+                self.contacts.push(NearPair {
+                    is_pushed: !is_left_out,
+                    ..near
+                });
             }
-        });
+        }
     }
 
     /// Goes through all pairs for those that may touch before particles have come nearer to each other by a little.
-    fn list(&mut self, pairs: &[Pair], members: &Members, approach: f32, odometer: f32) {
-        self.forget();
-        self.is_known = true;
-        let thinnest = pairs
-            .iter()
-            .map(|pair| pair.thickness)
-            .fold(f32::INFINITY, f32::min);
-        let slack = (SLACK * thinnest).max(0.5 * approach);
-        self.until = odometer + slack;
-        // Each of four particles travels half as far as two come nearer to each other.
-        let ahead = 2.0 * slack;
+    fn list(&mut self, pairs: &[Pair], members: &Members, thinnest: f32) {
+        self.is_listed = true;
+        let slack = (SLACK * thinnest).max(0.5 * self.room);
+        self.until = self.odometer + self.room + slack;
+        let ahead = self.room + 2.0 * slack;
+        self.listed.clear();
         for (index, pair) in pairs.iter().enumerate() {
-            let [_, now] = members.travelled(pair.members);
-            if pair.far_until <= now + ahead {
+            if pair.far_until <= members.travelled(pair.members) + ahead {
                 self.listed.push(index as u32);
             }
         }

@@ -1,7 +1,8 @@
 //! Two features that may come near each other.
 
-use bevy::math::Vec3;
+use bevy::math::{Vec3, Vec3A};
 
+use super::members::State;
 use crate::contact::triangle::{at, nearest_of_segments, nearest_to_point};
 
 /// A vertex and a face, or two edges: of one cloth or of two.
@@ -19,7 +20,7 @@ pub(super) struct Pair {
     pub before: u32,
     /// How far its particles have travelled, all together, when they can first be that near (m).
     pub far_until: f32,
-    /// Whether they might touch in the last sub-step in which they were looked at.
+    /// Whether they were near each other when they were last looked at.
     pub is_near: bool,
     /// How the nearest points were when they were last found.
     pub nearest: Nearest,
@@ -67,20 +68,48 @@ impl Nearest {
             distance,
         }
     }
-
-    /// The vector between the points that have these parts now (m).
-    #[inline]
-    pub fn between(&self, places: [Vec3; 4]) -> Vec3 {
-        combined(self.weights, places)
-    }
 }
 
-impl Pair {
+/// Two features that are near each other, with all that keeping them apart takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct NearPair {
+    /// As the [`Pair`]'s.
+    pub members: [u32; 4],
+    pub split: usize,
+    pub thickness: f32,
+    pub friction: f32,
+    /// As they were found: how far their nearest points were apart (m), along which way, and the parts of the four in that.
+    pub distance: f32,
+    pub normal: Vec3A,
+    pub weights: [f32; 4],
+    /// Whether they are kept a thickness apart; if not, others keep them apart, and they have not to pass through each other.
+    pub is_pushed: bool,
+}
+
+impl NearPair {
+    pub fn of(pair: &Pair) -> Self {
+        Self {
+            members: pair.members,
+            split: pair.split,
+            thickness: pair.thickness,
+            friction: pair.friction,
+            distance: pair.nearest.distance,
+            normal: pair.nearest.normal.into(),
+            weights: pair.nearest.weights,
+            is_pushed: true,
+        }
+    }
+
+    /// How much nearer they may come until `part` of their thickness is left between them (m).
+    pub fn until_met(&self, part: f32) -> f32 {
+        self.distance - part * self.thickness
+    }
+
     /// How far all of the first feature is from all of the second along the normal (m): as long as it is positive, a plane is
     /// between them.
     #[inline]
-    pub fn clearance(&self, places: [Vec3; 4]) -> f32 {
-        let [a, b, c, d] = places.map(|place| self.nearest.normal.dot(place));
+    pub fn clearance(&self, states: [&State; 4]) -> f32 {
+        let [a, b, c, d] = states.map(|state| self.normal.dot(state.place));
         if self.split == VERTEX_AND_FACE {
             a - b.max(c).max(d)
         } else {

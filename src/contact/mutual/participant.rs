@@ -22,7 +22,22 @@ pub(crate) struct Participant<'a> {
     pub is_fixed: bool,
 }
 
-impl Participant<'_> {
+impl<'a> Participant<'a> {
+    /// One that meets nothing but itself.
+    pub fn alone(
+        particles: &'a mut ClothParticles,
+        sheet: &'a Arc<Sheet>,
+        settings: ClothSelfCollision,
+    ) -> Self {
+        Self {
+            particles,
+            sheet,
+            to_common: None,
+            settings,
+            is_fixed: false,
+        }
+    }
+
     /// A point of its frame in the common one (m).
     #[inline]
     pub(super) fn point(&self, point: Vec3) -> Vec3 {
@@ -53,11 +68,5 @@ impl Participant<'_> {
     /// Where a particle is, in the common frame (m).
     pub(super) fn place(&self, Slot { block, lane }: Slot) -> Vec3 {
         self.point(self.particles.blocks()[block].position(lane))
-    }
-
-    /// Where a particle was as the sub-step began that it has just gone through, in the common frame (m).
-    pub(super) fn start(&self, Slot { block, lane }: Slot) -> Vec3 {
-        let block = &self.particles.blocks()[block];
-        self.point(block.position(lane) - block.displacement(lane))
     }
 }

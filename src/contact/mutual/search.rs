@@ -40,8 +40,6 @@ struct Searched {
 #[derive(Debug, Default, Clone)]
 pub(super) struct Search {
     cloths: Vec<Searched>,
-    /// Pairs of nodes that were looked at.
-    pub visits: usize,
 }
 
 /// Two cloths, or one twice, as they are searched.
@@ -52,7 +50,6 @@ struct Between<'a> {
     /// How near features may come (m), and how much farther away they are looked for.
     thickness: f32,
     margin: f32,
-    visits: usize,
 }
 
 impl Search {
@@ -66,7 +63,6 @@ impl Search {
         found: &mut Vec<Found>,
     ) {
         found.clear();
-        self.visits = 0;
         self.cloths
             .resize_with(participants.len(), Searched::default);
         for (searched, cloth) in self.cloths.iter_mut().zip(participants) {
@@ -89,16 +85,14 @@ impl Search {
                 if !are_met || a.particles.is_empty() || b.particles.is_empty() {
                     continue;
                 }
-                let mut between = Between {
+                let between = Between {
                     cloths: [first, second],
                     sheets: [a.sheet, b.sheet],
                     searched: [&self.cloths[first], &self.cloths[second]],
                     thickness: (a.settings.thickness + b.settings.thickness) / 2.0,
                     margin,
-                    visits: 0,
                 };
                 between.descend(0, 0, found);
-                self.visits += between.visits;
             }
         }
     }
@@ -110,8 +104,7 @@ impl Between<'_> {
     }
 
     /// Looks at two nodes of the same level, and what is below them.
-    fn descend(&mut self, a: u32, b: u32, found: &mut Vec<Found>) {
-        self.visits += 1;
+    fn descend(&self, a: u32, b: u32, found: &mut Vec<Found>) {
         if self.is_far(a, b) {
             return;
         }

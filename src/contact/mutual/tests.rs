@@ -92,9 +92,15 @@ impl Scene {
                 self.contact.begin(&participants, |_, _| true);
                 is_begun = true;
             }
-            for (index, (cloth, tick)) in self.cloths.iter_mut().zip(&mut ticks).enumerate() {
+            let mut ends = Vec::new();
+            for (cloth, tick) in self.cloths.iter_mut().zip(&mut ticks) {
                 let substep = cloth.solver.substep(&mut cloth.particles, &[], tick);
-                let end = substep.expect("one left").end();
+                ends.push(substep.expect("one left").end());
+            }
+            let before = participants(&mut self.cloths, settings);
+            self.contact.note_before_colliders(&before);
+            drop(before);
+            for (index, (cloth, end)) in self.cloths.iter_mut().zip(ends).enumerate() {
                 respond(index, &mut cloth.particles, end);
             }
             let mut participants = participants(&mut self.cloths, settings);

@@ -1,0 +1,36 @@
+//! How cloths touch each other, as pairs were searched for.
+
+use bevy::math::Isometry3d;
+
+use super::{participant::Participant, settings::ClothSelfCollision};
+
+/// What pairs were searched for, besides where particles are.
+#[derive(Debug, Default, Clone)]
+pub(super) struct Circumstances {
+    of: Vec<(ClothSelfCollision, bool, Option<Isometry3d>)>,
+    meets: Vec<bool>,
+}
+
+impl Circumstances {
+    /// Takes over how these cloths touch. Returns whether they did so before.
+    pub fn renew(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) -> bool {
+        let of = || {
+            let each = cloths.iter();
+            each.map(|cloth| (cloth.settings, cloth.is_fixed, cloth.to_common))
+        };
+        let count = cloths.len();
+        let meets = || {
+            (0..count)
+                .flat_map(|a| (0..a).map(move |b| (a, b)))
+                .map(|(a, b)| meets(a, b))
+        };
+        let is_same = self.of.iter().copied().eq(of()) && self.meets.iter().copied().eq(meets());
+        if !is_same {
+            self.of.clear();
+            self.of.extend(of());
+            self.meets.clear();
+            self.meets.extend(meets());
+        }
+        is_same
+    }
+}
