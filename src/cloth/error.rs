@@ -205,6 +205,18 @@ pub enum ClothError {
         /// The scale of the transform.
         scale: Vec3,
     },
+    /// A compound with a part whose place is not finite or beyond all measure, or whose rotation is none.
+    #[error(
+        "part {part} of the compound needs a finite place within 10¹² m, and a rotation that is one: place {place}, rotation {rotation}"
+    )]
+    PartPose {
+        /// Which part.
+        part: usize,
+        /// Its place (m).
+        place: Vec3,
+        /// Its rotation, written out.
+        rotation: String,
+    },
     /// Particles that are not those of the surface.
     #[error(
         "the cloth has {expected} particles, its `ClothParticles` hold {found}: give it as many, or empty them"

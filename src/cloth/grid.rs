@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{ClothError, MAX_PARTICLES};
+use super::{ClothError, MAX_PARTICLES, limits::FARTHEST};
 
 /// The plane that a [`Cloth`](super::Cloth) is laid out in, in its entity's frame.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -86,8 +86,7 @@ impl GridShape {
                 ClothPlane::Lying => scale.xz(),
             };
         let extent = scaled * Vec2::new(columns as f32, rows as f32);
-        // So that squares of lengths, and their products with masses, stay well inside of `f32`.
-        let measurable = |length: f32| (1.0e-9..1.0e12).contains(&length.abs());
+        let measurable = |length: f32| (1.0e-9..FARTHEST).contains(&length.abs());
         if !(measurable(scaled.x) && measurable(scaled.y) && measurable(extent.length())) {
             return Err(ClothError::Quantity {
                 quantity: "spacing × scale (m)",

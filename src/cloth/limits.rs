@@ -2,3 +2,7 @@
 
 /// The most particles that a grid may have: 4096 × 4096.
 pub const MAX_PARTICLES: usize = 1 << 24;
+
+/// Nothing is larger than this, nor farther from the origin (m): squares of such lengths, and their products with masses, stay well
+/// inside of `f32`.
+pub(crate) const FARTHEST: f32 = 1.0e12;

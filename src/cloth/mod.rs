@@ -23,6 +23,7 @@ pub use springs::{Spring, SpringKind, Springs};
 pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttribute};
 
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
+pub(crate) use limits::FARTHEST;
 pub(crate) use particles::{Earlier, StepKind};
 pub(crate) use presence::ClothPresence;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};

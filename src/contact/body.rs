@@ -15,13 +15,21 @@ pub struct BodyChange {
     pub velocity: Vec3,
     /// Of its angular velocity (rad/s).
     pub angular_velocity: Vec3,
-    /// Of where its origin is as the tick ends (m).
+    /// Of where the origin of its shape is as the tick ends (m).
     pub translation: Vec3,
     /// Of how it is turned then: axis × angle (rad).
     pub rotation: Vec3,
 }
 
 impl BodyChange {
+    /// Whether all of it is a number.
+    pub fn is_finite(&self) -> bool {
+        self.velocity.is_finite()
+            && self.angular_velocity.is_finite()
+            && self.translation.is_finite()
+            && self.rotation.is_finite()
+    }
+
     /// The same, seen from another frame.
     pub fn turned(self, rotation: Quat) -> Self {
         Self {
@@ -79,12 +87,14 @@ impl Given {
 
     /// The part of it that the particles keep, and what the body does: how far it goes and turns.
     fn shared(&self, mass: &BodyMass) -> (f32, DVec3, DVec3) {
-        let go = f64::from(mass.inverse_mass) * self.push;
+        let go = f64::from(mass.inverse_mass) * (mass.free.as_dmat3() * self.push);
         let turn = mass.inverse_inertia.as_dmat3() * self.turn;
         let body = go.dot(self.push) + turn.dot(self.turn);
         let part = self.square / (self.square + body);
         // Nothing was pushed, or nothing can be said.
-        let part = if part.is_finite() { part } else { 1.0 };
+        if !(part.is_finite() && go.is_finite() && turn.is_finite()) {
+            return (1.0, DVec3::ZERO, DVec3::ZERO);
+        }
         (part as f32, -part * go, -part * turn)
     }
 }

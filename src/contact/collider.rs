@@ -15,10 +15,11 @@ use super::{
     geometry::{ColliderGeometry, Parts},
     source::check_scale,
 };
-use crate::cloth::ClothError;
+use crate::cloth::{ClothError, FARTHEST};
 
-/// Something that every cloth collides with, at the entity's [`Transform`]. It moves however the game moves
-/// it; the cloth never pushes it back.
+/// Something that cloth collides with, at the entity's [`Transform`]: every cloth, unless
+/// [`ClothLayers`](super::ClothLayers) say otherwise. It moves however the game moves it; cloth pushes it back only if it has a
+/// [`ClothBody`](crate::plugin::ClothBody).
 ///
 /// Its speed, and with it its friction, comes from how the transform changed since the last tick: move it in
 /// the cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To move it without any
@@ -208,34 +209,16 @@ impl ClothCollider {
     /// zero. [`ClothError::MeshNotLoaded`] of a mesh, as only the plugin knows the assets. What is wrong with points,
     /// triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
-        let positive = |v: f32| v > 0.0 && v.is_finite();
-        let length = |value: f32, scale: f32, quantity, scaled_quantity| {
-            ClothError::check(value, positive, quantity, "positive")?;
-            ClothError::check(value * scale, positive, scaled_quantity, "positive")
-        };
-        let mirrored = scale;
-        let scale = scale.abs();
+        let sizes = Scale(scale.abs());
         match *self {
-            Self::Shared(ref shared) => shared.scaled(mirrored),
-            Self::Compound(ref parts) => compound(parts, mirrored),
+            Self::Shared(ref shared) => shared.scaled(scale),
+            Self::Compound(ref parts) => compound(parts, scale),
             Self::Mesh(_) => Err(ClothError::MeshNotLoaded),
             Self::Cylinder {
                 radius,
                 half_height,
             } => {
-                let across = scale.x.max(scale.z);
-                let radius = length(
-                    radius,
-                    across,
-                    "the cylinder's radius (m)",
-                    "the cylinder's scaled radius (m)",
-                )?;
-                let half_height = length(
-                    half_height,
-                    scale.y,
-                    "half of the cylinder's height (m)",
-                    "half of the cylinder's scaled height (m)",
-                )?;
+                let (radius, half_height) = sizes.round(radius, half_height, &CYLINDER)?;
                 let mut parts = Parts::default();
                 parts.add_cylinder(half_height, radius)?;
                 Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
@@ -244,48 +227,29 @@ impl ClothCollider {
                 radius,
                 half_height,
             } => {
-                let across = scale.x.max(scale.z);
-                let radius = length(
-                    radius,
-                    across,
-                    "the cone's radius (m)",
-                    "the cone's scaled radius (m)",
-                )?;
-                let half_height = length(
-                    half_height,
-                    scale.y,
-                    "half of the cone's height (m)",
-                    "half of the cone's scaled height (m)",
-                )?;
+                let (radius, half_height) = sizes.round(radius, half_height, &CONE)?;
                 let mut parts = Parts::default();
-                parts.add_cone(half_height, radius, mirrored.y > 0.0)?;
+                parts.add_cone(half_height, radius, scale.y > 0.0)?;
                 Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
             }
             Self::Ball { radius } => {
-                let largest = scale.max_element();
-                let radius = length(
-                    radius,
-                    largest,
-                    "the ball's radius (m)",
-                    "the ball's scaled radius (m)",
-                )?;
+                let largest = sizes.0.max_element();
+                let names = ["the ball's radius (m)", "the ball's scaled radius (m)"];
+                let radius = length(radius, largest, names)?;
                 Ok(ColliderShape::Ball { radius })
             }
             Self::Capsule {
                 radius,
                 half_length,
             } => {
-                let across = scale.x.max(scale.z);
-                let radius = length(
-                    radius,
-                    across,
+                let names = [
                     "the capsule's radius (m)",
                     "the capsule's scaled radius (m)",
-                )?;
-                let not_negative = |v: f32| v >= 0.0 && v.is_finite();
+                ];
+                let radius = sizes.across(radius, names)?;
                 let half_length = ClothError::check(
-                    half_length * scale.y,
-                    not_negative,
+                    half_length * sizes.0.y,
+                    |v| v >= 0.0 && v.is_finite(),
                     "half of the capsule's scaled length (m)",
                     "zero or more",
                 )?;
@@ -295,20 +259,69 @@ impl ClothCollider {
                 })
             }
             Self::Cuboid { half_size } => {
-                for (value, scale) in half_size.to_array().into_iter().zip(scale.to_array()) {
-                    length(
-                        value,
-                        scale,
-                        "half of the box's length (m)",
-                        "half of the box's scaled length (m)",
-                    )?;
+                let names = [
+                    "half of the box's length (m)",
+                    "half of the box's scaled length (m)",
+                ];
+                for axis in 0..3 {
+                    length(half_size[axis], sizes.0[axis], names)?;
                 }
                 Ok(ColliderShape::Cuboid {
-                    half_size: half_size * scale,
+                    half_size: half_size * sizes.0,
                 })
             }
             Self::Plane => Ok(ColliderShape::HalfSpace),
         }
+    }
+}
+
+/// How an error names the radius and the height of what is round, each as it is given and scaled.
+type RoundNames = [[&'static str; 2]; 2];
+
+const CYLINDER: RoundNames = [
+    [
+        "the cylinder's radius (m)",
+        "the cylinder's scaled radius (m)",
+    ],
+    [
+        "half of the cylinder's height (m)",
+        "half of the cylinder's scaled height (m)",
+    ],
+];
+
+const CONE: RoundNames = [
+    ["the cone's radius (m)", "the cone's scaled radius (m)"],
+    [
+        "half of the cone's height (m)",
+        "half of the cone's scaled height (m)",
+    ],
+];
+
+/// A length under a scale, if it is one, both before and after. `names` are those of the two.
+fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
+    let positive = |v: f32| v > 0.0 && v.is_finite();
+    ClothError::check(value, positive, names[0], "positive")?;
+    ClothError::check(value * scale, positive, names[1], "positive")
+}
+
+/// How many times as large a shape is along each axis, mirrored or not.
+struct Scale(Vec3);
+
+impl Scale {
+    /// What is round about the y axis stays round, by the larger of x and z.
+    fn across(&self, radius: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
+        length(radius, self.0.x.max(self.0.z), names)
+    }
+
+    /// The radius, and half of the height, of what is round about the y axis.
+    fn round(
+        &self,
+        radius: f32,
+        half_height: f32,
+        names: &RoundNames,
+    ) -> Result<(f32, f32), ClothError> {
+        let radius = self.across(radius, names[0])?;
+        Ok((radius, length(half_height, self.0.y, names[1])?))
     }
 }
 
@@ -328,7 +341,11 @@ fn compound(
     }
     let is_even = scale.abs_diff_eq(Vec3::splat(scale.x), 1.0e-5 * scale.length());
     let mut parts = Parts::default();
-    for (pose, child) in children {
+    for (part, (pose, child)) in children.iter().enumerate() {
+        let pose = part_pose(part, *pose)?;
+        if let ClothCollider::Mesh(_) = child {
+            return no_such("the entity's `Mesh3d` as a part of a compound");
+        }
         // What is turned and then stretched along one axis is sheared.
         if !is_even && !pose.rotation.is_near_identity() {
             return Err(ClothError::SkewedPart { scale });
@@ -354,6 +371,26 @@ fn compound(
         parts.add(pose, &shape)?;
     }
     Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+}
+
+/// Where a part of a compound is, with a rotation of length 1.
+///
+/// # Errors
+/// [`ClothError::PartPose`] of a place or a rotation that is none.
+fn part_pose(part: usize, pose: Isometry3d) -> Result<Isometry3d, ClothError> {
+    let place = Vec3::from(pose.translation);
+    let rotation = pose.rotation.normalize();
+    // Not by the largest element, which leaves NaN out.
+    let is_in_reach = place.abs().cmplt(Vec3::splat(FARTHEST)).all();
+    if is_in_reach && rotation.is_finite() && rotation.is_normalized() {
+        Ok(Isometry3d::new(place, rotation))
+    } else {
+        Err(ClothError::PartPose {
+            part,
+            place,
+            rotation: format!("{:?}", pose.rotation),
+        })
+    }
 }
 
 #[cfg(test)]

@@ -6,9 +6,10 @@ use bevy::{
 };
 
 /// The collision layers of a cloth or a collider, as bit masks: those that it is in, and those that it meets. Two things
-/// touch if each is in a layer that the other meets. Without this component an entity is in all layers and meets all.
+/// touch if each is in a layer that the other's `filters` name. Without this component an entity is in all layers and meets all.
 ///
-/// What is in no layer, or meets none, touches nothing. A change counts from the next tick on; a cloth that sleeps wakes if
+/// What is in no layer, or meets none, touches nothing else; a cloth with [`ClothSelfCollision`](super::ClothSelfCollision) still
+/// touches itself. A change counts from the next tick on; a cloth that sleeps wakes if
 /// it may no longer touch what it lies on.
 ///
 /// These are the cloth's own: the groups of a physics engine say nothing about cloth.
@@ -32,7 +33,7 @@ impl ClothLayers {
     /// In all layers, meets all: as without the component.
     pub const ALL: Self = Self::new(u32::MAX, u32::MAX);
 
-    /// Touches nothing.
+    /// Touches nothing but itself.
     pub const NONE: Self = Self::new(0, 0);
 
     /// In the layers `memberships`, meets the layers `filters`: one bit each.
@@ -43,7 +44,7 @@ impl ClothLayers {
         }
     }
 
-    /// Whether the two may touch: each is in a layer that the other meets.
+    /// Whether the two may touch: each is in a layer that the other's `filters` name.
     pub const fn interacts_with(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0
     }

@@ -9,8 +9,10 @@ pub struct BodyMass {
     pub inverse_mass: f32,
     /// Inverse of its inertia about its centre of mass (1/(kg·m²)).
     pub inverse_inertia: Mat3,
-    /// From the collider's origin to the centre of mass (m).
+    /// From the origin of the collider's shape to the centre of mass (m).
     pub centre: Vec3,
+    /// What of a push moves the centre of mass: all, the identity, or all but what goes along the axes that it is locked along.
+    pub free: Mat3,
 }
 
 impl BodyMass {
@@ -21,6 +23,12 @@ impl BodyMass {
             inverse_mass: self.inverse_mass,
             inverse_inertia: axes * self.inverse_inertia * axes.transpose(),
             centre: rotation * self.centre,
+            // The same from all sides.
+            free: if self.free == Mat3::IDENTITY {
+                Mat3::IDENTITY
+            } else {
+                axes * self.free * axes.transpose()
+            },
         }
     }
 
@@ -31,6 +39,7 @@ impl BodyMass {
             inverse_mass: self.inverse_mass * parts,
             inverse_inertia: self.inverse_inertia * parts,
             centre: self.centre,
+            free: self.free,
         }
     }
 }

@@ -26,8 +26,8 @@ pub struct SharedCollider(Arc<Made>);
 #[derive(Debug)]
 struct Made {
     source: Source,
-    /// What came of it at the scale that was asked for first.
-    built: OnceLock<(Vec3, Result<ColliderShape, ClothError>)>,
+    /// What came of it at the first scale at which anything did.
+    built: OnceLock<(Vec3, ColliderShape)>,
 }
 
 #[derive(Debug)]
@@ -83,18 +83,19 @@ impl SharedCollider {
         matches!(&self.0.source, Source::Parry(own) if Arc::ptr_eq(&own.0, &shape.0))
     }
 
-    /// The shape under a scale: built once for the first that is asked for, and shared by all clones; anew for any other.
+    /// The shape under a scale: built once for the first that is asked for and that it can have, and shared by all clones; anew for
+    /// any other.
     pub(super) fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
-        let (first, built) = self
-            .0
-            .built
-            .get_or_init(|| (scale, self.0.source.build(scale)));
-        // Two scales are one to the rounding of a transform.
-        if first.abs_diff_eq(scale, 1.0e-5 * first.length()) || self.is_world_sized() {
-            built.clone()
-        } else {
-            self.0.source.build(scale)
+        check_scale(scale)?;
+        if let Some((first, built)) = self.0.built.get()
+            // Two scales are one to the rounding of a transform.
+            && (first.abs_diff_eq(scale, 1.0e-5 * first.length()) || self.is_world_sized())
+        {
+            return Ok(built.clone());
         }
+        let built = self.0.source.build(scale)?;
+        self.0.built.get_or_init(|| (scale, built.clone()));
+        Ok(built)
     }
 
     fn is_world_sized(&self) -> bool {
@@ -112,7 +113,6 @@ impl SharedCollider {
 
 impl Source {
     fn build(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
-        check_scale(scale)?;
         let mut parts = Parts::default();
         match self {
             Self::Hull(points) => {
@@ -221,4 +221,24 @@ fn height_field(
     }
     turn_up(&vertices, &mut triangles);
     Ok((vertices, triangles))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A scale that can't be has no say in what comes of another.
+    #[test]
+    fn a_bad_scale_is_not_remembered() {
+        let ball = SharedCollider::parry(SharedShape::ball(0.5));
+        let hull = SharedCollider::hull(vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+        for shared in [ball, hull] {
+            for bad in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
+                assert!(shared.scaled(bad).is_err(), "{shared:?}");
+            }
+            let first = shared.scaled(Vec3::ONE).expect("a valid scale");
+            assert_eq!(shared.clone().scaled(Vec3::ONE), Ok(first), "built once");
+            assert!(shared.scaled(Vec3::ZERO).is_err(), "{shared:?}");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{Mat3, Quat, Vec3},
+    math::{BVec3, Mat3, Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
@@ -31,6 +31,10 @@ pub struct ClothBody {
     pub axes: Quat,
     /// Where the centre of mass is, seen from the entity, unscaled (m).
     pub centre_of_mass: Vec3,
+    /// Along which of the world's axes cloth does not move its centre of mass.
+    pub locked_translation: BVec3,
+    /// About which of the world's axes cloth does not turn it.
+    pub locked_rotation: BVec3,
 }
 
 /// What the cloths that touch a [`ClothBody`] changed of its motion in the last tick, in the world.
@@ -51,6 +55,8 @@ impl ClothBody {
             inertia,
             axes: Quat::IDENTITY,
             centre_of_mass: Vec3::ZERO,
+            locked_translation: BVec3::FALSE,
+            locked_rotation: BVec3::FALSE,
         }
     }
 
@@ -59,16 +65,37 @@ impl ClothBody {
         Self::new(mass, Vec3::splat(0.4 * mass * radius * radius))
     }
 
-    /// Its mass where the entity is turned by `rotation`.
+    /// Of a motion of its centre of mass, what is not locked.
+    pub(super) fn free_translation(&self, motion: Vec3) -> Vec3 {
+        Vec3::select(self.locked_translation, Vec3::ZERO, motion)
+    }
+
+    /// Likewise of a turn.
+    pub(super) fn free_rotation(&self, turn: Vec3) -> Vec3 {
+        Vec3::select(self.locked_rotation, Vec3::ZERO, turn)
+    }
+
+    /// Its mass where the entity is turned by `rotation`, about the entity's origin.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] of what is no mass.
     pub(super) fn mass_at(&self, rotation: Quat) -> Result<BodyMass, ClothError> {
         let positive = |v: f32| v > 0.0 && v.recip().is_finite();
         for moment in self.inertia.to_array() {
             ClothError::check(moment, positive, "the body's inertia (kg·m²)", "positive")?;
         }
-        for value in [self.centre_of_mass.length(), self.axes.length()] {
-            let quantity = "the body's centre of mass (m) or the turn of its axes";
-            ClothError::check(value, f32::is_finite, quantity, "finite")?;
-        }
+        ClothError::check(
+            self.centre_of_mass.length(),
+            f32::is_finite,
+            "how far the body's centre of mass is from its entity (m)",
+            "finite",
+        )?;
+        ClothError::check(
+            self.axes.length(),
+            |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
+            "the length of the quaternion that turns the body's axes",
+            "positive and finite",
+        )?;
         let mass = ClothError::check(
             self.mass,
             |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
@@ -80,10 +107,60 @@ impl ClothBody {
             inverse_mass: mass.recip(),
             inverse_inertia: inverse,
             centre: Vec3::ZERO,
+            free: Mat3::IDENTITY,
         };
+        let turned = body.turned(rotation * self.axes.normalize());
+        let turns = Mat3::from_diagonal(self.free_rotation(Vec3::ONE));
         Ok(BodyMass {
+            inverse_inertia: turns * turned.inverse_inertia * turns,
             centre: rotation * self.centre_of_mass,
-            ..body.turned(rotation * self.axes.normalize())
+            free: Mat3::from_diagonal(self.free_translation(Vec3::ONE)),
+            ..turned
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Axes of no length, or of no number, can't be made those of a rotation.
+    #[test]
+    fn axes_are_checked() {
+        for length in [0.0, 1.0e-30, f32::NAN, f32::INFINITY] {
+            let body = ClothBody {
+                axes: Quat::from_xyzw(0.0, length, 0.0, 0.0),
+                ..ClothBody::ball(1.0, 0.1)
+            };
+            let outcome = body.mass_at(Quat::IDENTITY);
+            assert!(
+                matches!(outcome, Err(ClothError::Quantity { quantity, .. }) if quantity.contains("axes")),
+                "{length}: {outcome:?}"
+            );
+        }
+        let long = ClothBody {
+            axes: Quat::from_xyzw(0.0, 3.0, 0.0, 0.0),
+            ..ClothBody::ball(1.0, 0.1)
+        };
+        assert!(long.mass_at(Quat::IDENTITY).is_ok());
+    }
+
+    /// Locked are the world's axes, however the body is turned.
+    #[test]
+    fn locks_are_the_worlds() {
+        let body = ClothBody {
+            locked_rotation: BVec3::new(true, false, false),
+            locked_translation: BVec3::new(false, true, false),
+            ..ClothBody::new(2.0, Vec3::new(1.0, 2.0, 3.0))
+        };
+        let mass = body
+            .mass_at(Quat::from_rotation_y(0.7))
+            .expect("a valid body");
+        for moment in [Vec3::X, Vec3::Y, Vec3::Z] {
+            assert_eq!((mass.inverse_inertia * moment).x, 0.0);
+        }
+        assert_eq!(mass.inverse_inertia * Vec3::X, Vec3::ZERO);
+        assert!((mass.inverse_inertia * Vec3::Y).distance(Vec3::Y / 2.0) < 1.0e-6);
+        assert_eq!(mass.free * Vec3::ONE, Vec3::new(1.0, 0.0, 1.0));
     }
 }

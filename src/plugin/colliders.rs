@@ -1,46 +1,31 @@
 //! How colliders move from tick to tick.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::Entity,
-        entity_disabling::Disabled,
-        hierarchy::{ChildOf, Children},
-        lifecycle::{Remove, RemovedComponents},
-        observer::On,
-        query::{Allow, Changed, Or, With},
-        system::{Commands, Local, Query, Res, ResMut, SystemParam},
-    },
-    math::{Isometry3d, Mat3, Vec3},
-    time::Time,
-    transform::{components::Transform, helper::TransformHelper},
+    ecs::{component::Component, entity::Entity},
+    math::{Isometry3d, Mat3, Quat, Vec3, Vec3A},
 };
 
 use super::{
-    ClothBody, ClothFault, ClothFrame,
-    collider_tree::{Bounds, ColliderTree},
-    frame::global_transform,
-    naming::Part,
+    ClothBody, ClothFrame,
+    collider_tree::Bounds,
+    frame::Places,
     source::{ColliderMeshes, Source},
 };
 use crate::{
-    cloth::ClothError,
-    contact::{ClothCollider, ColliderShape, MovingCollider},
+    cloth::{ClothError, FARTHEST},
+    contact::{BodyChange, BodyMass, ClothCollider, ColliderShape, MovingCollider},
     hierarchy::Core,
 };
 
 /// How much larger a box is made, against what its corners and the collider's points are rounded by.
 const ROUNDING: f32 = 1.0e-5;
 
-/// No collider is larger than this, nor farther from the world's origin (m): products of such lengths are finite.
-const FARTHEST: f32 = 1.0e12;
-
 /// A collider's way through the tick, in the world.
 #[derive(Component, Debug, Default)]
 pub(super) struct ColliderMotion {
     /// Its way; `None` before the first tick.
     way: Option<MovingCollider>,
-    /// Where the last tick with time in it left it.
+    /// Where the last tick with time in it left its entity, whose frame the shape's need not be.
     last: Option<Isometry3d>,
     /// Middle of its way (m), and how far it is from there at most to any of the collider's points on it.
     middle: Vec3,
@@ -62,6 +47,7 @@ struct BuiltShape {
     source: Option<Source>,
     scale: Vec3,
     shape: ColliderShape,
+    /// Where the shape's frame is in the entity's.
     offset: Isometry3d,
 }
 
@@ -100,16 +86,20 @@ fn around([low, high]: [Vec3; 2], reach: f32) -> Bounds {
 }
 
 impl ColliderMotion {
-    fn follow(
+    /// Looks where its entity is now.
+    ///
+    /// # Errors
+    /// What is wrong with the collider, or with where it is.
+    pub fn follow(
         &mut self,
         collider: &ClothCollider,
         body: Option<&ClothBody>,
-        transforms: &TransformHelper,
+        places: &Places,
         meshes: &ColliderMeshes,
         entity: Entity,
         time_passes: bool,
     ) -> Result<(), ClothError> {
-        let transform = global_transform(transforms, entity)?;
+        let transform = places.of(entity)?;
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let known = self.built.as_ref().and_then(|built| built.source);
         let source = meshes.find(entity, collider, known)?;
@@ -131,12 +121,11 @@ impl ColliderMotion {
         let Some(BuiltShape { shape, offset, .. }) = &self.built else {
             return Ok(());
         };
-        // An infinite extent is a half-space's.
-        let extent = shape.extent();
-        if extent.is_finite() {
+        // Only a half-space has no end.
+        if *shape != ColliderShape::HalfSpace {
             let is_in_reach = |extent: f32| extent <= FARTHEST;
             ClothError::check(
-                extent,
+                shape.extent(),
                 is_in_reach,
                 "the collider's size (m)",
                 "at most 10¹²",
@@ -148,9 +137,10 @@ impl ColliderMotion {
                 transform: format!("{transform:?}"),
             });
         }
-        let pose = Isometry3d::new(translation, rotation.normalize()) * *offset;
+        let place = Isometry3d::new(translation, rotation.normalize());
+        let last = self.last.unwrap_or(place);
+        let (from, pose) = (last * *offset, place * *offset);
         let translation = Vec3::from(pose.translation);
-        let from = self.last.unwrap_or(pose);
         let turned = pose.rotation * from.rotation.inverse();
         // Of the two quaternions of a rotation, the one of the shorter way round.
         let turned = if turned.w < 0.0 { -turned } else { turned };
@@ -160,7 +150,15 @@ impl ColliderMotion {
             to: translation,
             turn: turned.to_scaled_axis(),
             body: match body {
-                Some(body) => Some(body.mass_at(pose.rotation)?.part_of(self.cloths)),
+                Some(body) => {
+                    // As the tick begins, and seen from where the shape's origin is, which need not be the entity's.
+                    let mass = body.mass_at(last.rotation)?.part_of(self.cloths);
+                    let origin = last.rotation * Vec3::from(offset.translation);
+                    Some(BodyMass {
+                        centre: mass.centre - origin,
+                        ..mass
+                    })
+                }
                 None => None,
             },
         };
@@ -174,7 +172,7 @@ impl ColliderMotion {
         self.bounds = self.bounds(&way);
         self.way = Some(way);
         // What is moved while no time passes has its way still before it.
-        self.last = Some(if time_passes { pose } else { from });
+        self.last = Some(if time_passes { place } else { last });
         Ok(())
     }
 
@@ -194,7 +192,7 @@ impl ColliderMotion {
     }
 
     /// Whether the next tick begins with another way, whether anyone moves the collider or not.
-    fn is_moving(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         self.way
             .as_ref()
             .is_some_and(|way| way.turn != Vec3::ZERO || way.travel() > 0.0)
@@ -205,18 +203,37 @@ impl ColliderMotion {
         self.cloths.max(1)
     }
 
-    /// Cloth has moved it, and so many cloths have pushed it. Its next way begins where it is now.
-    pub fn pushed(&mut self, cloths: u32, moved: impl FnOnce(&mut Isometry3d)) {
+    /// So many cloths have pushed it in the tick.
+    pub fn set_cloths(&mut self, cloths: u32) {
         self.cloths = cloths;
-        if let Some(last) = &mut self.last {
-            moved(last);
-        }
     }
 
-    /// The mesh asset that its shape is made of.
-    #[cfg(feature = "mesh")]
-    pub fn source(&self) -> Option<Source> {
-        self.built.as_ref()?.source
+    /// Cloth has changed its motion: its next way begins where it is now. Returns how far its entity goes (m), and how that turns.
+    pub fn pushed(&mut self, change: &BodyChange, body: &ClothBody) -> (Vec3, Quat) {
+        let (Some(last), Some(built)) = (&mut self.last, &self.built) else {
+            return (Vec3::ZERO, Quat::IDENTITY);
+        };
+        let turned = Quat::from_scaled_axis(change.rotation);
+        // How far the end of an arm goes as it is turned.
+        let swing = |arm: Vec3| turned * arm - arm;
+        let centre = last.rotation * body.centre_of_mass;
+        let origin = last.rotation * Vec3::from(built.offset.translation);
+        // From the shape's origin to the centre of mass, which may be locked, and on to the entity's origin.
+        let gone = body.free_translation(change.translation + swing(centre - origin));
+        let gone = gone - swing(centre);
+        last.translation += Vec3A::from(gone);
+        last.rotation = (turned * last.rotation).normalize();
+        (gone, turned)
+    }
+
+    /// Wherever it is when it is looked at next, it has not come from anywhere.
+    pub fn stop(&mut self) {
+        self.last = None;
+    }
+
+    /// What holds it all along its way, as the tree of all colliders keeps it.
+    pub fn held_by(&self) -> Bounds {
+        self.bounds
     }
 
     /// Whether the collider may come within `reach` of a point of the world (m).
@@ -251,115 +268,5 @@ impl ColliderMotion {
     }
 }
 
-/// What a collider is read from. Disabled ones are followed too: whoever enables one again finds it where it is.
-type Reading = (
-    &'static ClothCollider,
-    &'static mut ColliderMotion,
-    Option<&'static ClothBody>,
-    Option<&'static ClothFault>,
-);
-
-/// Where a collider's own components have changed.
-type OwnChange = (
-    With<ColliderMotion>,
-    Or<(Changed<Transform>, Changed<ClothCollider>, Changed<ChildOf>)>,
-    Allow<Disabled>,
-);
-
-/// Entities that others are children of.
-type ParentChange = (
-    With<Children>,
-    Or<(Changed<Transform>, Changed<ChildOf>)>,
-    Allow<Disabled>,
-);
-
-/// What tells which colliders have moved.
-#[derive(SystemParam)]
-pub(super) struct Changes<'w, 's> {
-    own: Query<'w, 's, Entity, OwnChange>,
-    bodies: Query<'w, 's, Entity, (With<ColliderMotion>, With<ClothBody>, Allow<Disabled>)>,
-    unbodied: RemovedComponents<'w, 's, ClothBody>,
-    parents: Query<'w, 's, Entity, ParentChange>,
-    children: Query<'w, 's, &'static Children, Allow<Disabled>>,
-    unparented: RemovedComponents<'w, 's, ChildOf>,
-    unplaced: RemovedComponents<'w, 's, Transform>,
-}
-
-/// The colliders to be looked at in a tick.
-#[derive(Debug, Default)]
-pub(super) struct Awaited {
-    /// Those to look at now, each once.
-    now: Vec<Entity>,
-    /// Those on their way: in the next tick they may have arrived.
-    moving: Vec<Entity>,
-    /// Whose children are to be looked at.
-    stack: Vec<Entity>,
-}
-
-impl Awaited {
-    /// Those that moved in the last tick, or of which anything has changed since, their ancestors included.
-    fn find(&mut self, changes: &mut Changes) {
-        self.now.clear();
-        self.now.append(&mut self.moving);
-        self.now.extend(&changes.own);
-        self.now.extend(&changes.bodies);
-        self.now.extend(changes.unbodied.read());
-        self.stack.clear();
-        self.stack.extend(&changes.parents);
-        self.stack.extend(changes.unplaced.read());
-        for entity in changes.unparented.read() {
-            self.now.push(entity);
-            self.stack.push(entity);
-        }
-        // Below what has changed; what no longer exists has no children.
-        while let Some(parent) = self.stack.pop() {
-            if let Ok(children) = changes.children.get(parent) {
-                self.now.extend(children);
-                self.stack.extend(children);
-            }
-        }
-        self.now.sort_unstable();
-        self.now.dedup();
-    }
-}
-
-/// Follows the colliders that move, and notes where they are.
-pub(super) fn prepare_colliders(
-    mut awaited: Local<Awaited>,
-    mut changes: Changes,
-    mut colliders: Query<Reading, Allow<Disabled>>,
-    mut tree: ResMut<ColliderTree>,
-    transforms: TransformHelper,
-    meshes: ColliderMeshes,
-    time: Res<Time>,
-    mut commands: Commands,
-) {
-    awaited.find(&mut changes);
-    let time_passes = time.delta_secs() > 0.0;
-    let Awaited { now, moving, .. } = &mut *awaited;
-    for &entity in now.iter() {
-        let Ok((collider, mut motion, body, fault)) = colliders.get_mut(entity) else {
-            continue;
-        };
-        let outcome = motion.follow(collider, body, &transforms, &meshes, entity, time_passes);
-        if outcome.is_err() {
-            *motion = ColliderMotion::default();
-        }
-        tree.set(entity, motion.bounds);
-        // What is made of an asset has to be there, and may become another.
-        if motion.is_moving() || matches!(collider, ClothCollider::Mesh(_)) {
-            moving.push(entity);
-        }
-        // What is on its way is no fault.
-        let outcome = match outcome {
-            Err(ClothError::MeshLoading) => Ok(()),
-            outcome => outcome,
-        };
-        ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
-    }
-}
-
-/// What is no collider any more is not searched for.
-pub(super) fn forget_collider(removed: On<Remove, ColliderMotion>, mut tree: ResMut<ColliderTree>) {
-    tree.remove(removed.entity);
-}
+#[cfg(test)]
+mod tests;

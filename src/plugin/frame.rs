@@ -1,10 +1,21 @@
 //! The frame that a cloth is simulated in.
 
 use bevy::{
-    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
+    ecs::{
+        component::Component,
+        entity::Entity,
+        entity_disabling::Disabled,
+        hierarchy::ChildOf,
+        query::Allow,
+        reflect::ReflectComponent,
+        system::{Query, SystemParam},
+    },
     math::{Affine3A, Isometry3d, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
-    transform::{components::GlobalTransform, helper::TransformHelper},
+    transform::{
+        components::{GlobalTransform, Transform},
+        helper::{ComputeGlobalTransformError, TransformHelper},
+    },
 };
 
 use crate::cloth::ClothError;
@@ -22,6 +33,33 @@ pub(super) fn global_transform(
         .map_err(|error| ClothError::Transform {
             transform: error.to_string(),
         })
+}
+
+/// Where things are as of now, also what is below something disabled: that does not disable its children.
+#[derive(SystemParam)]
+pub(super) struct Places<'w, 's> {
+    parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
+    transforms: Query<'w, 's, &'static Transform, Allow<Disabled>>,
+}
+
+impl Places<'_, '_> {
+    /// An entity's global transform.
+    ///
+    /// # Errors
+    /// [`ClothError::Transform`] if it or an ancestor has none.
+    pub fn of(&self, entity: Entity) -> Result<GlobalTransform, ClothError> {
+        let own = |entity: Entity| {
+            let transform = self.transforms.get(entity);
+            transform.copied().map_err(|_| ClothError::Transform {
+                transform: ComputeGlobalTransformError::MissingTransform(entity).to_string(),
+            })
+        };
+        let mut place = GlobalTransform::from(own(entity)?);
+        for above in self.parents.iter_ancestors(entity) {
+            place = own(above)? * place;
+        }
+        Ok(place)
+    }
 }
 
 /// The frame that a cloth's particles are given in: its entity's global translation and rotation as of the

@@ -2,6 +2,7 @@
 
 mod attach;
 mod attachments;
+mod awaited;
 mod body;
 mod broad_phase;
 mod build;
@@ -17,6 +18,7 @@ mod excess;
 #[cfg(feature = "pbr")]
 mod fabric;
 mod fault;
+mod follow;
 mod frame;
 #[cfg(feature = "gizmos")]
 mod gizmos;

@@ -2,29 +2,34 @@
 
 use bevy::{
     ecs::{
+        change_detection::DetectChangesMut,
         entity::Entity,
         hierarchy::ChildOf,
         query::Has,
         system::{Local, Query},
     },
-    math::{Isometry3d, Quat, Vec3},
+    math::Vec3,
     transform::components::Transform,
 };
 
-use super::{ClothPush, ClothScratch, colliders::ColliderMotion};
+use super::{ClothBody, ClothPush, ClothScratch, colliders::ColliderMotion};
 use crate::contact::BodyChange;
+
+/// What may be pushed. What is no collider, or nowhere, is not: its push is nothing.
+type Pushed = (
+    Entity,
+    &'static mut ClothPush,
+    Option<&'static ClothBody>,
+    Option<&'static mut ColliderMotion>,
+    Option<&'static mut Transform>,
+    Has<ChildOf>,
+);
 
 /// Sums what all cloths have changed of each body's motion, and moves it to where they left it. What several cloths push is cut
 /// into equal parts, one for each, which go on together.
 pub(super) fn push_bodies(
     cloths: Query<&ClothScratch>,
-    mut bodies: Query<(
-        Entity,
-        &mut ClothPush,
-        &mut ColliderMotion,
-        &mut Transform,
-        Has<ChildOf>,
-    )>,
+    mut bodies: Query<Pushed>,
     mut pushes: Local<Vec<(Entity, BodyChange)>>,
 ) {
     pushes.clear();
@@ -33,34 +38,78 @@ pub(super) fn push_bodies(
     }
     let pushed = cloths.iter().flat_map(|scratch| &scratch.pushed);
     pushes.extend(pushed.copied());
-    for (entity, mut push, mut motion, mut transform, is_child) in &mut bodies {
-        let parts = motion.cloths() as f32;
-        let (mut sum, mut count) = (BodyChange::default(), 0);
-        for (_, change) in pushes.iter().filter(|(pushed, _)| *pushed == entity) {
-            sum.velocity += change.velocity / parts;
-            sum.angular_velocity += change.angular_velocity / parts;
-            sum.translation += change.translation / parts;
-            sum.rotation += change.rotation / parts;
-            count += 1;
-        }
-        let new = ClothPush {
+    for (entity, mut push, body, motion, transform, is_child) in &mut bodies {
+        let (Some(body), Some(mut motion), Some(mut transform)) = (body, motion, transform) else {
+            push.set_if_neq(ClothPush::default());
+            continue;
+        };
+        let of_this = pushes.iter().filter(|(pushed, _)| *pushed == entity);
+        let count = of_this.clone().count() as u32;
+        let sum = sum(of_this.map(|(_, change)| change), motion.cloths(), body);
+        push.set_if_neq(ClothPush {
             velocity: sum.velocity,
             angular_velocity: sum.angular_velocity,
-        };
-        if *push != new {
-            *push = new;
+        });
+        if count > 0 || motion.cloths() > 1 {
+            motion.set_cloths(count);
         }
-        let is_moved = !is_child && (sum.translation != Vec3::ZERO || sum.rotation != Vec3::ZERO);
-        if count == 0 && motion.cloths() == 1 {
+        if is_child || (sum.translation == Vec3::ZERO && sum.rotation == Vec3::ZERO) {
             continue;
         }
-        motion.pushed(count, |pose: &mut Isometry3d| {
-            if is_moved {
-                let turned = Quat::from_scaled_axis(sum.rotation);
-                transform.translation += sum.translation;
-                transform.rotation = (turned * transform.rotation).normalize();
-                *pose = Isometry3d::new(transform.translation, transform.rotation);
-            }
-        });
+        let (gone, turned) = motion.pushed(&sum, body);
+        transform.translation += gone;
+        transform.rotation = (turned * transform.rotation).normalize();
+    }
+}
+
+/// What comes of changes by so many cloths, each of which pushed a part of the body; nothing of what is no number.
+fn sum<'a>(
+    changes: impl Iterator<Item = &'a BodyChange>,
+    parts: u32,
+    body: &ClothBody,
+) -> BodyChange {
+    let parts = parts as f32;
+    let mut sum = BodyChange::default();
+    for change in changes {
+        sum.velocity += change.velocity / parts;
+        sum.angular_velocity += change.angular_velocity / parts;
+        sum.translation += change.translation / parts;
+        sum.rotation += change.rotation / parts;
+    }
+    if !sum.is_finite() {
+        return BodyChange::default();
+    }
+    // To the last bit, which they lost on their way from the cloths' frames.
+    BodyChange {
+        velocity: body.free_translation(sum.velocity),
+        angular_velocity: body.free_rotation(sum.angular_velocity),
+        translation: sum.translation,
+        rotation: body.free_rotation(sum.rotation),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One cloth whose change is no number does not move the body.
+    #[test]
+    fn what_is_no_number_moves_nothing() {
+        let body = ClothBody::ball(1.0, 0.1);
+        let fine = BodyChange {
+            velocity: Vec3::X,
+            ..BodyChange::default()
+        };
+        for bad in [f32::NAN, f32::INFINITY] {
+            let bad = BodyChange {
+                rotation: Vec3::new(0.0, bad, 0.0),
+                ..fine
+            };
+            assert_eq!(
+                sum([&fine, &bad].into_iter(), 2, &body),
+                BodyChange::default()
+            );
+        }
+        assert_eq!(sum([&fine, &fine].into_iter(), 2, &body), fine);
     }
 }

@@ -1,4 +1,4 @@
-//! The bridge to rapier: it moves the colliders and does nothing else.
+//! The bridge to rapier: it moves the colliders, and cloth meets them; with a `ClothPushBack` cloth pushes them too.
 
 use bevy::{
     app::{App, FixedUpdate, Plugin},
@@ -85,6 +85,13 @@ fn adopt_colliders(
     mut commands: Commands,
 ) {
     for (entity, collider, cloth_collider) in &mut adopted {
+        let is_known = match cloth_collider.as_deref() {
+            Some(ClothCollider::Shared(shared)) => shared.is_of(&collider.raw),
+            _ => false,
+        };
+        if is_known {
+            continue;
+        }
         let wanted = match collider.as_ball() {
             // A ball is one of ours, to be read and changed; ours is before the transform's scale.
             Some(ball) => {
@@ -102,11 +109,7 @@ fn adopt_colliders(
         };
         match cloth_collider {
             Some(mut known) => {
-                let is_known = match &*known {
-                    ClothCollider::Shared(shared) => shared.is_of(&collider.raw),
-                    known => *known == wanted,
-                };
-                if !is_known {
+                if *known != wanted {
                     *known = wanted;
                 }
             }

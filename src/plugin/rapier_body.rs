@@ -13,7 +13,7 @@ use bevy::{
         schedule::{IntoScheduleConfigs, ScheduleLabel},
         system::{Commands, Query},
     },
-    math::Vec3,
+    math::{BVec3, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 use bevy_rapier3d::{
@@ -27,7 +27,7 @@ use super::{ClothBody, ClothPush, ClothSystems};
 /// [`RapierClothCollider`](super::RapierClothCollider). Rapier's mass of it becomes a [`ClothBody`], and what the cloth changes
 /// of its velocity is added to rapier's. Without this, rapier moves the body and the cloth alone gives way.
 ///
-/// Of `LockedAxes` those of rotation count. Bodies that are not dynamic are moved by nothing, as ever.
+/// `LockedAxes` count, which are the world's: along and about those cloth does not push the body. Bodies that are not dynamic are moved by nothing, as ever.
 ///
 /// # Heavy bodies
 /// Light cloth does not hold a body that is some hundred times as heavy as the particles beneath it, with the sub-steps that it takes by
@@ -87,25 +87,26 @@ fn read_masses(
             continue;
         }
         let locked = locked.copied().unwrap_or(LockedAxes::empty());
-        let inertia = [
-            LockedAxes::ROTATION_LOCKED_X,
-            LockedAxes::ROTATION_LOCKED_Y,
-            LockedAxes::ROTATION_LOCKED_Z,
-        ];
-        let moments = mass.principal_inertia.to_array();
-        let moment = |axis: usize| {
-            let is_free = !locked.contains(inertia[axis]) && moments[axis] > 0.0;
-            if is_free {
-                moments[axis]
-            } else {
-                f32::INFINITY
-            }
-        };
+        let locks =
+            |axes: [LockedAxes; 3]| BVec3::from_array(axes.map(|axis| locked.contains(axis)));
+        // What rapier takes for none can't be turned.
+        let moments = mass.principal_inertia;
+        let inertia = Vec3::select(moments.cmpgt(Vec3::ZERO), moments, Vec3::INFINITY);
         let body = ClothBody {
             mass: mass.mass,
-            inertia: Vec3::from_array([0, 1, 2].map(moment)),
+            inertia,
             axes: mass.principal_inertia_local_frame,
             centre_of_mass: mass.local_center_of_mass,
+            locked_translation: locks([
+                LockedAxes::TRANSLATION_LOCKED_X,
+                LockedAxes::TRANSLATION_LOCKED_Y,
+                LockedAxes::TRANSLATION_LOCKED_Z,
+            ]),
+            locked_rotation: locks([
+                LockedAxes::ROTATION_LOCKED_X,
+                LockedAxes::ROTATION_LOCKED_Y,
+                LockedAxes::ROTATION_LOCKED_Z,
+            ]),
         };
         match known {
             Some(mut known) => {

@@ -3,15 +3,16 @@
 #[cfg(feature = "mesh")]
 use bevy::{app::First, asset::AssetEvent, ecs::message::Messages, mesh::Mesh};
 use bevy::{
-    app::{App, FixedUpdate, Plugin},
+    app::{App, FixedUpdate, Last, Plugin},
     ecs::{
         bundle::Bundle,
         component::Component,
         entity::Entity,
+        entity_disabling::Disabled,
         intern::Interned,
         lifecycle::{Add, Insert, Remove},
         observer::On,
-        query::With,
+        query::{Allow, With},
         schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
         system::{Commands, Query},
         world::World,
@@ -27,12 +28,14 @@ use super::{
     ClothAttachments, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
     ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
     ClothTeleport, ClothTouchStarted, ClothTouchStopped,
+    awaited::{Deprived, note_enabled, note_removals},
     collider_tree::ColliderTree,
-    colliders::{ColliderMotion, forget_collider, prepare_colliders},
+    colliders::ColliderMotion,
     components::BroadPhaseBounds,
     contacts::{send_stopped_messages, send_touch_messages},
     envelope::report_limits,
     fault::log_faults,
+    follow::{forget_collider, prepare_colliders},
     integrate::integrate,
     islands::{Islands, find_islands},
     naming::Part,
@@ -102,13 +105,16 @@ impl Plugin for ClothPlugin {
             .init_resource::<SharedParts>()
             .init_resource::<Islands>()
             .init_resource::<ColliderTree>()
+            .init_resource::<Deprived>()
             .add_observer(add_parts::<Cloth, ClothParts>)
             .add_observer(add_parts::<ClothCollider, ColliderMotion>)
             .add_observer(send_stopped_messages)
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
             .add_observer(reset_motion)
-            .add_observer(forget_collider);
+            .add_observer(forget_collider)
+            .add_observer(note_enabled)
+            .add_systems(Last, note_removals);
         #[cfg(feature = "mesh")]
         app.init_resource::<SharedMeshes>();
         app.configure_sets(
@@ -125,7 +131,12 @@ impl Plugin for ClothPlugin {
         .add_systems(
             self.schedule,
             (
-                (prepare_colliders, prepare_cloths, find_islands)
+                (
+                    note_removals,
+                    prepare_colliders,
+                    prepare_cloths,
+                    find_islands,
+                )
                     .chain()
                     .run_if(resource_exists::<Time>)
                     .in_set(ClothSystems::Prepare),
@@ -221,7 +232,7 @@ fn clear_removed_cloth(
 /// Likewise for a collider.
 fn clear_removed_collider(
     removed: On<Remove, ClothCollider>,
-    faults: Query<&ClothFault>,
+    faults: Query<&ClothFault, Allow<Disabled>>,
     mut commands: Commands,
 ) {
     commands

@@ -38,6 +38,10 @@ enum Act {
     NewContacts,
     Teleport,
     Friction(f32),
+    Body(ClothBody),
+    NoBody,
+    SelfCollision(ClothSelfCollision),
+    NoSelfCollision,
 }
 
 fn places() -> impl Strategy<Value = Vec3> {
@@ -70,7 +74,28 @@ fn acts() -> impl Strategy<Value = Act> {
         (lengths(), lengths()).prop_map(|(r, l)| ClothCollider::capsule(r, l)),
         (lengths(), lengths(), lengths()).prop_map(|(x, y, z)| ClothCollider::cuboid(x, y, z)),
         Just(ClothCollider::plane()),
+        (lengths(), lengths()).prop_map(|(r, h)| ClothCollider::cone(r, h)),
+        lengths().prop_map(|size| ClothCollider::convex_hull(corners(size))),
+        lengths().prop_map(|size| ClothCollider::trimesh(corners(size), TETRAHEDRON)),
+        (lengths(), places(), lengths()).prop_map(|(radius, place, length)| {
+            // Turned by a quaternion of whatever length.
+            let pose = Isometry3d {
+                rotation: Quat::from_xyzw(0.0, length, 0.0, 1.0),
+                translation: place.into(),
+            };
+            let ball = ClothCollider::ball(radius);
+            ClothCollider::compound([(Isometry3d::IDENTITY, ball.clone()), (pose, ball)])
+        }),
+        Just(ClothCollider::mesh()),
     ];
+    let bodies = (lengths(), lengths(), lengths(), places()).prop_map(
+        |(mass, inertia, axes, centre_of_mass)| ClothBody {
+            axes: Quat::from_xyzw(0.0, 0.0, axes, 0.0),
+            centre_of_mass,
+            locked_rotation: BVec3::new(mass > inertia, false, false),
+            ..ClothBody::new(mass, Vec3::new(inertia, 1.0e-3, inertia))
+        },
+    );
     let narrow = prop_oneof![
         Just(NarrowPhase::Auto),
         Just(NarrowPhase::Particles),
@@ -101,8 +126,26 @@ fn acts() -> impl Strategy<Value = Act> {
         2 => Just(Act::NewContacts),
         1 => Just(Act::Teleport),
         1 => lengths().prop_map(Act::Friction),
+        2 => bodies.prop_map(Act::Body),
+        1 => Just(Act::NoBody),
+        1 => (lengths(), any::<bool>()).prop_map(|(thickness, with_itself)| {
+            // Most are as thick as the cloth's spacing lets them be.
+            let thickness = 0.05 * thickness;
+            Act::SelfCollision(ClothSelfCollision {
+                with_itself,
+                ..ClothSelfCollision::of_thickness(thickness)
+            })
+        }),
+        1 => Just(Act::NoSelfCollision),
     ]
 }
+
+/// Corners of a tetrahedron, and its faces.
+fn corners(size: f32) -> Vec<Vec3> {
+    vec![Vec3::ZERO, Vec3::X * size, Vec3::Y * size, Vec3::Z * size]
+}
+
+const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
 fn cloth() -> impl Bundle {
     (Cloth::new(6, 6, 0.1), Transform::from_xyz(-0.25, 0.25, 0.0))
@@ -204,6 +247,18 @@ fn act(world: &mut World, entities: &mut [Entity], which: usize, act: Act) {
                 ..ClothMaterial::COTTON
             });
         }
+        Act::Body(body) if !is_cloth => {
+            entity.insert(body);
+        }
+        Act::NoBody => {
+            entity.remove::<ClothBody>();
+        }
+        Act::SelfCollision(contact) if is_cloth => {
+            entity.insert(contact);
+        }
+        Act::NoSelfCollision => {
+            entity.remove::<ClothSelfCollision>();
+        }
         _ => {}
     }
 }
@@ -264,6 +319,8 @@ proptest! {
                         contact.volume,
                     ];
                     prop_assert!(figures.iter().all(|figure| figure.is_finite()), "{contact:?}");
+                    let given = [contact.impulse, contact.angular_impulse];
+                    prop_assert!(given.iter().all(|given| given.is_finite()), "{contact:?}");
                     prop_assert!(
                         contacts.points(contact).iter().all(|point| point.depth < f32::INFINITY),
                         "{contact:?}"
@@ -273,6 +330,11 @@ proptest! {
                         "twice: {contact:?}"
                     );
                 }
+            }
+            let mut pushes = app.world_mut().query::<&ClothPush>();
+            for push in pushes.iter(app.world()) {
+                let is_finite = push.velocity.is_finite() && push.angular_velocity.is_finite();
+                prop_assert!(is_finite, "{push:?}");
             }
             for (&cloth, colliders) in &now {
                 for &collider in colliders {

@@ -101,6 +101,13 @@ fn a_disabled_collider_is_not_met() {
     app.world_mut().entity_mut(ball).insert(Disabled);
     tick(&mut app, 1);
     assert_eq!(stats(&app, cloth).contacts, 0);
+    // Enabled again where it is, though nothing moves it.
+    app.world_mut().entity_mut(ball).remove::<Disabled>();
+    tick(&mut app, 1);
+    assert!(stats(&app, cloth).contacts > 0);
+    // Moved to the cloth, and away from it, while it is disabled.
+    app.world_mut().entity_mut(ball).insert(Disabled);
+    tick(&mut app, 1);
     let mut transform = app.world_mut().entity_mut(ball);
     transform
         .get_mut::<Transform>()
@@ -111,7 +118,127 @@ fn a_disabled_collider_is_not_met() {
     app.world_mut().entity_mut(ball).remove::<Disabled>();
     tick(&mut app, 30);
     assert_eq!(stats(&app, cloth).contacts, 0);
-    change::<Transform>(&mut app, ball, |transform| *transform = place);
+    app.world_mut().entity_mut(ball).insert(Disabled);
+    let mut transform = app.world_mut().entity_mut(ball);
+    *transform.get_mut::<Transform>().expect("a place") = place;
+    tick(&mut app, 5);
+    assert_eq!(stats(&app, cloth).contacts, 0);
+    app.world_mut().entity_mut(ball).remove::<Disabled>();
     tick(&mut app, 1);
     assert!(stats(&app, cloth).contacts > 0);
+    assert!(app.world().get::<ClothFault>(ball).is_none());
+    // It appeared there, and did not come: what it comes through has not been swept away.
+    let deepest = app.world().get::<ClothContacts>(cloth).expect("contacts");
+    let deepest = deepest.with(ball).expect("a touch").deepest_penetration;
+    assert!(deepest < 0.3, "{deepest}");
+}
+
+/// Bevy's `Disabled` does not disable children: a collider below something disabled is met, and moves with it.
+#[test]
+fn what_is_below_something_disabled_is_met() {
+    use bevy::ecs::entity_disabling::Disabled;
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let parent = app
+        .world_mut()
+        .spawn((Transform::from_xyz(0.0, 0.0, 9.0), Disabled))
+        .id();
+    let place = Transform::from_xyz(0.75, -1.0, 0.1);
+    let ball = (ClothCollider::ball(0.3), place, ChildOf(parent));
+    let ball = app.world_mut().spawn(ball).id();
+    tick(&mut app, 5);
+    assert_eq!(stats(&app, cloth).contacts, 0);
+    let mut above = app.world_mut().entity_mut(parent);
+    *above.get_mut::<Transform>().expect("a place") = Transform::IDENTITY;
+    tick(&mut app, 1);
+    assert!(stats(&app, cloth).contacts > 0);
+    app.world_mut().entity_mut(parent).remove::<Disabled>();
+    tick(&mut app, 1);
+    assert!(stats(&app, cloth).contacts > 0);
+    assert!(app.world().get::<ClothFault>(ball).is_none());
+}
+
+/// A collider that loses its own transform is nowhere, which is said, until it has one again.
+#[test]
+fn a_collider_without_a_transform_is_named() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let place = Transform::from_xyz(0.75, -1.0, 0.1);
+    let ball = (ClothCollider::ball(0.3), place);
+    let ball = app.world_mut().spawn(ball).id();
+    tick(&mut app, 5);
+    assert!(stats(&app, cloth).contacts > 0);
+    app.world_mut().entity_mut(ball).remove::<Transform>();
+    tick(&mut app, 1);
+    let fault = app.world().get::<ClothFault>(ball).expect("a fault");
+    assert!(matches!(fault.error, ClothError::Transform { .. }));
+    assert_eq!(stats(&app, cloth).contacts, 0);
+    app.world_mut().entity_mut(ball).insert(place);
+    tick(&mut app, 1);
+    assert!(app.world().get::<ClothFault>(ball).is_none());
+    assert!(stats(&app, cloth).contacts > 0);
+}
+
+/// Bevy remembers for two frames what has been taken away; the next tick may come later.
+#[test]
+fn what_is_taken_away_between_ticks_is_noticed() {
+    use bevy::time::TimeUpdateStrategy;
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let far = app
+        .world_mut()
+        .spawn(Transform::from_xyz(0.0, 0.0, 9.0))
+        .id();
+    let place = Transform::from_xyz(0.75, -1.0, 0.1);
+    let ball = (ClothCollider::ball(0.3), place, ChildOf(far));
+    let ball = app.world_mut().spawn(ball).id();
+    tick(&mut app, 5);
+    assert_eq!(stats(&app, cloth).contacts, 0);
+    app.world_mut().entity_mut(ball).remove::<ChildOf>();
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(
+        std::time::Duration::ZERO,
+    ));
+    (0..5).for_each(|_| app.update());
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    // In the first it is on its way; it stays where it arrives.
+    tick(&mut app, 2);
+    assert!(stats(&app, cloth).contacts > 0);
+}
+
+/// Few colliders below much that moves, as on a skeleton, and many below little: each is found, and at its place.
+#[test]
+fn colliders_are_found_below_whatever_moves() {
+    for (bones, balls) in [(12, 1), (2, 12)] {
+        let mut app = app();
+        let cloth = app.world_mut().spawn(Cloth::default()).id();
+        let root = app
+            .world_mut()
+            .spawn(Transform::from_xyz(0.0, 0.0, 9.0))
+            .id();
+        let mut skeleton = vec![root];
+        for _ in 0..bones {
+            let above = *skeleton.last().expect("the root");
+            let bone = (Transform::IDENTITY, ChildOf(above));
+            skeleton.push(app.world_mut().spawn(bone).id());
+        }
+        let hand = *skeleton.last().expect("the root");
+        let balls: Vec<Entity> = (0..balls)
+            .map(|_| {
+                let place = Transform::from_xyz(0.75, -1.0, 0.1);
+                let ball = (ClothCollider::ball(0.3), place, ChildOf(hand));
+                app.world_mut().spawn(ball).id()
+            })
+            .collect();
+        tick(&mut app, 5);
+        assert_eq!(stats(&app, cloth).colliders_near, 0);
+        for &bone in &skeleton {
+            change::<Transform>(&mut app, bone, |place| place.translation.z = 0.0);
+        }
+        // In the first they are on their way through the cloth, in the second they are there.
+        tick(&mut app, 2);
+        assert_eq!(stats(&app, cloth).colliders_near, balls.len());
+        change::<Transform>(&mut app, root, |place| place.translation.z = 9.0);
+        tick(&mut app, 2);
+        assert_eq!(stats(&app, cloth).colliders_near, 0);
+    }
 }

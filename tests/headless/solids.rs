@@ -212,13 +212,18 @@ fn an_open_mesh_is_touched_from_both_sides() {
         app.world_mut().spawn((sheet, Transform::IDENTITY));
         tick(&mut app, 128);
         let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+        let mut farthest = 0.0_f32;
         for position in particles(&app, cloth).positions() {
             let place = frame.to_world(position);
             let surface = 0.4 * (place.x * place.x + place.z * place.z);
             let off = (place.y - surface) * height.signum();
             assert!(off > -0.005, "{place} is {off} m off");
-            assert!(off < 0.2, "{place} is {off} m off");
+            farthest = farthest.max(off);
         }
+        println!("{height} m: {farthest} m off");
+        // A sheet of 0.8 m that stays flat on the rim of the part below it is 0.4 (0.4² + 0.4²) m off in its middle, which is what
+        // lies deepest; a particle's radius comes on top.
+        assert!(farthest < 0.128 + 0.01, "{farthest} m off");
     }
 }
 

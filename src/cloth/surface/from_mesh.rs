@@ -11,7 +11,7 @@ use super::{
     springs::{Side, face_area, has_area, links, sides, sides_of},
     weld::same_places,
 };
-use crate::cloth::{ClothError, SpringKind};
+use crate::cloth::{ClothError, FARTHEST, SpringKind};
 
 /// The most particles that a cloth from a mesh may have: more could not move in real time.
 pub const MAX_MESH_PARTICLES: usize = 1 << 18;
@@ -59,9 +59,8 @@ fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> 
             particles: vertices,
         });
     }
-    // So that squares of lengths, and their products with masses, stay well inside of `f32`.
     // Not by the largest element, which leaves NaN out.
-    let is_measurable = |place: &Vec3| (*place * scale).abs().cmplt(Vec3::splat(1.0e12)).all();
+    let is_measurable = |place: &Vec3| (*place * scale).abs().cmplt(Vec3::splat(FARTHEST)).all();
     if let Some(vertex) = mesh
         .positions
         .iter()

@@ -1,5 +1,7 @@
 //! Scales and bad lengths.
 
+use bevy::math::Quat;
+
 use super::*;
 
 #[test]
@@ -48,4 +50,44 @@ fn lengths_are_checked() {
             assert!(collider.scaled(scale).is_err(), "{collider:?} {scale}");
         }
     }
+}
+
+/// A part has to be somewhere; a rotation that is longer than 1 is one.
+#[test]
+fn parts_of_a_compound_are_checked() {
+    let ball = || ClothCollider::ball(0.1);
+    let at = |place: Vec3, rotation: Quat| {
+        let pose = Isometry3d {
+            rotation,
+            translation: place.into(),
+        };
+        ClothCollider::compound([(Isometry3d::IDENTITY, ball()), (pose, ball())]).scaled(Vec3::ONE)
+    };
+    for (place, rotation) in [
+        (Vec3::new(0.0, f32::NAN, 0.0), Quat::IDENTITY),
+        (Vec3::INFINITY, Quat::IDENTITY),
+        (Vec3::X * 1.0e13, Quat::IDENTITY),
+        (Vec3::X, Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+        (Vec3::X, Quat::NAN),
+    ] {
+        let outcome = at(place, rotation);
+        assert!(
+            matches!(outcome, Err(ClothError::PartPose { part: 1, .. })),
+            "{place} {rotation}: {outcome:?}"
+        );
+    }
+    let shape = at(Vec3::X, Quat::from_xyzw(0.0, 3.0, 0.0, 0.0)).expect("a valid compound");
+    // Turned about y and as large as ever.
+    assert!((shape.extent() - Vec3::new(1.1, 0.1, 0.1).length()).abs() < 1.0e-6);
+}
+
+/// An asset that is to be loaded is named as what can't be a part.
+#[test]
+fn a_mesh_asset_is_no_part() {
+    let outcome =
+        ClothCollider::compound([(Isometry3d::IDENTITY, ClothCollider::mesh())]).scaled(Vec3::ONE);
+    assert!(
+        matches!(&outcome, Err(ClothError::NoSuchShape { shape }) if shape.contains("Mesh3d")),
+        "{outcome:?}"
+    );
 }

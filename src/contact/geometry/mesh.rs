@@ -7,10 +7,7 @@ use super::{
     edges::{MeshEdges, SharpEdge},
     solid::MeshSides,
 };
-use crate::cloth::ClothError;
-
-/// Farther from the origin than this is nothing that can be measured with (m).
-const FARTHEST: f32 = 1.0e12;
+use crate::cloth::{ClothError, FARTHEST};
 
 /// A mesh, what is inside of it, and its sharp edges.
 pub(in crate::contact) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);

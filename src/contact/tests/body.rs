@@ -46,6 +46,7 @@ fn table(mass: f32, inverse_inertia: Mat3) -> MovingCollider {
             inverse_mass: mass.recip(),
             inverse_inertia,
             centre: Vec3::ZERO,
+            free: Mat3::IDENTITY,
         }),
         ..MovingCollider::still(shape, pose)
     }
@@ -157,11 +158,17 @@ fn a_mass_turns_with_its_frame() {
         inverse_mass: 2.0,
         inverse_inertia: Mat3::from_diagonal(Vec3::new(1.0, 2.0, 3.0)),
         centre: Vec3::X,
+        free: Mat3::from_diagonal(Vec3::new(1.0, 0.0, 0.0)),
     };
     let turned = mass.turned(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2));
     assert!(turned.centre.distance(Vec3::Y) < 1e-6);
     let spun = turned.inverse_inertia * Vec3::Y;
     assert!(spun.distance(Vec3::Y) < 1e-6, "what was x is y: {spun}");
+    let moved = turned.free * Vec3::ONE;
+    assert!(
+        moved.distance(Vec3::Y) < 1e-6,
+        "it goes along what was x: {moved}"
+    );
     let halved = mass.part_of(2);
     assert_eq!(halved.inverse_mass, 4.0);
     assert_eq!(halved.inverse_inertia * Vec3::X, Vec3::X * 2.0);

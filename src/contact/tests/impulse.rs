@@ -79,8 +79,8 @@ fn balance(collider: &MovingCollider, narrow_phase: NarrowPhase, ticks: u32) -> 
 }
 
 /// For a minute on a floor, and for two seconds over a ball that it slides off from: momentum is kept to a part of 10⁻⁴.
-/// Angular momentum is that of implicit Euler and of BDF2, not theirs to the last bit; what an overlap is let out by moves
-/// momentum without a force: 1 %.
+/// Angular momentum is that of implicit Euler and of BDF2, not theirs to the last bit, and what an overlap is let out by moves
+/// momentum without a force: both go with the square of a sub-step, and come to less than 3·10⁻⁴; three times that is a fault.
 #[test]
 fn the_cloth_lost_what_the_collider_got() {
     let facing = Quat::from_rotation_arc(Vec3::Y, Vec3::Z);
@@ -107,6 +107,6 @@ fn the_cloth_lost_what_the_collider_got() {
         let [off, spun] = balance(&collider, narrow_phase, ticks);
         println!("{narrow_phase:?}: {off:e} of the weight, {spun:e} of what turned it");
         assert!(off < 1.0e-4, "{collider:?} {narrow_phase:?}: {off}");
-        assert!(spun < 1.0e-2, "{collider:?} {narrow_phase:?}: {spun}");
+        assert!(spun < 1.0e-3, "{collider:?} {narrow_phase:?}: {spun}");
     }
 }

@@ -4,17 +4,13 @@ use bevy::{
     asset::{AssetEvent, AssetId},
     ecs::{
         message::MessageReader,
-        system::{Query, ResMut},
+        system::{Local, Query, ResMut},
     },
     mesh::Mesh,
     platform::collections::HashSet,
 };
 
-use super::{
-    super::{ClothBuilt, colliders::ColliderMotion},
-    asset::ChangedMeshes,
-    collider::SharedMeshes,
-};
+use super::{super::ClothBuilt, asset::ChangedMeshes, collider::SharedMeshes};
 
 /// Takes over which meshes a game has changed: cloths and colliders that are made from them are built again.
 pub(crate) fn note_changed_meshes(
@@ -22,7 +18,7 @@ pub(crate) fn note_changed_meshes(
     mut changed: ResMut<ChangedMeshes>,
     mut shared: ResMut<SharedMeshes>,
     cloths: Query<&ClothBuilt>,
-    colliders: Query<&ColliderMotion>,
+    mut sources: Local<HashSet<AssetId<Mesh>>>,
 ) {
     if events.is_empty() {
         return;
@@ -35,13 +31,10 @@ pub(crate) fn note_changed_meshes(
             .source
             .map(|source| source.mesh)
     };
-    let of_collider = |motion: &ColliderMotion| motion.source().map(|source| source.mesh);
-    let of_colliders = colliders.iter().filter_map(of_collider);
-    let sources: HashSet<AssetId<Mesh>> = cloths
-        .iter()
-        .filter_map(source)
-        .chain(of_colliders)
-        .collect();
+    // Not by way of the colliders: the meshes of cloths that are drawn change in each frame.
+    sources.clear();
+    sources.extend(cloths.iter().filter_map(source));
+    sources.extend(shared.meshes());
     for event in events.read() {
         match event {
             AssetEvent::Modified { id } | AssetEvent::Removed { id } if sources.contains(id) => {

@@ -24,6 +24,12 @@ use crate::{
 pub(crate) struct SharedMeshes(Mutex<HashMap<(Source, MeshCollider), ClothCollider>>);
 
 impl SharedMeshes {
+    /// Those that any collider has been made of, until nobody has them any more.
+    pub fn meshes(&mut self) -> impl Iterator<Item = AssetId<Mesh>> {
+        let shared = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
+        shared.keys().map(|(source, _)| source.mesh)
+    }
+
     /// Nobody has that mesh any more.
     pub fn forget(&mut self, mesh: AssetId<Mesh>) {
         let shared = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);

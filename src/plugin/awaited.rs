@@ -1,0 +1,146 @@
+//! Which colliders are to be looked at in a tick.
+
+use bevy::ecs::{
+    entity::Entity,
+    entity_disabling::Disabled,
+    hierarchy::{ChildOf, Children},
+    lifecycle::{Remove, RemovedComponents},
+    observer::On,
+    query::{Allow, Changed, Or, With},
+    resource::Resource,
+    system::{Query, ResMut, SystemParam},
+};
+use bevy::transform::components::Transform;
+
+use super::{ClothBody, colliders::ColliderMotion};
+use crate::contact::ClothCollider;
+
+/// Where a collider's own components have changed.
+type OwnChange = (
+    With<ColliderMotion>,
+    Or<(Changed<Transform>, Changed<ClothCollider>, Changed<ChildOf>)>,
+);
+
+/// Entities that others are children of. What is disabled still has them, and carries them.
+type ParentChange = (
+    With<Children>,
+    Or<(Changed<Transform>, Changed<ChildOf>)>,
+    Allow<Disabled>,
+);
+
+/// Colliders that something else may move.
+type Carried = (With<ColliderMotion>, With<ChildOf>);
+
+/// Colliders, and what others are children of.
+type Concerned = (Or<(With<ColliderMotion>, With<Children>)>, Allow<Disabled>);
+
+/// What tells which colliders have moved.
+#[derive(SystemParam)]
+pub(super) struct Changes<'w, 's> {
+    own: Query<'w, 's, Entity, OwnChange>,
+    bodies: Query<'w, 's, Entity, (With<ColliderMotion>, With<ClothBody>)>,
+    carried: Query<'w, 's, Entity, Carried>,
+    changed_parents: Query<'w, 's, Entity, ParentChange>,
+    parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
+    children: Query<'w, 's, &'static Children, Allow<Disabled>>,
+    deprived: ResMut<'w, Deprived>,
+}
+
+/// Colliders, and what is above colliders, that have lost something since the last tick.
+#[derive(Resource, Debug, Default)]
+pub(super) struct Deprived(Vec<Entity>);
+
+/// What is taken away.
+#[derive(SystemParam)]
+pub(super) struct Removals<'w, 's> {
+    bodies: RemovedComponents<'w, 's, ClothBody>,
+    parents: RemovedComponents<'w, 's, ChildOf>,
+    places: RemovedComponents<'w, 's, Transform>,
+    concerned: Query<'w, 's, (), Concerned>,
+}
+
+/// Notes what colliders have lost. In each frame as well as in each tick: Bevy forgets it after two frames, in which there need
+/// not be a tick.
+pub(super) fn note_removals(mut removals: Removals, mut deprived: ResMut<Deprived>) {
+    let Removals {
+        bodies,
+        parents,
+        places,
+        concerned,
+    } = &mut removals;
+    let removed = bodies.read().chain(parents.read()).chain(places.read());
+    for entity in removed.filter(|entity| concerned.contains(*entity)) {
+        deprived.0.push(entity);
+    }
+}
+
+/// A collider that is enabled again is looked at, and has not come from where it was before.
+pub(super) fn note_enabled(
+    enabled: On<Remove, Disabled>,
+    mut motions: Query<&mut ColliderMotion, Allow<Disabled>>,
+    mut deprived: ResMut<Deprived>,
+) {
+    if let Ok(mut motion) = motions.get_mut(enabled.entity) {
+        motion.stop();
+        deprived.0.push(enabled.entity);
+    }
+}
+
+/// The colliders to be looked at in a tick.
+#[derive(Debug, Default)]
+pub(super) struct Awaited {
+    /// Those to look at now, each once.
+    now: Vec<Entity>,
+    /// Those on their way: in the next tick they may have arrived.
+    moving: Vec<Entity>,
+    /// What has changed of all that has children.
+    above: Vec<Entity>,
+}
+
+impl Awaited {
+    /// Those that moved in the last tick, or of which anything has changed since, their ancestors included.
+    /// Besides those, the list of what is still on its way, to be filled for the next tick.
+    pub fn find(&mut self, changes: &mut Changes) -> (&[Entity], &mut Vec<Entity>) {
+        self.now.clear();
+        self.now.append(&mut self.moving);
+        self.now.extend(&changes.own);
+        self.now.extend(&changes.bodies);
+        self.now.extend_from_slice(&changes.deprived.0);
+        if !changes.carried.is_empty() {
+            self.find_carried(changes);
+        }
+        if !changes.deprived.0.is_empty() {
+            changes.deprived.0.clear();
+        }
+        self.now.sort_unstable();
+        self.now.dedup();
+        (&self.now, &mut self.moving)
+    }
+
+    /// Those below what has changed: by going up from all that are below anything, or down from all that has changed, whichever
+    /// are fewer. A skeleton's bones all change in each tick, and a level's nodes never do.
+    fn find_carried(&mut self, changes: &Changes) {
+        self.above.clear();
+        self.above.extend(&changes.changed_parents);
+        self.above.extend_from_slice(&changes.deprived.0);
+        if self.above.is_empty() {
+            return;
+        }
+        if self.above.len() < changes.carried.iter().len() {
+            while let Some(parent) = self.above.pop() {
+                if let Ok(children) = changes.children.get(parent) {
+                    self.now.extend(children);
+                    self.above.extend(children);
+                }
+            }
+            return;
+        }
+        self.above.sort_unstable();
+        let has_changed = |entity: Entity| self.above.binary_search(&entity).is_ok();
+        let carried = changes
+            .carried
+            .iter()
+            .filter(|&collider| changes.parents.iter_ancestors(collider).any(has_changed));
+        self.now.extend(carried);
+    }
+}

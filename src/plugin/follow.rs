@@ -1,0 +1,69 @@
+//! Follows the colliders that move.
+
+use bevy::{
+    ecs::{
+        lifecycle::Remove,
+        observer::On,
+        system::{Commands, Local, Query, Res, ResMut},
+    },
+    time::Time,
+};
+
+use super::{
+    ClothBody, ClothFault,
+    awaited::{Awaited, Changes},
+    collider_tree::ColliderTree,
+    colliders::ColliderMotion,
+    frame::Places,
+    naming::Part,
+    source::ColliderMeshes,
+};
+use crate::{cloth::ClothError, contact::ClothCollider};
+
+/// What a collider is read from. A disabled one is not looked at, as it is not met.
+type Reading = (
+    &'static ClothCollider,
+    &'static mut ColliderMotion,
+    Option<&'static ClothBody>,
+    Option<&'static ClothFault>,
+);
+
+/// Follows the colliders that move, and notes where they are.
+pub(super) fn prepare_colliders(
+    mut awaited: Local<Awaited>,
+    mut changes: Changes,
+    mut colliders: Query<Reading>,
+    mut tree: ResMut<ColliderTree>,
+    places: Places,
+    meshes: ColliderMeshes,
+    time: Res<Time>,
+    mut commands: Commands,
+) {
+    let time_passes = time.delta_secs() > 0.0;
+    let (now, moving) = awaited.find(&mut changes);
+    for &entity in now {
+        let Ok((collider, mut motion, body, fault)) = colliders.get_mut(entity) else {
+            continue;
+        };
+        let outcome = motion.follow(collider, body, &places, &meshes, entity, time_passes);
+        if outcome.is_err() {
+            *motion = ColliderMotion::default();
+        }
+        tree.set(entity, motion.held_by());
+        // What is made of an asset has to be there, and may become another.
+        if motion.is_moving() || matches!(collider, ClothCollider::Mesh(_)) {
+            moving.push(entity);
+        }
+        // What is on its way is no fault.
+        let outcome = match outcome {
+            Err(ClothError::MeshLoading) => Ok(()),
+            outcome => outcome,
+        };
+        ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
+    }
+}
+
+/// What is no collider any more is not searched for.
+pub(super) fn forget_collider(removed: On<Remove, ColliderMotion>, mut tree: ResMut<ColliderTree>) {
+    tree.remove(removed.entity);
+}
