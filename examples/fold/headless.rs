@@ -74,7 +74,13 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
         height_mm: 1.0e3 * height,
         picture,
     };
-    print(&report, options.json, print_report)
+    let printed = print(&report, options.json, print_report);
+    if report.crossings == 0 {
+        printed
+    } else {
+        eprintln!("The cloth passed through itself.");
+        ExitCode::FAILURE
+    }
 }
 
 fn print_report(report: &Report) {

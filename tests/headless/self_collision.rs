@@ -204,3 +204,92 @@ fn what_was_found_may_be_forgotten() {
     };
     assert!(run(true) == run(false), "the same bits");
 }
+
+/// They lie across each other, creep by less than a person sees, and sleep for all that.
+#[test]
+fn ten_sheets_in_a_pile_fall_asleep() {
+    let mut app = app();
+    app.world_mut().spawn(ClothCollider::plane());
+    let sheets: Vec<Entity> = (0..10)
+        .map(|index| {
+            let cloth = Cloth::new(8, 8, 0.1).lying().centred();
+            let layers = ClothSelfCollision::of_thickness(0.01);
+            let place = Transform::from_xyz(0.0, 0.01 + 0.02 * index as f32, 0.0)
+                .with_rotation(Quat::from_rotation_y(0.13 * index as f32));
+            let spawned = (cloth, Pins::none(), layers, place);
+            app.world_mut().spawn(spawned).id()
+        })
+        .collect();
+    let sleeps = |app: &App, sheet: Entity| {
+        let stats = app.world().get::<ClothStats>(sheet);
+        stats.is_some_and(|stats| stats.is_asleep)
+    };
+    let all_sleep = |app: &App| sheets.iter().all(|&sheet| sleeps(app, sheet));
+    for passed in 0..640 {
+        tick(&mut app, 1);
+        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
+        if all_sleep(&app) {
+            break;
+        }
+    }
+    assert!(all_sleep(&app), "after ten seconds");
+}
+
+/// Two sheets that float, so far apart, of which the upper one may be put elsewhere.
+fn floating(apart: f32) -> (App, [Entity; 2]) {
+    let mut app = app();
+    app.insert_resource(ClothGravity(Vec3::ZERO));
+    let sheets = [0.0, apart].map(|height| {
+        let cloth = Cloth::new(10, 10, 0.05).lying().centred();
+        let layers = ClothSelfCollision {
+            with_itself: false,
+            ..ClothSelfCollision::of_thickness(0.01)
+        };
+        let awake = ClothSettings {
+            sleeps: false,
+            ..default()
+        };
+        let place = Transform::from_xyz(0.003, height, 0.002);
+        let spawned = (cloth, Pins::none(), layers, awake, place);
+        app.world_mut().spawn(spawned).id()
+    });
+    tick(&mut app, 4);
+    (app, sheets)
+}
+
+fn put(app: &mut App, sheet: Entity, height: f32) {
+    let place = Transform::from_xyz(0.003, height, 0.002);
+    app.world_mut()
+        .entity_mut(sheet)
+        .insert((place, ClothTeleport));
+    tick(app, 2);
+}
+
+/// A jump is no motion that the particles' own frame shows.
+#[test]
+fn what_jumps_onto_another_is_found() {
+    let (mut app, sheets) = floating(0.2);
+    let pairs = |app: &App| {
+        let stats = app.world().get::<ClothStats>(sheets[0]).expect("stats");
+        stats.layer_pairs
+    };
+    assert_eq!(pairs(&app), 0);
+    put(&mut app, sheets[1], 0.006);
+    assert!(pairs(&app) > 0);
+    assert_eq!(crossings(&mut app), 0);
+}
+
+/// More sub-steps are for those that touch.
+#[test]
+fn what_has_left_others_takes_no_more_substeps_for_them() {
+    let (mut app, sheets) = floating(0.2);
+    let substeps = |app: &App| {
+        let stats = app.world().get::<ClothStats>(sheets[0]).expect("stats");
+        stats.substeps
+    };
+    let alone = substeps(&app);
+    put(&mut app, sheets[1], 0.006);
+    assert!(substeps(&app) > alone, "they touch");
+    put(&mut app, sheets[1], 20.0);
+    assert_eq!(substeps(&app), alone);
+}

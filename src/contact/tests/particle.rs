@@ -1,6 +1,8 @@
 //! The push of particles by a ball, and Coulomb's law.
 
-use bevy::math::Vec3;
+use std::f32::consts::FRAC_PI_2;
+
+use bevy::math::{Isometry3d, Quat, Vec3};
 
 use super::{ONLY, all_of, at, build, deepest_at, loose};
 use crate::{
@@ -186,4 +188,35 @@ fn colliders_push_in_the_order_of_their_numbers() {
     });
     assert_eq!(ends[0], ends[1]);
     assert!((ends[0].distance(Vec3::X * 0.4) - 1.0).abs() < 1e-6);
+}
+
+/// Layers of cloth push particles onto a collider in a sub-step, after they were seen to be far away from it.
+#[test]
+fn what_else_pushes_particles_onto_a_collider_is_noted() {
+    for narrow_phase in [NarrowPhase::Particles, NarrowPhase::Triangles] {
+        let (surface, mut particles) = build(9, 9, 0.1);
+        // The sheet is in the plane z = 0; the half-space is all that is 5 cm and more behind it.
+        let pose = Isometry3d::new(Vec3::NEG_Z * 0.05, Quat::from_rotation_x(FRAC_PI_2));
+        let wall = MovingCollider::still(ColliderShape::HalfSpace, pose);
+        let settings = ContactSettings {
+            narrow_phase,
+            ..ContactSettings::default()
+        };
+        let mut detection = all_of(&[wall.clone()], &settings, &surface, &particles);
+        let substep = |index| SubStep {
+            index,
+            count: 4,
+            farthest_move: 0.0,
+        };
+        assert!(!detection.respond(&mut particles, &settings, substep(0), |_| {}));
+        for index in 0..particles.len() {
+            let behind = particles.position(index).expect("it exists") + Vec3::NEG_Z * 0.06;
+            particles.set_position(index, behind).expect("it exists");
+        }
+        detection.note_push(0.06);
+        assert!(
+            detection.respond(&mut particles, &settings, substep(1), |_| {}),
+            "{narrow_phase:?}"
+        );
+    }
 }
