@@ -35,7 +35,7 @@ pub struct ClothContact {
     /// What the cloth gave to the collider in the last tick, in the world (N·s): the sum of its pushes, as far as they are
     /// momentum. The collider was pushed with this over the tick's length (N), in the mean.
     pub impulse: Vec3,
-    /// Their moments about the collider's origin, in the world (N·m·s).
+    /// Their moments about the origin of the collider's shape, in the world (N·m·s): its entity's, but for shapes that lie aside of it.
     pub angular_impulse: Vec3,
     /// What the collider was tested against.
     pub narrow_phase: NarrowPhase,

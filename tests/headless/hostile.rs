@@ -40,6 +40,8 @@ enum Act {
     Friction(f32),
     Body(ClothBody),
     NoBody,
+    SelfCollision(ClothSelfCollision),
+    NoSelfCollision,
 }
 
 fn places() -> impl Strategy<Value = Vec3> {
@@ -126,6 +128,15 @@ fn acts() -> impl Strategy<Value = Act> {
         1 => lengths().prop_map(Act::Friction),
         2 => bodies.prop_map(Act::Body),
         1 => Just(Act::NoBody),
+        1 => (lengths(), any::<bool>()).prop_map(|(thickness, with_itself)| {
+            // Most are as thick as the cloth's spacing lets them be.
+            let thickness = 0.05 * thickness;
+            Act::SelfCollision(ClothSelfCollision {
+                with_itself,
+                ..ClothSelfCollision::of_thickness(thickness)
+            })
+        }),
+        1 => Just(Act::NoSelfCollision),
     ]
 }
 
@@ -241,6 +252,12 @@ fn act(world: &mut World, entities: &mut [Entity], which: usize, act: Act) {
         }
         Act::NoBody => {
             entity.remove::<ClothBody>();
+        }
+        Act::SelfCollision(contact) if is_cloth => {
+            entity.insert(contact);
+        }
+        Act::NoSelfCollision => {
+            entity.remove::<ClothSelfCollision>();
         }
         _ => {}
     }

@@ -114,9 +114,14 @@ impl MutualContact {
         let is_known = is_same && self.is_searched && self.origin.is_of(cloths);
         if is_known {
             self.nearer = self.origin.approach(cloths);
+            self.members.begin(cloths);
+        } else {
+            // Particles of other cloths, perhaps, or as they were elsewhere.
+            self.members.clear();
+            self.member_of.clear();
+            self.pairs.clear();
         }
         (self.wait, self.waited) = (0, 0);
-        self.members.begin(cloths);
         self.near.renew();
         if !self.pairs.is_empty() {
             self.passed.set(cloths);
