@@ -236,8 +236,11 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
 /// Whether a cloth has one attached pin or two hundred, and whether what tethers do not depend on is animated.
 fn attachments_and_what_is_animated_allocate_nothing_more() {
     let one = in_ticks(1, true, false);
-    assert_eq!(in_ticks(200, true, false), one, "attachments");
-    assert_eq!(in_ticks(1, true, true), one, "gravity, damping, friction");
+    // Bevy's own buffers may grow in one run, and have grown before another.
+    for (pins, is_animated) in [(200, false), (1, true)] {
+        let more = in_ticks(pins, true, is_animated);
+        assert!(more <= one, "{more} of {one}: {pins} pins, {is_animated}");
+    }
 }
 
 /// Bytes that a cloth takes after some ticks, pinned at its upper edge, where others are made alike. Run with `--nocapture` it

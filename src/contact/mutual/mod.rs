@@ -70,8 +70,6 @@ pub(crate) struct MutualContact {
     /// The same before the last search.
     members_before: Members,
     member_of_before: Vec<Vec<u32>>,
-    /// Where all particles were at the search before the last one.
-    origin_before: Origin,
     /// Where all particles were at the last search, and how much nearer to each other any two may come before the next (m).
     origin: Origin,
     margin: f32,
@@ -83,7 +81,7 @@ pub(crate) struct MutualContact {
     /// For how many sub-steps nothing has to be looked at, and since how many nothing was.
     wait: u32,
     waited: u32,
-    /// Where all particles were when layers were last kept apart: as the sub-step began.
+    /// Where all particles were when layers were last kept apart, or were known to be: as the sub-step began, mostly.
     passed: Origin,
     searches: u32,
     has_touched: bool,
@@ -94,10 +92,8 @@ pub(crate) struct MutualContact {
 enum Starts {
     /// Where they are: what is under way has been looked at.
     Here,
-    /// When layers were last kept apart.
-    LastPass,
-    /// At the search before this one, which found nobody near.
-    LastSearch,
+    /// When layers were last known to be apart.
+    Passed,
 }
 
 impl MutualContact {
@@ -130,7 +126,8 @@ impl MutualContact {
             self.search(cloths, meets, 0.0, Starts::Here);
         } else if self.nearer > self.margin {
             let starts = if self.pairs.is_empty() {
-                Starts::LastSearch
+                self.passed.copy_from(&self.origin);
+                Starts::Passed
             } else {
                 Starts::Here
             };
@@ -183,12 +180,13 @@ impl MutualContact {
         self.nearer = self.origin.approach(cloths);
         if self.nearer > self.margin {
             // Some may have met on the way to here.
-            let starts = if self.pairs.is_empty() {
-                Starts::LastSearch
-            } else {
-                Starts::LastPass
-            };
-            self.search(cloths, &meets, self.nearer - self.margin, starts);
+            if self.pairs.is_empty() {
+                match self.waited {
+                    1 => self.passed.set_to_start(cloths),
+                    _ => self.passed.copy_from(&self.origin),
+                }
+            }
+            self.search(cloths, &meets, self.nearer - self.margin, Starts::Passed);
         }
         if self.pairs.is_empty() {
             let pace = (self.nearer - before).max(0.0) / self.waited as f32;
@@ -275,7 +273,6 @@ impl MutualContact {
             .clamp(least, most)
             .max(1.5 * substep)
             .min(spacing);
-        std::mem::swap(&mut self.origin, &mut self.origin_before);
         self.origin.set(cloths);
         self.nearer = 0.0;
         if let Some(room) = room_in_flat(cloths)
@@ -316,8 +313,7 @@ impl MutualContact {
                         Some(member) if member != NOBODY => self.members_before.start(member),
                         _ => match starts {
                             Starts::Here => of.place(slot),
-                            Starts::LastPass => of.point(self.passed.place(cloth, slot)),
-                            Starts::LastSearch => of.point(self.origin_before.place(cloth, slot)),
+                            Starts::Passed => of.point(self.passed.place(cloth, slot)),
                         },
                     };
                     *place = self.members.add(cloth as u32, slot, start);
@@ -347,10 +343,8 @@ impl MutualContact {
             return;
         }
         self.wait = 0;
-        match starts {
-            Starts::Here => self.passed.set(cloths),
-            Starts::LastPass => {}
-            Starts::LastSearch => self.passed.clone_from(&self.origin_before),
+        if let Starts::Here = starts {
+            self.passed.set(cloths);
         }
     }
 }

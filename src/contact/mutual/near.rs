@@ -90,7 +90,7 @@ impl NearPairs {
         members.note_travel();
         self.odometer += self.used;
         (self.used, self.is_found) = (0.0, true);
-        self.origin.clone_from(origin);
+        self.origin.copy_from(origin);
         self.room = approach + FRESH * thinnest;
         if !self.is_listed || self.odometer + self.room > self.until {
             self.list(pairs, members, thinnest);
@@ -137,13 +137,15 @@ impl NearPairs {
     }
 
     /// Goes through all pairs for those that may touch before particles have come nearer to each other by a little.
-    fn list(&mut self, pairs: &[Pair], members: &Members, thinnest: f32) {
+    fn list(&mut self, pairs: &mut [Pair], members: &Members, thinnest: f32) {
         self.is_listed = true;
         let slack = (SLACK * thinnest).max(0.5 * self.room);
         self.until = self.odometer + self.room + slack;
         let ahead = self.room + 2.0 * slack;
         self.listed.clear();
-        for (index, pair) in pairs.iter().enumerate() {
+        for (index, pair) in pairs.iter_mut().enumerate() {
+            // What is not listed is not near.
+            pair.is_near = false;
             if pair.far_until <= members.travelled(pair.members) + ahead {
                 self.listed.push(index as u32);
             }

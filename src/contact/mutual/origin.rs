@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 
 use super::participant::Participant;
-use crate::cloth::{LANES, Lanes, Slot, X, Y, Z};
+use crate::cloth::{DX, LANES, Lanes, Slot, X, Y, Z};
 
 /// Where all particles of some cloths were, each in its own frame, block by block (m). What is no particle is nowhere (NaN).
 #[derive(Debug, Default, Clone)]
@@ -14,29 +14,38 @@ pub(super) struct Origin {
 impl Origin {
     /// Takes over where they are.
     pub fn set(&mut self, cloths: &[Participant]) {
+        self.set_back(cloths, 0.0);
+    }
+
+    /// Takes over where they were as the sub-step began that they have just gone through.
+    pub fn set_to_start(&mut self, cloths: &[Participant]) {
+        self.set_back(cloths, 1.0);
+    }
+
+    /// Takes over another one.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.cloths.clone_from(&other.cloths);
+    }
+
+    /// Takes over where they were this part of their last sub-step ago.
+    fn set_back(&mut self, cloths: &[Participant], part: f32) {
         self.cloths.resize_with(cloths.len(), Vec::new);
         for (places, cloth) in self.cloths.iter_mut().zip(cloths) {
             let layout = cloth.particles.layout();
             places.clear();
-            places.extend(
-                cloth
-                    .particles
-                    .blocks()
-                    .iter()
-                    .enumerate()
-                    .map(|(index, block)| {
-                        let mut place = [[0.0; LANES]; 3];
-                        for (axis, place) in [X, Y, Z].into_iter().zip(&mut place) {
-                            place.copy_from_slice(&block.view()[axis..axis + LANES]);
-                        }
-                        for (lane, x) in place[0].iter_mut().enumerate() {
-                            if layout.column(index % layout.strip as usize, lane).is_none() {
-                                *x = f32::NAN;
-                            }
-                        }
-                        place
-                    }),
-            );
+            let blocks = cloth.particles.blocks().iter().enumerate();
+            places.extend(blocks.map(|(index, block)| {
+                let view = block.view();
+                let mut place = [X, Y, Z].map(|axis| {
+                    std::array::from_fn(|l| view[axis + l] - part * view[axis - X + DX + l])
+                });
+                for (lane, x) in place[0].iter_mut().enumerate() {
+                    if layout.column(index % layout.strip as usize, lane).is_none() {
+                        *x = f32::NAN;
+                    }
+                }
+                place
+            }));
         }
     }
 
