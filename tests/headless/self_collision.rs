@@ -185,24 +185,40 @@ fn bad_thickness_is_told_and_others_go_on() {
     assert!(app.world().get::<ClothFault>(bad).is_none());
 }
 
-/// As if nothing were remembered but what counts.
+/// Nearest points that are still good for a while are found anew then, at another moment: layers part as well as before, if not to
+/// the same bits.
 #[test]
 fn what_was_found_may_be_forgotten() {
-    let run = |forgets: bool| {
+    let begin = || {
         let mut app = app();
         app.world_mut().spawn(ClothCollider::plane());
         let cloth = standing(&mut app, Transform::from_xyz(0.0, 0.55, 0.0));
-        for _ in 0..100 {
-            tick(&mut app, 1);
-            if forgets {
-                change(&mut app, cloth, |scratch: &mut ClothScratch| {
-                    *scratch = default();
-                });
-            }
-        }
-        particles(&app, cloth).clone()
+        (app, cloth)
     };
-    assert!(run(true) == run(false), "the same bits");
+    let forget = |app: &mut App, cloth: Entity| {
+        change(app, cloth, |scratch: &mut ClothScratch| {
+            *scratch = default();
+        });
+    };
+    let (mut app, cloth) = begin();
+    for passed in 0..100 {
+        tick(&mut app, 1);
+        assert_eq!(crossings(&mut app), 0, "after {passed} ticks");
+        forget(&mut app, cloth);
+    }
+    let ends = [false, true].map(|forgets| {
+        let (mut app, cloth) = begin();
+        tick(&mut app, 99);
+        if forgets {
+            forget(&mut app, cloth);
+        }
+        tick(&mut app, 1);
+        particles(&app, cloth).clone()
+    });
+    let both = ends[0].positions().zip(ends[1].positions());
+    let off = both.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+    // In a tick nearest points are off by no more than what they are good for: a tenth of the 8 mm between layers.
+    assert!(off < 8.0e-4, "{off} m");
 }
 
 /// They lie across each other, creep by less than a person sees, and sleep for all that.
