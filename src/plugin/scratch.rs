@@ -18,7 +18,8 @@ use crate::{
 };
 
 /// What is of one tick. Kept so that a tick does not allocate; it may be dropped between two ticks
-/// (`*scratch = ClothScratch::default()`) without any change of what follows.
+/// (`*scratch = ClothScratch::default()`) without any change of what follows, but for the last bits of layers that touch each other:
+/// where they are nearest is found anew.
 #[derive(Component, Debug, Default)]
 pub struct ClothScratch {
     /// `None` for a cloth that was not prepared: nothing else of the tick happens to it then.
