@@ -202,7 +202,7 @@ fn what_else_pushes_particles_onto_a_collider_is_noted() {
             narrow_phase,
             ..ContactSettings::default()
         };
-        let mut detection = all_of(&[wall.clone()], &settings, &surface, &particles);
+        let mut detection = all_of(std::slice::from_ref(&wall), &settings, &surface, &particles);
         let substep = |index| SubStep {
             index,
             count: 4,
