@@ -24,7 +24,7 @@ pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttr
 
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;
-pub(crate) use particles::{Earlier, StepKind};
+pub(crate) use particles::{Earlier, Load, StepKind};
 pub(crate) use presence::ClothPresence;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};
 pub(crate) use surface::{Flat, Graph, Link, ShortestPaths, Threads};

@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Isometry3d, Quat, Vec3};
 
-use super::{BodyMass, MovingCollider};
+use super::{BodyMass, MovingCollider, carriers::Carriers, response};
 use crate::{
     cloth::{Block, ClothParticles, LANES},
     solver::SubStep,
@@ -63,6 +63,8 @@ pub(super) struct Body {
     /// As it went when candidates were last searched for.
     searched: MovingCollider,
     change: BodyChange,
+    /// What carries it while springs are solved.
+    pub carriers: Carriers,
 }
 
 /// Blocks of particles, as they were before a push.
@@ -119,6 +121,7 @@ impl Body {
             start: collider.clone(),
             searched: collider.clone(),
             change: BodyChange::default(),
+            carriers: Carriers::default(),
         })
     }
 
@@ -130,6 +133,7 @@ impl Body {
     /// Begins the tick again. Returns how it goes.
     pub fn restart(&mut self) -> MovingCollider {
         self.change = BodyChange::default();
+        self.carriers.clear();
         self.start.clone()
     }
 
@@ -162,14 +166,11 @@ impl Body {
         way: &mut MovingCollider,
         substep: SubStep,
     ) -> [f32; 2] {
-        let passed = substep.end();
-        let pose = way.pose_at(passed);
-        let turned = pose.rotation * self.start.from.rotation.inverse();
-        let arm = turned * self.mass.centre;
-        let centre = (Vec3::from(pose.translation) + arm).as_dvec3();
+        let (_, centre) = self.centre(way, substep.end());
         let (mut places, mut moves) = (Given::default(), Given::default());
         for (index, old) in &before.0 {
             let new = &particles.blocks()[*index];
+            self.carriers.note(*index, [old, new]);
             for lane in 0..LANES {
                 let inverse_mass = new.inverse_mass(lane);
                 let position = new.position(lane);
@@ -201,9 +202,74 @@ impl Body {
                 }
             }
         }
+        self.carriers.add_noted();
+        let gone = self.send_on(way, substep, particles.substep(), [go, turn, push, spin]);
+        [move_part, gone]
+    }
+
+    /// Has particles carry it in the coming sub-step, if the others do not carry another body.
+    pub fn lend<'a>(
+        &mut self,
+        particles: &mut ClothParticles,
+        (way, coming): (&MovingCollider, SubStep),
+        others: impl Iterator<Item = &'a Carriers> + Clone,
+    ) {
+        let (pose, centre) = self.centre(way, coming.start());
+        let surface = |place: Vec3| way.surface_motion(coming, pose.translation.into(), place);
+        let body = (&self.mass, centre);
+        self.carriers.lend(particles, body, surface, others);
+    }
+
+    /// Takes what the particles that carried it have given to it in a sub-step, and sends it on. Returns that, about the origin of its
+    /// shape, and how far it gave way at once (m); none if nothing was given.
+    pub fn take_back(
+        &mut self,
+        particles: &mut ClothParticles,
+        way: &mut MovingCollider,
+        substep: SubStep,
+    ) -> Option<(response::Given, f32)> {
+        let (pose, centre) = self.centre(way, substep.end());
+        let [push, turn] = self.carriers.take_back(particles, centre);
+        let arm = centre - Vec3::from(pose.translation).as_dvec3();
+        let given = response::Given {
+            linear: push,
+            angular: turn + arm.cross(push),
+        };
+        let go = f64::from(self.mass.inverse_mass) * (self.mass.free.as_dmat3() * push);
+        let spin = self.mass.inverse_inertia.as_dmat3() * turn;
+        if !(go.is_finite() && spin.is_finite()) || [push, turn] == [DVec3::ZERO; 2] {
+            return None;
+        }
+        let gone = self.send_on(way, substep, particles.substep(), [go, spin, go, spin]);
+        Some((given, gone))
+    }
+
+    /// How it lies when a part of the tick has passed, and where its centre of mass is then (m).
+    fn centre(&self, way: &MovingCollider, passed: f32) -> (Isometry3d, DVec3) {
+        let pose = way.pose_at(passed);
+        let arm = self.arm(&pose);
+        (pose, (Vec3::from(pose.translation) + arm).as_dvec3())
+    }
+
+    /// From the origin of its shape to its centre of mass (m).
+    fn arm(&self, pose: &Isometry3d) -> Vec3 {
+        pose.rotation * self.start.from.rotation.inverse() * self.mass.centre
+    }
+
+    /// Sends it on at the end of a sub-step of `dt` (s), in which it has gone (m) and turned (rad) besides, and has got faster by so much
+    /// a sub-step. Returns how far any of its points has gone at once (m).
+    fn send_on(
+        &mut self,
+        way: &mut MovingCollider,
+        substep: SubStep,
+        dt: f32,
+        changes: [DVec3; 4],
+    ) -> f32 {
+        let passed = substep.end();
+        let pose = way.pose_at(passed);
+        let arm = self.arm(&pose);
         let substeps = substep.count as f32;
-        let dt = particles.substep();
-        let [go, turn, push, spin] = [go, turn, push, spin].map(DVec3::as_vec3);
+        let [go, turn, push, spin] = changes.map(DVec3::as_vec3);
         self.change.velocity += push / dt;
         self.change.angular_velocity += spin / dt;
         // It goes on from where it is now, with the velocity that it has now.
@@ -227,6 +293,6 @@ impl Body {
         self.change.rotation = rotation.to_scaled_axis();
         let swing = turn.length() * (way.shape.core_extent() + arm.length());
         let swing = if swing > 0.0 { swing } else { 0.0 };
-        [move_part, go.length() + swing]
+        go.length() + swing
     }
 }

@@ -1,5 +1,7 @@
 //! Which particles each collider may touch in a tick, kept true while the tick goes on, and what came of it.
 
+mod carrying;
+
 use std::sync::Arc;
 
 use bevy::math::{Vec3, bounding::BoundingSphere};
@@ -287,6 +289,24 @@ impl Detection {
     /// anything else is done; `others` then adds the colliders with their numbers that were never [added](Self::add), as
     /// they seemed to be too far away.
     pub fn respond(
+        &mut self,
+        particles: &mut ClothParticles,
+        settings: &ContactSettings,
+        substep: SubStep,
+        others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
+    ) -> bool {
+        let has_carried = self.take_back(particles, substep);
+        let is_pushed = self.push_out(particles, settings, substep, others);
+        if let Some(coming) = substep.next()
+            && !self.bodies.is_empty()
+        {
+            self.lend(particles, coming);
+        }
+        is_pushed || has_carried
+    }
+
+    /// Pushes what is inside of a collider out. Returns whether anything moved.
+    fn push_out(
         &mut self,
         particles: &mut ClothParticles,
         settings: &ContactSettings,

@@ -3,6 +3,7 @@
 mod body;
 mod boxes;
 mod candidates;
+mod carriers;
 mod cells;
 mod collider;
 mod corners;
@@ -36,6 +37,7 @@ mod touch;
 mod triangle;
 
 pub use body::BodyChange;
+pub(crate) use carriers::Carrier;
 pub use collider::{ClothCollider, MeshCollider};
 pub use corners::meets_triangles;
 #[doc(hidden)]

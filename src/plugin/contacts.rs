@@ -4,9 +4,11 @@ use bevy::{
     ecs::{
         component::Component,
         entity::{Entity, MapEntities},
+        entity_disabling::Disabled,
         lifecycle::Discard,
         message::{Message, MessageWriter},
         observer::On,
+        query::Allow,
         reflect::{ReflectComponent, ReflectMapEntities},
         system::Query,
     },
@@ -189,10 +191,10 @@ pub(super) fn send_touch_messages(
     }
 }
 
-/// A cloth that goes takes its touches with it, and so do contacts that a game replaces.
+/// A cloth that goes takes its touches with it, and so do contacts that a game replaces, of a disabled cloth too.
 pub(super) fn send_stopped_messages(
     removed: On<Discard, ClothContacts>,
-    contacts: Query<&ClothContacts>,
+    contacts: Query<&ClothContacts, Allow<Disabled>>,
     mut stopped: MessageWriter<ClothTouchStopped>,
 ) {
     if let Ok(contacts) = contacts.get(removed.entity) {

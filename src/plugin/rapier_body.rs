@@ -30,12 +30,13 @@ use super::{ClothBody, ClothPush, ClothSystems};
 /// `LockedAxes` count, which are the world's: along and about those cloth does not push the body. Bodies that are not dynamic are moved by nothing, as ever.
 ///
 /// # Heavy bodies
-/// Light cloth does not hold a body that is some hundred times as heavy as the particles beneath it, with the sub-steps that it takes by
-/// itself: a sub-step gives the body no more momentum than those particles have, so they have to be pulled out of place by
-/// `g Δt²` times the ratio of the masses before they carry it. A roller of 0.1 kg across a strip of 30 g sinks 23 mm deeper than its weight
-/// says, one of 2 kg falls through; and a ball of 2 kg that drops by 0.2 m on a square metre of cotton is thrown up with several times its
-/// energy, and then falls through. Lighter bodies, heavier cloth, and more sub-steps
-/// ([`Substepping::Fixed`](crate::solver::Substepping::Fixed)), which count squared, bring it back.
+/// While springs are solved, the particles beneath a body carry a part of its mass, so that light cloth holds a body hundreds of times as
+/// heavy: a square metre of cotton, 150 g, held by its edges, holds balls of up to 70 kg that drop on it by 0.2 m, without a gain of energy,
+/// and a strip of 46 g sags under rollers of 0.1 to 10 kg as deep as their weight says, within 8 %. That takes more sub-steps, with the cube
+/// root of the ratio of the masses and up to eight times as many as the cloth takes alone; with
+/// [`Substepping::Automatic`](crate::solver::Substepping::Automatic), the default, it takes them by itself as long as the body lies on it.
+/// With too few a heavy body stretches the cloth far, and may fall through. Very soft cloth, which is else moved by its springs' forces, is
+/// solved by threads as long as it carries a body.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
 #[reflect(Component, Default, Debug, Clone)]
 #[require(ReadMassProperties, Velocity)]

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{ClothAttachment, attachments::Attached, excess::Excess};
 use crate::{
-    contact::{ClothSelfCollision, MovingCollider, NarrowPhase},
+    contact::{Carrier, ClothSelfCollision, MovingCollider, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
 };
@@ -46,13 +46,16 @@ pub struct ClothState {
     pub(super) first_target: Option<Isometry3d>,
     /// The colliders that it touched as it fell asleep, each where it was then.
     pub(super) rests_on: Vec<(Entity, MovingCollider)>,
+    /// The particles that carried bodies as the last tick ended.
+    pub(super) carriers: Vec<(Entity, Carrier)>,
     /// How far it is beyond each limit.
     pub(super) excess: [Excess; ClothLimit::ALL.len()],
 }
 
 impl ClothState {
-    /// Forgets what it was attached to: the particles are others.
+    /// Forgets what it was attached to, and what it carried: the particles are others.
     pub(super) fn detach(&mut self) {
+        self.carriers.clear();
         self.attached.clear();
         self.attachments.clear();
         self.first_target = None;

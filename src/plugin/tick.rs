@@ -114,17 +114,21 @@ impl IntegratingItem<'_, '_> {
             pushed,
             ..
         } = &mut *self.scratch;
+        let ClothState { carriers, rest, .. } = &mut *self.state;
+        carriers.clear();
         let rotation = self.frame.isometry().rotation;
         for (id, (entity, _)) in near
             .iter()
             .enumerate()
             .filter(|(_, near)| near.1.body.is_some())
         {
+            let carrying = detection.carriers(id).iter();
+            carriers.extend(carrying.map(|carrier| (*entity, *carrier)));
             if let Some(change) = detection.body_change(id)
                 && change != BodyChange::default()
             {
                 pushed.push((*entity, change.turned(rotation)));
-                self.state.rest.disturb();
+                rest.disturb();
             }
         }
     }
@@ -144,7 +148,8 @@ impl IntegratingItem<'_, '_> {
         }
         self.stats.substeps = 0;
         loop {
-            let stretch = self.advance(step, colliders);
+            let mut stretch = self.advance(step, colliders);
+            stretch.load_substeps = self.load_substeps(&step);
             self.stats.substeps += step.substeps;
             self.state.stretch = stretch;
             let Some(more) = self.state.control.observe(substepping, stretch) else {
@@ -197,8 +202,16 @@ impl IntegratingItem<'_, '_> {
         }
     }
 
+    /// Sub-steps that hold what the cloth carries.
+    pub(super) fn load_substeps(&self, step: &TickStep) -> f32 {
+        let ratio = self.scratch.detection.load_ratio();
+        let (gravity, spacing) = (step.acceleration.length(), self.built.surface().spacing());
+        Substepping::for_load(ratio, gravity, spacing.shortest, step.seconds)
+    }
+
     /// One way through the sub-steps.
     fn advance(&mut self, step: TickStep, colliders: &Colliders) -> Stretch {
+        self.recall_carriers(step.substeps.max(1));
         let mut alone = self.begin_alone();
         let layers = self.layers.copied().unwrap_or_default();
         let ClothScratch {
@@ -240,6 +253,19 @@ impl IntegratingItem<'_, '_> {
             self.scratch.mutual = Some(mutual);
         }
         stretch
+    }
+
+    /// Has the particles that carried a body as the last tick ended carry it on.
+    pub(super) fn recall_carriers(&mut self, substeps: u32) {
+        let ClothScratch {
+            near, detection, ..
+        } = &mut *self.scratch;
+        let carriers = &self.state.carriers;
+        detection.recall(&mut self.particles, substeps, |id| {
+            let body = near[id].0;
+            let own = carriers.iter().filter(move |(entity, _)| *entity == body);
+            own.map(|(_, carrier)| *carrier)
+        });
     }
 
     /// Begins contact of a cloth with itself, where that is asked for.

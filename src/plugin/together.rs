@@ -119,6 +119,7 @@ fn advance(
                 substeps,
                 ..(*step)?
             };
+            cloth.recall_carriers(substeps);
             let solver = &mut cloth.built.solver;
             solver.set_bands(1);
             Some(solver.begin(&mut cloth.particles, step, &cloth.scratch.pins))
@@ -161,15 +162,16 @@ fn advance(
         }
     }
     let mut wanted = None;
-    for (Member { cloth, .. }, tick) in members.iter_mut().zip(ticks) {
-        let Some(mut tick) = tick else {
+    for (Member { cloth, step, .. }, tick) in members.iter_mut().zip(ticks) {
+        let (Some(mut tick), Some(step)) = (tick, step) else {
             continue;
         };
         let solver = &mut cloth.built.solver;
         // Forces have half a push left.
         let rest = solver.substep(&mut cloth.particles, &cloth.scratch.pins, &mut tick);
         debug_assert!(rest.is_none(), "all sub-steps are done");
-        let stretch: Stretch = solver.end(&mut cloth.particles, &cloth.scratch.pins, tick);
+        let mut stretch: Stretch = solver.end(&mut cloth.particles, &cloth.scratch.pins, tick);
+        stretch.load_substeps = cloth.load_substeps(step);
         cloth.stats.substeps += substeps;
         cloth.state.stretch = stretch;
         let more = cloth

@@ -67,6 +67,29 @@ pub struct SubStep {
 }
 
 impl SubStep {
+    /// The first of so many, in which nothing has moved yet.
+    pub(crate) fn first_of(count: u32) -> Self {
+        Self {
+            index: 0,
+            count,
+            farthest_move: 0.0,
+        }
+    }
+
+    /// The one that follows, in which nothing has moved yet, if there is one.
+    pub(crate) fn next(&self) -> Option<Self> {
+        let index = self.index + 1;
+        (index < self.count).then_some(Self {
+            index,
+            ..Self::first_of(self.count)
+        })
+    }
+
+    /// The part of the tick that has passed when this sub-step begins, less than 1.
+    pub(crate) fn start(&self) -> f32 {
+        self.index as f32 / self.count as f32
+    }
+
     /// The part of the tick that has passed when this sub-step ends, up to 1.
     pub fn end(&self) -> f32 {
         (self.index + 1) as f32 / self.count as f32

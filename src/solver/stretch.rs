@@ -18,6 +18,9 @@ pub struct Stretch {
     /// Sub-steps in a tick as long as the last for which ripples across its threads are resolved, at the tension of half of its
     /// width: those of a membrane that is taut in a frame. Of grids whose threads give; else 0.
     pub ripple_substeps: f32,
+    /// Sub-steps in a tick as long as the last that hold the bodies which the cloth carries: so heavy are they for the threads that they hang
+    /// by; 0 if it carries none.
+    pub load_substeps: f32,
 }
 
 impl Stretch {
@@ -44,6 +47,7 @@ impl Stretch {
             bound: bound.max(1.0) - 1.0,
             material: 0.0,
             ripple_substeps: 0.0,
+            load_substeps: 0.0,
         }
     }
 }

@@ -17,12 +17,13 @@ const TIGHT: f32 = 0.8;
 const CALM_TICKS: u32 = 3;
 const FEWER: f32 = 0.9;
 
-/// More than ripples ask for, so that what grows a little changes nothing; the part of them that asks for less, if it does for so many
-/// ticks; and so many times what the particles need at most.
-const TAUT_MARGIN: f32 = 1.05;
+/// More than ripples or loads ask for, so that what grows a little changes nothing; the part of them that asks for less, if it does for
+/// so many ticks; and so many times what the particles need at most.
+const MARGIN: f32 = 1.05;
 const SLACKER: f32 = 0.75;
 const SLACK_TICKS: u32 = 30;
 const MOST_FOR_TAUT: u32 = 4;
+const MOST_FOR_LOAD: u32 = 8;
 
 /// Fewer than this, and what moves within a tick is missed.
 const FEWEST: u32 = 4;
@@ -31,13 +32,17 @@ const FEWEST: u32 = 4;
 /// a few per cent (the lab's chart `hung`).
 const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 
+/// With this factor a roller of 2 to 200 times the mass of the strip that it lies across sags it as deep as its weight says, within a
+/// tenth (`cargo test --test headless heavy`).
+const FOR_LOAD: f32 = 12.0;
+
 /// How exactly a cloth is simulated. Cost grows in proportion to the sub-steps, and the error of the motion shrinks with their
 /// square; stretch that is passed on from thread to thread shrinks faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 pub enum Substepping {
     /// As many as the cloth needs by its particles, [`Substepping::needed`], or, where it is soft, for its springs to push by their
     /// forces, [`Solver::needed`](super::Solver::needed); more where it is taut as a membrane, until ripples across its threads are
-    /// resolved: [`Stretch::ripple_substeps`].
+    /// resolved, [`Stretch::ripple_substeps`], and where a body lies on it, until it holds that: [`Stretch::load_substeps`].
     #[default]
     Automatic,
     /// This many sub-steps a tick, from 1 to 10,000.
@@ -61,6 +66,16 @@ impl Substepping {
         let wanted = FOR_EACH_PARTICLE * particles as f32 * seconds * 60.0;
         (wanted.ceil() as u32).clamp(FEWEST, MAX_SUBSTEPS)
     }
+
+    /// As many as hold a body in a tick of `seconds` that is `ratio` times as heavy as the particles, `spacing` apart (m), of the threads
+    /// that it hangs by, where it weighs `gravity` (m/s²).
+    ///
+    /// What keeps a thread's equations soluble gives way under its pull T by 2 ε w T Δt², in the distance h of particles of the inverse
+    /// mass w: as a part of that in proportion to `r g Δt²/h`, with the ratio r and gravity g, and to one over the slope of the thread,
+    /// which grows with the cube root of the weight.
+    pub(crate) fn for_load(ratio: f32, gravity: f32, spacing: f32, seconds: f32) -> f32 {
+        FOR_LOAD * (ratio * gravity * seconds * seconds / spacing).cbrt()
+    }
 }
 
 /// Chooses the sub-steps of each tick.
@@ -76,30 +91,31 @@ pub struct Control {
     calm: u32,
     /// Whether the last tick ended beyond the tolerance.
     is_beyond: bool,
-    /// For the tension of the ticks before.
-    taut: Taut,
+    /// For the tension of the ticks before, and for what lay on it.
+    taut: Demand,
+    loaded: Demand,
 }
 
-/// Sub-steps that ripples ask for.
+/// Sub-steps that something in the ticks before asked for.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-struct Taut {
+struct Demand {
     substeps: f32,
     /// Ticks in a row that asked for much less.
     slack: u32,
 }
 
-impl Taut {
+impl Demand {
     fn observe(&mut self, wanted: f32) {
         if wanted > self.substeps {
             *self = Self {
-                substeps: (TAUT_MARGIN * wanted).ceil(),
+                substeps: (MARGIN * wanted).ceil(),
                 slack: 0,
             };
         } else if wanted < SLACKER * self.substeps {
             self.slack += 1;
             if self.slack == SLACK_TICKS {
                 *self = Self {
-                    substeps: (TAUT_MARGIN * wanted).ceil(),
+                    substeps: (MARGIN * wanted).ceil(),
                     slack: 0,
                 };
             }
@@ -108,9 +124,9 @@ impl Taut {
         }
     }
 
-    /// With so many where nothing is taut.
-    fn needed(self, needed: u32) -> u32 {
-        let most = needed.saturating_mul(MOST_FOR_TAUT).min(MAX_SUBSTEPS);
+    /// With so many where nothing asks for more, and so many times as many at most.
+    fn needed(self, needed: u32, times: u32) -> u32 {
+        let most = needed.saturating_mul(times).min(MAX_SUBSTEPS);
         needed.max((self.substeps as u32).min(most))
     }
 }
@@ -120,9 +136,9 @@ impl Control {
     pub fn substeps(&mut self, substepping: Substepping, needed: u32) -> u32 {
         match substepping {
             Substepping::Automatic => {
-                let taut = self.taut;
-                let substeps = self.substeps(Substepping::Fixed(taut.needed(needed)), needed);
-                self.taut = taut;
+                let Self { taut, loaded, .. } = *self;
+                let substeps = self.substeps(Substepping::Fixed(self.asked(needed)), needed);
+                (self.taut, self.loaded) = (taut, loaded);
                 substeps
             }
             Substepping::Fixed(substeps) => {
@@ -134,12 +150,23 @@ impl Control {
             }
             Substepping::Adaptive { max_substeps, .. } => {
                 // With fewer much is left unsolved, which comes back in the change to more.
-                let fewest = self.taut.needed(needed).min(max_substeps) as f32;
+                let fewest = self.asked(needed).min(max_substeps) as f32;
                 self.substeps = self.substeps.clamp(fewest, max_substeps as f32).ceil();
                 self.spent = 0.0;
                 self.substeps as u32
             }
         }
+    }
+
+    /// What ripples and loads ask for, where the particles need so many.
+    fn asked(&self, needed: u32) -> u32 {
+        let taut = self.taut.needed(needed, MOST_FOR_TAUT);
+        taut.max(self.loaded.needed(needed, MOST_FOR_LOAD))
+    }
+
+    fn note_demands(&mut self, stretch: &Stretch) {
+        self.taut.observe(stretch.ripple_substeps);
+        self.loaded.observe(stretch.load_substeps);
     }
 
     /// Takes the stretch that the tick ended with. Returns with how many sub-steps to do it again, from where it
@@ -150,7 +177,7 @@ impl Control {
             max_substeps,
         } = substepping
         else {
-            self.taut.observe(stretch.ripple_substeps);
+            self.note_demands(&stretch);
             return None;
         };
         let max = max_substeps as f32;
@@ -189,7 +216,7 @@ impl Control {
             self.calm = 0;
         }
         self.before = unsolved;
-        self.taut.observe(stretch.ripple_substeps);
+        self.note_demands(&stretch);
         None
     }
 

@@ -266,6 +266,7 @@ fn act(world: &mut World, entities: &mut [Entity], which: usize, act: Act) {
 proptest! {
     #![proptest_config(ProptestConfig {
         max_shrink_iters: 400,
+        failure_persistence: None,
         ..ProptestConfig::with_cases(60)
     })]
 

@@ -6,6 +6,7 @@ mod envelope;
 mod faults;
 mod frame;
 mod gizmos;
+mod heavy;
 mod hostile;
 mod layers;
 mod lifetime;

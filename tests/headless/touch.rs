@@ -1,6 +1,6 @@
 //! What happens when a ball and a cloth meet.
 
-use bevy::prelude::*;
+use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use bevy_drape::{
     contact::{
         ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase, deepest_penetration,
@@ -343,4 +343,24 @@ fn a_collider_alone_is_enough() {
         .skip(16)
         .all(|position| position.distance(Vec3::new(0.7, -0.7, 0.95)) > 1.0099);
     assert!(outside);
+}
+
+/// The touches of a disabled cloth end when a game replaces its contacts, as those of any other.
+#[test]
+fn contacts_of_a_disabled_cloth_stop_when_they_are_replaced() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let place = Transform::from_xyz(0.75, -0.75, 0.0);
+    app.world_mut().spawn((ClothCollider::ball(0.3), place));
+    tick(&mut app, 2);
+    assert_eq!(messages::<ClothTouchStarted>(&mut app).len(), 1);
+    app.world_mut().entity_mut(cloth).insert(Disabled);
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert(ClothContacts::default());
+    tick(&mut app, 1);
+    assert_eq!(messages::<ClothTouchStopped>(&mut app).len(), 1);
+    app.world_mut().entity_mut(cloth).remove::<Disabled>();
+    tick(&mut app, 2);
+    assert_eq!(messages::<ClothTouchStarted>(&mut app).len(), 1);
 }

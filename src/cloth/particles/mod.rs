@@ -1,6 +1,7 @@
 //! The particles of a cloth, in columns.
 
 mod id;
+mod load;
 mod past;
 #[cfg(test)]
 mod tests;
@@ -16,6 +17,7 @@ use bevy::{
 use super::{Block, ClothError, ClothMaterial, Layout, Pins, Slot, Surface};
 
 pub use id::ParticleId;
+pub(crate) use load::Load;
 pub(crate) use past::{Earlier, Past, StepKind};
 
 /// The sub-step that displacements span until the first tick says otherwise: 20 a tick of Bevy's 64 Hz.
@@ -43,6 +45,9 @@ pub struct ClothParticles {
     substep: f32,
     #[reflect(ignore)]
     past: Past,
+    /// What they carry in the coming sub-step; nothing between ticks.
+    #[reflect(ignore)]
+    loads: Vec<Load>,
 }
 
 impl Default for ClothParticles {
@@ -52,6 +57,7 @@ impl Default for ClothParticles {
             blocks: Vec::new(),
             substep: DEFAULT_SUBSTEP,
             past: Past::default(),
+            loads: Vec::new(),
         }
     }
 }
@@ -103,6 +109,7 @@ impl ClothParticles {
             blocks: vec![Block::EMPTY; layout.blocks()],
             substep: DEFAULT_SUBSTEP,
             past: Past::default(),
+            loads: Vec::new(),
         }
     }
 

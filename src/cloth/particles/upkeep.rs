@@ -276,6 +276,7 @@ impl ClothParticles {
         self.blocks.clone_from(&other.blocks);
         self.substep = other.substep;
         self.past.copy_from(&other.past);
+        self.loads.clone_from(&other.loads);
     }
 
     /// Becomes what `other` is, but for its past, in the memory that it has: for where particles were.

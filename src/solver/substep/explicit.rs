@@ -44,6 +44,8 @@ impl Solver {
     ) -> bool {
         let dt = step.seconds / step.substeps.max(1) as f32;
         step.order == TimeOrder::Second
+            // Forces know nothing of what particles carry.
+            && !particles.has_loads()
             && step.damping <= MAX_DAMPING
             && self.may_be_explicit(particles, dt)
             && dt <= self.longest_explicit_substep(particles)

@@ -29,6 +29,8 @@ pub struct StartedTick {
     is_pushed: bool,
     /// The stretch, where it was measured on the way.
     measured: Option<Stretch>,
+    /// What the material gave, likewise.
+    material: f32,
     /// Frequency of ripples (rad/s).
     ripple: f32,
 }
@@ -78,6 +80,7 @@ impl Solver {
             spin: None,
             is_pushed: false,
             measured: None,
+            material: 0.0,
             ripple: 0.0,
         };
         if step.seconds <= 0.0 {
@@ -175,6 +178,7 @@ impl Solver {
             bending.prepare(blocks, weight_dt2);
             bending.solve(blocks, &kernels);
         }
+        particles.take_loads_on(pull.into());
         self.sweep
             .set_pace(Pace::new(weight_dt2, dt, self.retardation));
         tick.next += 1;
@@ -184,11 +188,15 @@ impl Solver {
             anchors: &self.anchors,
             measures: tick.next == tick.substeps(),
         };
+        let blocks = particles.blocks_mut();
         let swept = self.sweep.substep(blocks, &motion, self.bands);
+        particles.put_loads_down();
+        let (blocks, past) = particles.blocks_and_past();
         if kind == StepKind::Start {
             (kernels.begin_past)(blocks, past);
         }
         (tick.measured, tick.ripple) = (swept.stretch, swept.ripple);
+        tick.material = swept.stretch.map_or(0.0, |stretch| stretch.material);
         substep.farthest_move = swept.moved.into_iter().fold(0.0, f32::max).sqrt();
         Some(substep)
     }
@@ -223,6 +231,7 @@ impl Solver {
             step,
             is_pushed,
             measured,
+            material,
             ripple,
             ..
         } = tick;
@@ -240,6 +249,7 @@ impl Solver {
         }
         let stretch = Stretch {
             ripple_substeps: step.seconds * ripple / RESOLVED,
+            material,
             ..measured.unwrap_or_else(|| self.measure(particles))
         };
         let is_still = pins.iter().all(|pin| pin.from == pin.to);
