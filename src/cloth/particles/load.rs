@@ -2,7 +2,6 @@
 
 use bevy::math::Vec3;
 
-use super::ClothParticles;
 use crate::cloth::{Block, Slot};
 
 /// A part of a body's mass that a particle carries while a sub-step's springs are solved: so they hold what lies on them, and not the
@@ -41,7 +40,7 @@ impl Load {
 
     /// Adds it to its particle, which a sub-step has just been foreseen for: both go on with the momentum that they have together. `pull`
     /// is what gravity alone moves a particle by in that (m): the body has its own, from whoever moves it.
-    fn put_on(&mut self, blocks: &mut [Block], pull: Vec3) {
+    pub fn put_on(&mut self, blocks: &mut [Block], pull: Vec3) {
         let Slot { block, lane } = self.slot;
         let block = &mut blocks[block];
         self.inverse_mass = block.inverse_mass(lane);
@@ -57,7 +56,7 @@ impl Load {
     }
 
     /// Takes it off, after the springs were solved.
-    fn take_off(&mut self, blocks: &mut [Block]) {
+    pub fn take_off(&mut self, blocks: &mut [Block]) {
         let Slot { block, lane } = self.slot;
         if self.inverse_mass == 0.0 {
             return;
@@ -65,32 +64,5 @@ impl Load {
         let block = &mut blocks[block];
         block.set_inverse_mass(lane, self.inverse_mass);
         self.moved = block.displacement(lane) - self.alone;
-    }
-}
-
-impl ClothParticles {
-    /// What they carry in the coming sub-step, or carried in the last: no particle more than once.
-    pub(crate) fn loads_mut(&mut self) -> &mut Vec<Load> {
-        &mut self.loads
-    }
-
-    /// Whether they carry anything in the coming sub-step.
-    pub(crate) fn has_loads(&self) -> bool {
-        !self.loads.is_empty()
-    }
-
-    /// Adds all loads to their particles, which a sub-step has just been foreseen for, with what gravity moves a particle by in
-    /// that (m).
-    pub(crate) fn take_loads_on(&mut self, pull: Vec3) {
-        for load in &mut self.loads {
-            load.put_on(&mut self.blocks, pull);
-        }
-    }
-
-    /// Takes them off again.
-    pub(crate) fn put_loads_down(&mut self) {
-        for load in &mut self.loads {
-            load.take_off(&mut self.blocks);
-        }
     }
 }

@@ -2,6 +2,7 @@
 
 mod id;
 mod load;
+mod loads;
 mod past;
 #[cfg(test)]
 mod tests;
