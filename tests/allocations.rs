@@ -9,7 +9,7 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
-    prelude::{ClothAttachments, ClothGravity, DrapePlugins, Pin, Pins},
+    prelude::{ClothAttachments, ClothCollider, ClothGravity, DrapePlugins, Pin, Pins},
     solver::{
         Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
         methods::meshes,
@@ -127,10 +127,67 @@ fn a_step_does_not_allocate() {
         );
         assert!(pushed > 0.0, "the ball was touched");
     }
+    sharp_colliders_do_not_allocate();
     a_mesh_does_not_allocate();
     neither_forces_nor_damping_allocate();
     attachments_and_what_is_animated_allocate_nothing_more();
     cloths_made_alike_share_all_but_their_particles();
+}
+
+/// A cloth that hangs against what has edges, which its triangles touch.
+fn sharp_colliders_do_not_allocate() {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| (corner - 0.3) * 0.6);
+    let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    for collider in [
+        ClothCollider::cuboid(0.6, 0.6, 0.6),
+        ClothCollider::cylinder(0.3, 0.6),
+        ClothCollider::convex_hull(corners.to_vec()),
+        ClothCollider::trimesh(corners.to_vec(), faces),
+    ] {
+        let shape = collider.scaled(Vec3::ONE).expect("a shape");
+        let grid = Cloth::new(30, 30, 0.05).grid(Vec3::ONE).expect("a grid");
+        let surface = Arc::new(Surface::of_grid(&grid));
+        let material = ClothMaterial::COTTON;
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a material");
+        for column in 0..30 {
+            let pinned = particles.set_inverse_mass((0, column), 0.0);
+            pinned.expect("it exists");
+        }
+        let mut solver = Solver::new(&Springs::of_grid(&grid, &material), &particles);
+        let settings = ContactSettings {
+            particle_radius: 0.01,
+            ..ContactSettings::default()
+        };
+        let place = Isometry3d::from_xyz(0.7, -0.7, -0.15);
+        let collider = MovingCollider::still(shape, place);
+        let all: Vec<u32> = (0..particles.len() as u32).collect();
+        let mut detection = Detection::default();
+        let mut pushed = 0.0_f32;
+        let mut ticks = |count: u32| {
+            for _ in 0..count {
+                let step = TickStep {
+                    acceleration: Vec3::NEG_Y * 9.81,
+                    ..TickStep::default()
+                };
+                detection.begin(&surface, 50.0);
+                let by = NarrowPhase::Triangles;
+                detection.add(0, &collider, by, &all, &particles);
+                solver.advance(&mut particles, step, &[], |particles, substep| {
+                    detection.respond(particles, &settings, substep, |_| {})
+                });
+                let deepest = detection.touches().first().map(|touch| touch.deepest);
+                pushed = pushed.max(deepest.unwrap_or_default());
+            }
+        };
+        // Until it hangs still: what it has not been near before is remembered from then on.
+        ticks(120);
+        let region = Region::new(ALLOCATOR);
+        ticks(30);
+        let change = region.change();
+        let made = (change.allocations, change.reallocations);
+        assert_eq!(made, (0, 0), "{collider:?}: {change:?}");
+        assert!(pushed > 0.0, "{collider:?} was touched");
+    }
 }
 
 /// Rubber, which its forces push, with and without bending, and cotton with damping along its springs.

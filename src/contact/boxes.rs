@@ -4,23 +4,25 @@ use bevy::math::Vec3;
 
 use super::geometry::SharpEdge;
 
-/// The twelve edges of a box around the origin.
-pub(super) fn edges(half: Vec3) -> [SharpEdge; 12] {
-    std::array::from_fn(|index| {
-        // The axis that it is parallel to, and on which side of the other two it lies.
-        let (axis, side) = (index / 4, index % 4);
-        let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
-        let sign = |bit: usize| if side & bit == 0 { -1.0_f32 } else { 1.0 };
-        let mut outward = Vec3::ZERO;
-        (outward[second], outward[third]) = (sign(1), sign(2));
-        let mut along = Vec3::ZERO;
-        along[axis] = 1.0;
-        SharpEdge {
-            ends: [(outward - along) * half, (outward + along) * half],
-            outward: outward * std::f32::consts::FRAC_1_SQRT_2,
-            radius: 0.0,
-        }
-    })
+/// How many edges a box has.
+pub(super) const EDGES: u32 = 12;
+
+/// One of the edges of a box around the origin.
+#[inline]
+pub(super) fn edge(half: Vec3, index: u32) -> SharpEdge {
+    // The axis that it is parallel to, and on which side of the other two it lies.
+    let (axis, side) = ((index / 4) as usize, index % 4);
+    let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
+    let sign = |bit: u32| if side & bit == 0 { -1.0_f32 } else { 1.0 };
+    let mut outward = Vec3::ZERO;
+    (outward[second], outward[third]) = (sign(1), sign(2));
+    let mut along = Vec3::ZERO;
+    along[axis] = 1.0;
+    SharpEdge {
+        ends: [(outward - along) * half, (outward + along) * half],
+        outward: outward * std::f32::consts::FRAC_1_SQRT_2,
+        radius: 0.0,
+    }
 }
 
 /// How far a point is from the nearest edge of a box around the origin (m).
@@ -48,8 +50,8 @@ mod tests {
         for _ in 0..2_000 {
             let half = random.within(1.0).abs() + 0.01;
             let point = random.within(3.0);
-            let each = edges(half).map(|edge| edge.distance(point));
-            let least = each.into_iter().fold(f32::INFINITY, f32::min);
+            let each = (0..EDGES).map(|index| edge(half, index).distance(point));
+            let least = each.fold(f32::INFINITY, f32::min);
             // Some ten roundings of lengths up to 6 m.
             let error = (edge_distance(half, point) - least).abs();
             assert!(error < 4.0e-6, "{half} {point}: {error}");

@@ -72,7 +72,7 @@ impl ContactBlock {
 /// The faces that candidates stand for.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Fans {
-    /// All corners of each candidate's faces, each once.
+    /// All corners of each candidate's faces, each once; the candidate itself first.
     corners: Vec<Slot>,
     faces: Vec<[Slot; 3]>,
     /// How many triangles a particle may be a corner of, and be pushed by.
@@ -89,7 +89,11 @@ impl Fans {
     /// Adds the faces that a particle stands for. Returns from where to where their corners and they are.
     pub fn add(&mut self, surface: &Surface, layout: Layout, particle: u32) -> [[u32; 2]; 2] {
         let (first_corner, first_face) = (self.corners.len(), self.faces.len());
-        for face in surface.faces().of(particle) {
+        let faces = surface.faces().of(particle);
+        if !faces.is_empty() {
+            self.corners.push(layout.slot_of(particle as usize));
+        }
+        for face in faces {
             let slots = face.map(|corner| layout.slot_of(corner as usize));
             for slot in slots {
                 if !self.corners[first_corner..].contains(&slot) {

@@ -76,7 +76,9 @@ impl Detection {
         if !Arc::ptr_eq(&self.surface, surface) {
             self.surface = surface.clone();
             self.candidates.fans.max_faces = surface.max_faces() as f32;
+            self.shapes.memories.clear();
         }
+        self.shapes.memories.begin();
         self.touches.clear();
         self.candidates.clear();
         self.shapes.clear();
@@ -364,8 +366,10 @@ impl Detection {
             let (found, stopped) = match touch.narrow_phase {
                 _ if collider.shape.has_edges() => {
                     self.shapes.make_room(count);
-                    let known = self.shapes.of(touch.of.candidates.clone());
                     let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
+                    let of = (touch.id, &collider.shape, self.surface.len());
+                    let of = by_triangles.then_some(of);
+                    let known = self.shapes.of(touch.of.candidates.clone(), of);
                     let edges = by_triangles.then(|| (&*fans, self.surface.spacing().longest));
                     let mut pushing = Pushing {
                         candidates: &all[touch.of.candidates.clone()],
@@ -445,6 +449,12 @@ impl Detection {
         self.moved_now += farthest;
         self.odometer += farthest;
         self.shapes.travelled += farthest;
+    }
+
+    /// Forgets all that is known of edges.
+    #[cfg(test)]
+    pub(super) fn forget_edges(&mut self) {
+        self.shapes.forget_edges();
     }
 
     /// The colliders that may touch.

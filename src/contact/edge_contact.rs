@@ -5,12 +5,14 @@ use bevy::math::{Isometry3d, Vec3};
 use super::{ColliderShape, geometry::SharpEdge, triangle::nearest};
 
 /// How far beyond a triangle's sides, in barycentric weights, an edge counts as below it: neighbours leave no gap.
-const BEYOND: f32 = 0.05;
+pub(super) const BEYOND: f32 = 0.05;
 /// How far through a triangle an edge counts, in lengths of the triangle's longest side.
-const DEEPEST: f32 = 0.5;
+pub(super) const DEEPEST: f32 = 0.5;
 
 /// An edge goes steeply through a triangle's plane above this sine of their angle.
-const STEEP: f32 = 0.5;
+pub(super) const STEEP: f32 = 0.5;
+/// A triangle whose normal leads into the shape by more than this sine, as an edge has it, is on the shape's far side.
+pub(super) const FAR_SIDE: f32 = 0.1;
 
 /// Where an edge comes nearest to a triangle, or through it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,38 +24,66 @@ pub(super) struct EdgeContact {
     pub depth: f32,
 }
 
-/// The contact of a triangle of the shape's frame with the edge that comes nearest to it, or farthest through it.
-pub(super) fn deepest_edge(
-    shape: &ColliderShape,
-    triangle: [Vec3; 3],
-    reach: f32,
-) -> Option<EdgeContact> {
-    let [a, b, c] = triangle;
-    let (lower, upper) = (a.min(b).min(c), a.max(b).max(c));
-    let across = (b - a).cross(c - a).try_normalize()?;
-    let plane = Plane::of(triangle, across)?;
-    let longest = a
-        .distance_squared(b)
-        .max(b.distance_squared(c))
-        .max(c.distance_squared(a));
-    let deepest = DEEPEST * longest.sqrt();
-    let mut outside = None;
-    let mut found: Option<EdgeContact> = None;
-    let around = Vec3::splat(reach);
-    shape.edges_near([lower - around, upper + around], |edge| {
-        let [from, to] = edge.ends.map(|end| plane.place(end));
-        let near = reach + edge.radius;
+/// A triangle of the shape's frame, as edges are tested against it one after the other.
+pub(super) struct EdgeTest<'a> {
+    pub shape: &'a ColliderShape,
+    bounds: [Vec3; 2],
+    pub plane: Plane,
+    pub reach: f32,
+    /// The longest side (m).
+    pub longest: f32,
+    pub middle: Vec3,
+    /// The way out of the shape at the triangle's middle, if it is known.
+    pub outside: Option<Vec3>,
+    /// The contact with the edge that comes nearest, or farthest through it.
+    pub found: Option<EdgeContact>,
+}
+
+impl<'a> EdgeTest<'a> {
+    /// `None` for a triangle without an area.
+    #[inline]
+    pub fn new(shape: &'a ColliderShape, triangle: [Vec3; 3], reach: f32) -> Option<Self> {
+        let [a, b, c] = triangle;
+        let plane = Plane::of(triangle)?;
+        let longest = a
+            .distance_squared(b)
+            .max(b.distance_squared(c))
+            .max(c.distance_squared(a));
+        Some(Self {
+            shape,
+            bounds: bounds_of(triangle, reach),
+            plane,
+            reach,
+            longest: longest.sqrt(),
+            middle: (a + b + c) / 3.0,
+            outside: None,
+            found: None,
+        })
+    }
+
+    /// Tests it against an edge.
+    #[inline]
+    pub fn see(&mut self, edge: &SharpEdge) {
+        let [begin, end] = edge.ends;
+        let [from, to] = [self.plane.place(begin), self.plane.place(end)];
+        let near = self.reach + edge.radius;
+        let is_on_one_side = from.height * to.height > 0.0;
         // Wholly on one side, and too far away.
-        if from.height.abs().min(to.height.abs()) > near && from.height * to.height > 0.0 {
+        if is_on_one_side && from.height.abs().min(to.height.abs()) > near {
             return;
         }
-        let outside = *outside.get_or_insert_with(|| {
-            let middle = (a + b + c) / 3.0;
-            shape.nearest(Isometry3d::IDENTITY, middle).normal
-        });
-        let ends = [from, to];
-        let above = over(ends, edge, across, outside, near, deepest);
-        let beside = plane.beside(ends, edge, near, deepest);
+        // Beside it.
+        let beyond = from.weights.max(to.weights).min_element() + BEYOND < 0.0;
+        if is_on_one_side && beyond || self.is_beyond(edge) {
+            return;
+        }
+        let above = if beyond {
+            None
+        } else {
+            self.over([from, to], edge, near)
+        };
+        let deepest = DEEPEST * self.longest;
+        let beside = self.plane.beside([from, to], edge, near, deepest);
         // Through it, whichever way out is shorter.
         let contact = match (above, beside) {
             (Some(above), Some(beside)) if beside.depth < above.depth => Some(beside),
@@ -61,77 +91,112 @@ pub(super) fn deepest_edge(
             (None, beside) => beside,
         };
         if let Some(contact) = contact
-            && found.is_none_or(|found| contact.depth > found.depth)
+            && self.found.is_none_or(|found| contact.depth > found.depth)
         {
-            found = Some(contact);
+            self.found = Some(contact);
         }
-    });
-    found
+    }
+
+    /// Whether the boxes around an edge and around what the triangle reaches are apart. A box has so few edges that all count:
+    /// one that has come all through the triangle too.
+    #[inline]
+    fn is_beyond(&self, edge: &SharpEdge) -> bool {
+        let [lower, upper] = edge.corners();
+        let is_beyond = lower.cmpgt(self.bounds[1]).any() || upper.cmplt(self.bounds[0]).any();
+        is_beyond && matches!(self.shape, ColliderShape::Geometry(_))
+    }
+
+    /// The contact of an edge that comes up to the triangle, or through it, along its normal.
+    #[inline]
+    fn over(&mut self, ends: [Placed; 2], edge: &SharpEdge, near: f32) -> Option<EdgeContact> {
+        let [from, to] = clip(ends)?;
+        let deepest = DEEPEST * self.longest;
+        let normal = self.plane.normal;
+        // The far side of the shape is none, and too far is too far.
+        let may_touch = |sign: f32| {
+            let height = (from.height * sign).max(to.height * sign);
+            let is_far_side = normal.dot(edge.outward) * sign < -FAR_SIDE;
+            !is_far_side && height <= deepest && height + near > 0.0
+        };
+        let may_touch = [may_touch(1.0), may_touch(-1.0)];
+        if may_touch == [false; 2] {
+            return None;
+        }
+        let outside = *self.outside.get_or_insert_with(|| {
+            let shape = self.shape;
+            shape.nearest(Isometry3d::IDENTITY, self.middle).normal
+        });
+        // On which side of the triangle the shape is: by what is outside there, or by the edge where that says little.
+        let facing = normal.dot(outside);
+        let facing = if facing.abs() > 0.3 || edge.outward == Vec3::ZERO {
+            facing
+        } else {
+            normal.dot(edge.outward)
+        };
+        let is_below = facing.is_sign_negative();
+        let sign = if is_below { -1.0 } else { 1.0 };
+        may_touch[usize::from(is_below)].then(|| over([from, to], normal * sign, sign, near))
+    }
 }
 
-/// The contact of an edge that comes up to a triangle, or through it, along its normal.
-fn over(
-    ends: [Placed; 2],
-    edge: &SharpEdge,
-    across: Vec3,
-    outside: Vec3,
-    near: f32,
-    deepest: f32,
-) -> Option<EdgeContact> {
-    let [from, to] = clip(ends)?;
-    // On which side of the triangle the shape is: by what is outside there, or by the edge where that says little.
-    let facing = across.dot(outside);
-    let facing = if facing.abs() > 0.3 || edge.outward == Vec3::ZERO {
-        facing
-    } else {
-        across.dot(edge.outward)
-    };
-    let sign = 1.0_f32.copysign(facing);
-    let normal = across * sign;
-    // The far side of the shape.
-    if normal.dot(edge.outward) < -0.1 {
-        return None;
-    }
+/// The corners of the box around a triangle and what is so far from it (m).
+pub(super) fn bounds_of([a, b, c]: [Vec3; 3], around: f32) -> [Vec3; 2] {
+    let around = Vec3::splat(around);
+    [a.min(b).min(c) - around, a.max(b).max(c) + around]
+}
+
+/// The contact of the part of an edge that comes up to a triangle, or through it, on the side of a sign.
+fn over([from, to]: [Placed; 2], normal: Vec3, sign: f32, near: f32) -> EdgeContact {
     let [first, last] = [from.height * sign, to.height * sign];
-    let height = first.max(last);
-    if height > deepest || height + near <= 0.0 {
-        return None;
-    }
     // All along it if it lies flat, not at one end and then at the other.
     let part = match first - last {
         off if off.abs() < 0.05 * near => 0.5,
         off if off > 0.0 => 0.0,
         _ => 1.0,
     };
-    Some(EdgeContact {
+    EdgeContact {
         weights: within(from.weights.lerp(to.weights, part)),
         normal,
-        depth: height + near,
-    })
+        depth: first.max(last) + near,
+    }
 }
 
 /// A point as a triangle sees it.
 #[derive(Debug, Clone, Copy)]
-struct Placed {
+pub(super) struct Placed {
     /// Barycentric weights of its projection.
-    weights: Vec3,
+    pub weights: Vec3,
     /// How far it is along the normal (m).
-    height: f32,
+    pub height: f32,
+}
+
+impl Placed {
+    #[inline]
+    pub fn lerp(self, other: Self, part: f32) -> Self {
+        Self {
+            weights: self.weights.lerp(other.weights, part),
+            height: self.height + (other.height - self.height) * part,
+        }
+    }
 }
 
 /// The plane of a triangle.
-struct Plane {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plane {
     origin: Vec3,
-    normal: Vec3,
+    pub normal: Vec3,
     /// Of the second and the third weight.
-    gradients: [Vec3; 2],
+    pub gradients: [Vec3; 2],
 }
 
 impl Plane {
     /// `None` for a triangle without an area.
-    fn of([a, b, c]: [Vec3; 3], normal: Vec3) -> Option<Self> {
+    #[inline]
+    fn of([a, b, c]: [Vec3; 3]) -> Option<Self> {
         let (ab, ac) = (b - a, c - a);
-        let double_area = ab.cross(ac).dot(normal);
+        let across = ab.cross(ac);
+        let normal = across.try_normalize()?;
+        let double_area = across.dot(normal);
         if double_area <= 0.0 {
             return None;
         }
@@ -145,9 +210,11 @@ impl Plane {
         })
     }
 
-    fn place(&self, point: Vec3) -> Placed {
+    #[inline]
+    pub fn place(&self, point: Vec3) -> Placed {
         let offset = point - self.origin;
-        let [v, w] = self.gradients.map(|gradient| gradient.dot(offset));
+        let [v, w] = self.gradients;
+        let [v, w] = [v.dot(offset), w.dot(offset)];
         Placed {
             weights: Vec3::new(1.0 - v - w, v, w),
             height: self.normal.dot(offset),
@@ -168,10 +235,8 @@ impl Plane {
         near: f32,
         deepest: f32,
     ) -> Option<EdgeContact> {
-        let [begin, end] = edge.ends;
         let through = from.height - to.height;
-        let is_steep = through.abs() > STEEP * begin.distance(end);
-        if !is_steep || from.height * to.height > 0.0 {
+        if !is_steep([from, to], edge) || from.height * to.height > 0.0 {
             return None;
         }
         let part = from.height / through;
@@ -204,6 +269,13 @@ impl Plane {
     }
 }
 
+/// Whether an edge goes steeply through a triangle's plane.
+#[inline]
+fn is_steep([from, to]: [Placed; 2], edge: &SharpEdge) -> bool {
+    let [begin, end] = edge.ends;
+    (from.height - to.height).abs() > STEEP * begin.distance(end)
+}
+
 /// The part of a line that is above or below a triangle.
 fn clip([from, to]: [Placed; 2]) -> Option<[Placed; 2]> {
     let (mut begin, mut end) = (0.0_f32, 1.0_f32);
@@ -219,11 +291,7 @@ fn clip([from, to]: [Placed; 2]) -> Option<[Placed; 2]> {
             end = end.min(crossing);
         }
     }
-    let part = |part: f32| Placed {
-        weights: from.weights.lerp(to.weights, part),
-        height: from.height + (to.height - from.height) * part,
-    };
-    (begin <= end).then(|| [part(begin), part(end)])
+    (begin <= end).then(|| [from.lerp(to, begin), from.lerp(to, end)])
 }
 
 /// Weights of a point of the triangle itself.
@@ -239,11 +307,8 @@ pub(super) fn nearest_edge(
     triangle: [Vec3; 3],
     around: f32,
 ) -> (f32, Vec3, Vec3) {
-    let [a, b, c] = triangle;
-    let around = Vec3::splat(around);
-    let bounds = [a.min(b).min(c) - around, a.max(b).max(c) + around];
     let mut found = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO);
-    shape.edges_near(bounds, |edge: &SharpEdge| {
+    shape.edges_near(bounds_of(triangle, around), |_, edge: &SharpEdge| {
         let near = nearest(triangle, edge.ends);
         let distance = near.offset.length() - edge.radius;
         if distance < found.0 {

@@ -123,10 +123,24 @@ impl ColliderShape {
         matches!(self, Self::Cuboid { .. } | Self::Geometry(_))
     }
 
-    /// Hands out the edges that may come into a box of the shape's frame.
-    pub(super) fn edges_near(&self, within: [Vec3; 2], visit: impl FnMut(&SharpEdge)) {
+    /// One of its edges, as [`edges_near`](Self::edges_near) numbers them.
+    #[inline]
+    pub(super) fn edge(&self, index: u32) -> Option<SharpEdge> {
         match self {
-            Self::Cuboid { half_size } => boxes::edges(*half_size).iter().for_each(visit),
+            Self::Cuboid { half_size } => Some(boxes::edge(*half_size, index)),
+            Self::Geometry(geometry) => Some(geometry.edge(index)),
+            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => None,
+        }
+    }
+
+    /// Hands out the edges that may come into a box of the shape's frame, with their numbers: always in the same order.
+    pub(super) fn edges_near(&self, within: [Vec3; 2], mut visit: impl FnMut(u32, &SharpEdge)) {
+        match self {
+            Self::Cuboid { half_size } => {
+                for index in 0..boxes::EDGES {
+                    visit(index, &boxes::edge(*half_size, index));
+                }
+            }
             Self::Geometry(geometry) => geometry.edges_near(within, visit),
             Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => {}
         }

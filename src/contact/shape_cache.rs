@@ -5,6 +5,8 @@ use std::ops::Range;
 use super::{
     ColliderShape,
     candidates::Fans,
+    edge_memory::{EdgeMemories, EdgeMemory},
+    fan_view::FanView,
     geometry_particles::{KnownParticle, push_particles_out},
     particle::{Found, push_particles},
     pushing::Pushing,
@@ -20,6 +22,9 @@ pub(super) struct ShapeCache {
     clear: Vec<f32>,
     /// How far any particle may have moved since the candidates were found (m).
     pub travelled: f32,
+    /// What is known of edges, whichever tick it is.
+    pub memories: EdgeMemories,
+    view: FanView,
 }
 
 impl ShapeCache {
@@ -30,6 +35,13 @@ impl ShapeCache {
         self.travelled = 0.0;
     }
 
+    /// Forgets all that is known of edges.
+    #[cfg(test)]
+    pub fn forget_edges(&mut self) {
+        self.memories.forget();
+        self.clear.fill(f32::NEG_INFINITY);
+    }
+
     /// Makes room for so many candidates.
     pub fn make_room(&mut self, candidates: usize) {
         if self.clear.len() < candidates {
@@ -38,12 +50,20 @@ impl ShapeCache {
         }
     }
 
-    /// What is known of some of them.
-    pub fn of(&mut self, candidates: Range<usize>) -> Known<'_> {
+    /// What is known of some of them, and of the edges, where triangles are tested, of a collider of a number and a shape, on a cloth of
+    /// so many particles.
+    pub fn of(
+        &mut self,
+        candidates: Range<usize>,
+        edges: Option<(usize, &ColliderShape, usize)>,
+    ) -> Known<'_> {
+        let memories = &mut self.memories;
         Known {
             particles: &mut self.particles[candidates.clone()],
             clear: &mut self.clear[candidates],
             travelled: self.travelled,
+            memory: edges.map(|(id, shape, count)| memories.of(id, shape, count)),
+            view: &mut self.view,
         }
     }
 }
@@ -53,6 +73,8 @@ pub(super) struct Known<'a> {
     particles: &'a mut [KnownParticle],
     clear: &'a mut [f32],
     travelled: f32,
+    memory: Option<&'a mut EdgeMemory>,
+    view: &'a mut FanView,
 }
 
 /// Pushes particles out of a shape with edges and, with the fans and the spacing (m) of its triangles, those off its edges.
@@ -64,9 +86,12 @@ pub(super) fn push_shape(
 ) -> Found {
     // Particles come last, so that none is inside at the end.
     let mut by_edges = Found::default();
-    if let Some((fans, spacing)) = triangles {
-        let motion = EdgeMotion::new(pushing, spacing, known.travelled);
-        by_edges = push_off_edges(particles, pushing, fans, known.clear, &motion);
+    if let Some((fans, spacing)) = triangles
+        && let Some(memory) = known.memory
+    {
+        let motion = EdgeMotion::new(pushing, spacing, known.travelled, memory.tick);
+        let of = (known.clear, memory, known.view);
+        by_edges = push_off_edges(particles, pushing, fans, of, &motion);
     }
     let mut found = match pushing.collider.shape {
         ColliderShape::Geometry(_) => push_particles_out(particles, pushing, known.particles),

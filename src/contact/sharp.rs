@@ -9,7 +9,9 @@ use super::{
     MovingCollider,
     candidates::{Candidate, Fans},
     corners::Corners,
-    edge_contact::{EdgeContact, deepest_edge, nearest_edge},
+    edge_contact::{EdgeContact, nearest_edge},
+    edge_memory::{EdgeMemory, KnownFace, Nearness},
+    fan_view::{FanView, Frame},
     particle::Found,
     pushing::Pushing,
     response::{Contact, Given, PushOut, first_touch},
@@ -23,6 +25,8 @@ use crate::{
 
 /// Triangles keep at least this part of a spacing from edges, for particles without a radius.
 const SKIN: f32 = 0.02;
+/// Edges are remembered that are farther than a triangle reaches by this part of a spacing, or by what it reaches itself.
+const SLACK: f32 = 0.25;
 /// How many times as far as a triangle's point one of its corners is pushed at most.
 const MAX_SHARE: f32 = 2.0;
 
@@ -31,10 +35,11 @@ pub(super) struct EdgeMotion<'a> {
     pub collider: &'a MovingCollider,
     pub settings: &'a ContactSettings,
     pub substep: SubStep,
-    /// How near an edge may come (m).
+    /// How near an edge may come (m), and for how much more it is remembered.
     reach: f32,
+    near: Nearness,
     pose: Isometry3d,
-    to_local: Isometry3d,
+    frame: Frame,
     /// How far it moves in the sub-step, and any of its points turns (m).
     slide: Vec3,
     swing: f32,
@@ -44,34 +49,49 @@ pub(super) struct EdgeMotion<'a> {
 }
 
 impl<'a> EdgeMotion<'a> {
-    /// On a cloth of a spacing (m), whose particles have moved so far since they were searched for (m).
-    pub fn new(pushing: &Pushing<'a>, spacing: f32, travelled: f32) -> Self {
+    /// On a cloth of a spacing (m), whose particles have moved so far since they were searched for (m), in a tick.
+    pub fn new(pushing: &Pushing<'a>, spacing: f32, travelled: f32, tick: u32) -> Self {
         let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
         let count = substep.count as f32;
         let pose = collider.pose_at(substep.end());
+        let reach = settings.particle_radius.max(SKIN * spacing);
+        let slide = (collider.to - Vec3::from(collider.from.translation)) / count;
+        let swing = collider.swing() / count;
         Self {
             collider,
             settings,
             substep,
-            reach: settings.particle_radius.max(SKIN * spacing),
+            reach,
+            near: Nearness {
+                reach,
+                slack: reach.max(SLACK * spacing),
+                tick,
+            },
             pose,
-            to_local: pose.inverse(),
-            slide: (collider.to - Vec3::from(collider.from.translation)) / count,
-            swing: collider.swing() / count,
+            frame: Frame::new(pose.inverse(), slide, swing),
+            slide,
+            swing,
             push_out: pushing.lanes.push_out,
             carried: travelled + substep.end() * collider.max_surface_travel(f32::INFINITY),
         }
     }
 
-    fn speed(&self, displacements: [Vec3; 3]) -> f32 {
-        let speeds = displacements.map(|displacement| (displacement - self.slide).length());
-        speeds[0].max(speeds[1]).max(speeds[2]) + self.swing
+    /// What is tested on its way as it moved so far past the shape in the sub-step (m); 0 if it is not.
+    #[inline]
+    fn swept(&self, speed: f32) -> f32 {
+        if self.settings.is_swept && speed > self.reach / 2.0 && speed.is_finite() {
+            speed
+        } else {
+            0.0
+        }
     }
 
     /// Where the nearest edge was when a fast triangle first came to it.
     fn hit(&self, corners: &Corners) -> Option<(Vec3, Vec3)> {
-        let speed = self.speed(corners.displacements);
-        if !self.settings.is_swept || speed <= self.reach / 2.0 || !speed.is_finite() {
+        let speeds = corners.displacements;
+        let speeds = speeds.map(|displacement| (displacement - self.slide).length());
+        let speed = self.swept(speeds[0].max(speeds[1]).max(speeds[2]) + self.swing);
+        if speed == 0.0 {
             return None;
         }
         let count = self.substep.count as f32;
@@ -105,79 +125,91 @@ pub(super) fn push_off_edges(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
     fans: &Fans,
-    clear: &mut [f32],
+    (clear, memory, view): (&mut [f32], &mut EdgeMemory, &mut FanView),
     motion: &EdgeMotion,
 ) -> Found {
-    let shape = &motion.collider.shape;
-    let reach = motion.reach;
     let mut found = Found::default();
     // The farthest that one triangle has pushed (m).
     let mut farthest = 0.0_f32;
-    for (candidate, clear) in pushing.candidates.iter().zip(clear) {
-        if *clear > motion.carried {
+    memory.match_reach(motion.near);
+    let candidates = pushing.candidates;
+    for (candidate, clear) in candidates.iter().zip(clear) {
+        let carried = motion.carried + farthest * fans.max_faces;
+        if *clear > carried {
             continue;
         }
-        let place = |slot: Slot| particles.blocks()[slot.block].position(slot.lane);
-        let (index, slot) = pushing.place(candidate);
-        let own = place(slot);
-        let corners = fans.corners(candidate.corners).iter();
-        let extent = corners.map(|&slot| place(slot).distance_squared(own));
-        let extent = extent.fold(0.0, f32::max).sqrt();
-        // Far enough to leave it alone for a while.
-        let within = 3.0 * extent + 2.0 * reach;
-        let distance = shape
-            .edge_distance(motion.to_local * own, within)
-            .min(within);
-        let room = (distance - extent) * (1.0 - 1.0e-4) - reach;
-        if room > 0.0 {
-            *clear = motion.carried + room;
-            if room > fan_speed(particles, candidate, fans, motion) {
-                continue;
-            }
+        let corners = fans.corners(candidate.corners);
+        view.look(particles.blocks(), corners, &motion.frame);
+        let mut room = memory.room(candidate.particle, view.own, view.extent, motion.reach);
+        if room <= motion.swept(view.speed) {
+            let fan = (candidate, corners, fans.faces(candidate.faces));
+            let of = (memory.faces(candidate.particle, fan.2, corners), &mut *view);
+            room = push_fan(
+                particles,
+                pushing,
+                fan,
+                of,
+                motion,
+                (&mut found, &mut farthest),
+            );
         }
-        for &slots in fans.faces(candidate.faces) {
-            let corners = Corners::of(particles, slots);
-            let local = corners.positions.map(|position| motion.to_local * position);
-            let (pushed, depth) = if let Some((centre, normal)) = motion.hit(&corners) {
-                push_in_front(
-                    particles,
-                    &corners,
-                    centre,
-                    normal,
-                    motion,
-                    &mut found.given,
-                )
-            } else if let Some(contact) = deepest_edge(shape, local, reach) {
-                push_point(particles, &corners, &contact, motion, &mut found.given)
-            } else {
-                continue;
-            };
-            pushing.note_depth(index, slot.lane, depth);
-            found.deepest = found.deepest.max(depth);
-            farthest = farthest.max(pushed);
-        }
+        *clear = carried + room;
     }
     found.farthest_push = farthest * fans.max_faces;
     found
 }
 
-/// How far any of a candidate's triangles moved past the shape in the sub-step, if so far that it is tested on its way (m).
-fn fan_speed(
-    particles: &ClothParticles,
-    candidate: &Candidate,
-    fans: &Fans,
+/// A candidate, the corners of its triangles, and these.
+type Fan<'a> = (&'a Candidate, &'a [Slot], &'a [[Slot; 3]]);
+
+/// Pushes the triangles that a candidate stands for. Returns how far everything may move before one of them can touch an
+/// edge (m); 0 if one does.
+fn push_fan(
+    particles: &mut ClothParticles,
+    pushing: &mut Pushing,
+    (candidate, all_corners, faces): Fan,
+    (known, view): (&mut [KnownFace], &mut FanView),
     motion: &EdgeMotion,
+    (found, farthest): (&mut Found, &mut f32),
 ) -> f32 {
-    let speeds = fans.corners(candidate.corners).iter().map(|slot| {
-        let displacement = particles.blocks()[slot.block].displacement(slot.lane);
-        (displacement - motion.slide).length() + motion.swing
-    });
-    let speed = speeds.fold(0.0, f32::max);
-    if speed > motion.reach / 2.0 {
-        speed
-    } else {
-        0.0
+    let mut room = f32::INFINITY;
+    for (&slots, known) in faces.iter().zip(known) {
+        let triangle = view.triangle(known.of);
+        let moved = known.moved(triangle);
+        let left = known.room - moved;
+        let speed = motion.swept(view.speed);
+        if left > 0.0 && speed == 0.0 {
+            room = room.min(left);
+            continue;
+        }
+        let hit = if speed > 0.0 {
+            motion.hit(&Corners::of(particles, slots))
+        } else {
+            None
+        };
+        let contact = match hit {
+            Some(_) => None,
+            None => known.deepest(&motion.collider.shape, triangle, motion.near, moved),
+        };
+        let given = &mut found.given;
+        let (pushed, depth) = if let Some((centre, normal)) = hit {
+            let corners = Corners::of(particles, slots);
+            push_in_front(particles, &corners, centre, normal, motion, given)
+        } else if let Some(contact) = contact {
+            let corners = Corners::of(particles, slots);
+            push_point(particles, &corners, &contact, motion, given)
+        } else {
+            room = room.min(known.room).max(0.0);
+            continue;
+        };
+        room = 0.0;
+        view.look(particles.blocks(), all_corners, &motion.frame);
+        let (index, slot) = pushing.place(candidate);
+        pushing.note_depth(index, slot.lane, depth);
+        found.deepest = found.deepest.max(depth);
+        *farthest = farthest.max(pushed);
     }
+    room
 }
 
 /// Pushes a triangle's point along its normal. Returns how far the farthest corner has moved, and how deep it was (m).

@@ -2,6 +2,7 @@
 
 mod body;
 mod deep;
+mod edge_memory;
 mod edges;
 mod fast;
 mod geometry;

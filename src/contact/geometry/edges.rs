@@ -29,10 +29,17 @@ pub(super) struct SharpEdges {
 }
 
 impl SharpEdge {
-    fn bounds(&self) -> Aabb {
+    /// The corners of the box around it (m).
+    #[inline]
+    pub fn corners(&self) -> [Vec3; 2] {
         let [a, b] = self.ends;
         let around = Vec3::splat(self.radius);
-        Aabb::new(a.min(b) - around, a.max(b) + around)
+        [a.min(b) - around, a.max(b) + around]
+    }
+
+    fn bounds(&self) -> Aabb {
+        let [lower, upper] = self.corners();
+        Aabb::new(lower, upper)
     }
 
     /// How far a point is from it (m), negative inside.
@@ -55,15 +62,21 @@ impl SharpEdges {
         }
     }
 
+    /// One of them.
+    #[inline]
+    pub fn get(&self, index: u32) -> &SharpEdge {
+        &self.edges[index as usize]
+    }
+
     pub fn as_slice(&self) -> &[SharpEdge] {
         &self.edges
     }
 
-    /// Hands out those whose boxes come into a box.
-    pub fn near(&self, [lower, upper]: [Vec3; 2], mut visit: impl FnMut(&SharpEdge)) {
+    /// Hands out those whose boxes come into a box, with their numbers: always in the same order.
+    pub fn near(&self, [lower, upper]: [Vec3; 2], mut visit: impl FnMut(u32, &SharpEdge)) {
         let around = Aabb::new(lower, upper);
         for edge in self.tree.intersect_aabb(&around) {
-            visit(&self.edges[edge as usize]);
+            visit(edge, &self.edges[edge as usize]);
         }
     }
 

@@ -105,8 +105,14 @@ impl ColliderGeometry {
         found
     }
 
-    /// Hands out the edges whose boxes come into a box.
-    pub(super) fn edges_near(&self, [lower, upper]: [Vec3; 2], visit: impl FnMut(&SharpEdge)) {
+    /// One of its edges.
+    #[inline]
+    pub(super) fn edge(&self, index: u32) -> SharpEdge {
+        *self.0.edges.get(index)
+    }
+
+    /// Hands out the edges whose boxes come into a box, with their numbers: always in the same order.
+    pub(super) fn edges_near(&self, [lower, upper]: [Vec3; 2], visit: impl FnMut(u32, &SharpEdge)) {
         self.0.edges.near([lower, upper], visit);
     }
 

@@ -1,0 +1,166 @@
+//! That what is remembered of edges changes nothing: against a cloth that remembers nothing.
+
+use std::sync::Arc;
+
+use bevy::math::{Isometry3d, Vec3};
+use proptest::prelude::*;
+
+use super::{
+    all_of, build,
+    random::{Random, cases},
+};
+use crate::{
+    cloth::{ClothParticles, Surface},
+    contact::{
+        ClothCollider, ColliderShape, ContactPoint, ContactSettings, Detection, MovingCollider,
+        NarrowPhase,
+    },
+    solver::SubStep,
+};
+
+const SPACING: f32 = 0.06;
+const SIDE: u32 = 12;
+const SUBSTEPS: u32 = 24;
+
+/// Something with edges, as large as a few cells.
+fn shape(random: &mut Random) -> ColliderShape {
+    let collider = match random.below(6) {
+        0 => ClothCollider::trimesh(
+            vec![Vec3::ZERO, Vec3::X * 0.3, Vec3::Y * 0.3, Vec3::Z * 0.3],
+            vec![[0, 1, 2], [0, 2, 3]],
+        ),
+        1 => {
+            let heights: Vec<f32> = (0..36).map(|_| random.between(0.0, 0.1)).collect();
+            ClothCollider::heightfield(heights, 6, Vec3::new(0.6, 1.0, 0.6))
+        }
+        2 | 3 => {
+            let mut length = || random.between(0.02, 0.5);
+            ClothCollider::cuboid(length(), length(), length())
+        }
+        _ => random.geometry(),
+    };
+    collider.scaled(Vec3::ONE).expect("a valid collider")
+}
+
+/// A cloth that lies over a shape and is shaken: each particle by itself and all together, by little and now and then by a lot.
+struct Shaken {
+    random: Random,
+    drift: Vec3,
+    jitter: f32,
+}
+
+impl Shaken {
+    /// Where each particle goes in the next sub-step. Returns how far the farthest does (m).
+    fn shake(&mut self, particles: &mut [&mut ClothParticles], count: usize) -> f32 {
+        if self.random.part() < 0.1 {
+            self.drift = self.random.within(0.006);
+            self.jitter = 0.003 * self.random.part().powi(4);
+        }
+        let mut farthest = 0.0_f32;
+        for index in 0..count {
+            let way = self.drift + self.random.within(self.jitter);
+            farthest = farthest.max(way.length());
+            for particles in particles.iter_mut() {
+                let place = particles.position(index).expect("it exists");
+                particles
+                    .set_position(index, place + way)
+                    .expect("it exists");
+                particles.set_displacement(index, way).expect("it exists");
+            }
+        }
+        farthest * (1.0 + 1.0e-5)
+    }
+}
+
+/// What is seen of a tick.
+fn seen(detection: &Detection) -> Vec<(f32, Vec3, Vec<ContactPoint>)> {
+    let touches = detection.touches().iter();
+    touches
+        .map(|touch| {
+            (
+                touch.deepest,
+                touch.impulse,
+                detection.points(touch).collect(),
+            )
+        })
+        .collect()
+}
+
+fn place_over(particles: &mut ClothParticles, height: f32) {
+    let middle = SPACING * (SIDE - 1) as f32 / 2.0;
+    for index in 0..particles.len() {
+        let place = particles.position(index).expect("it exists");
+        let over = Vec3::new(place.x - middle, height, place.y + middle);
+        particles.set_position(index, over).expect("it exists");
+    }
+    // As fast as in a game.
+    particles.set_substep(1.0 / 1_200.0);
+}
+
+fn compare(seed: u64) -> Result<bool, TestCaseError> {
+    let mut random = Random(seed);
+    let (surface, mut particles): (Arc<Surface>, ClothParticles) = build(SIDE, SIDE, SPACING);
+    let shape = shape(&mut random);
+    let (_, reach) = shape.core(Isometry3d::IDENTITY);
+    let top = match &shape {
+        ColliderShape::Cuboid { half_size } => half_size.y,
+        ColliderShape::Geometry(geometry) => geometry.bounds()[1].y,
+        _ => reach,
+    };
+    place_over(&mut particles, top + random.between(0.0, 0.03));
+    let collider = MovingCollider {
+        to: random.within(0.05) * random.part().powi(3),
+        turn: random.within(0.2) * random.part().powi(3),
+        ..MovingCollider::still(shape, Isometry3d::IDENTITY)
+    };
+    let settings = ContactSettings {
+        particle_radius: random.between(0.002, 0.015),
+        friction: 0.4,
+        narrow_phase: NarrowPhase::Triangles,
+        ..ContactSettings::default()
+    };
+    let mut forgetful = particles.clone();
+    let mut shaken = Shaken {
+        random: Random(seed ^ 1),
+        drift: Vec3::NEG_Y * 0.001,
+        jitter: 0.0,
+    };
+    let colliders = std::slice::from_ref(&collider);
+    let mut known = all_of(colliders, &settings, &surface, &particles);
+    let mut fresh = all_of(colliders, &settings, &surface, &forgetful);
+    for index in 0..SUBSTEPS {
+        let count = particles.len();
+        let farthest_move = shaken.shake(&mut [&mut particles, &mut forgetful], count);
+        let substep = SubStep {
+            index,
+            count: SUBSTEPS,
+            farthest_move,
+        };
+        fresh.forget_edges();
+        known.respond(&mut particles, &settings, substep, |_| {});
+        fresh.respond(&mut forgetful, &settings, substep, |_| {});
+        prop_assert!(
+            particles.positions().eq(forgetful.positions()),
+            "{seed} in {index}"
+        );
+        prop_assert_eq!(seen(&known), seen(&fresh), "{} in {}", seed, index);
+    }
+    Ok(known.touches().iter().any(|touch| touch.deepest > 0.0))
+}
+
+proptest! {
+    #![proptest_config(cases(1_000))]
+
+    /// Whatever a cloth remembers of a shape's edges, contact does the same, bit for bit, as if it looked at all triangles anew
+    /// in each sub-step; also where edges have come all through triangles.
+    #[test]
+    fn memory_changes_no_bit(seed in any::<u64>()) {
+        compare(seed)?;
+    }
+}
+
+#[test]
+fn most_of_what_is_compared_touches() {
+    let touching = (0..100).filter(|&seed| matches!(compare(seed), Ok(true)));
+    assert!(touching.count() > 60);
+}
