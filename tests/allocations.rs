@@ -253,7 +253,8 @@ fn a_mesh_does_not_allocate() {
     assert_eq!((change.allocations, change.reallocations), (0, 0));
 }
 
-/// Allocations of 20 ticks of an app on one thread: Bevy's own, whatever they are, and ours.
+/// Allocations of 20 ticks of an app on one thread: Bevy's own, whatever they are, and ours. The least of five times: buffers of Bevy's
+/// grow now and then.
 fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
@@ -284,16 +285,18 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
         app.update();
     };
     (0..100).for_each(&mut tick);
-    let region = Region::new(ALLOCATOR);
-    (100..120).for_each(&mut tick);
-    let change = region.change();
-    change.allocations + change.reallocations
+    let windows = (0..5).map(|window| {
+        let region = Region::new(ALLOCATOR);
+        (100 + 20 * window..120 + 20 * window).for_each(&mut tick);
+        let change = region.change();
+        change.allocations + change.reallocations
+    });
+    windows.min().expect("windows")
 }
 
 /// Whether a cloth has one attached pin or two hundred, and whether what tethers do not depend on is animated.
 fn attachments_and_what_is_animated_allocate_nothing_more() {
     let one = in_ticks(1, true, false);
-    // Bevy's own buffers may grow in one run, and have grown before another.
     for (pins, is_animated) in [(200, false), (1, true)] {
         let more = in_ticks(pins, true, is_animated);
         assert!(more <= one, "{more} of {one}: {pins} pins, {is_animated}");

@@ -2,7 +2,7 @@
 
 use bevy::math::{Vec3, Vec3A};
 
-use super::participant::Participant;
+use super::{hold::Hold, participant::Participant};
 use crate::cloth::Slot;
 
 /// The particles that some pair names, whichever cloth they are of, in the common frame: what is done in each sub-step reads
@@ -19,7 +19,12 @@ pub(super) struct Members {
     /// How far each has travelled since it became one, besides what all have in common, and where it was when that was measured (m).
     travelled: Vec<f32>,
     measured: Vec<Vec3A>,
+    /// How the motion of each was changed by pushes of late (m a sub-step).
+    held: Vec<Vec3A>,
 }
+
+/// Of the mean of pushes, the latest one's part: which of those that touch anything take the weight varies from one to the next.
+const LATEST: f32 = 0.3;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Member {
@@ -40,6 +45,8 @@ pub(super) struct State {
     pub support: Vec3A,
     /// Inverse mass (1/kg).
     pub inverse_mass: f32,
+    /// Whether a collider pushed it.
+    pub is_supported: bool,
 }
 
 impl Members {
@@ -47,6 +54,7 @@ impl Members {
         self.of.clear();
         self.states.clear();
         self.travelled.clear();
+        self.held.clear();
         self.measured.clear();
         self.before_colliders.clear();
     }
@@ -60,8 +68,8 @@ impl Members {
         self.states[member as usize].start.into()
     }
 
-    /// Adds a particle of a cloth that was there as the sub-step began (m). Returns its place.
-    pub fn add(&mut self, cloth: u32, slot: Slot, start: Vec3) -> u32 {
+    /// Adds a particle of a cloth that was there as the sub-step began (m), and may have been a member before. Returns its place.
+    pub fn add(&mut self, cloth: u32, slot: Slot, start: Vec3, known: Option<(&Self, u32)>) -> u32 {
         let start = start.into();
         self.of.push(Member { cloth, slot });
         self.states.push(State {
@@ -69,6 +77,8 @@ impl Members {
             ..State::default()
         });
         self.travelled.push(0.0);
+        let held = known.map(|(before, member)| before.held[member as usize]);
+        self.held.push(held.unwrap_or_default());
         self.measured.push(start);
         self.of.len() as u32 - 1
     }
@@ -104,10 +114,11 @@ impl Members {
             } else {
                 block.inverse_mass(lane)
             };
-            state.support = Vec3A::ZERO;
+            // Supports that were not noted are as they were.
             if is_noted {
                 let push = state.place - self.before_colliders[index];
-                if push != Vec3A::ZERO {
+                state.is_supported = push != Vec3A::ZERO;
+                if state.is_supported {
                     state.support = push.normalize_or_zero();
                 }
             }
@@ -116,21 +127,25 @@ impl Members {
         self.before_colliders.clear();
     }
 
-    /// Gives the particles back what was changed, and begins the next sub-step there. Marks the cloths of which any was.
-    pub fn scatter(&mut self, cloths: &mut [Participant], is_pushed: &mut [bool]) {
-        let each = self.of.iter().zip(&mut self.states);
-        for ((member, state), &[was, moved_by]) in each.zip(&self.gathered) {
+    /// Gives the particles back what was changed, and begins the next sub-step there. Marks the cloths of which any was, and notes by
+    /// what they are held.
+    pub fn scatter(&mut self, cloths: &mut [Participant], is_pushed: &mut [bool], hold: &mut Hold) {
+        let each = self.of.iter().zip(&mut self.states).zip(&mut self.held);
+        for (((member, state), held), &[was, moved_by]) in each.zip(&self.gathered) {
+            let (index, slot) = (member.cloth as usize, member.slot);
+            let cloth = &mut cloths[index];
             let push = state.place - was;
-            if push != Vec3A::ZERO || state.moved != moved_by {
-                let cloth = &mut cloths[member.cloth as usize];
-                is_pushed[member.cloth as usize] = true;
+            let slowed = state.moved - moved_by;
+            if push != Vec3A::ZERO || slowed != Vec3A::ZERO {
+                is_pushed[index] = true;
                 let push = cloth.own_vector(push.into());
                 let moved = cloth.own_vector(state.moved.into());
-                let Slot { block, lane } = member.slot;
-                let block = &mut cloth.particles.blocks_mut()[block];
-                block.set_position(lane, block.position(lane) + push);
-                block.set_displacement(lane, moved);
+                let block = &mut cloth.particles.blocks_mut()[slot.block];
+                block.set_position(slot.lane, block.position(slot.lane) + push);
+                block.set_displacement(slot.lane, moved);
             }
+            *held += LATEST * (slowed - *held);
+            hold.set(index, slot, cloth.own_vector((*held).into()));
             state.start = state.place;
         }
     }

@@ -4,14 +4,17 @@
 //! those that may come near each other, with a margin; until particles have moved as far as that, each sub-step looks at these
 //! alone. A patch that is not bent far is passed over whole, by [a bound that is proved](bounds::Tangents). At the end of each
 //! sub-step pairs are pushed apart, in proportion to inverse masses and with friction, and then [a plane](certificate) between
-//! each two proves that nothing has passed through.
+//! each two proves that nothing has passed through. Where all is slow this is done in some sub-steps only, and particles are
+//! [held](hold) in between, while none can have come near enough to pass.
 
 mod bounds;
 mod certificate;
 mod circumstances;
 mod flat;
+mod hold;
 mod intersections;
 mod members;
+mod motion;
 mod near;
 mod origin;
 mod pair;
@@ -23,12 +26,12 @@ mod sheet;
 #[cfg(test)]
 mod tests;
 
-use bevy::math::Vec3;
-
 use self::{
     certificate::Zones,
     circumstances::Circumstances,
+    hold::Hold,
     members::Members,
+    motion::{relative_motion, room_in_flat, thinnest},
     near::NearPairs,
     origin::Origin,
     pair::{NOBODY, Nearest, Pair, VERTEX_AND_FACE},
@@ -51,6 +54,11 @@ const ROUNDS: u32 = 4;
 /// may have come, as fast as lately, this part of the way that is free.
 const LONGEST_WAIT: u32 = 16;
 const PART_OF_WAY: f32 = 0.5;
+
+/// As long as particles come nearer to each other by less than this part of the thickness, those that are pushed are held by
+/// their last push in this many sub-steps at most.
+const HELD: f32 = 0.1;
+const LONGEST_HOLD: u32 = 3;
 
 /// The margin of a search, at least and, unless things are faster than that, at most: as a part of the shortest spacing.
 const MARGINS: [f32; 2] = [0.05, 0.25];
@@ -81,6 +89,10 @@ pub(crate) struct MutualContact {
     /// For how many sub-steps nothing has to be looked at, and since how many nothing was.
     wait: u32,
     waited: u32,
+    /// What particles are held by meanwhile.
+    hold: Hold,
+    /// How much nearer to each other any two may come while they are held (m).
+    free: f32,
     /// Where all particles were when layers were last kept apart, or were known to be: as the sub-step began, mostly.
     passed: Origin,
     searches: u32,
@@ -118,7 +130,9 @@ impl MutualContact {
             self.pairs.clear();
         }
         (self.wait, self.waited) = (0, 0);
-        self.near.renew();
+        if let Some(approach) = self.near.approach(cloths) {
+            self.near.pass(approach);
+        }
         if !self.pairs.is_empty() {
             self.passed.set(cloths);
         }
@@ -158,7 +172,7 @@ impl MutualContact {
 
     /// Notes where particles are in a sub-step before colliders push them: against that they do not give way.
     pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
-        if !self.pairs.is_empty() {
+        if !self.pairs.is_empty() && self.waited >= self.wait {
             self.members.note_before_colliders(cloths);
         }
     }
@@ -173,8 +187,16 @@ impl MutualContact {
         is_pushed: &mut [bool],
     ) -> f32 {
         self.waited += 1;
+        let mut held = 0.0;
         if self.waited <= self.wait {
-            return 0.0;
+            if self.pairs.is_empty() {
+                return 0.0;
+            }
+            let approach;
+            (held, approach) = self.hold.apply(cloths, &self.passed, is_pushed);
+            if approach <= self.free {
+                return held;
+            }
         }
         let before = self.nearer;
         self.nearer = self.origin.approach(cloths);
@@ -197,7 +219,7 @@ impl MutualContact {
             }
             return 0.0;
         }
-        (self.wait, self.waited) = (0, 0);
+        let waited = std::mem::take(&mut self.waited);
         self.members.gather(cloths);
         let thinnest = thinnest(cloths);
         // How much nearer any two have come, in the sub-step and since near pairs were found.
@@ -217,13 +239,14 @@ impl MutualContact {
             }
             if round == 0 {
                 let NearPairs {
-                    contacts, touched, ..
+                    contacts, too_near, ..
                 } = &mut self.near;
-                push(contacts, touched, &mut self.members, dt);
-                self.has_touched |= !touched.is_empty();
+                self.has_touched |= push(contacts, too_near, &mut self.members, dt);
             } else if let Some(nearer) = self.near.may_meet_within(since + pushed) {
                 self.zones
                     .certify(&self.near.contacts, nearer, &mut self.members);
+            } else {
+                break;
             }
             // What was pushed has come nearer to others.
             let farther = 2.0 * self.members.farthest_push();
@@ -232,16 +255,26 @@ impl MutualContact {
             }
             pushed = farther;
         }
-        let (after, in_substep) = (since + pushed, in_substep + pushed);
-        let farthest = self.members.farthest_push();
-        self.near.pass(after);
-        self.members.scatter(cloths, is_pushed);
+        self.members.scatter(cloths, is_pushed, &mut self.hold);
+        if let Some(after) = self.near.approach(cloths) {
+            self.near.pass(after);
+        }
+        self.free = self
+            .near
+            .spare()
+            .min(self.margin - self.nearer - pushed)
+            .min(HELD * thinnest);
+        // What is left of it where they are held.
+        let pace = self.passed.approach(cloths) / waited as f32;
         self.passed.set(cloths);
+        self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
+        self.near.renew_ahead_of(pace, thinnest);
+        let in_substep = in_substep + pushed;
         // Better from here than on the way.
         if self.nearer + in_substep > self.margin {
             self.search(cloths, &meets, 0.0, Starts::Here);
         }
-        farthest
+        0.5 * pushed + held
     }
 
     /// For how many sub-steps particles that come nearer to each other by `pace` (m) in each have far to go.
@@ -262,6 +295,7 @@ impl MutualContact {
     ) {
         self.searches += 1;
         self.is_searched = true;
+        self.wait = 0;
         self.near.forget();
         let spacing = cloths
             .iter()
@@ -307,16 +341,18 @@ impl MutualContact {
                 if *place == NOBODY {
                     let known = self.member_of_before.get(cloth);
                     let known = known.and_then(|known| known.get(particle as usize).copied());
+                    let known = known.filter(|&member| member != NOBODY);
+                    let known = known.map(|member| (&self.members_before, member));
                     let of = &cloths[cloth];
                     let slot = of.particles.layout().slot_of(particle as usize);
                     let start = match known {
-                        Some(member) if member != NOBODY => self.members_before.start(member),
-                        _ => match starts {
+                        Some((members, member)) => members.start(member),
+                        None => match starts {
                             Starts::Here => of.place(slot),
                             Starts::Passed => of.point(self.passed.place(cloth, slot)),
                         },
                     };
-                    *place = self.members.add(cloth as u32, slot, start);
+                    *place = self.members.add(cloth as u32, slot, start, known);
                 }
                 members[index] = *place;
             }
@@ -336,50 +372,16 @@ impl MutualContact {
                 far_until: f32::NEG_INFINITY,
                 is_near: false,
                 nearest: Nearest::default(),
+                found_in: NOBODY,
             });
         }
         self.last_of = last_of;
         if self.pairs.is_empty() {
             return;
         }
-        self.wait = 0;
+        self.hold.clear(cloths);
         if let Starts::Here = starts {
             self.passed.set(cloths);
         }
     }
-}
-
-/// The smallest thickness of any (m).
-fn thinnest(cloths: &[Participant]) -> f32 {
-    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
-    each.fold(f32::INFINITY, f32::min)
-}
-
-/// By how much any two particles come nearer to each other in a sub-step as long as the last, at most (m).
-fn relative_motion(cloths: &[Participant]) -> f32 {
-    let each = || {
-        cloths.iter().flat_map(|cloth| {
-            cloth
-                .particles
-                .displacements()
-                .map(|moved| cloth.vector(moved))
-        })
-    };
-    let count = cloths
-        .iter()
-        .map(|cloth| cloth.particles.len())
-        .sum::<usize>();
-    let drift = each().sum::<Vec3>() / count.max(1) as f32;
-    let squares = each().map(|moved| (moved - drift).length_squared());
-    2.0 * squares.fold(0.0, f32::max).sqrt()
-}
-
-/// By how much any two points of a cloth that is alone may come nearer to each other until it touches itself (m), as far as its
-/// tangents say so; none if they don't.
-fn room_in_flat(cloths: &[Participant]) -> Option<f32> {
-    let [cloth] = cloths else {
-        return None;
-    };
-    let tangents = cloth.sheet.tangents_of_all(cloth.particles)?;
-    Some(tangents.unfolded() * cloth.sheet.closest() - cloth.settings.thickness)
 }

@@ -12,19 +12,21 @@ use super::{
 /// their normals and weights stand for what they were.
 const FRESH: f32 = 0.1;
 
+/// For so many sub-steps they should.
+const AHEAD: f32 = 8.0;
+
 /// By how much of the smallest thickness particles may come nearer to each other before all pairs are gone through again.
 const SLACK: f32 = 0.25;
 
-/// Pairs that are near each other, until particles have come nearer to each other by a little. Within a tick, which they are and
-/// where their nearest points lie follows from the motion of the particles alone, whatever was known before.
+/// Pairs that are near each other, until particles have come nearer to each other by a little.
 #[derive(Debug, Default, Clone)]
 pub(super) struct NearPairs {
     listed: Vec<u32>,
     found: Vec<u32>,
     /// Those that may come nearer to each other than their thickness.
     pub contacts: Vec<NearPair>,
-    /// Those of them that did, in the last sub-step.
-    pub touched: Vec<u32>,
+    /// Those of them that came much nearer, in the last sub-step.
+    pub too_near: Vec<u32>,
     /// How near any two of them were to passing through each other when they were found (m).
     closest: f32,
     /// Where all particles were when contacts were found; how much nearer to each other any two may come from there, and can have
@@ -36,22 +38,19 @@ pub(super) struct NearPairs {
     /// were found last (m).
     until: f32,
     odometer: f32,
+    /// Counts sub-steps: where they begin is the same when nearest points are found more than once in one.
+    substep: u32,
     is_listed: bool,
     is_found: bool,
+    is_used_up: bool,
 }
 
 impl NearPairs {
     /// Forgets them: the pairs are others.
     pub fn forget(&mut self) {
         self.listed.clear();
-        (self.odometer, self.is_listed) = (0.0, false);
-        self.renew();
-    }
-
-    /// Has those that are near be found anew.
-    pub fn renew(&mut self) {
         self.contacts.clear();
-        self.is_found = false;
+        (self.odometer, self.is_listed, self.is_found) = (0.0, false, false);
     }
 
     /// How much nearer to each other any two particles can have come since contacts were found (m); none if they are not.
@@ -62,7 +61,7 @@ impl NearPairs {
     /// Whether they are still all that are near when any two particles can have come nearer to each other by this much since they
     /// were found (m).
     pub fn covers(&self, approach: f32) -> bool {
-        self.is_found && approach <= self.room
+        self.is_found && !self.is_used_up && approach <= self.room
     }
 
     /// Of those that were found no nearer than this to each other (m), none can have passed through another in the sub-step, since
@@ -72,9 +71,23 @@ impl NearPairs {
         (self.closest <= nearer).then_some(nearer)
     }
 
+    /// How much nearer to each other any two particles may still come before some may be near that are not known to be, or may have
+    /// passed through each other (m).
+    pub fn spare(&self) -> f32 {
+        self.room.min(self.closest) - self.used
+    }
+
+    /// Has them be found anew before the next sub-step, if they will soon have to be, with particles that come nearer to each other by
+    /// `pace` (m) in each.
+    pub fn renew_ahead_of(&mut self, pace: f32, thinnest: f32) {
+        let wanted = AHEAD * pace;
+        self.is_used_up = self.spare() < wanted && 2.0 * wanted < FRESH * thinnest;
+    }
+
     /// The sub-step ends, and any two particles can have come nearer to each other by `approach` since contacts were found (m).
     pub fn pass(&mut self, approach: f32) {
         self.used = approach;
+        self.substep = (self.substep + 1) % NOBODY;
     }
 
     /// Finds those that may touch before any two particles have come nearer to each other by `approach` (m) and a little of the
@@ -89,7 +102,7 @@ impl NearPairs {
     ) {
         members.note_travel();
         self.odometer += self.used;
-        (self.used, self.is_found) = (0.0, true);
+        (self.used, self.is_found, self.is_used_up) = (0.0, true, false);
         self.origin.copy_from(origin);
         self.room = approach + FRESH * thinnest;
         if !self.is_listed || self.odometer + self.room > self.until {
@@ -104,7 +117,10 @@ impl NearPairs {
             if pair.far_until > travelled + self.room {
                 continue;
             }
-            pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
+            if pair.found_in != self.substep {
+                pair.nearest = Nearest::of(pair.split, members.starts(pair.members));
+                pair.found_in = self.substep;
+            }
             let apart = pair.nearest.distance - pair.thickness;
             pair.far_until = travelled + apart;
             if apart <= self.room {

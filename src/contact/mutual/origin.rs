@@ -32,20 +32,20 @@ impl Origin {
         self.cloths.resize_with(cloths.len(), Vec::new);
         for (places, cloth) in self.cloths.iter_mut().zip(cloths) {
             let layout = cloth.particles.layout();
+            let strip = layout.strip as usize;
             places.clear();
-            let blocks = cloth.particles.blocks().iter().enumerate();
-            places.extend(blocks.map(|(index, block)| {
+            places.extend(cloth.particles.blocks().iter().map(|block| {
                 let view = block.view();
-                let mut place = [X, Y, Z].map(|axis| {
+                [X, Y, Z].map(|axis| {
                     std::array::from_fn(|l| view[axis + l] - part * view[axis - X + DX + l])
-                });
-                for (lane, x) in place[0].iter_mut().enumerate() {
-                    if layout.column(index % layout.strip as usize, lane).is_none() {
-                        *x = f32::NAN;
-                    }
-                }
-                place
+                })
             }));
+            for (block, lane) in (0..strip).flat_map(|block| (0..LANES).map(move |l| (block, l))) {
+                if layout.column(block, lane).is_none() {
+                    let row = places.iter_mut().skip(block).step_by(strip);
+                    row.for_each(|place| place[0][lane] = f32::NAN);
+                }
+            }
         }
     }
 
@@ -64,10 +64,14 @@ impl Origin {
         self.cloths.len() == cloths.len() && self.cloths.iter().zip(cloths).all(sizes)
     }
 
-    /// By how much any two of the particles can have come nearer to each other since, at most (m).
-    pub fn approach(&self, cloths: &[Participant]) -> f32 {
-        // Whatever all have in common does not count: here what one particle has come.
-        let drift = match (self.cloths.first(), cloths.first()) {
+    /// Where all particles of a cloth were, block by block (m).
+    pub fn places(&self, cloth: usize) -> &[[Lanes; 3]] {
+        &self.cloths[cloth]
+    }
+
+    /// What one particle has come since, in the common frame (m): what all have in common does not bring them nearer to each other.
+    pub fn drift(&self, cloths: &[Participant]) -> Vec3 {
+        match (self.cloths.first(), cloths.first()) {
             (Some(places), Some(cloth)) => {
                 let at = cloth.particles.layout().slot_of(cloth.particles.len() / 2);
                 let place = places[at.block].map(|axis| axis[at.lane]);
@@ -75,8 +79,13 @@ impl Origin {
                     cloth.particles.blocks()[at.block].position(at.lane) - Vec3::from(place);
                 cloth.vector(moved)
             }
-            _ => return 0.0,
-        };
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// By how much any two of the particles can have come nearer to each other since, at most (m).
+    pub fn approach(&self, cloths: &[Participant]) -> f32 {
+        let drift = self.drift(cloths);
         let mut farthest = [0.0_f32; LANES];
         for (places, cloth) in self.cloths.iter().zip(cloths) {
             let drift = cloth.own_vector(drift);

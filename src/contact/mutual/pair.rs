@@ -22,8 +22,9 @@ pub(super) struct Pair {
     pub far_until: f32,
     /// Whether they were near each other when they were last looked at.
     pub is_near: bool,
-    /// How the nearest points were when they were last found.
+    /// How the nearest points were when they were last found, and in which sub-step that was; or [`NOBODY`].
     pub nearest: Nearest,
+    pub found_in: u32,
 }
 
 /// The nearest points of two features.

@@ -8,34 +8,61 @@ use super::{members::Members, pair::NearPair};
 /// what carries those above.
 const RELEASE: f32 = 0.25;
 
+/// By how much of their thickness those that touch may be nearer than that without being pushed for it: they are stopped, no more.
+/// So layers that rest go on touching where they tremble by less.
+const RESTING: f32 = 0.02;
+
+/// And by how much, until what is left of older overlaps is released.
+const LEFT: f32 = 0.04;
+
 /// Of the thickness, what is always kept of it at once: so much no sub-step may leave for the next.
 const KEPT: f32 = 0.3;
 
-/// Pairs that touched are gone through once more where they are still nearer than this part of their thickness.
+/// Pairs are gone through once more where they are still nearer than this part of their thickness, if they were nearer than that
+/// other part: what was not is hardly pushed so far.
 const AGAIN: f32 = 0.5;
+const LISTED: f32 = 0.75;
+
+/// In how many parts pairs are gone through in turns: neighbours have particles in common, and the next would wait for the last.
+const APART: usize = 4;
 
 /// Of the mobility of a pair, what colliders have to leave of it.
 const LEAST_FREE: f32 = 0.01;
 
-/// Keeps those that are near each other apart, and lists those that touched.
-pub(super) fn push(pairs: &[NearPair], touched: &mut Vec<u32>, members: &mut Members, dt: f32) {
-    touched.clear();
-    for (index, pair) in pairs.iter().enumerate() {
-        if pair.is_pushed && push_pair(pair, pair.thickness, members, dt) {
-            touched.push(index as u32);
+/// Keeps those that are near each other apart. Lists those that were much too near. Returns whether any touched.
+pub(super) fn push(
+    pairs: &[NearPair],
+    listed: &mut Vec<u32>,
+    members: &mut Members,
+    dt: f32,
+) -> bool {
+    listed.clear();
+    let mut has_touched = false;
+    let part = pairs.len().div_ceil(APART);
+    let order = (0..part).flat_map(|first| (first..pairs.len()).step_by(part));
+    for index in order {
+        let pair = &pairs[index];
+        if pair.is_pushed
+            && let Some(gap) = push_pair(pair, pair.thickness, members, dt)
+        {
+            has_touched = true;
+            if gap < LISTED * pair.thickness {
+                listed.push(index as u32);
+            }
         }
     }
-    for &index in &*touched {
+    for &index in &*listed {
         let pair = &pairs[index as usize];
         push_pair(pair, AGAIN * pair.thickness, members, dt);
     }
+    has_touched
 }
 
 /// Pushes two features apart that are nearer than `floor` (m), and slows them against each other by Coulomb's law. What both came
 /// towards each other in the sub-step is what velocity has to lose; an older overlap gives no more of it than is slow. Returns
-/// whether they touch.
+/// how far they were apart, if they touch (m).
 #[inline]
-fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> bool {
+fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Option<f32> {
     let NearPair {
         weights, normal, ..
     } = *pair;
@@ -46,50 +73,65 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> boo
     let between = combined(states.map(|state| state.place));
     let gap = normal.dot(between);
     if gap >= floor || normal == Vec3A::ZERO {
-        return false;
+        return None;
     }
-    // What a collider holds from behind moves along its surface alone.
-    let mut ways = [normal; 4];
-    let (mut mobility, mut free) = (0.0, 0.0);
-    for ((way, state), weight) in ways.iter_mut().zip(states).zip(weights) {
-        let share = weight * weight * state.inverse_mass;
-        let towards = normal.dot(state.support);
-        let along = if towards * weight < 0.0 { towards } else { 0.0 };
-        *way -= state.support * along;
-        mobility += share * (1.0 - along * along);
-        free += share;
+    let mut free = 0.0;
+    for (state, weight) in states.iter().zip(weights) {
+        free += weight * weight * state.inverse_mass;
     }
     if free == 0.0 {
-        return false;
+        return None;
     }
-    if mobility < LEAST_FREE * free {
-        // Held from both sides.
-        (ways, mobility) = ([normal; 4], free);
+    // What a collider holds from behind moves along its surface alone.
+    let (mut along, mut mobility) = ([0.0; 4], free);
+    if states.iter().any(|state| state.is_supported) {
+        for (index, (state, weight)) in states.into_iter().zip(weights).enumerate() {
+            let towards = normal.dot(state.support);
+            if towards * weight < 0.0 {
+                along[index] = towards;
+                mobility -= weight * weight * state.inverse_mass * towards * towards;
+            }
+        }
+        if mobility < LEAST_FREE * free {
+            // Held from both sides.
+            (along, mobility) = ([0.0; 4], free);
+        }
     }
     let depth = pair.thickness - gap;
     // Of the way, and of velocity, what brought them nearer.
     let motion = combined(states.map(|state| state.moved));
     let nearing = -normal.dot(motion);
     let start = combined(states.map(|state| state.start));
-    let [came, stopped] =
-        [normal.dot(start) - gap, nearing].map(|nearer| depth.min(nearer).max(0.0));
-    let released = (depth - came).min(RELEASE * dt);
+    let came = (depth - RESTING * pair.thickness)
+        .min(normal.dot(start) - gap)
+        .max(0.0);
+    let stopped = depth.min(nearing).max(0.0);
+    let released = (depth - LEFT * pair.thickness - came).clamp(0.0, RELEASE * dt);
     let least = (KEPT * pair.thickness - gap - came - released).max(0.0);
-    let held = |slid: Vec3A, pressed: f32| {
-        let tangential = slid - normal * normal.dot(slid);
-        let (slip, most) = (tangential.length(), pair.friction * pressed);
-        let grip = if slip > most { most / slip } else { 1.0 };
-        tangential * (-grip / free)
-    };
-    let held_place = held(between - start, came + released);
-    let held_motion = held(motion, stopped + released);
     let pushed = (came + released + least) / mobility;
     let slowed = (stopped + released) / mobility;
-    for ((member, way), weight) in pair.members.into_iter().zip(ways).zip(weights) {
+    let held = |slid: Vec3A, pressed: f32| {
+        let tangential = slid - normal * normal.dot(slid);
+        let (square, most) = (tangential.length_squared(), pair.friction * pressed);
+        let grip = if square > most * most {
+            most / square.sqrt()
+        } else {
+            1.0
+        };
+        tangential * (-grip / free)
+    };
+    let place = normal * pushed + held(between - start, came + released);
+    let moved = normal * slowed + held(motion, stopped + released);
+    for (index, member) in pair.members.into_iter().enumerate() {
         let state = &mut members.states[member as usize];
-        let share = weight * state.inverse_mass;
-        state.place += (way * pushed + held_place) * share;
-        state.moved += (way * slowed + held_motion) * share;
+        let (along, share) = (along[index], weights[index] * state.inverse_mass);
+        let mut by = [place, moved];
+        if along != 0.0 {
+            by[0] -= state.support * (along * pushed);
+            by[1] -= state.support * (along * slowed);
+        }
+        state.place += by[0] * share;
+        state.moved += by[1] * share;
     }
-    true
+    Some(gap)
 }

@@ -1,0 +1,123 @@
+//! What holds layers that lie on each other, between the sub-steps in which their pairs are gone through.
+//!
+//! What rests is pushed by the same in every sub-step: by what carries its weight. So each particle is held by the mean of its last
+//! pushes, as far as that stops it: of its motion, what goes against them is taken away.
+//!
+//! ```text
+//!   d: mean change of the displacement m by the last pushes
+//!   m ← m + s d      s = −m·d / d², no less than 0 and no more than MOST
+//!   |m + s d|² = m² − s d² (2 (−m·d / d²) − s) ≤ m²
+//! ```
+//!
+//! So this takes energy from each particle, or none, whatever has become of the contact since. Momentum is that of the pushes, as far
+//! as s is the same for all.
+
+use bevy::math::Vec3;
+use multiversion::multiversion;
+
+use super::{origin::Origin, participant::Participant};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X};
+
+/// The mean of the last pushes of each particle of some cloths, each in its own frame, block by block (m a sub-step).
+#[derive(Debug, Default, Clone)]
+pub(super) struct Hold {
+    cloths: Vec<Vec<[Lanes; 3]>>,
+}
+
+/// So many times the mean of its last pushes holds a particle at most.
+const MOST: f32 = 4.0;
+
+/// How far anything moved, squared, lane by lane (m²).
+#[derive(Debug, Default, Clone, Copy)]
+struct Farthest {
+    push: Lanes,
+    way: Lanes,
+}
+
+impl Hold {
+    /// Nothing of these is held.
+    pub fn clear(&mut self, cloths: &[Participant]) {
+        self.cloths.resize_with(cloths.len(), Vec::new);
+        for (pushes, cloth) in self.cloths.iter_mut().zip(cloths) {
+            pushes.clear();
+            pushes.resize(cloth.particles.blocks().len(), [[0.0; LANES]; 3]);
+        }
+    }
+
+    /// Has a particle of a cloth be held by this push, in its frame (m).
+    pub fn set(&mut self, cloth: usize, Slot { block, lane }: Slot, push: Vec3) {
+        for (axis, push) in self.cloths[cloth][block].iter_mut().zip(push.to_array()) {
+            axis[lane] = push;
+        }
+    }
+
+    /// Holds all that was pushed, and marks the cloths of which any was. Returns the farthest that anything was pushed, and by how
+    /// much any two particles can have come nearer to each other since they were where `passed` says, at most (m).
+    pub fn apply(
+        &self,
+        cloths: &mut [Participant],
+        passed: &Origin,
+        is_pushed: &mut [bool],
+    ) -> (f32, f32) {
+        let drift = passed.drift(cloths);
+        let mut farthest = Farthest::default();
+        for (index, cloth) in cloths.iter_mut().enumerate() {
+            let before = farthest.push;
+            let drift = cloth.own_vector(drift).to_array();
+            let places = passed.places(index);
+            let blocks = cloth.particles.blocks_mut();
+            hold(blocks, &self.cloths[index], places, drift, &mut farthest);
+            is_pushed[index] |= farthest.push != before;
+        }
+        let longest = |squares: Lanes| squares.into_iter().fold(0.0, f32::max).sqrt();
+        (longest(farthest.push), 2.0 * longest(farthest.way))
+    }
+}
+
+#[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
+fn hold(
+    blocks: &mut [Block],
+    pushes: &[[Lanes; 3]],
+    places: &[[Lanes; 3]],
+    drift: [f32; 3],
+    farthest: &mut Farthest,
+) {
+    for ((block, push), place) in blocks.iter_mut().zip(pushes).zip(places) {
+        let view = block.view_mut();
+        let (mut part, mut squares) = ([0.0; LANES], [0.0; LANES]);
+        for l in 0..LANES {
+            let [x, y, z] = [push[0][l], push[1][l], push[2][l]];
+            let against = -(view[DX + l] * x + view[DY + l] * y + view[DZ + l] * z);
+            let square = x * x + y * y + z * z;
+            // Of what was not pushed, 0.
+            let s = against / square.max(f32::MIN_POSITIVE);
+            let s = if s > 0.0 { s } else { 0.0 };
+            part[l] = if s < MOST { s } else { MOST };
+            squares[l] = part[l] * part[l] * square;
+        }
+        let mut way = [0.0; LANES];
+        for axis in 0..3 {
+            for l in 0..LANES {
+                let by = part[l] * push[axis][l];
+                view[X + axis * LANES + l] += by;
+                view[DX + axis * LANES + l] += by;
+                let came = view[X + axis * LANES + l] - place[axis][l] - drift[axis];
+                way[l] += came * came;
+            }
+        }
+        for l in 0..LANES {
+            let (pushed, way) = (squares[l], way[l]);
+            farthest.push[l] = if pushed > farthest.push[l] {
+                pushed
+            } else {
+                farthest.push[l]
+            };
+            // What is nowhere is not farther.
+            farthest.way[l] = if way > farthest.way[l] {
+                way
+            } else {
+                farthest.way[l]
+            };
+        }
+    }
+}
