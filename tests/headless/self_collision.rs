@@ -7,7 +7,7 @@ use bevy_drape::{
     prelude::*,
 };
 
-use crate::support::*;
+use crate::{push_back::cloth_momentum, support::*};
 
 /// Triangles that intersect, among all cloths, by brute force.
 fn crossings(app: &mut App) -> usize {
@@ -308,4 +308,45 @@ fn what_has_left_others_takes_no_more_substeps_for_them() {
     assert!(substeps(&app) > alone, "they touch");
     put(&mut app, sheets[1], 20.0);
     assert_eq!(substeps(&app), alone);
+}
+
+/// Two sheets in space, one slowly thrown onto the other, keep the momentum that they have together, while they touch and after: what
+/// holds them between two passes takes some of it from each particle, to a hundredth of it in a second.
+#[test]
+fn what_touches_in_flight_keeps_its_momentum() {
+    for speed in [0.02_f32, 0.2, 1.0] {
+        let (mut app, sheets) = floating(0.02);
+        for sheet in sheets {
+            app.world_mut().entity_mut(sheet).insert(ClothMaterial {
+                damping: 0.0,
+                ..ClothMaterial::COTTON
+            });
+        }
+        tick(&mut app, 2);
+        let frame = *app.world().get::<ClothFrame>(sheets[1]).expect("a frame");
+        let way = frame.isometry().rotation.inverse() * Vec3::NEG_Y * speed;
+        change::<ClothParticles>(&mut app, sheets[1], |particles| {
+            for index in 0..particles.len() {
+                // Not all alike: some touch first.
+                let part = 1.0 + 0.2 * (index % 7) as f32 / 7.0;
+                particles
+                    .set_velocity(index, way * part)
+                    .expect("it exists");
+            }
+        });
+        let momentum = |app: &App| {
+            let both = sheets.map(|sheet| cloth_momentum(app, sheet).0);
+            both[0] + both[1]
+        };
+        let start = momentum(&app);
+        let mut pairs = 0;
+        for _ in 0..128 {
+            tick(&mut app, 1);
+            pairs = pairs.max(stats(&app, sheets[0]).layer_pairs);
+        }
+        let off = (momentum(&app) - start).length() / start.length();
+        println!("{speed} m/s: off by {off}, {pairs} pairs");
+        assert!(pairs > 0, "they have met");
+        assert!(off < 0.01, "{speed} m/s: off by {off}");
+    }
 }

@@ -181,6 +181,16 @@ impl Members {
         }
     }
 
+    /// Whether none moved farther than this (m), and some are held by a collider or a pin.
+    pub fn are_resting(&self, farthest: f32) -> bool {
+        let square = farthest * farthest;
+        let is_slow = |state: &State| state.moved.length_squared() <= square;
+        self.states
+            .iter()
+            .any(|state| state.is_supported || state.inverse_mass == 0.0)
+            && self.states.iter().all(is_slow)
+    }
+
     /// How far the one that was pushed farthest has been pushed since all were gathered (m).
     pub fn farthest_push(&self) -> f32 {
         let each = self.states.iter().zip(&self.gathered);

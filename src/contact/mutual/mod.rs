@@ -60,6 +60,9 @@ const PART_OF_WAY: f32 = 0.5;
 const HELD: f32 = 0.1;
 const LONGEST_HOLD: u32 = 3;
 
+/// Only what rests on something is held: what holds it takes momentum, from slower motion than this (m/s).
+const RESTING_SPEED: f32 = 0.25;
+
 /// The margin of a search, at least and, unless things are faster than that, at most: as a part of the shortest spacing.
 const MARGINS: [f32; 2] = [0.05, 0.25];
 
@@ -267,7 +270,10 @@ impl MutualContact {
         // What is left of it where they are held.
         let pace = self.passed.approach(cloths) / waited as f32;
         self.passed.set(cloths);
-        self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
+        self.wait = match self.members.are_resting(RESTING_SPEED * dt) {
+            true => ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD),
+            false => 0,
+        };
         self.near.renew_ahead_of(pace, thinnest);
         let in_substep = in_substep + pushed;
         // Better from here than on the way.
