@@ -4,10 +4,9 @@
 //! same turns, without. Colliders that are far cost what the broad phase does; those that are touched cost the response.
 
 mod charts;
+mod shapes;
 mod stage;
 
-use bevy::math::Vec3;
-use bevy_drape::prelude::ClothCollider;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -15,6 +14,7 @@ use crate::{
     experiment::{Experiment, Run, Table},
     measure::Spread,
 };
+use shapes::shapes;
 use stage::{Stage, State};
 
 pub struct Colliders;
@@ -50,20 +50,6 @@ impl Row {
 const SMALL: u32 = 8;
 const LARGE: u32 = 48;
 
-fn shapes() -> [(&'static str, ClothCollider); 4] {
-    [
-        ("ball", ClothCollider::ball(0.4)),
-        ("capsule", ClothCollider::capsule(0.4, 0.6)),
-        (
-            "box",
-            ClothCollider::Cuboid {
-                half_size: Vec3::splat(0.4),
-            },
-        ),
-        ("plane", ClothCollider::plane()),
-    ]
-}
-
 impl Experiment for Colliders {
     type Row = Row;
 
@@ -73,7 +59,7 @@ impl Experiment for Colliders {
         let turns = run.either(20, 300);
         let many = run.either(50, 1000);
         let numbers = run.either(&[1, 10, 100][..], &[1, 10, 100, 1000, 10_000]);
-        let [ball, ..] = shapes();
+        let ball = shapes().swap_remove(0);
         let mut scenes = Vec::new();
         for state in [State::Awake, State::Moving] {
             scenes.extend(
