@@ -345,20 +345,6 @@ impl Detection {
         }
     }
 
-    /// Takes into account that something else has pushed particles, by at most this far (m).
-    pub fn note_push(&mut self, farthest: f32) {
-        self.moved += farthest;
-        self.moved_now += farthest;
-        self.odometer += farthest;
-        self.shapes.travelled += farthest;
-    }
-
-    /// Forgets all that is known of edges.
-    #[cfg(test)]
-    pub(super) fn forget_edges(&mut self) {
-        self.shapes.forget_edges();
-    }
-
     /// The colliders that may touch.
     pub fn touches(&self) -> &[Touch] {
         &self.touches

@@ -6,6 +6,7 @@ use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
     contact::{candidates::Ranges, touch::ContactSettings},
+    solver::SubStep,
 };
 
 /// How often a sub-step measures how far particles have moved, before it searches again.
@@ -106,5 +107,24 @@ impl Detection {
         self.colliders = colliders;
         self.found = found;
         self.kept.give_back(&self.touches, &mut self.candidates);
+    }
+
+    /// Takes into account that something else has pushed particles, by at most this far (m).
+    pub fn note_push(&mut self, farthest: f32) {
+        self.moved += farthest;
+        self.moved_now += farthest;
+        self.odometer += farthest;
+        self.shapes.travelled += farthest;
+    }
+
+    /// Forgets all that is known of edges.
+    #[cfg(test)]
+    pub(in crate::contact) fn forget_edges(&mut self) {
+        self.shapes.forget_edges();
+    }
+
+    /// How far colliders have pushed any particle in the last sub-step, at most (m).
+    pub(crate) fn farthest_push(&self, substep: SubStep) -> f32 {
+        self.moved_now - substep.farthest_move
     }
 }

@@ -19,6 +19,7 @@ mod near;
 mod origin;
 mod pair;
 mod participant;
+mod renewal;
 mod response;
 mod search;
 mod settings;
@@ -31,10 +32,10 @@ use self::{
     circumstances::Circumstances,
     hold::Hold,
     members::Members,
-    motion::{relative_motion, room_in_flat, thinnest},
+    motion::thinnest,
     near::NearPairs,
     origin::Origin,
-    pair::{NOBODY, Nearest, Pair, VERTEX_AND_FACE},
+    pair::Pair,
     response::push,
     search::{Found, Search},
 };
@@ -43,9 +44,6 @@ pub use intersections::intersections;
 pub(crate) use participant::Participant;
 pub use settings::ClothSelfCollision;
 pub(crate) use sheet::Sheet;
-
-/// How many sub-steps as fast as this one a search should last.
-const SUBSTEPS: f32 = 8.0;
 
 /// How often in a sub-step what has been pushed is compared with what was too far away before.
 const ROUNDS: u32 = 4;
@@ -62,9 +60,6 @@ const LONGEST_HOLD: u32 = 3;
 
 /// Only what rests on something is held: what holds it takes momentum, from slower motion than this (m/s).
 const RESTING_SPEED: f32 = 0.25;
-
-/// The margin of a search, at least and, unless things are faster than that, at most: as a part of the shortest spacing.
-const MARGINS: [f32; 2] = [0.05, 0.25];
 
 /// Contact of cloths with themselves and with each other, from tick to tick. May be dropped at any time.
 #[derive(Debug, Default, Clone)]
@@ -92,6 +87,9 @@ pub(crate) struct MutualContact {
     /// For how many sub-steps nothing has to be looked at, and since how many nothing was.
     wait: u32,
     waited: u32,
+    /// How much nearer to each other any two may come in a sub-step by what colliders have pushed them since, and may have come (m).
+    pushed_pace: f32,
+    pushed: f32,
     /// What particles are held by meanwhile.
     hold: Hold,
     /// How much nearer to each other any two may come while they are held (m).
@@ -180,6 +178,18 @@ impl MutualContact {
         }
     }
 
+    /// Notes how far colliders have pushed any particle in a sub-step (m), of cloths of which nothing is looked at for a while: what was
+    /// pushed goes on as it was pushed.
+    pub fn note_push(&mut self, farthest: f32) {
+        self.pushed_pace += 2.0 * farthest;
+        self.pushed += self.pushed_pace;
+        // NaN is looked at.
+        let is_less = self.nearer + self.pushed < PART_OF_WAY * self.margin;
+        if self.pairs.is_empty() && !is_less {
+            self.wait = 0;
+        }
+    }
+
     /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s). Says of each cloth whether any of it was pushed.
     /// Returns the farthest that anything was pushed (m).
     pub fn respond(
@@ -201,6 +211,7 @@ impl MutualContact {
                 return held;
             }
         }
+        (self.pushed_pace, self.pushed) = (0.0, 0.0);
         let before = self.nearer;
         self.nearer = self.origin.approach(cloths);
         if self.nearer > self.margin {
@@ -288,106 +299,5 @@ impl MutualContact {
         let free = PART_OF_WAY * (self.margin - self.nearer);
         // At no pace, or one that is not finite, too.
         ((free / pace) as u32).min(LONGEST_WAIT)
-    }
-
-    /// Searches for all pairs that may come near each other before any two particles have come nearer by a margin, besides those
-    /// that may have met while they came nearer by `missed` (m).
-    fn search(
-        &mut self,
-        cloths: &[Participant],
-        meets: impl Fn(usize, usize) -> bool,
-        missed: f32,
-        starts: Starts,
-    ) {
-        self.searches += 1;
-        self.is_searched = true;
-        self.wait = 0;
-        self.near.forget();
-        let spacing = cloths
-            .iter()
-            .map(|cloth| cloth.sheet.surface().spacing().shortest)
-            .fold(f32::INFINITY, f32::min);
-        let substep = relative_motion(cloths);
-        let [least, most] = MARGINS.map(|part| part * spacing);
-        self.margin = (SUBSTEPS * substep)
-            .clamp(least, most)
-            .max(1.5 * substep)
-            .min(spacing);
-        self.origin.set(cloths);
-        self.nearer = 0.0;
-        if let Some(room) = room_in_flat(cloths)
-            && room > self.margin + missed
-        {
-            self.margin = (room - missed).min(spacing);
-            self.pairs.clear();
-            self.members.clear();
-            self.member_of.clear();
-            return;
-        }
-        self.search
-            .find(cloths, meets, self.margin + missed, &mut self.found);
-        std::mem::swap(&mut self.members, &mut self.members_before);
-        std::mem::swap(&mut self.member_of, &mut self.member_of_before);
-        self.members.clear();
-        self.pairs.clear();
-        self.member_of.resize_with(cloths.len(), Vec::new);
-        for (of, cloth) in self.member_of.iter_mut().zip(cloths) {
-            of.clear();
-            if !self.found.is_empty() {
-                of.resize(cloth.particles.len(), NOBODY);
-            }
-        }
-        let mut last_of = std::mem::take(&mut self.last_of);
-        last_of.clear();
-        for found in &self.found {
-            let mut members = [0; 4];
-            for (index, &particle) in found.particles.iter().enumerate() {
-                let cloth = found.cloths[usize::from(index >= found.split)] as usize;
-                let place = &mut self.member_of[cloth][particle as usize];
-                if *place == NOBODY {
-                    let known = self.member_of_before.get(cloth);
-                    let known = known.and_then(|known| known.get(particle as usize).copied());
-                    let known = known.filter(|&member| member != NOBODY);
-                    let known = known.map(|member| (&self.members_before, member));
-                    let of = &cloths[cloth];
-                    let slot = of.particles.layout().slot_of(particle as usize);
-                    let start = match known {
-                        Some((members, member)) => members.start(member),
-                        None => match starts {
-                            Starts::Here => of.place(slot),
-                            Starts::Passed => of.point(self.passed.place(cloth, slot)),
-                        },
-                    };
-                    *place = self.members.add(cloth as u32, slot, start, known);
-                }
-                members[index] = *place;
-            }
-            let [a, b] = found.cloths.map(|cloth| cloths[cloth as usize].settings);
-            last_of.resize(self.members.len(), NOBODY);
-            let mut before = NOBODY;
-            if found.split == VERTEX_AND_FACE {
-                before = last_of[members[0] as usize];
-                last_of[members[0] as usize] = self.pairs.len() as u32;
-            }
-            self.pairs.push(Pair {
-                members,
-                split: found.split,
-                thickness: found.thickness,
-                friction: (a.friction * b.friction).sqrt(),
-                before,
-                far_until: f32::NEG_INFINITY,
-                is_near: false,
-                nearest: Nearest::default(),
-                found_in: NOBODY,
-            });
-        }
-        self.last_of = last_of;
-        if self.pairs.is_empty() {
-            return;
-        }
-        self.hold.clear(cloths);
-        if let Starts::Here = starts {
-            self.passed.set(cloths);
-        }
     }
 }
