@@ -1,6 +1,9 @@
 //! What is drawn of it.
 
-use super::{NOTHING, Row, TRIANGLES};
+use super::{
+    NOTHING, Row, TRIANGLES,
+    compared::{self, FASTEST},
+};
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
     measure::distinct,
@@ -70,8 +73,35 @@ pub fn all(rows: &[Row]) -> Chart {
         ),
         format!("Cloth that touches itself and other cloth, 2 to 16 mm thick: ticks in which triangles intersect, counted by brute force in f64 after every tick, and the time of a tick over that of the same scene without such contact, both against the speed.{besides}"),
     )
-    .sized([960, 560])
-    .columns(2)
+    .sized([1280, 600])
+    .columns(3)
     .with(lost)
     .with(cost)
+    .with(choices(rows))
+}
+
+/// A mark for each choice and scene: what it costs against what passes through it, both up to a speed.
+fn choices(rows: &[Row]) -> Panel {
+    let mut panel = Panel::new(
+        format!("Choices, drops up to {FASTEST} m/s"),
+        Axis::log("times the tick without, log"),
+        Axis::linear("ticks with an intersection (%)"),
+    );
+    for (style, choice) in compared::all(rows).into_iter().enumerate() {
+        let slow = choice.only(|row| row.speed <= FASTEST);
+        let scenes = distinct(slow.rows.iter().map(|row| row.scene.clone()));
+        let points = scenes.iter().map(|scene| {
+            let same = slow.only(|row| row.scene == *scene);
+            let [with, all] = same.ticks();
+            // Where there is no response nothing is said of intersections.
+            [same.times(), 100.0 * with as f64 / all.max(1) as f64]
+        });
+        let points = points.collect::<Vec<_>>();
+        // The styles of scenes begin with the first.
+        let look = Look::Style(7 - style);
+        panel
+            .series
+            .push(Series::new(choice.name, look, Kind::Points, points));
+    }
+    panel
 }

@@ -2,17 +2,25 @@
 //! passes through.
 //!
 //! An app without a renderer, its systems one after the other. After every tick all pairs of triangles are compared by brute force.
+//! Drops are compared with other choices: with [balls](particles) found by a hash, and with a [hash](hash) in place of the tree.
 
 mod charts;
+mod compared;
+mod hash;
+mod particles;
 mod play;
 
 use serde::{Deserialize, Serialize};
 
-use self::play::{Play, Scene};
+use self::{
+    hash::FeatureHash,
+    particles::Plain,
+    play::{Play, Scene},
+};
 use crate::{
     chart::Chart,
     experiment::{Experiment, Run, Table},
-    measure::Spread,
+    measure::{Spread, seconds},
 };
 
 pub struct Layers;
@@ -28,12 +36,14 @@ pub struct Row {
     speed: f32,
     /// Pairs of triangles that intersect, the most of any tick.
     intersections: usize,
-    /// All of the plugin's systems, in the median.
+    /// All of the plugin's systems, in the median; of balls, a plain loop over solver and contact; of a hash of triangles, the tick
+    /// without contact and one search.
     ms_per_tick: f64,
     /// The same without contact of cloth with cloth.
     ms_without: f64,
-    /// How far layers are kept apart (m); 0 where they are not.
+    /// How far layers, or balls, are kept apart (m); 0 where they are not.
     thickness: f32,
+    /// That were watched: none where pairs are only searched for.
     ticks: usize,
     /// In how many of the ticks any intersected.
     ticks_with: usize,
@@ -58,15 +68,28 @@ impl Row {
 
 /// Vertices with faces and edges with edges, found by the tree: what the plugin does.
 const TRIANGLES: &str = "triangles, tree";
+/// Particles as balls, found by a uniform hash: what most engines do.
+const PARTICLES: &str = "particles, hash";
+/// The plugin's pairs found by a uniform hash once a tick, in the states that the plugin comes to. There is no response, so its time is a
+/// lower bound.
+const HASH: &str = "triangles, hash";
 /// Nothing: what the scene asks for.
 const NOTHING: &str = "nothing";
+
+/// What keeps layers apart, and how far (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Choice {
+    Nothing,
+    Triangles(f32),
+    Particles(f32),
+}
 
 /// A run of a scene.
 struct Case {
     scene: Scene,
     side: u32,
     speed: f32,
-    thickness: Option<f32>,
+    choice: Choice,
 }
 
 impl Experiment for Layers {
@@ -81,7 +104,10 @@ impl Experiment for Layers {
         run.begin(Self::NAME, cases.len());
         let mut rows = Vec::new();
         for case in cases {
-            rows.push(case.play());
+            match case.choice {
+                Choice::Particles(thickness) => rows.push(case.play_particles(thickness)),
+                _ => rows.extend(case.play()),
+            }
             run.step();
         }
         rows
@@ -129,6 +155,7 @@ impl Experiment for Layers {
                 row.ticks
             ));
         }
+        findings.extend(compared::findings(rows));
         findings
     }
 
@@ -185,7 +212,7 @@ fn cases(quick: bool) -> Vec<Case> {
             scene,
             side,
             speed: 0.0,
-            thickness: Some(0.003),
+            choice: Choice::Triangles(0.003),
         });
     }
     let speeds: &[f32] = if quick { &[2.0] } else { &[1.0, 5.0, 20.0] };
@@ -203,14 +230,15 @@ fn cases(quick: bool) -> Vec<Case> {
     };
     let drops = if quick { 1 } else { 20 };
     let side = if quick { 16 } else { 24 };
-    let mut add = |scene, side, speed, thickness| {
+    let mut add = |scene, side, speed, choice| {
         cases.push(Case {
             scene,
             side,
             speed,
-            thickness,
+            choice,
         });
     };
+    let thick = Choice::Triangles(THICKNESS);
     for &speed in speeds {
         for &scene in scenes {
             // Faster, the pole would turn by more than half a turn in a tick.
@@ -218,68 +246,133 @@ fn cases(quick: bool) -> Vec<Case> {
                 continue;
             }
             let side = if scene == Scene::Stack { 12 } else { side };
-            add(scene, side, speed, Some(0.008));
+            add(scene, side, speed, thick);
         }
         for drop in 0..drops {
-            add(Scene::Random(drop), 16, speed, Some(0.008));
+            add(Scene::Random(drop), 16, speed, thick);
         }
     }
     if !quick {
         for &speed in speeds {
             for thickness in [0.002, 0.004, 0.016] {
-                add(Scene::Drop, side, speed, Some(thickness));
+                add(Scene::Drop, side, speed, Choice::Triangles(thickness));
             }
-            add(Scene::Drop, 40, speed, Some(0.008));
+            add(Scene::Drop, 40, speed, thick);
         }
     }
     // What happens without.
-    add(Scene::Drop, side, speeds[0], None);
+    add(Scene::Drop, side, speeds[0], Choice::Nothing);
+    // What others do, as thick and as the spacing.
+    for &speed in speeds {
+        add(Scene::Drop, side, speed, Choice::Particles(THICKNESS));
+        if quick {
+            continue;
+        }
+        add(Scene::Drop, side, speed, Choice::Particles(spacing(side)));
+        for drop in 0..drops {
+            for thickness in [THICKNESS, spacing(16)] {
+                add(Scene::Random(drop), 16, speed, Choice::Particles(thickness));
+            }
+        }
+    }
     cases
 }
 
+/// How far layers are kept apart where nothing else is said (m).
+const THICKNESS: f32 = 0.008;
+
+/// Between the particles of a sheet of 1 m that has so many along each side (m).
+fn spacing(side: u32) -> f32 {
+    1.0 / (side - 1) as f32
+}
+
 impl Case {
-    fn play(&self) -> Row {
+    fn play(&self) -> Vec<Row> {
+        let (thickness, choice) = match self.choice {
+            Choice::Triangles(thickness) => (Some(thickness), TRIANGLES),
+            _ => (None, NOTHING),
+        };
         let Self {
-            scene,
-            side,
-            speed,
-            thickness,
+            scene, side, speed, ..
         } = *self;
-        let ticks = scene.ticks(speed.max(0.1));
         let mut with = Play::new(scene, side, speed, thickness);
         let mut without = Play::new(scene, side, speed, None);
-        let (mut worst, mut ticks_with, mut most, mut searches) = (0, 0, 0, 0.0);
-        for _ in 0..ticks {
+        // One sheet alone.
+        let is_hashed = matches!(scene, Scene::Drop | Scene::Random(_) | Scene::Folded);
+        let mut hash =
+            (thickness.is_some() && is_hashed).then(|| FeatureHash::new(&with.cloth().0));
+        let (mut searches_ms, mut hashed) = (Vec::new(), 0);
+        let mut row = self.row(choice, thickness);
+        for _ in 0..row.ticks {
             with.tick();
             without.tick();
             // Brute force is slow, and no surprise where nothing moves.
             let count = if speed > 0.0 { with.intersections() } else { 0 };
-            worst = worst.max(count);
-            ticks_with += usize::from(count > 0);
-            let (pairs, searched) = with.pairs();
-            most = most.max(pairs);
-            searches += f64::from(searched) / ticks as f64;
-        }
-        Row {
-            scene: scene.name().into(),
-            particles: side * side,
-            choice: if thickness.is_some() {
-                TRIANGLES
-            } else {
-                NOTHING
+            row.watch(count, with.pairs());
+            if let (Some(hash), Some(thickness)) = (&mut hash, thickness) {
+                let (_, particles, _) = with.cloth();
+                let mut pairs = 0;
+                let passed = seconds(|| pairs = hash.search(particles.positions(), thickness));
+                searches_ms.push(1.0e3 * passed);
+                hashed = hashed.max(pairs);
             }
-            .into(),
-            speed,
-            intersections: worst,
-            ms_per_tick: Spread::of(with.ms()).median,
-            ms_without: Spread::of(without.ms()).median,
-            thickness: thickness.unwrap_or(0.0),
-            ticks,
-            ticks_with,
-            pairs: most,
-            searches,
-            is_asleep: with.is_asleep(),
         }
+        row.ms_per_tick = Spread::of(with.ms()).median;
+        row.ms_without = Spread::of(without.ms()).median;
+        row.is_asleep = with.is_asleep();
+        let searched = hash.map(|_| Row {
+            ms_per_tick: row.ms_without + Spread::of(&searches_ms).median,
+            ms_without: row.ms_without,
+            ticks: 0,
+            pairs: hashed,
+            searches: 1.0,
+            ..self.row(HASH, thickness)
+        });
+        std::iter::once(row).chain(searched).collect()
+    }
+
+    fn play_particles(&self, thickness: f32) -> Row {
+        let mut start = Play::new(self.scene, self.side, self.speed, None);
+        let mut with = Plain::new(&mut start, Some(thickness));
+        let mut without = Plain::new(&mut start, None);
+        let mut row = self.row(PARTICLES, Some(thickness));
+        for _ in 0..row.ticks {
+            with.tick();
+            without.tick();
+            row.watch(with.intersections(), with.pairs());
+        }
+        row.ms_per_tick = Spread::of(&with.ms).median;
+        row.ms_without = Spread::of(&without.ms).median;
+        row
+    }
+
+    /// Nothing has been measured yet.
+    fn row(&self, choice: &str, thickness: Option<f32>) -> Row {
+        Row {
+            scene: self.scene.name().into(),
+            particles: self.side * self.side,
+            choice: choice.into(),
+            speed: self.speed,
+            intersections: 0,
+            ms_per_tick: f64::NAN,
+            ms_without: f64::NAN,
+            thickness: thickness.unwrap_or(0.0),
+            ticks: self.scene.ticks(self.speed.max(0.1)),
+            ticks_with: 0,
+            pairs: 0,
+            searches: 0.0,
+            is_asleep: false,
+        }
+    }
+}
+
+impl Row {
+    /// Takes a tick into account: how many pairs of triangles intersect, how many are near each other, and how often was searched.
+    fn watch(&mut self, intersections: usize, (pairs, searches): (usize, u32)) {
+        self.intersections = self.intersections.max(intersections);
+        self.ticks_with += usize::from(intersections > 0);
+        self.pairs = self.pairs.max(pairs);
+        self.searches += f64::from(searches) / self.ticks as f64;
     }
 }
 
@@ -305,5 +398,10 @@ mod tests {
             of(NOTHING).iter().all(|&count| count > 0),
             "it is asked for"
         );
+        let balls = rows.iter().find(|row| row.choice == PARTICLES);
+        assert!(balls.is_some_and(|row| row.pairs > 0 && row.searches >= 1.0));
+        // Each row of the hash stands behind that of the tree, whose states it searches. Its boxes are no nearer than what is in them.
+        let mut hashed = rows.windows(2).filter(|rows| rows[1].choice == HASH);
+        assert!(hashed.all(|rows| rows[1].pairs > 0 && rows[1].ticks == 0));
     }
 }

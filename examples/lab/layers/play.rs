@@ -1,6 +1,6 @@
 //! The scenes: what touches itself, and how it is moved.
 
-use std::{f32::consts::TAU, time::Instant};
+use std::{f32::consts::TAU, sync::Arc, time::Instant};
 
 use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, time::TimeUpdateStrategy};
 use bevy_drape::{contact::intersections, plugin::ClothBuilt, prelude::*};
@@ -210,6 +210,14 @@ impl Play {
         let world = self.app.world_mut();
         let mut all = world.query::<&ClothStats>();
         all.iter(world).all(|stats| stats.is_asleep)
+    }
+
+    /// A cloth as it is now, in the frame that it is simulated in: for others to start from.
+    pub fn cloth(&mut self) -> (Arc<Surface>, ClothParticles, Isometry3d) {
+        let world = self.app.world_mut();
+        let mut cloths = world.query::<(&ClothBuilt, &ClothParticles, &ClothFrame)>();
+        let (built, particles, frame) = cloths.iter(world).next().expect("a cloth");
+        (built.surface().clone(), particles.clone(), frame.isometry())
     }
 
     /// Pairs of triangles that intersect, by brute force in f64.
