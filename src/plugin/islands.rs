@@ -7,11 +7,14 @@ use bevy::{
         resource::Resource,
         system::{Query, ResMut},
     },
-    math::Vec3,
+    math::{Mat3, Vec3},
 };
 
-use super::{ClothBuilt, ClothScratch, ClothState, components::BroadPhaseBounds};
-use crate::contact::{ClothLayers, ClothSelfCollision, MutualContact};
+use super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, components::BroadPhaseBounds};
+use crate::{
+    cloth::ClothParticles,
+    contact::{ClothLayers, ClothSelfCollision, MutualContact},
+};
 
 /// Cloths that may touch each other in the tick, island by island.
 #[derive(Resource, Debug, Default)]
@@ -40,6 +43,8 @@ struct Span {
     centre: Vec3,
     radius: f32,
     layers: ClothLayers,
+    /// The least and the greatest corner of the box that it stays in (m), once it was asked for.
+    bounds: Option<[Vec3; 2]>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -49,6 +54,8 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Neighbour {
     entity: Entity,
     built: &'static ClothBuilt,
+    particles: &'static ClothParticles,
+    frame: &'static ClothFrame,
     bounds: &'static mut BroadPhaseBounds,
     state: &'static mut ClothState,
     scratch: &'static mut ClothScratch,
@@ -72,6 +79,7 @@ pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours)
                 centre: cloth.bounds.centre,
                 radius: cloth.bounds.radius + settings.thickness,
                 layers: cloth.layers.copied().unwrap_or_default(),
+                bounds: None,
             });
         }
     }
@@ -80,7 +88,7 @@ pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours)
     if islands.spans.len() < 2 {
         return;
     }
-    islands.join();
+    islands.join(|entity| cloths.get(entity).map(|cloth| cloth.bounds()).ok());
     islands.collect();
     for island in &mut islands.all {
         wake(island, &mut cloths);
@@ -88,8 +96,8 @@ pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours)
 }
 
 impl Islands {
-    /// Joins all cloths whose spheres meet, by a sweep along the x axis.
-    fn join(&mut self) {
+    /// Joins all cloths whose spheres meet, by a sweep along the x axis, and then the boxes that they stay in.
+    fn join(&mut self, bounds: impl Fn(Entity) -> Option<[Vec3; 2]>) {
         let first = |span: &Span| span.centre.x - span.radius;
         self.spans
             .sort_unstable_by(|a, b| first(a).total_cmp(&first(b)).then(a.entity.cmp(&b.entity)));
@@ -106,11 +114,33 @@ impl Islands {
                 let reach = own.radius + other.radius;
                 if own.centre.distance_squared(other.centre) <= reach * reach
                     && own.layers.interacts_with(other.layers)
+                    && self.find(a as u32) != self.find(b as u32)
+                    && self.boxes_meet([a, b], &bounds)
                 {
                     let [a, b] = [a, b].map(|span| self.find(span as u32));
                     self.parent[a.max(b) as usize] = a.min(b);
                 }
             }
+        }
+    }
+
+    /// Whether the boxes of two cloths meet. They are asked for once, and what has none meets all.
+    fn boxes_meet(
+        &mut self,
+        spans: [usize; 2],
+        bounds: impl Fn(Entity) -> Option<[Vec3; 2]>,
+    ) -> bool {
+        let [a, b] = spans.map(|index| {
+            let span = &mut self.spans[index];
+            span.bounds = span.bounds.or_else(|| bounds(span.entity));
+            span.bounds
+        });
+        match (a, b) {
+            (Some([low, high]), Some([other_low, other_high])) => {
+                // NaN is not apart.
+                !(low.cmpgt(other_high).any() || other_low.cmpgt(high).any())
+            }
+            _ => true,
         }
     }
 
@@ -186,5 +216,26 @@ impl NeighbourItem<'_, '_> {
         let scratch = &mut *self.scratch;
         scratch.near.clear();
         scratch.detection.begin(self.built.surface(), scratch.reach);
+    }
+}
+
+impl NeighbourReadOnlyItem<'_, '_> {
+    /// The least and the greatest corner of the box in the world that the cloth stays in within the tick (m): where its particles
+    /// are, and as far around as they may get by themselves, and again as far should something drag them.
+    fn bounds(&self) -> [Vec3; 2] {
+        let ends = [Vec3::MAX, Vec3::MIN];
+        let [low, high] = self
+            .particles
+            .positions()
+            .fold(ends, |[low, high], place| [low.min(place), high.max(place)]);
+        let axes = Mat3::from_quat(self.frame.isometry().rotation);
+        let half = (high - low) / 2.0;
+        let half =
+            axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
+        let centre = self.frame.to_world(low.midpoint(high));
+        let thickness = self.scratch.self_collision.map_or(0.0, |of| of.thickness);
+        let around = 2.0 * self.scratch.reach + thickness + 1.0e-5 * centre.length();
+        let half = half * (1.0 + 1.0e-5) + around;
+        [centre - half, centre + half]
     }
 }
