@@ -16,7 +16,7 @@ pub fn all(rows: &[Row]) -> Chart {
     let mut lost = Panel::new(
         "What passes through",
         Axis::log("speed (m/s), log"),
-        Axis::linear("ticks with an intersection (%)"),
+        Axis::linear("ticks with an intersection (%)").between(0.0, 100.0),
     );
     let mut cost = Panel::new(
         "What it costs",

@@ -84,6 +84,9 @@ enum Choice {
     Particles(f32),
 }
 
+/// Up to this speed nothing may pass through anything (m/s).
+const HELD: f32 = 20.0;
+
 /// A run of a scene.
 struct Case {
     scene: Scene,
@@ -115,8 +118,19 @@ impl Experiment for Layers {
 
     fn check(rows: &[Row]) -> Result<(), String> {
         let is_flat = |row: &&Row| row.scene == Scene::Flat.name();
-        match rows.iter().filter(is_flat).find(|row| row.pairs > 0) {
-            Some(row) => Err(format!("{} pairs in a flat sheet", row.pairs)),
+        if let Some(row) = rows.iter().filter(is_flat).find(|row| row.pairs > 0) {
+            return Err(format!("{} pairs in a flat sheet", row.pairs));
+        }
+        let is_held = |row: &&Row| row.choice == TRIANGLES && row.speed <= HELD;
+        match rows
+            .iter()
+            .filter(is_held)
+            .find(|row| row.intersections > 0)
+        {
+            Some(row) => Err(format!(
+                "{} pairs of triangles intersect: {}, {} m/s",
+                row.intersections, row.scene, row.speed
+            )),
             None => Ok(()),
         }
     }
@@ -215,7 +229,11 @@ fn cases(quick: bool) -> Vec<Case> {
             choice: Choice::Triangles(0.003),
         });
     }
-    let speeds: &[f32] = if quick { &[2.0] } else { &[1.0, 5.0, 20.0] };
+    let speeds: &[f32] = if quick {
+        &[2.0]
+    } else {
+        &[1.0, 5.0, 20.0, 60.0]
+    };
     let scenes: &[Scene] = if quick {
         &[Scene::Drop, Scene::Twist]
     } else {
