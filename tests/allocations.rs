@@ -254,16 +254,17 @@ fn a_mesh_does_not_allocate() {
 }
 
 /// Allocations of 20 ticks of an app on one thread: Bevy's own, whatever they are, and ours. The least of five times: buffers of Bevy's
-/// grow now and then.
+/// grow now and then. All of its schedules are on one thread, as each thread that is woken allocates.
 fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
-        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-        .edit_schedule(FixedUpdate, |schedule| {
-            schedule.set_executor(SingleThreadedExecutor::new());
-        });
+        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
     app.finish();
     app.cleanup();
+    let mut schedules = app.world_mut().resource_mut::<Schedules>();
+    for (_, schedule) in schedules.iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
     let target = app.world_mut().spawn(Transform::default()).id();
     let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
     let attached = ClothAttachments::new(attached);
