@@ -90,18 +90,22 @@ fn choices(rows: &[Row]) -> Panel {
     for (style, choice) in compared::all(rows).into_iter().enumerate() {
         let slow = choice.only(|row| row.speed <= FASTEST);
         let scenes = distinct(slow.rows.iter().map(|row| row.scene.clone()));
-        let points = scenes.iter().map(|scene| {
-            let same = slow.only(|row| row.scene == *scene);
-            let [with, all] = same.ticks();
-            // Where there is no response nothing is said of intersections.
-            [same.times(), 100.0 * with as f64 / all.max(1) as f64]
-        });
-        let points = points.collect::<Vec<_>>();
         // The styles of scenes begin with the first.
         let look = Look::Style(7 - style);
-        panel
-            .series
-            .push(Series::new(choice.name, look, Kind::Points, points));
+        for scene in scenes {
+            let same = slow.only(|row| row.scene == scene);
+            let [with, all] = same.ticks();
+            let times = same.times();
+            // Where there is no response nothing is said of intersections: a line up.
+            let (kind, points) = if all == 0 {
+                (Kind::Line, vec![[times, 0.0], [times, 100.0]])
+            } else {
+                let share = 100.0 * with as f64 / all as f64;
+                (Kind::Points, vec![[times, share]])
+            };
+            let name = choice.name.as_str();
+            panel.series.push(Series::new(name, look, kind, points));
+        }
     }
     panel
 }

@@ -3,6 +3,16 @@
 use super::{HASH, NOTHING, PARTICLES, Row, THICKNESS, TRIANGLES};
 use crate::measure::median;
 
+impl Row {
+    /// Takes a tick into account: how many pairs of triangles intersect, how many are near each other, and how often was searched.
+    pub(super) fn watch(&mut self, intersections: usize, (pairs, searches): (usize, u32)) {
+        self.intersections = self.intersections.max(intersections);
+        self.ticks_with += usize::from(intersections > 0);
+        self.pairs = self.pairs.max(pairs);
+        self.searches += f64::from(searches) / self.ticks as f64;
+    }
+}
+
 /// Up to which speed choices are compared (m/s).
 pub const FASTEST: f32 = 5.0;
 

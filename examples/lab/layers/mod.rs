@@ -384,16 +384,6 @@ impl Case {
     }
 }
 
-impl Row {
-    /// Takes a tick into account: how many pairs of triangles intersect, how many are near each other, and how often was searched.
-    fn watch(&mut self, intersections: usize, (pairs, searches): (usize, u32)) {
-        self.intersections = self.intersections.max(intersections);
-        self.ticks_with += usize::from(intersections > 0);
-        self.pairs = self.pairs.max(pairs);
-        self.searches += f64::from(searches) / self.ticks as f64;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

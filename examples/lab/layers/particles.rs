@@ -19,12 +19,13 @@ use bevy_drape::{
 
 use super::{hash::Hash, play::Play};
 
-/// Sub-steps while balls push, at least: what the plugin takes where layers touch.
+/// Sub-steps while balls may push, at least: what the plugin takes where layers touch. Without contact both take as many as the cloth
+/// needs.
 const FOR_LAYERS: u32 = 16;
 
 /// The margin of a search, at least and at most, as a part of the thickness; between these it is what particles may come nearer to
 /// each other in a tick.
-const MARGINS: [f32; 2] = [0.25, 1.0];
+const MARGINS: [f32; 2] = [0.25, 2.0];
 
 /// Balls nearer than this many thicknesses at rest are no pair: neighbours at the spacing itself, too.
 const AT_REST: f32 = 1.001;
