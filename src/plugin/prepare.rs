@@ -296,6 +296,9 @@ impl PreparingItem<'_, '_> {
         scratch.is_in_island = false;
         scratch.self_collision = inputs.self_collision;
         scratch.was_put = was_written || !was_built || scratch.teleports;
+        if scratch.was_put {
+            state.carriers.clear();
+        }
         if inputs.self_collision.is_none() {
             scratch.mutual = None;
         } else if let Some(mutual) = &mut scratch.mutual

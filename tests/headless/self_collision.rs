@@ -379,3 +379,22 @@ fn a_sheet_thrown_onto_its_edge_does_not_pass_through_itself() {
         }
     }
 }
+
+/// Layers that were near each other are those of other particles once the cloth is built again, finer: alone, and beside another.
+#[test]
+fn a_cloth_in_contact_may_become_finer() {
+    let (mut app, sheets) = floating(0.006);
+    tick(&mut app, 4);
+    let finer = Cloth::new(40, 40, 0.02).lying().centred();
+    app.world_mut().entity_mut(sheets[0]).insert(finer.clone());
+    tick(&mut app, 4);
+    assert_eq!(particles(&app, sheets[0]).len(), 1600);
+    let alone = standing(&mut app, Transform::from_xyz(9.0, 0.55, 0.0));
+    app.insert_resource(ClothGravity(Vec3::NEG_Y * GRAVITY));
+    app.world_mut().spawn(ClothCollider::plane());
+    tick(&mut app, 60);
+    assert!(stats(&app, alone).layer_pairs > 0);
+    app.world_mut().entity_mut(alone).insert(finer);
+    tick(&mut app, 4);
+    assert_eq!(particles(&app, alone).len(), 1600);
+}

@@ -9,8 +9,8 @@
 //!   |m + s d|² = m² − s d² (2 (−m·d / d²) − s) ≤ m²
 //! ```
 //!
-//! So this takes energy from each particle, or none, whatever has become of the contact since. Momentum is that of the pushes, as far
-//! as s is the same for all.
+//! So this takes energy from each particle, or none, whatever has become of the contact since. Momentum
+//! is not kept: so only what rests on something is held.
 
 use bevy::math::Vec3;
 use multiversion::multiversion;
@@ -60,17 +60,19 @@ impl Hold {
         is_pushed: &mut [bool],
     ) -> (f32, f32) {
         let drift = passed.drift(cloths);
-        let mut farthest = Farthest::default();
+        let longest = |squares: Lanes| squares.into_iter().fold(0.0, f32::max).sqrt();
+        let (mut pushed, mut way) = (0.0_f32, 0.0_f32);
         for (index, cloth) in cloths.iter_mut().enumerate() {
-            let before = farthest.push;
+            let mut farthest = Farthest::default();
             let drift = cloth.own_vector(drift).to_array();
             let places = passed.places(index);
             let blocks = cloth.particles.blocks_mut();
             hold(blocks, &self.cloths[index], places, drift, &mut farthest);
-            is_pushed[index] |= farthest.push != before;
+            is_pushed[index] |= farthest.push != [0.0; LANES];
+            pushed = pushed.max(longest(farthest.push));
+            way = way.max(longest(farthest.way));
         }
-        let longest = |squares: Lanes| squares.into_iter().fold(0.0, f32::max).sqrt();
-        (longest(farthest.push), 2.0 * longest(farthest.way))
+        (pushed, 2.0 * way)
     }
 }
 

@@ -124,16 +124,17 @@ impl MutualContact {
         if is_known {
             self.nearer = self.origin.approach(cloths);
             self.members.begin(cloths);
+            if let Some(approach) = self.near.approach(cloths) {
+                self.near.pass(approach);
+            }
         } else {
             // Particles of other cloths, perhaps, or as they were elsewhere.
+            self.near.forget();
             self.members.clear();
             self.member_of.clear();
             self.pairs.clear();
         }
         (self.wait, self.waited) = (0, 0);
-        if let Some(approach) = self.near.approach(cloths) {
-            self.near.pass(approach);
-        }
         if !self.pairs.is_empty() {
             self.passed.set(cloths);
         }
