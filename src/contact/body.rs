@@ -166,11 +166,12 @@ impl Body {
         way: &mut MovingCollider,
         substep: SubStep,
     ) -> [f32; 2] {
-        let (_, centre) = self.centre(way, substep.end());
+        let (pose, centre) = self.centre(way, substep.end());
+        let out = |place: Vec3| way.shape.nearest(pose, place).normal;
         let (mut places, mut moves) = (Given::default(), Given::default());
         for (index, old) in &before.0 {
             let new = &particles.blocks()[*index];
-            self.carriers.note(*index, [old, new]);
+            self.carriers.note(*index, [old, new], out);
             for lane in 0..LANES {
                 let inverse_mass = new.inverse_mass(lane);
                 let position = new.position(lane);

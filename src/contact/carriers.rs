@@ -13,18 +13,18 @@ use bevy::math::{DVec3, Mat3, Vec3};
 use super::BodyMass;
 use crate::cloth::{Block, ClothParticles, LANES, Load, Slot};
 
-/// For how many sub-steps a particle still counts that was not pushed again.
-const REMEMBERED: u8 = 4;
+/// In how many sub-steps a particle still carries that is not pushed again.
+const REMEMBERED: u8 = 3;
 
 /// How many times as heavy as a particle its load is at most: more than that threads do not hold well.
-const MAX_RATIO: f32 = 3.0e3;
+const MAX_LOAD: f32 = 3.0e3;
 
 /// A particle that carries a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Carrier {
     slot: Slot,
-    /// Which way the body pushed it last, of length 1.
-    way: Vec3,
+    /// Out of the body where it lay on it last, of length 1.
+    normal: Vec3,
     /// For how many sub-steps it still counts.
     left: u8,
 }
@@ -64,17 +64,18 @@ impl Carriers {
             .binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
     }
 
-    /// Notes the particles of a block that the body has just pushed. Blocks come in the order of the cloth.
-    pub fn note(&mut self, block: usize, [old, new]: [&Block; 2]) {
+    /// Notes the particles of a block that the body has just pushed, with what leads `out` of it in a place. Blocks come in the order of
+    /// the cloth.
+    pub fn note(&mut self, block: usize, [old, new]: [&Block; 2], out: impl Fn(Vec3) -> Vec3) {
         for lane in 0..LANES {
-            let way = new.position(lane) - old.position(lane);
-            if new.inverse_mass(lane) == 0.0 || way == Vec3::ZERO {
+            if new.inverse_mass(lane) == 0.0 || new.position(lane) == old.position(lane) {
                 continue;
             }
             let slot = Slot { block, lane };
+            let normal = out(new.position(lane));
             let carrier = Carrier {
                 slot,
-                way: way.normalize_or_zero(),
+                normal,
                 left: REMEMBERED,
             };
             match self.position(slot) {
@@ -103,10 +104,11 @@ impl Carriers {
         others: impl Iterator<Item = &'a Self> + Clone,
     ) {
         self.all.retain_mut(|carrier| {
-            carrier.left = carrier.left.saturating_sub(1);
             let Slot { block, lane } = carrier.slot;
             let block = particles.blocks().get(block);
-            carrier.left > 0
+            let is_left = carrier.left > 0;
+            carrier.left = carrier.left.saturating_sub(1);
+            is_left
                 && block.is_some_and(|block| block.inverse_mass(lane) > 0.0)
                 && !others
                     .clone()
@@ -127,14 +129,14 @@ impl Carriers {
             0.0
         };
         let most = (mass.inverse_mass + largest).recip();
-        let ratio = (most / sum).min(MAX_RATIO);
+        let part = (most / sum).min(MAX_LOAD);
         let from = particles.loads_mut().len();
-        if ratio.is_finite() && ratio > 0.0 {
-            for &Carrier { slot, way, .. } in &self.all {
+        if part.is_finite() && part > 0.0 {
+            for &Carrier { slot, normal, .. } in &self.all {
                 let block = &particles.blocks()[slot.block];
-                let mass = ratio / block.inverse_mass(slot.lane);
+                let mass = part / block.inverse_mass(slot.lane);
                 let surface = surface(block.position(slot.lane));
-                let load = Load::new(slot, mass, way, surface);
+                let load = Load::new(slot, mass, normal, surface);
                 particles.loads_mut().push(load);
             }
         }
@@ -156,7 +158,7 @@ impl Carriers {
             turn += (place.as_dvec3() - centre).cross(given);
             // What is drawn away from the body carries it no longer.
             if let Ok(at) = self.position(slot)
-                && moved.dot(self.all[at].way) > 0.0
+                && moved.dot(self.all[at].normal) > 0.0
             {
                 self.all[at].left = 0;
             }

@@ -4,6 +4,11 @@ use bevy::math::Vec3;
 
 use crate::cloth::{Block, Slot};
 
+/// What a body at rest is thrown up and down by: in a tick it gets its gravity at once, and cloth gives it back sub-step by sub-step. So
+/// it leaves particles by some sub-steps' pull, or by a part of the way that both go.
+const SAME_PULLS: f32 = 64.0;
+const SAME_WAY: f32 = 0.1;
+
 /// A part of a body's mass that a particle carries while a sub-step's springs are solved: so they hold what lies on them, and not the
 /// particle alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,8 +17,8 @@ pub(crate) struct Load {
     pub slot: Slot,
     /// Mass (kg).
     pub mass: f32,
-    /// Which way the body pushes the particle, of length 1: along that they go together.
-    pub way: Vec3,
+    /// Out of the body in that place, of length 1.
+    pub normal: Vec3,
     /// How far the body's surface there goes in the sub-step by itself (m).
     pub surface: Vec3,
     /// What the sub-step moved it by, more than it would have gone (m).
@@ -26,11 +31,11 @@ pub(crate) struct Load {
 
 impl Load {
     /// Of a mass (kg) on a particle.
-    pub fn new(slot: Slot, mass: f32, way: Vec3, surface: Vec3) -> Self {
+    pub fn new(slot: Slot, mass: f32, normal: Vec3, surface: Vec3) -> Self {
         Self {
             slot,
             mass,
-            way,
+            normal,
             surface,
             moved: Vec3::ZERO,
             alone: Vec3::ZERO,
@@ -38,8 +43,9 @@ impl Load {
         }
     }
 
-    /// Adds it to its particle, which a sub-step has just been foreseen for: both go on with the momentum that they have together. `pull`
-    /// is what gravity alone moves a particle by in that (m): the body has its own, from whoever moves it.
+    /// Puts it on its particle, which a sub-step has just been foreseen for: both go on with the momentum that they have together. `pull`
+    /// is what gravity alone moves a particle by in that (m): the body has its own, from whoever moves it. It goes as the body's surface does,
+    /// which so has a hold of the particle as by friction without a limit; a body that leaves the particle behind is not carried.
     pub fn put_on(&mut self, blocks: &mut [Block], pull: Vec3) {
         let Slot { block, lane } = self.slot;
         let block = &mut blocks[block];
@@ -49,7 +55,15 @@ impl Load {
         }
         let foreseen = block.displacement(lane);
         let before = foreseen - pull;
-        self.alone = before + self.way * self.way.dot(self.surface - before);
+        let nearing = self.normal.dot(self.surface - before);
+        let fastest = self.surface.length().max(before.length());
+        // NaN is not carried.
+        let stays = nearing >= -(SAME_PULLS * pull.length() + SAME_WAY * fastest);
+        if !stays {
+            self.inverse_mass = 0.0;
+            return;
+        }
+        self.alone = self.surface;
         let own_part = 1.0 / (1.0 + self.mass * self.inverse_mass);
         block.set_displacement(lane, self.alone.lerp(foreseen, own_part));
         block.set_inverse_mass(lane, self.inverse_mass * own_part);
