@@ -9,7 +9,7 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
-    prelude::{ClothAttachments, ClothCollider, ClothGravity, DrapePlugins, Pin, Pins},
+    prelude::{ClothAttachments, ClothBody, ClothCollider, ClothGravity, DrapePlugins, Pin, Pins},
     solver::{
         Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
         methods::meshes,
@@ -130,7 +130,8 @@ fn a_step_does_not_allocate() {
     sharp_colliders_do_not_allocate();
     a_mesh_does_not_allocate();
     neither_forces_nor_damping_allocate();
-    attachments_and_what_is_animated_allocate_nothing_more();
+    what_is_attached_or_animated_allocates_nothing();
+    what_is_pushed_allocates_nothing();
     cloths_made_alike_share_all_but_their_particles();
 }
 
@@ -253,11 +254,10 @@ fn a_mesh_does_not_allocate() {
     assert_eq!((change.allocations, change.reallocations), (0, 0));
 }
 
-/// Allocations of 20 ticks of an app on one thread: Bevy's own, whatever they are, and ours. The least of five times: buffers of Bevy's
-/// grow now and then. All of its schedules are on one thread, as each thread that is woken allocates.
-fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
+/// An app on one thread, as each thread that is woken allocates, and without the propagation of transforms, which allocates as it likes.
+fn app_on_one_thread() -> App {
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
+    app.add_plugins((MinimalPlugins, DrapePlugins::default()))
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
     app.finish();
     app.cleanup();
@@ -265,42 +265,76 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
     for (_, schedule) in schedules.iter_mut() {
         schedule.set_executor(SingleThreadedExecutor::new());
     }
+    app
+}
+
+/// Allocations in a hundred ticks, each after a change of the world, once there have been some.
+fn in_ticks(mut app: App, change: impl Fn(&mut World, u32)) -> usize {
+    let mut tick = |count: u32| {
+        change(app.world_mut(), count);
+        app.update();
+    };
+    (0..100).for_each(&mut tick);
+    let region = Region::new(ALLOCATOR);
+    (100..200).for_each(&mut tick);
+    let change = region.change();
+    change.allocations + change.reallocations
+}
+
+/// Allocations with a cloth whose attached pins move.
+fn with_attachments(pins: usize, is_animated: bool) -> usize {
+    let mut app = app_on_one_thread();
     let target = app.world_mut().spawn(Transform::default()).id();
     let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
     let attached = ClothAttachments::new(attached);
     let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached);
     let cloth = app.world_mut().spawn(cloth).id();
-    let mut tick = |count: u32| {
+    in_ticks(app, |world, count| {
         let some = 0.01 * (count % 7) as f32;
-        let world = app.world_mut();
-        if moves {
-            let mut place = world.get_mut::<Transform>(target).expect("a place");
-            place.translation.x = some;
-        }
+        let mut place = world.get_mut::<Transform>(target).expect("a place");
+        place.translation.x = some;
         if is_animated {
             world.resource_mut::<ClothGravity>().0.y = -9.81 - 10.0 * some;
             let mut material = world.get_mut::<ClothMaterial>(cloth).expect("a material");
             material.damping = 0.01 + some;
             material.friction = 0.4 + some;
         }
-        app.update();
-    };
-    (0..100).for_each(&mut tick);
-    let windows = (0..5).map(|window| {
-        let region = Region::new(ALLOCATOR);
-        (100 + 20 * window..120 + 20 * window).for_each(&mut tick);
-        let change = region.change();
-        change.allocations + change.reallocations
-    });
-    windows.min().expect("windows")
+    })
+}
+
+/// Allocations with a ball that is moved up and down on a taut cloth, which it presses on; the cloth pushes it back or not.
+fn with_a_ball(is_body: bool) -> usize {
+    let mut app = app_on_one_thread();
+    let edge = |row: u32, column: u32| row % 19 == 0 || column % 19 == 0;
+    app.world_mut().spawn((
+        Cloth::new(20, 20, 0.05).lying().centred(),
+        Pins::filter(edge),
+    ));
+    let ball = (ClothCollider::ball(0.15), Transform::default());
+    let ball = app.world_mut().spawn(ball).id();
+    if is_body {
+        let body = ClothBody::new(0.5, Vec3::splat(0.004));
+        app.world_mut().entity_mut(ball).insert(body);
+    }
+    in_ticks(app, |world, count| {
+        let mut place = world.get_mut::<Transform>(ball).expect("a place");
+        place.translation.y = 0.15 - 0.005 * (count % 7) as f32;
+    })
+}
+
+/// Whether a ball pushes cloth alone or is pushed back.
+fn what_is_pushed_allocates_nothing() {
+    for is_body in [false, true] {
+        let allocations = with_a_ball(is_body);
+        assert_eq!(allocations, 0, "pushed back: {is_body}");
+    }
 }
 
 /// Whether a cloth has one attached pin or two hundred, and whether what tethers do not depend on is animated.
-fn attachments_and_what_is_animated_allocate_nothing_more() {
-    let one = in_ticks(1, true, false);
-    for (pins, is_animated) in [(200, false), (1, true)] {
-        let more = in_ticks(pins, true, is_animated);
-        assert!(more <= one, "{more} of {one}: {pins} pins, {is_animated}");
+fn what_is_attached_or_animated_allocates_nothing() {
+    for (pins, is_animated) in [(1, false), (200, false), (1, true)] {
+        let allocations = with_attachments(pins, is_animated);
+        assert_eq!(allocations, 0, "{pins} pins, animated: {is_animated}");
     }
 }
 

@@ -114,14 +114,18 @@ impl Before {
 
 impl Body {
     /// Of a collider, if it gives way.
-    pub fn of(id: usize, collider: &MovingCollider) -> Option<Self> {
+    /// Its memory is that of a body of an earlier tick, if there is any.
+    pub fn of(id: usize, collider: &MovingCollider, spare: &mut Vec<Carriers>) -> Option<Self> {
+        let mass = collider.body?;
+        let mut carriers = spare.pop().unwrap_or_default();
+        carriers.clear();
         Some(Self {
             id,
-            mass: collider.body?,
+            mass,
             start: collider.clone(),
             searched: collider.clone(),
             change: BodyChange::default(),
-            carriers: Carriers::default(),
+            carriers,
         })
     }
 

@@ -38,7 +38,7 @@ pub(super) struct Carriers {
     /// From where to where their loads are among the particles'.
     loads: [usize; 2],
     /// How many times as heavy as all particles of a row and a column through the carriers the body is.
-    pub ratio: f32,
+    ratio: f32,
 }
 
 impl Carriers {
@@ -46,6 +46,18 @@ impl Carriers {
         self.all.clear();
         self.loads = [0; 2];
         self.ratio = 0.0;
+    }
+
+    /// How many times as heavy as the particles of the threads by which it hangs the body is: as far as the cloth holds it, which has
+    /// changed its velocity by `held` (m/s) in a tick in which it would fall by another (m/s).
+    pub fn load_ratio(&self, held: f32, fall: f32) -> f32 {
+        // Without a fall nothing has to be held.
+        let part = held / fall.max(f32::MIN_POSITIVE);
+        if fall > 0.0 && part > 0.0 {
+            self.ratio * part.min(1.0)
+        } else {
+            0.0
+        }
     }
 
     pub fn as_slice(&self) -> &[Carrier] {

@@ -11,6 +11,7 @@ use super::{
     BodyChange, MovingCollider, NarrowPhase,
     body::{Before, Body},
     candidates::Candidates,
+    carriers::Carriers,
     faces::{Pushed, ResumePoint, SubstepMotion},
     kept::Kept,
     particle::{lane_motion, push_particles},
@@ -63,6 +64,8 @@ pub struct Detection {
     kept: Kept,
     /// Those of the colliders that give way, and how far any of them may be from where it was searched for (m).
     bodies: Vec<Body>,
+    /// Memory of those that were.
+    spare: Vec<Carriers>,
     deviation: f32,
     before: Before,
     shapes: ShapeCache,
@@ -81,7 +84,7 @@ impl Detection {
         self.candidates.clear();
         self.shapes.clear();
         self.colliders.clear();
-        self.bodies.clear();
+        (self.spare).extend(self.bodies.drain(..).map(|body| body.carriers));
         self.deviation = 0.0;
         self.margin = margin;
         (self.moved, self.moved_now, self.odometer) = (0.0, 0.0, 0.0);
@@ -156,7 +159,7 @@ impl Detection {
             return;
         }
         if self.bodies.iter().all(|body| body.id != id) {
-            self.bodies.extend(Body::of(id, collider));
+            (self.bodies).extend(Body::of(id, collider, &mut self.spare));
         }
         if !self.has_origin {
             // Pushes that balance springs add up to much in a tick, and lead nowhere: that is measured from here.

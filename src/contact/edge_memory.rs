@@ -214,7 +214,7 @@ impl KnownFace {
     }
 }
 
-/// How far the farthest of three points has moved (m); NaN if one is not known.
+/// How far the farthest of three points has moved (m); NaN where none is known.
 #[inline]
 fn farthest([a, b, c]: [Vec3; 3], [p, q, r]: [Vec3; 3]) -> f32 {
     let (a, b, c) = (
@@ -333,18 +333,28 @@ impl EdgeMemories {
         });
     }
 
-    /// What is known of a collider's edges, on a cloth of so many particles.
+    /// Begins a tick again.
+    pub fn restart(&mut self) {
+        for memory in &mut self.0 {
+            memory.tick = memory.tick.wrapping_add(1);
+        }
+    }
+
+    /// What is known of a collider's edges, on a cloth of so many particles. Numbers change when colliders come and go: what was not
+    /// used in this tick may be of the same shape under another number.
     pub fn of(&mut self, id: usize, shape: &ColliderShape, particles: usize) -> &mut EdgeMemory {
-        let known = self.0.iter().position(|memory| memory.id == id);
+        let is_of =
+            |memory: &EdgeMemory| memory.shape == *shape && memory.places.len() == particles;
+        let mut all = self.0.iter();
+        let same = all.position(|memory| memory.id == id && is_of(memory));
+        let mut all = self.0.iter();
+        let known = same.or_else(|| all.position(|memory| memory.age > 0 && is_of(memory)));
         let at = known.unwrap_or(self.0.len());
         if known.is_none() {
             self.0.push(EdgeMemory::new(id, shape, particles));
         }
         let memory = &mut self.0[at];
-        if memory.shape != *shape || memory.places.len() != particles {
-            *memory = EdgeMemory::new(id, shape, particles);
-        }
-        memory.age = 0;
+        (memory.id, memory.age) = (id, 0);
         memory
     }
 }

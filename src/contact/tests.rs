@@ -62,14 +62,26 @@ fn all_of(
     particles: &ClothParticles,
 ) -> Detection {
     let mut detection = Detection::default();
+    let colliders: Vec<_> = colliders.iter().enumerate().collect();
+    begin_with_all(&mut detection, &colliders, settings, surface, particles);
+    detection
+}
+
+/// Begins such a tick, with the colliders by their numbers.
+fn begin_with_all(
+    detection: &mut Detection,
+    colliders: &[(usize, &MovingCollider)],
+    settings: &ContactSettings,
+    surface: &Arc<Surface>,
+    particles: &ClothParticles,
+) {
     detection.begin(surface, f32::INFINITY);
     let all: Vec<u32> = (0..particles.len() as u32).collect();
     let cloth = particles.bounding_sphere();
-    for (id, collider) in colliders.iter().enumerate() {
+    for &(id, collider) in colliders {
         let (_, narrow_phase) = detection.probe(collider, settings, surface, 0.0, &cloth);
         detection.add(id, collider, narrow_phase, &all, particles);
     }
-    detection
 }
 
 /// How deep the deepest free particle is inside of a collider when a part of the tick has passed (m).

@@ -204,8 +204,8 @@ impl IntegratingItem<'_, '_> {
 
     /// Sub-steps that hold what the cloth carries.
     pub(super) fn load_substeps(&self, step: &TickStep) -> f32 {
-        let ratio = self.scratch.detection.load_ratio();
         let (gravity, spacing) = (step.acceleration.length(), self.built.surface().spacing());
+        let ratio = (self.scratch.detection).load_ratio(gravity * step.seconds);
         Substepping::for_load(ratio, gravity, spacing.shortest, step.seconds)
     }
 

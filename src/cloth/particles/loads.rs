@@ -17,14 +17,14 @@ impl ClothParticles {
 
     /// Adds all loads to their particles, which a sub-step has just been foreseen for, with what gravity moves a particle by in
     /// that (m).
-    pub(crate) fn take_loads_on(&mut self, pull: Vec3) {
+    pub(crate) fn put_loads_on(&mut self, pull: Vec3) {
         for load in &mut self.loads {
             load.put_on(&mut self.blocks, pull);
         }
     }
 
     /// Takes them off again.
-    pub(crate) fn put_loads_down(&mut self) {
+    pub(crate) fn take_loads_off(&mut self) {
         for load in &mut self.loads {
             load.take_off(&mut self.blocks);
         }

@@ -3,7 +3,7 @@
 use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
-    contact::{MovingCollider, carriers::Carrier},
+    contact::{MovingCollider, body::Body, carriers::Carrier},
     solver::SubStep,
 };
 
@@ -14,11 +14,14 @@ impl Detection {
         body.map_or(&[], |body| body.carriers.as_slice())
     }
 
-    /// How many times as heavy as the particles of the threads by which it hangs the heaviest body is that particles carry; 0 if they
-    /// carry none.
-    pub(crate) fn load_ratio(&self) -> f32 {
-        let ratios = self.bodies.iter().map(|body| body.carriers.ratio);
-        ratios.fold(0.0, f32::max)
+    /// How many times as heavy as the particles of the threads by which it hangs the heaviest body is that particles carry, as far as
+    /// they have held it in a tick in which it falls by so much (m/s); 0 if they carry none.
+    pub(crate) fn load_ratio(&self, fall: f32) -> f32 {
+        let ratio = |body: &Body| {
+            let held = body.change().velocity.length();
+            body.carriers.load_ratio(held, fall)
+        };
+        self.bodies.iter().map(ratio).fold(0.0, f32::max)
     }
 
     /// Begins a tick of so many sub-steps with the particles that carried a body as the last one ended, those of each collider's number.

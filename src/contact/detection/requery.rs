@@ -16,6 +16,7 @@ impl Detection {
     /// Begins the tick again, from the same particles: for one that is done again.
     pub fn restart(&mut self) {
         self.shapes.clear();
+        self.shapes.memories.restart();
         for touch in &mut self.touches {
             (touch.deepest, touch.area, touch.volume) = (0.0, 0.0, 0.0);
             (touch.impulse, touch.angular_impulse) = (Vec3::ZERO, Vec3::ZERO);

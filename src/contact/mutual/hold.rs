@@ -44,7 +44,7 @@ impl Hold {
         }
     }
 
-    /// Has a particle of a cloth be held by this push, in its frame (m).
+    /// Has a particle of a cloth be held by this mean of its last pushes, in its frame (m a sub-step).
     pub fn set(&mut self, cloth: usize, Slot { block, lane }: Slot, push: Vec3) {
         for (axis, push) in self.cloths[cloth][block].iter_mut().zip(push.to_array()) {
             axis[lane] = push;

@@ -144,7 +144,11 @@ impl Members {
                 block.set_position(slot.lane, block.position(slot.lane) + push);
                 block.set_displacement(slot.lane, moved);
             }
-            *held += LATEST * (slowed - *held);
+            *held = if state.inverse_mass == 0.0 {
+                Vec3A::ZERO
+            } else {
+                *held + LATEST * (slowed - *held)
+            };
             hold.set(index, slot, cloth.own_vector((*held).into()));
             state.start = state.place;
         }

@@ -53,8 +53,8 @@ const ROUNDS: u32 = 4;
 const LONGEST_WAIT: u32 = 16;
 const PART_OF_WAY: f32 = 0.5;
 
-/// As long as particles come nearer to each other by less than this part of the thickness, those that are pushed are held by
-/// their last push in this many sub-steps at most.
+/// As long as particles come nearer to each other by less than this part of the thickness, those that are pushed are held by the
+/// mean of their last pushes in this many sub-steps at most.
 const HELD: f32 = 0.1;
 const LONGEST_HOLD: u32 = 3;
 

@@ -16,6 +16,7 @@ pub fn cases(cases: u32) -> ProptestConfig {
 }
 
 /// By `SplitMix64`.
+#[derive(Clone)]
 pub struct Random(pub u64);
 
 impl Random {

@@ -178,7 +178,7 @@ impl Solver {
             bending.prepare(blocks, weight_dt2);
             bending.solve(blocks, &kernels);
         }
-        particles.take_loads_on(pull.into());
+        particles.put_loads_on(pull.into());
         self.sweep
             .set_pace(Pace::new(weight_dt2, dt, self.retardation));
         tick.next += 1;
@@ -190,7 +190,7 @@ impl Solver {
         };
         let blocks = particles.blocks_mut();
         let swept = self.sweep.substep(blocks, &motion, self.bands);
-        particles.put_loads_down();
+        particles.take_loads_off();
         let (blocks, past) = particles.blocks_and_past();
         if kind == StepKind::Start {
             (kernels.begin_past)(blocks, past);

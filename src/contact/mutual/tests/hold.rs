@@ -74,6 +74,35 @@ fn what_is_held_gets_no_faster_and_is_not_turned_back() {
     }
 }
 
+/// Of two cloths each is marked that is held, and no other.
+#[test]
+fn each_cloth_that_is_held_is_marked() {
+    for marked in [[true, false], [false, true], [true, true], [false, false]] {
+        let mut cloths = vec![Sheeted::new(3, 0.2, |at| at), Sheeted::new(3, 0.2, |at| at)];
+        let (mut passed, mut hold) = (Origin::default(), Hold::default());
+        let slot = cloths[0].particles.layout().slot_of(4);
+        {
+            let participants = participants(&mut cloths, settings(0.01));
+            passed.set(&participants);
+            hold.clear(&participants);
+        }
+        for (index, cloth) in cloths.iter_mut().enumerate() {
+            let moved = Vec3::NEG_Y * 1.0e-4;
+            cloth
+                .particles
+                .set_displacement(4, moved)
+                .expect("it exists");
+            if marked[index] {
+                hold.set(index, slot, Vec3::Y * 1.0e-5);
+            }
+        }
+        let mut is_pushed = [false; 2];
+        let mut participants = participants(&mut cloths, settings(0.01));
+        hold.apply(&mut participants, &passed, &mut is_pushed);
+        assert_eq!(is_pushed, marked);
+    }
+}
+
 /// A sheet on one that lies on the floor: once at rest it is held where it is, one thickness above.
 #[test]
 fn layers_at_rest_stay_where_they_are() {
