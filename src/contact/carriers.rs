@@ -7,6 +7,10 @@
 //! and W its inverse mass matrix, the body then has the energy `½ ‖Σ Jᵢᵀ μᵢ Δᵢ‖²_W ≤ ½ Σ μᵢ Δᵢ² · K Σ μᵢ`, K being the largest inverse
 //! mass that the body shows in any of these places and directions. So none is gained as long as `Σ μᵢ ≤ 1/K`: of a ball, which
 //! turns, 2/7 of its mass.
+//!
+//! A particle has one inverse mass, so it is as heavy along the surface as across it. It begins the sub-step with the momentum that the
+//! body has there, in all directions: what it carries rolls, and does not slide. (With its own momentum along the surface instead, the
+//! body came to rest as soon, and without friction fell through: its particles slipped aside from under it.)
 
 use bevy::math::{DVec3, Mat3, Vec3};
 
