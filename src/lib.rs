@@ -31,10 +31,13 @@
 //! | [`contact`] | what happens on *touch*: shapes, push-out, friction |
 //! | [`plugin`] | the ECS: plugins, system sets, components, messages, mesh, gizmos, diagnostics, rapier, panel |
 //!
+//! How to use it is told in the [`guide`], chapter by chapter.
+//!
 //! Lengths are metres, masses kilograms, times seconds throughout.
 
 pub mod cloth;
 pub mod contact;
+pub mod guide;
 pub mod hierarchy;
 pub mod plugin;
 pub mod solver;

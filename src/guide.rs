@@ -1,0 +1,22 @@
+//! The guide: from a first cloth to what to do when one fails. Each chapter can be read alone, and its programs are run as tests.
+//!
+//! 1. [Your first cloth](first_cloth): a sheet, a ball, a material, and where its particles are.
+//! 2. [Your own model](own_model): any triangle mesh, from Blender to Bevy.
+//! 3. [Tuning](tuning): what stretches, what swings, what costs.
+//! 4. [When it fails](when_it_fails): faults, limits, and what to do about each.
+//! 5. [Migrating from bevy_silk](migrating_from_bevy_silk): its names, and ours.
+
+#[doc = include_str!("guide/first_cloth.md")]
+pub mod first_cloth {}
+
+#[doc = include_str!("guide/own_model.md")]
+pub mod own_model {}
+
+#[doc = include_str!("guide/tuning.md")]
+pub mod tuning {}
+
+#[doc = include_str!("guide/when_it_fails.md")]
+pub mod when_it_fails {}
+
+#[doc = include_str!("guide/migrating_from_bevy_silk.md")]
+pub mod migrating_from_bevy_silk {}
