@@ -21,8 +21,7 @@ pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
 pub use springs::{Spring, SpringKind, Springs};
 pub use surface::{
-    BoundVertex, MAX_MESH_PARTICLES, Spacing, Surface, SurfaceBinding, TriangleMesh,
-    VertexAttribute,
+    MAX_MESH_PARTICLES, Spacing, Surface, SurfaceBinding, TriangleMesh, VertexAttribute,
 };
 
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};

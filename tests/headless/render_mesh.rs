@@ -70,6 +70,7 @@ fn is_drawn_where_the_cloth_is() {
             .world_mut()
             .spawn(driven(hidden, mesh.clone(), own))
             .id();
+        let unwritten = vertices(&app, hidden, Mesh::ATTRIBUTE_POSITION);
         for ticks in [20, 20, 1] {
             tick(&mut app, ticks);
             let (found, expected) = (drawn(&app, fine), drawn(&app, seen));
@@ -91,12 +92,7 @@ fn is_drawn_where_the_cloth_is() {
         }
         // The cloth's own mesh is not written while it is hidden.
         let own = vertices(&app, hidden, Mesh::ATTRIBUTE_POSITION);
-        let rest = surface.rest_positions();
-        assert!(
-            own.iter()
-                .zip(rest)
-                .all(|(own, rest)| own.distance(*rest) < 1.0e-6)
-        );
+        assert_eq!(own, unwritten);
         // Others draw the asset as it was.
         let at_rest = match meshes(&app)
             .get(&mesh)

@@ -16,8 +16,11 @@
 use bevy::math::Vec3;
 use parry3d::{query::PointQueryWithLocation, shape::TriMesh};
 
-use super::Surface;
-use crate::cloth::{ClothError, FARTHEST};
+use super::{
+    Surface,
+    bound::{Bound, Eight, Frame, write_eights},
+};
+use crate::cloth::{ClothError, FARTHEST, LANES};
 
 /// What of a tangent has to lie in the surface, for the frame to follow it.
 const LEAST_ALONG: f32 = 0.1;
@@ -25,77 +28,9 @@ const LEAST_ALONG: f32 = 0.1;
 /// A mesh that is bound to a surface: where its vertices are follows from where the particles are.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct SurfaceBinding {
-    vertices: Vec<Bound>,
+    eights: Vec<Eight>,
+    len: usize,
     has_tangents: bool,
-}
-
-/// A vertex of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Bound {
-    corners: [u32; 3],
-    /// Barycentric coordinates of its point.
-    weights: [f32; 3],
-    /// α and β.
-    along: [f32; 2],
-    /// From its point to the vertex, in its frame (m).
-    offset: Vec3,
-    /// Its normal and its tangent, in its frame.
-    normal: Vec3,
-    tangent: Vec3,
-}
-
-/// Vertices where a surface takes them.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BoundVertex {
-    /// Where it is (m).
-    pub position: Vec3,
-    /// Its normal, as long as at rest.
-    pub normal: Vec3,
-    /// Its tangent, as long as at rest; zero of a mesh without tangents.
-    pub tangent: Vec3,
-}
-
-/// Where a vertex's point is, and its frame.
-struct Frame {
-    point: Vec3,
-    along: Vec3,
-    across: Vec3,
-    normal: Vec3,
-}
-
-impl Frame {
-    #[inline(always)]
-    fn new([a, b, c]: [Vec3; 3], normals: [Vec3; 3], weights: [f32; 3], along: [f32; 2]) -> Self {
-        let blend = |[a, b, c]: [Vec3; 3]| a * weights[0] + b * weights[1] + c * weights[2];
-        let (ab, ac) = (b - a, c - a);
-        // Opposite normals cancel out in a face that is folded up: its own is left.
-        let normal = blend(normals).try_normalize();
-        let normal = normal.unwrap_or_else(|| ab.cross(ac).normalize_or(Vec3::Y));
-        let direction = ab * along[0] + ac * along[1];
-        let across = (direction - normal * normal.dot(direction)).try_normalize();
-        let along = across.unwrap_or_else(|| normal.any_orthonormal_vector());
-        Self {
-            point: blend([a, b, c]),
-            along,
-            across: normal.cross(along),
-            normal,
-        }
-    }
-
-    /// A vector that is given in the frame.
-    #[inline(always)]
-    fn out(&self, inside: Vec3) -> Vec3 {
-        self.along * inside.x + self.across * inside.y + self.normal * inside.z
-    }
-
-    /// A vector as the frame has it.
-    fn inside(&self, out: Vec3) -> Vec3 {
-        Vec3::new(
-            out.dot(self.along),
-            out.dot(self.across),
-            out.dot(self.normal),
-        )
-    }
 }
 
 impl SurfaceBinding {
@@ -158,25 +93,24 @@ impl SurfaceBinding {
                 corners,
                 weights,
                 along,
-                offset: frame.inside(position - frame.point),
-                normal: frame.inside(normal),
-                tangent: frame.inside(tangent),
+                inside: [position - frame.point, normal, tangent].map(|out| frame.inside(out)),
             });
         }
         Ok(Self {
-            vertices,
+            eights: vertices.chunks(LANES).map(Eight::of).collect(),
+            len: vertices.len(),
             has_tangents,
         })
     }
 
     /// How many vertices there are.
     pub fn len(&self) -> usize {
-        self.vertices.len()
+        self.len
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.vertices.is_empty()
+        self.len == 0
     }
 
     /// Whether the vertices have tangents.
@@ -184,23 +118,25 @@ impl SurfaceBinding {
         self.has_tangents
     }
 
-    /// Where the vertices are, and how they face, while the particles are at `positions` (m) and
-    /// [`Surface::normals_at`] are the `normals` there. Both are as many as the surface has particles.
-    pub fn vertices<'a>(
-        &'a self,
-        positions: &'a [Vec3],
-        normals: &'a [Vec3],
-    ) -> impl ExactSizeIterator<Item = BoundVertex> + 'a {
-        self.vertices.iter().map(|bound| {
-            let places = bound.corners.map(|corner| positions[corner as usize]);
-            let around = bound.corners.map(|corner| normals[corner as usize]);
-            let frame = Frame::new(places, around, bound.weights, bound.along);
-            BoundVertex {
-                position: frame.point + frame.out(bound.offset),
-                normal: frame.out(bound.normal),
-                tangent: frame.out(bound.tangent),
-            }
-        })
+    /// Writes where the vertices are (m), their normals and the first three numbers of their tangents, while the particles are at
+    /// `particles` (m) and [`Surface::normals_at`] are the `around` there: both as many as the surface has particles. Normals and tangents
+    /// are as long as they were at rest. Nothing is written beyond the end of what is too short, nor tangents where there are none.
+    pub fn write(
+        &self,
+        particles: &[Vec3],
+        around: &[Vec3],
+        positions: &mut [[f32; 3]],
+        normals: &mut [[f32; 3]],
+        tangents: &mut [[f32; 4]],
+    ) {
+        let tangents = if self.has_tangents { tangents } else { &mut [] };
+        write_eights(
+            &self.eights,
+            [particles, around],
+            positions,
+            normals,
+            tangents,
+        );
     }
 }
 

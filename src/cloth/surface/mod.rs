@@ -6,6 +6,7 @@
 #[cfg(feature = "mesh")]
 mod asset;
 mod binding;
+mod bound;
 mod calibration;
 mod faces;
 mod flat;
@@ -29,7 +30,7 @@ use bevy::math::{Vec2, Vec3};
 
 use super::{ClothGrid, SpringKind};
 
-pub use binding::{BoundVertex, SurfaceBinding};
+pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
 pub use triangles::{TriangleMesh, VertexAttribute};
 

@@ -2,13 +2,13 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    math::{Affine3A, Mat3A, Vec3, Vec4},
+    math::{Affine3A, Vec3, Vec4},
     mesh::{Mesh, VertexAttributeValues},
     transform::components::GlobalTransform,
 };
 
 use super::super::{ClothMesh, frame::rigid};
-use crate::cloth::{BoundVertex, ClothError, Surface, SurfaceBinding, TriangleMesh};
+use crate::cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh};
 
 /// A mesh that is bound to a surface, and where it is drawn.
 #[derive(Debug)]
@@ -139,46 +139,25 @@ impl Driven {
         let (Some(positions), Some(normals)) = (positions, normals) else {
             return;
         };
-        let vertices = self.binding.vertices(&self.positions, &self.normals);
-        let vertices = vertices.zip(positions).zip(normals);
-        match (self.unscaled, tangents) {
-            (None, None) => {
-                for ((vertex, position), normal) in vertices {
-                    *position = vertex.position.to_array();
-                    *normal = vertex.normal.to_array();
-                }
+        let tangents = tangents.map_or(&mut [][..], |tangents| &mut tangents[..]);
+        let around = &self.normals;
+        self.binding
+            .write(&self.positions, around, positions, normals, tangents);
+        if let Some(by) = self.unscaled {
+            let for_normals = by.matrix3.inverse().transpose();
+            for position in positions {
+                *position = by.transform_point3((*position).into()).to_array();
             }
-            (None, Some(tangents)) => {
-                for (((vertex, position), normal), tangent) in vertices.zip(tangents) {
-                    *position = vertex.position.to_array();
-                    *normal = vertex.normal.to_array();
-                    [tangent[0], tangent[1], tangent[2]] = vertex.tangent.to_array();
-                }
+            for normal in &mut *normals {
+                let turned = for_normals * Vec3::from(*normal);
+                *normal = turned.normalize_or(Vec3::Y).to_array();
             }
-            (Some(by), tangents) => {
-                let for_normals = by.matrix3.inverse().transpose();
-                let mut tangents = tangents.into_iter().flatten();
-                for ((vertex, position), normal) in vertices {
-                    let vertex = scaled(vertex, by, for_normals);
-                    *position = vertex.position.to_array();
-                    *normal = vertex.normal.to_array();
-                    if let Some(tangent) = tangents.next() {
-                        [tangent[0], tangent[1], tangent[2]] = vertex.tangent.to_array();
-                    }
-                }
+            // Still at right angles to the normals: these are turned by the inverse of the transpose.
+            for tangent in tangents {
+                let turned = by.matrix3 * Vec4::from(*tangent).truncate();
+                [tangent[0], tangent[1], tangent[2]] = turned.normalize_or(Vec3::X).to_array();
             }
         }
-    }
-}
-
-/// A vertex as an entity has it that is scaled; its tangent at right angles to its normal.
-fn scaled(vertex: BoundVertex, by: Affine3A, for_normals: Mat3A) -> BoundVertex {
-    let normal = (for_normals * vertex.normal).normalize_or(Vec3::Y);
-    let tangent = by.matrix3 * vertex.tangent;
-    BoundVertex {
-        position: by.transform_point3(vertex.position),
-        normal,
-        tangent: tangent.normalize_or(Vec3::X),
     }
 }
 

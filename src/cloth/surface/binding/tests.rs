@@ -2,6 +2,14 @@ use super::*;
 use crate::cloth::{Cloth, TriangleMesh};
 use bevy::math::{Mat3, Quat};
 
+/// A vertex where a surface takes it.
+#[derive(Debug)]
+struct BoundVertex {
+    position: Vec3,
+    normal: Vec3,
+    tangent: Vec3,
+}
+
 /// A lying grid of 7 × 5 particles, 0.1 m apart, scaled along its axes.
 fn sheet(scale: Vec3) -> Surface {
     let cloth = Cloth::new(7, 5, 0.1).lying();
@@ -45,7 +53,23 @@ fn moved(
     let positions: Vec<_> = surface.rest_positions().iter().copied().map(to).collect();
     let mut normals = Vec::new();
     surface.normals_at(&positions, &mut normals);
-    binding.vertices(&positions, &normals).collect()
+    let [mut places, mut facing] = [(); 2].map(|()| vec![[f32::NAN; 3]; binding.len()]);
+    let mut tangents = vec![[f32::NAN; 4]; binding.len()];
+    binding.write(
+        &positions,
+        &normals,
+        &mut places,
+        &mut facing,
+        &mut tangents,
+    );
+    let vertices = places.iter().zip(&facing).zip(&tangents);
+    vertices
+        .map(|((position, normal), [x, y, z, _])| BoundVertex {
+            position: (*position).into(),
+            normal: (*normal).into(),
+            tangent: Vec3::new(*x, *y, *z),
+        })
+        .collect()
 }
 
 /// The vertices, their normals and their tangents are where a motion of a rigid body takes them, at rest too. Of numbers below 2 m, in
@@ -166,7 +190,11 @@ fn binds_to_the_nearest_face() {
     let fine = fine(&surface);
     let binding = bind(&surface, &fine);
     let rest = surface.rest_positions();
-    for (bound, position) in binding.vertices.iter().zip(&fine[0]) {
+    let lanes = binding
+        .eights
+        .iter()
+        .flat_map(|eight| (0..LANES).map(|lane| eight.lane(lane)));
+    for (bound, position) in lanes.zip(&fine[0]) {
         let at = |[a, b, c]: [Vec3; 3], [u, v, w]: [f32; 3]| a * u + b * v + c * w;
         let own = bound.corners.map(|corner| rest[corner as usize]);
         let distance = at(own, bound.weights).distance(*position);
