@@ -54,6 +54,8 @@ pub mod prelude {
     pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
     #[cfg(feature = "egui")]
     pub use crate::plugin::ClothPanelPlugin;
+    #[cfg(feature = "mesh")]
+    pub use crate::plugin::ClothRenderMesh;
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     pub use crate::plugin::{

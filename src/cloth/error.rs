@@ -155,6 +155,24 @@ pub enum ClothError {
         /// How many there would be.
         particles: usize,
     },
+    /// The cloth that drives a mesh does not exist, or is no cloth.
+    #[error("the mesh is driven by {cloth}, which does not exist or is no cloth")]
+    NoDrivingCloth {
+        /// What was to drive it.
+        cloth: Entity,
+    },
+    /// A mesh that is to be driven by a cloth, and is elsewhere.
+    #[error(
+        "vertex {vertex} of the mesh is {distance} m from the cloth at rest, whose size is {farthest} m: put the mesh where the cloth is"
+    )]
+    BoundTooFar {
+        /// Which vertex.
+        vertex: usize,
+        /// How far it is from the cloth (m).
+        distance: f32,
+        /// How far it may be (m).
+        farthest: f32,
+    },
     /// A transform that is not finite, that is scaled to nothing, or that an ancestor lacks.
     #[error("the global transform must be finite, with a scale other than zero: {transform}")]
     Transform {
@@ -279,8 +297,9 @@ pub enum ClothError {
 
 impl MapEntities for ClothError {
     fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        if let Self::NoTarget { target, .. } = self {
-            *target = mapper.get_mapped(*target);
+        if let Self::NoTarget { target: entity, .. } | Self::NoDrivingCloth { cloth: entity } = self
+        {
+            *entity = mapper.get_mapped(*entity);
         }
     }
 }

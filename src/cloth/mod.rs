@@ -20,7 +20,9 @@ pub use particles::{ClothParticles, ParticleId};
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
 pub use springs::{Spring, SpringKind, Springs};
-pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttribute};
+pub use surface::{
+    MAX_MESH_PARTICLES, Spacing, Surface, SurfaceBinding, TriangleMesh, VertexAttribute,
+};
 
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;

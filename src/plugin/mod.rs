@@ -37,6 +37,8 @@ mod push;
 mod rapier;
 #[cfg(feature = "rapier")]
 mod rapier_body;
+#[cfg(feature = "mesh")]
+mod render_mesh;
 mod scratch;
 mod search;
 mod sets;
@@ -79,6 +81,8 @@ pub use panel::{ClothPanel, ClothPanelPlugin};
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
 #[cfg(feature = "rapier")]
 pub use rapier_body::ClothPushBack;
+#[cfg(feature = "mesh")]
+pub use render_mesh::{ClothRenderMesh, ClothRenderMeshPlugin};
 pub use scratch::ClothScratch;
 pub use sets::ClothSystems;
 pub use simulation::ClothPlugin;
@@ -116,7 +120,9 @@ impl PluginGroup for DrapePlugins {
             .add(ClothPlugin::new(self.schedule))
             .add(ClothDiagnosticsPlugin::new(self.schedule));
         #[cfg(feature = "mesh")]
-        let group = group.add(ClothMeshPlugin::new(self.schedule));
+        let group = group
+            .add(ClothMeshPlugin::new(self.schedule))
+            .add(ClothRenderMeshPlugin);
         #[cfg(feature = "gizmos")]
         let group = group.add(ClothGizmosPlugin);
         #[cfg(feature = "rapier")]

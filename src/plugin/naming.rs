@@ -5,11 +5,13 @@ use bevy::{
     reflect::Reflect,
 };
 
-/// What of an entity is at fault: it may be a cloth and a collider at once.
+/// What of an entity is at fault: it may be a cloth and a collider at once, or a mesh that a cloth drives.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     Cloth,
     Collider,
+    #[cfg(feature = "mesh")]
+    RenderMesh,
 }
 
 /// An entity, by its [`Name`] where it has one.
@@ -25,6 +27,8 @@ impl NamedItem<'_, '_> {
         let part = match part {
             Part::Cloth => "cloth",
             Part::Collider => "cloth collider",
+            #[cfg(feature = "mesh")]
+            Part::RenderMesh => "cloth render mesh",
         };
         match self.name {
             Some(name) => format!("{part} \"{name}\""),

@@ -20,6 +20,7 @@ mod push_back;
 mod push_rapier;
 mod rapier;
 mod reflection;
+mod render_mesh;
 mod rest;
 mod scene_files;
 mod schedule;

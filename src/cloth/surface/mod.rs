@@ -5,6 +5,8 @@
 
 #[cfg(feature = "mesh")]
 mod asset;
+mod binding;
+mod bound;
 mod calibration;
 mod faces;
 mod flat;
@@ -12,6 +14,7 @@ mod from_grid;
 mod from_mesh;
 mod graph;
 mod grid;
+mod normals;
 mod orientation;
 mod paths;
 mod springs;
@@ -27,6 +30,7 @@ use bevy::math::{Vec2, Vec3};
 
 use super::{ClothGrid, SpringKind};
 
+pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
 pub use triangles::{TriangleMesh, VertexAttribute};
 

@@ -21,7 +21,9 @@ use bevy::{
         observer::On,
         query::QueryData,
         reflect::ReflectComponent,
-        schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
+        schedule::{
+            IntoScheduleConfigs, ScheduleLabel, SystemSet, common_conditions::resource_exists,
+        },
         system::{Commands, Query, Res, ResMut},
     },
     math::{Affine3A, Vec3},
@@ -74,9 +76,15 @@ pub struct ClothMesh {
     drawn: Vec<Vec3>,
     #[reflect(ignore)]
     normals: Vec<Vec3>,
-    /// What is drawn of a cloth that sleeps: when its particles were written, and where its entity is.
+    /// What is drawn of a cloth that sleeps: when its particles were written, where its entity is, and whether it is seen.
     #[reflect(ignore)]
-    settled: Option<(Tick, GlobalTransform)>,
+    settled: Option<(Tick, GlobalTransform, bool)>,
+    /// Whether it drives other meshes, in this frame.
+    #[reflect(ignore)]
+    drives: bool,
+    /// New whenever it is drawn elsewhere.
+    #[reflect(ignore)]
+    version: u32,
 }
 
 impl ClothMesh {
@@ -89,6 +97,30 @@ impl ClothMesh {
     pub fn source(&self) -> Option<&Handle<Mesh>> {
         self.source.as_ref()
     }
+
+    /// In this frame the cloth drives another mesh: where it is drawn has to be known, be it hidden.
+    pub(super) fn drive(&mut self) {
+        self.drives = true;
+    }
+
+    /// Whether it is drawn as this surface.
+    pub(super) fn is_of(&self, surface: &Arc<Surface>) -> bool {
+        Arc::ptr_eq(&self.surface, surface)
+    }
+
+    /// Where the particles are drawn, in the entity's frame, and a number that is new whenever that is elsewhere.
+    pub(super) fn drawn(&self) -> (u32, &[Vec3]) {
+        (self.version, &self.drawn)
+    }
+}
+
+/// What is done for the meshes in a frame.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum MeshSystems {
+    /// Cloths without a mesh are given one.
+    Add,
+    /// What is drawn is brought up to date.
+    Write,
 }
 
 /// Gives each cloth a mesh with UVs, normals and tangents that follows its particles, updated once a rendered frame and
@@ -139,7 +171,10 @@ impl Plugin for ClothMeshPlugin {
             // Before the asset events, from which Bevy's culling takes the new bounds.
             .add_systems(
                 PostUpdate,
-                (add_meshes, update)
+                (
+                    add_meshes.in_set(MeshSystems::Add),
+                    update.in_set(MeshSystems::Write),
+                )
                     .chain()
                     .after(ClothSystems::WriteBack)
                     .after(TransformSystems::Propagate)
@@ -279,12 +314,14 @@ impl DrawingItem<'_, '_> {
         meshes: &mut Assets<Mesh>,
         fraction: f32,
     ) {
+        let drives = std::mem::take(&mut self.mesh.drives);
         if !self.state.is_valid || !self.built.matches(&self.particles) {
             return;
         }
         // What the game hides no camera sees. What merely no camera looks at is kept up to date: whether one does is
         // known only after culling, too late for this frame.
-        if self.visibility.is_some_and(|visibility| !visibility.get()) {
+        let is_seen = self.visibility.is_none_or(|visibility| visibility.get());
+        if !is_seen && !drives {
             self.mesh.settled = None;
             return;
         }
@@ -300,6 +337,7 @@ impl DrawingItem<'_, '_> {
             tangents,
             rested,
             settled,
+            version,
             ..
         } = &mut *self.mesh;
         // Those of the tick: what has been attached since has yet to be taken over.
@@ -309,15 +347,8 @@ impl DrawingItem<'_, '_> {
         targets.extend(drawn_at.map(GlobalTransform::affine));
         // What sleeps is drawn once.
         let state = (self.state.rest.is_asleep() && *rested && !carriers.differ_from(targets))
-            .then_some((self.particles.last_changed(), entity));
+            .then_some((self.particles.last_changed(), entity, is_seen));
         if state.is_some() && *settled == state {
-            return;
-        }
-        let Some(mut mesh) = meshes.get_mut(&*handle) else {
-            return;
-        };
-        let surface = self.built.surface();
-        if mesh.count_vertices() != surface.vertices() {
             return;
         }
         interpolate(drawn, previous, &self.particles, fraction);
@@ -330,8 +361,15 @@ impl DrawingItem<'_, '_> {
             fraction,
         };
         place.place(carriers, drawn);
-        write_mesh(&mut mesh, surface, drawn, normals, tangents);
+        *version = version.wrapping_add(1);
         *settled = state;
+        let surface = self.built.surface();
+        if is_seen
+            && let Some(mut mesh) = meshes.get_mut(&*handle)
+            && mesh.count_vertices() == surface.vertices()
+        {
+            write_mesh(&mut mesh, surface, drawn, normals, tangents);
+        }
     }
 }
 

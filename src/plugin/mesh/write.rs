@@ -181,18 +181,7 @@ pub(super) fn write_mesh(
     normals: &mut Vec<Vec3>,
     tangents: &mut Tangents,
 ) {
-    normals.clear();
-    normals.resize(drawn.len(), Vec3::ZERO);
-    for face in surface.triangles() {
-        let [a, b, c] = face.map(|corner| drawn[corner as usize]);
-        // Of twice its area: the larger a face is, the more it says.
-        let normal = (b - a).cross(c - a);
-        face.iter()
-            .for_each(|corner| normals[*corner as usize] += normal);
-    }
-    for (particle, normal) in normals.iter_mut().enumerate() {
-        *normal = normal.normalize_or(surface.normal_of(particle));
-    }
+    surface.normals_at(drawn, normals);
     for (attribute, of_particles) in [
         (Mesh::ATTRIBUTE_POSITION, drawn),
         (Mesh::ATTRIBUTE_NORMAL, normals),

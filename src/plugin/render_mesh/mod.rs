@@ -1,0 +1,277 @@
+//! Fine meshes that coarse cloths drive.
+
+mod drawn;
+
+use std::sync::Arc;
+
+use bevy::{
+    app::{App, Plugin, PostUpdate},
+    asset::{AssetEvent, AssetEventSystems, AssetServer, Assets, Handle, LoadState},
+    camera::visibility::InheritedVisibility,
+    ecs::{
+        component::Component,
+        entity::{Entity, MapEntities},
+        lifecycle::Remove,
+        message::MessageReader,
+        observer::On,
+        query::{QueryData, With, Without},
+        reflect::{ReflectComponent, ReflectMapEntities},
+        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
+        system::{Commands, Query, Res, ResMut},
+    },
+    mesh::{Mesh, Mesh3d},
+    reflect::Reflect,
+    transform::components::GlobalTransform,
+};
+
+use super::{ClothBuilt, ClothFault, ClothMesh, mesh::MeshSystems, naming::Part};
+use crate::cloth::{Cloth, ClothError, Surface};
+use drawn::Driven;
+
+/// On an entity with a [`Mesh3d`]: a cloth drives this mesh. A coarse cloth is simulated, and a fine mesh is drawn on it (also
+/// known as proxy simulation, or as a wrap deformer).
+///
+/// Each vertex is bound once to the nearest point of the cloth at rest, where both entities are placed as the mesh is first drawn: put
+/// them so that the mesh is where the cloth is before it falls, for instance as a child of the cloth or at the same transform. From then
+/// on the mesh is drawn where the cloth is, wherever its own entity goes, interpolated between ticks as the cloth is; normals and tangents
+/// are turned along, texture coordinates and all else stay as they are ([`SurfaceBinding`](crate::cloth::SurfaceBinding) says how). A copy
+/// of the asset is drawn, which others keep as it is. The cloth may be of either kind, and hidden by
+/// `Visibility::Hidden`: then its own mesh is not written. Several meshes may hang on one cloth, each on an entity of its own, which
+/// is not itself a cloth.
+///
+/// The binding is made again when the `Mesh3d`, the asset or the cloth's shape change. A mesh farther from the cloth than that is large,
+/// one that can't be read and a cloth that is gone are a [`ClothFault`]. When the component is taken away the entity draws its asset
+/// again.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// fn cape(mut commands: Commands, assets: Res<AssetServer>) {
+///     let cloth = commands.spawn((Cloth::new(20, 24, 0.05), Visibility::Hidden)).id();
+///     let fine = Mesh3d(assets.load("models/cape.glb#Mesh0/Primitive0"));
+///     commands.spawn((ClothRenderMesh { cloth }, fine));
+/// }
+/// ```
+#[derive(Component, Reflect, MapEntities, Debug, Clone, Copy, PartialEq, Eq)]
+#[reflect(Component, MapEntities, Debug, Clone, PartialEq)]
+pub struct ClothRenderMesh {
+    /// The cloth that drives the mesh.
+    #[entities]
+    pub cloth: Entity,
+}
+
+/// What is drawn for a [`ClothRenderMesh`].
+#[derive(Component, Debug)]
+struct RenderMeshState {
+    cloth: Entity,
+    /// What the entity drew before.
+    source: Handle<Mesh>,
+    /// What is drawn.
+    handle: Handle<Mesh>,
+    /// What the mesh is bound to.
+    surface: Arc<Surface>,
+    driven: Driven,
+}
+
+/// Draws each [`ClothRenderMesh`] where its cloth takes it, once a rendered frame. Does nothing in an app without meshes. It is
+/// for a [`ClothMeshPlugin`](super::ClothMeshPlugin).
+#[derive(Debug, Default, Clone, Copy)]
+pub struct ClothRenderMeshPlugin;
+
+impl Plugin for ClothRenderMeshPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothRenderMesh>()
+            .add_observer(remove_render_mesh)
+            .add_systems(
+                PostUpdate,
+                (
+                    bind.after(MeshSystems::Add).before(MeshSystems::Write),
+                    update
+                        .after(bind)
+                        .after(MeshSystems::Write)
+                        .before(AssetEventSystems),
+                )
+                    .run_if(resource_exists::<Assets<Mesh>>),
+            );
+    }
+}
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct Binding {
+    entity: Entity,
+    wanted: &'static ClothRenderMesh,
+    mesh: Option<&'static Mesh3d>,
+    place: Option<&'static GlobalTransform>,
+    state: Option<&'static RenderMeshState>,
+    fault: Option<&'static ClothFault>,
+}
+
+/// What a mesh is bound to.
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct Driving {
+    built: &'static ClothBuilt,
+    place: Option<&'static GlobalTransform>,
+    mesh: &'static mut ClothMesh,
+}
+
+/// Binds meshes to cloths, once both are there.
+fn bind(
+    mut wanted: Query<Binding, Without<Cloth>>,
+    cloths: Query<(), With<Cloth>>,
+    mut driving: Query<Driving>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    server: Option<Res<AssetServer>>,
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut commands: Commands,
+) {
+    if wanted.is_empty() {
+        events.clear();
+        return;
+    }
+    let changed: Vec<_> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    for each in &mut wanted {
+        let cloth = each.wanted.cloth;
+        let outcome = match driving.get_mut(cloth) {
+            Ok(mut driving) if cloths.contains(cloth) => {
+                let surface = driving.built.surface().clone();
+                if surface.is_empty() {
+                    continue;
+                }
+                driving.mesh.drive();
+                let is_bound = each.state.is_some_and(|state| {
+                    state.cloth == cloth
+                        && Arc::ptr_eq(&state.surface, &surface)
+                        && each.mesh.is_some_and(|mesh| mesh.0 == state.handle)
+                        && meshes.contains(&state.handle)
+                        && !changed.contains(&state.source.id())
+                });
+                if is_bound {
+                    Ok(())
+                } else {
+                    each.bind(
+                        &driving,
+                        surface,
+                        &mut meshes,
+                        server.as_deref(),
+                        &mut commands,
+                    )
+                }
+            }
+            // It has its parts with the next tick.
+            _ if cloths.contains(cloth) => continue,
+            _ => Err(ClothError::NoDrivingCloth { cloth }),
+        };
+        // What is on its way is no fault.
+        let outcome = match outcome {
+            Err(ClothError::MeshLoading) => Ok(()),
+            outcome => outcome,
+        };
+        let part = Part::RenderMesh;
+        ClothFault::report(&mut commands, each.entity, each.fault, part, outcome);
+    }
+}
+
+impl BindingItem<'_, '_> {
+    fn bind(
+        &self,
+        driving: &DrivingItem,
+        surface: Arc<Surface>,
+        meshes: &mut Assets<Mesh>,
+        server: Option<&AssetServer>,
+        commands: &mut Commands,
+    ) -> Result<(), ClothError> {
+        // What the entity drew before the plugin's copy.
+        let other = self.mesh.map(|mesh| &mesh.0);
+        let other = other.filter(|mesh| self.state.is_none_or(|state| state.handle != **mesh));
+        let source = other.or(self.state.map(|state| &state.source));
+        let source = source.ok_or(ClothError::MeshNotLoaded)?.clone();
+        let Some(asset) = meshes.get(&source) else {
+            return Err(
+                match server.and_then(|server| server.get_load_state(&source)) {
+                    Some(LoadState::Failed(error)) => ClothError::MeshFailed {
+                        reason: error.to_string(),
+                    },
+                    Some(LoadState::Loading) => ClothError::MeshLoading,
+                    _ => ClothError::MeshNotLoaded,
+                },
+            );
+        };
+        let place = self.place.copied().unwrap_or_default();
+        let cloth = driving.place.copied().unwrap_or_default();
+        let (copy, driven) = Driven::new(asset, &surface, &place, &cloth)?;
+        let handle = meshes.add(copy);
+        let state = RenderMeshState {
+            cloth: self.wanted.cloth,
+            source,
+            handle: handle.clone(),
+            surface,
+            driven,
+        };
+        commands
+            .entity(self.entity)
+            .try_insert((Mesh3d(handle), state));
+        Ok(())
+    }
+}
+
+/// Draws the meshes where their cloths have been drawn.
+fn update(
+    mut driven: Query<(
+        &mut RenderMeshState,
+        Option<&GlobalTransform>,
+        Option<&InheritedVisibility>,
+    )>,
+    driving: Query<(&ClothMesh, Option<&GlobalTransform>)>,
+    mut meshes: ResMut<Assets<Mesh>>,
+) {
+    for (mut state, place, visibility) in &mut driven {
+        let is_hidden = visibility.is_some_and(|visibility| !visibility.get());
+        let Ok((cloth, at)) = driving.get(state.cloth) else {
+            continue;
+        };
+        if is_hidden || !cloth.is_of(&state.surface) {
+            continue;
+        }
+        let place = place.copied().unwrap_or_default();
+        let at = at.copied().unwrap_or_default();
+        let RenderMeshState {
+            handle,
+            surface,
+            driven,
+            ..
+        } = &mut *state;
+        if driven.follow(surface, cloth, &place, &at)
+            && let Some(mut mesh) = meshes.get_mut(&*handle)
+        {
+            driven.write(&mut mesh);
+        }
+    }
+}
+
+/// What is driven no more draws its asset again, unless the game has put something else in place of the copy.
+fn remove_render_mesh(
+    removed: On<Remove, ClothRenderMesh>,
+    states: Query<(&RenderMeshState, Option<&Mesh3d>)>,
+    faults: Query<&ClothFault>,
+    mut commands: Commands,
+) {
+    if let Ok((state, drawn)) = states.get(removed.entity) {
+        let mut entity = commands.entity(removed.entity);
+        if drawn.is_some_and(|drawn| drawn.0 == state.handle) {
+            entity.try_insert(Mesh3d(state.source.clone()));
+        }
+        entity.try_remove::<RenderMeshState>();
+    }
+    let known = faults.get(removed.entity).ok();
+    let part = Part::RenderMesh;
+    ClothFault::report(&mut commands, removed.entity, known, part, Ok(()));
+}
