@@ -38,7 +38,7 @@ use crate::shared::{
     start::{Example, Options},
     view::View,
     window,
-    woven::woven,
+    woven::{Weave, woven},
 };
 
 /// Particles along either side of a cloth, unless asked.
@@ -90,7 +90,9 @@ fn spawn_panels(
     let (config, look) = store.config_mut::<ClothGizmos>();
     config.line.width = 1.6;
     look.unvisited = Color::srgba(0.5, 0.6, 0.7, 0.12);
-    let weave = woven(&mut images, 2, |_, _| Color::srgb(0.33, 0.43, 0.72));
+    let weave = woven(Weave::Plain, &mut images, 2, |_, _| {
+        Color::srgb(0.33, 0.43, 0.72)
+    });
     let cloth_material = materials.add(StandardMaterial {
         // The ball, behind, is seen through it.
         base_color: Color::WHITE.with_alpha(0.6),

@@ -9,7 +9,7 @@ use crate::{
     physics::PhysicsPlugin,
     shared::{
         stage::{Grid, Shot, StagePlugin},
-        woven::woven,
+        woven::{Weave, woven},
     },
 };
 
@@ -88,7 +88,7 @@ fn spawn_cloth(
     grid: Res<Grid>,
 ) {
     // Chambray: one way blue, the other lighter.
-    let material = materials.add(woven(&mut images, 4, |runs_down, _| {
+    let material = materials.add(woven(Weave::Plain, &mut images, 4, |runs_down, _| {
         if runs_down {
             Color::srgb(0.20, 0.33, 0.64)
         } else {

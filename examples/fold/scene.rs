@@ -7,7 +7,7 @@ use crate::{
     figure::{Figure, FigurePlugin},
     shared::{
         stage::{Grid, Shot, StagePlugin},
-        woven::woven,
+        woven::{Weave, woven},
     },
 };
 
@@ -104,7 +104,7 @@ fn spawn_cloth(
     grid: Res<Grid>,
 ) {
     // Broad stripes across: each fold shows another.
-    let weave = woven(&mut images, 5, |runs_down, yarn| {
+    let weave = woven(Weave::Plain, &mut images, 5, |runs_down, yarn| {
         match (runs_down, yarn / 16) {
             (true, _) | (false, 1) => Color::srgb(0.86, 0.84, 0.78),
             (false, 0 | 2) => Color::srgb(0.13, 0.36, 0.52),

@@ -11,7 +11,7 @@ use crate::{
     physics::PhysicsPlugin,
     shared::{
         stage::{Grid, Shot, StagePlugin},
-        woven::woven,
+        woven::{Weave, woven},
     },
 };
 
@@ -97,7 +97,7 @@ fn spawn_hammock(
         (Pin::Corner(corner), post)
     });
     // Stripes across, as hammocks have.
-    let weave = woven(&mut images, 3, |runs_down, yarn| {
+    let weave = woven(Weave::Plain, &mut images, 3, |runs_down, yarn| {
         match (runs_down, yarn / 8 % 4) {
             (true, 0) => Color::srgb(0.80, 0.22, 0.16),
             (true, 2) => Color::srgb(0.10, 0.40, 0.45),

@@ -1,8 +1,8 @@
 //! The same app without a window: a report of what became of each mesh, and a picture of each.
 
-use std::{process::ExitCode, thread, time::Duration};
+use std::process::ExitCode;
 
-use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy::prelude::*;
 use bevy_drape::{
     plugin::{ClothBuilt, ClothFault},
     prelude::*,
@@ -18,9 +18,6 @@ use crate::{
         view::View,
     },
 };
-
-/// How long an asset may take to load (s).
-const PATIENCE: u64 = 20;
 
 /// What is printed.
 #[derive(Serialize)]
@@ -68,7 +65,7 @@ pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
         app.register_required_components::<Cloth, Measured>()
             .add_systems(FixedLast, measure);
     });
-    wait_for_assets(&mut run.app);
+    run.wait_for_assets();
     run.finish();
     let pictures = SHOTS.map(|(file, shot)| run.take_picture(shot, &options.out, file));
     let world = run.app.world_mut();
@@ -112,22 +109,6 @@ pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
     };
     let code = print(&report, options.json, print_report);
     if is_whole { code } else { ExitCode::FAILURE }
-}
-
-/// Lets time stand still until all meshes are there.
-fn wait_for_assets(app: &mut App) {
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
-    for _ in 0..PATIENCE * 100 {
-        app.update();
-        let world = app.world_mut();
-        let mut meshes = world.query::<&Mesh3d>();
-        let handles: Vec<Handle<Mesh>> = meshes.iter(world).map(|mesh| mesh.0.clone()).collect();
-        let meshes = world.resource::<Assets<Mesh>>();
-        if handles.iter().all(|handle| meshes.contains(handle)) {
-            return;
-        }
-        thread::sleep(Duration::from_millis(10));
-    }
 }
 
 fn print_report(report: &Report) {

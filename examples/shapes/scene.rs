@@ -7,7 +7,7 @@ use bevy_drape::prelude::*;
 
 use crate::shared::{
     stage::{Grid, Shot, StagePlugin},
-    woven::woven,
+    woven::{Weave, woven},
 };
 
 /// Particles along either side.
@@ -207,7 +207,7 @@ fn spawn_cloths(
     grid: Res<Grid>,
 ) {
     // A tea towel: off-white, with a thin stripe every so often along both ways.
-    let weave = woven(&mut images, 5, |_, yarn| {
+    let weave = woven(Weave::Plain, &mut images, 5, |_, yarn| {
         if (29..33).contains(&yarn) {
             Color::srgb(0.50, 0.16, 0.22)
         } else {

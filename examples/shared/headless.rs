@@ -4,6 +4,7 @@ use std::{
     fmt, fs,
     path::{Path, PathBuf},
     process::ExitCode,
+    thread,
     time::{Duration, Instant},
 };
 
@@ -12,7 +13,7 @@ use bevy::{
     render::{
         render_resource::TextureFormat,
         renderer::RenderAdapterInfo,
-        view::screenshot::{Captured, Screenshot, save_to_disk},
+        view::screenshot::{Captured, Screenshot, ScreenshotCaptured},
     },
     time::TimeUpdateStrategy,
 };
@@ -20,13 +21,20 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::{
+    pixels::Pixels,
     stage::{Grid, Shot},
     start::Options,
     view::View,
 };
 
+/// Width and height of a picture.
+const SIZE: [u32; 2] = [800, 450];
+
 /// Frames that a renderer gets to finish a picture in.
 const FRAMES_FOR_A_PICTURE: usize = 60;
+
+/// How long an asset may take to load (s).
+const PATIENCE: u64 = 20;
 
 /// Fixed ticks that share one update of the app, and with it one idle frame of the renderer: 0.25 s, the most
 /// that Bevy's virtual time takes at once.
@@ -71,6 +79,24 @@ impl Run {
             wall_seconds: 0.0,
             done: 0,
             bar,
+        }
+    }
+
+    /// Lets time stand still until all meshes are there.
+    pub fn wait_for_assets(&mut self) {
+        self.app
+            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+        for _ in 0..PATIENCE * 100 {
+            self.app.update();
+            let world = self.app.world_mut();
+            let mut meshes = world.query::<&Mesh3d>();
+            let handles: Vec<Handle<Mesh>> =
+                meshes.iter(world).map(|mesh| mesh.0.clone()).collect();
+            let meshes = world.resource::<Assets<Mesh>>();
+            if handles.iter().all(|handle| meshes.contains(handle)) {
+                return;
+            }
+            thread::sleep(Duration::from_millis(10));
         }
     }
 
@@ -150,18 +176,28 @@ fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, St
             .map_err(|error| format!("{} could not be replaced: {error}", path.display()))?;
     }
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
-    let target = Image::new_target_texture(1280, 720, TextureFormat::Rgba8UnormSrgb, None);
-    let target = app.world_mut().resource_mut::<Assets<Image>>().add(target);
-    let camera = app
-        .world_mut()
-        .spawn(shot.camera(Some(target.clone())))
-        .id();
-    // A few frames, for assets, pipelines and shadows to be ready.
+    let mut target = |[width, height]: [u32; 2]| {
+        let target = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
+        app.world_mut().resource_mut::<Assets<Image>>().add(target)
+    };
+    let [small, large] = [[160, 90], SIZE.map(|pixels| 2 * pixels)].map(&mut target);
+    // The picture is drawn at twice its size, which smooths edges better than samples do.
+    let camera = |target| (shot.camera(Some(target)), Msaa::Off);
+    // Lines are as wide in the picture as in a window.
+    let mut gizmos = app.world_mut().resource_mut::<GizmoConfigStore>();
+    for (_, config, _) in gizmos.iter_mut() {
+        config.line.width *= 2.0;
+    }
+    // A few frames, small ones, for assets, pipelines and shadows to be ready.
+    let tiny = app.world_mut().spawn(camera(small)).id();
     (0..8).for_each(|_| app.update());
+    app.world_mut().despawn(tiny);
+    let camera = app.world_mut().spawn(camera(large.clone())).id();
+    app.update();
     let screenshot = app
         .world_mut()
-        .spawn(Screenshot::image(target))
-        .observe(save_to_disk(path.clone()))
+        .spawn(Screenshot::image(large))
+        .observe(save_to(path.clone()))
         .id();
     for _ in 0..FRAMES_FOR_A_PICTURE {
         app.update();
@@ -171,10 +207,26 @@ fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, St
         }
     }
     app.world_mut().despawn(camera);
+    let mut gizmos = app.world_mut().resource_mut::<GizmoConfigStore>();
+    for (_, config, _) in gizmos.iter_mut() {
+        config.line.width /= 2.0;
+    }
     if path.is_file() {
         Ok(path)
     } else {
         Err(format!("{} could not be drawn or saved", path.display()))
+    }
+}
+
+/// Saves what is drawn, at half its size.
+fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>) {
+    move |captured| {
+        let saved = Pixels::of(&captured.image)
+            .ok_or_else(|| "the picture is empty".to_string())
+            .and_then(|pixels| pixels.halved().save(&path));
+        if let Err(why) = saved {
+            error!("{why}");
+        }
     }
 }
 

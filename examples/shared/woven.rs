@@ -9,24 +9,57 @@ use bevy::{
 };
 use bevy_drape::prelude::*;
 
-/// Yarns along either side of a picture, and texels across each.
-const YARNS: u32 = 64;
-const TEXELS: u32 = 8;
+/// Pairs of yarns along either side of a picture, yarns in all, and texels across each.
+const PAIRS: u32 = 64;
+const YARNS: u32 = 2 * PAIRS;
+const TEXELS: u32 = 4;
 /// How much darker or lighter than asked a yarn may be: no two are alike.
-const UNEVEN: f32 = 0.07;
+const UNEVEN: f32 = 0.09;
+/// Which part of the light goes through.
+const TRANSLUCENCY: f32 = 0.22;
 
-/// A plain weave with the same 64 × 64 yarns `times` over along either side of the cloth. `color` says the colour of each:
-/// the first argument is whether it runs down the cloth, the second its number.
+/// Where a yarn that runs down lies above one that runs across.
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[expect(dead_code, reason = "no example has all of them")]
+pub enum Weave {
+    /// At every second crossing: muslin, canvas, gingham.
+    Plain,
+    /// At three crossings of four, one further with each row, so that ribs run aslant: denim.
+    Twill,
+    /// At two of four, the ribs turning back every eighth yarn: tweed.
+    Herringbone,
+}
+
+impl Weave {
+    fn down_is_above(self, column: u32, row: u32) -> bool {
+        match self {
+            Self::Plain => (column + row).is_multiple_of(2),
+            Self::Twill => !(column + row).is_multiple_of(4),
+            Self::Herringbone => {
+                let there = column % 16;
+                (there.min(15 - there) + row) % 4 < 2
+            }
+        }
+    }
+}
+
+/// Cloth with the same 64 × 64 pairs of yarns `times` over along either side. `color` says the colour of each pair: the first
+/// argument is whether it runs down the cloth, the second its number.
 ///
 /// The normals show on meshes that have tangents.
 pub fn woven(
+    weave: Weave,
     images: &mut Assets<Image>,
     times: u32,
     color: impl Fn(bool, u32) -> Color,
 ) -> StandardMaterial {
     let yarn = |runs_down: bool, number: u32| {
         let lightness = 1.0 + UNEVEN * (2.0 * noise(2 * number + u32::from(runs_down)) - 1.0);
-        color(runs_down, number).to_linear().to_vec4().truncate() * lightness
+        color(runs_down, number / 2)
+            .to_linear()
+            .to_vec4()
+            .truncate()
+            * lightness
     };
     let [down, across] =
         [true, false].map(|way| (0..YARNS).map(|n| yarn(way, n)).collect::<Vec<_>>());
@@ -38,7 +71,7 @@ pub fn woven(
             // From the middle of the crossing, −1 to 1.
             let middle = |at: u32| (2 * (at % TEXELS) + 1) as f32 / TEXELS as f32 - 1.0;
             let place = Vec2::new(middle(x), middle(y));
-            let down_is_above = (column + row).is_multiple_of(2);
+            let down_is_above = weave.down_is_above(column, row);
             let (color, beside, along) = if down_is_above {
                 (down[column as usize], place.x, place.y)
             } else {
@@ -76,6 +109,7 @@ pub fn woven(
             |normal| normal,
         ))),
         uv_transform: Affine2::from_scale(Vec2::splat(times as f32)),
+        diffuse_transmission: TRANSLUCENCY,
         ..fabric(Color::WHITE)
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     physics::PhysicsPlugin,
     shared::{
         stage::{Grid, Shot, StagePlugin},
-        woven::woven,
+        woven::{Weave, woven},
     },
     things::{Thing, spawn_things},
 };
@@ -158,7 +158,7 @@ fn spawn_cloth(
     grid: Res<Grid>,
 ) {
     // Linen with a red check.
-    let weave = woven(&mut images, 10, |_, yarn| {
+    let weave = woven(Weave::Plain, &mut images, 10, |_, yarn| {
         if yarn < 24 {
             Color::srgb(0.70, 0.10, 0.12)
         } else {

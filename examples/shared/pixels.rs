@@ -1,0 +1,139 @@
+//! Pictures as files: PNG of at most 256 colours, a third as large as with all of them.
+
+use std::{collections::BTreeMap, fs, io::BufWriter, path::Path};
+
+use bevy::image::Image;
+use png::{BitDepth, ColorType, Compression, Encoder, Filter};
+
+/// Colours of a file.
+const COLORS: usize = 256;
+
+/// A picture, row by row from the top.
+pub struct Pixels {
+    pub width: usize,
+    pub height: usize,
+    pub rgb: Vec<[u8; 3]>,
+}
+
+impl Pixels {
+    /// Of an image that is drawn with four bytes a pixel.
+    pub fn of(image: &Image) -> Option<Self> {
+        let bytes = image.data.as_ref()?;
+        let rgb = bytes.chunks_exact(4).map(|at| [at[0], at[1], at[2]]);
+        Some(Self {
+            width: image.width() as usize,
+            height: image.height() as usize,
+            rgb: rgb.collect(),
+        })
+    }
+
+    /// Half as wide and high: the mean of each four pixels, so that edges are smooth.
+    pub fn halved(&self) -> Self {
+        let (width, height) = (self.width / 2, self.height / 2);
+        let mean = |place: usize| {
+            let corner = 2 * (place / width) * self.width + 2 * (place % width);
+            let four = [
+                corner,
+                corner + 1,
+                corner + self.width,
+                corner + self.width + 1,
+            ];
+            std::array::from_fn(|channel| {
+                let sum: u16 = four
+                    .iter()
+                    .map(|at| u16::from(self.rgb[*at][channel]))
+                    .sum();
+                ((sum + 2) / 4) as u8
+            })
+        };
+        Self {
+            width,
+            height,
+            rgb: (0..width * height).map(mean).collect(),
+        }
+    }
+
+    /// Saves it, in the colours that it needs most.
+    pub fn save(&self, path: &Path) -> Result<(), String> {
+        let fail = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let mut counts = BTreeMap::<[u8; 3], u64>::new();
+        for color in &self.rgb {
+            *counts.entry(*color).or_default() += 1;
+        }
+        let groups = groups(counts.into_iter().collect());
+        let mut numbers = BTreeMap::new();
+        let mut palette = Vec::new();
+        for (number, group) in groups.iter().enumerate() {
+            palette.extend(mean(group).map(|value| value.round() as u8));
+            numbers.extend(group.iter().map(|(color, _)| (*color, number as u8)));
+        }
+        let file = fs::File::create(path).map_err(|error| fail(&error))?;
+        let mut encoder = Encoder::new(BufWriter::new(file), self.width as u32, self.height as u32);
+        encoder.set_color(ColorType::Indexed);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_palette(palette);
+        encoder.set_compression(Compression::High);
+        // Numbers of colours have no slope that could be foretold.
+        encoder.set_filter(Filter::NoFilter);
+        let indices: Vec<u8> = self.rgb.iter().map(|color| numbers[color]).collect();
+        let mut writer = encoder.write_header().map_err(|error| fail(&error))?;
+        writer
+            .write_image_data(&indices)
+            .and_then(|()| writer.finish())
+            .map_err(|error| fail(&error))
+    }
+}
+
+/// Colours that are alike, with how often each occurs.
+type Group = Vec<([u8; 3], u64)>;
+
+/// Cuts colours into groups: again and again the one that is spread most, at the mean of the channel in which it is.
+fn groups(all: Group) -> Vec<Group> {
+    let mut groups = vec![(spread(&all), all)];
+    while groups.len() < COLORS {
+        let widest = groups
+            .iter()
+            .enumerate()
+            .max_by(|(_, (one, _)), (_, (other, _))| one.1.total_cmp(&other.1));
+        let Some((place, &((channel, sum), _))) = widest else {
+            break;
+        };
+        if sum == 0.0 {
+            break;
+        }
+        let (_, group) = groups.swap_remove(place);
+        let middle = mean(&group)[channel];
+        let (low, high): (Group, Group) = group
+            .into_iter()
+            .partition(|(color, _)| f64::from(color[channel]) <= middle);
+        groups.extend([(spread(&low), low), (spread(&high), high)]);
+    }
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+fn mean(group: &Group) -> [f64; 3] {
+    let count: u64 = group.iter().map(|(_, count)| count).sum();
+    std::array::from_fn(|channel| {
+        let sum: f64 = group
+            .iter()
+            .map(|(color, count)| f64::from(color[channel]) * *count as f64)
+            .sum();
+        sum / count.max(1) as f64
+    })
+}
+
+/// The channel in which a group is spread most, and its sum of squares there.
+fn spread(group: &Group) -> (usize, f64) {
+    let mean = mean(group);
+    let sum = |channel: usize| {
+        let squares = group.iter().map(|(color, count)| {
+            let off = f64::from(color[channel]) - mean[channel];
+            off * off * *count as f64
+        });
+        (channel, squares.sum::<f64>())
+    };
+    (0..3)
+        .map(sum)
+        .max_by(|one, other| one.1.total_cmp(&other.1))
+        .unwrap_or_default()
+}
