@@ -4,7 +4,7 @@
 //! 2. [Your own model](own_model): any triangle mesh, from Blender to Bevy.
 //! 3. [Tuning](tuning): what stretches, what swings, what costs.
 //! 4. [When it fails](when_it_fails): faults, limits, and what to do about each.
-//! 5. [Migrating from bevy_silk](migrating_from_bevy_silk): its names, and ours.
+//! 5. [Migrating from `bevy_silk`](migrating_from_bevy_silk): its names, and ours.
 
 #[doc = include_str!("guide/first_cloth.md")]
 pub mod first_cloth {}

@@ -305,7 +305,7 @@ fn with_attachments(pins: usize, is_animated: bool) -> usize {
 /// Allocations with a ball that is moved up and down on a taut cloth, which it presses on; the cloth pushes it back or not.
 fn with_a_ball(is_body: bool) -> usize {
     let mut app = app_on_one_thread();
-    let edge = |row: u32, column: u32| row % 19 == 0 || column % 19 == 0;
+    let edge = |row: u32, column: u32| row.is_multiple_of(19) || column.is_multiple_of(19);
     app.world_mut().spawn((
         Cloth::new(20, 20, 0.05).lying().centred(),
         Pins::filter(edge),

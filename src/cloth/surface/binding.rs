@@ -3,8 +3,8 @@
 //! Each vertex is bound to the nearest point of the surface at rest, which lies in a face of the corners *a*, *b*, *c* with
 //! the barycentric coordinates *u*, *v*, *w*. There it has a frame of its own:
 //!
-//! - *N* = (u N_a + v N_b + w N_c) normalised, the interpolated normal;
-//! - *T*, the part of α (x_b − x_a) + β (x_c − x_a) that is at right angles to *N*, normalised. α and β say which way in the face the
+//! - *N* = `(u N_a + v N_b + w N_c)` normalised, the interpolated normal;
+//! - *T*, the part of `α (x_b − x_a) + β (x_c − x_a)` that is at right angles to *N*, normalised. α and β say which way in the face the
 //!   vertex's own tangent points;
 //! - *B* = *N* × *T*.
 //!
