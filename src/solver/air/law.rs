@@ -76,11 +76,17 @@ fn feel(view: &View, area: &Trio, wind: &Trio, law: &Law, felt: &mut Felt, way: 
             felt.push[axis][l] = if is_free { push } else { 0.0 };
             felt.drag[axis][l] = if is_free { n[axis] * root } else { 0.0 };
         }
-        way[l] = dot(
-            [0, 1, 2].map(|axis| felt.drag[axis][l]),
-            [view[X + l], view[Y + l], view[Z + l]],
-        );
+        way[l] = way_of(view, felt, l);
     }
+}
+
+/// Where a particle was as its last displacement began, along what drags it: the sum of those displacements that sub-steps begin with
+/// is the difference of two.
+#[inline(always)]
+fn way_of(view: &View, felt: &Felt, l: usize) -> f32 {
+    let drag = [0, 1, 2].map(|axis| felt.drag[axis][l]);
+    let was = [X, Y, Z].map(|axis| view[axis + l] - view[DX + axis + l]);
+    dot(drag, was)
 }
 
 #[inline(always)]
@@ -117,9 +123,8 @@ pub(crate) fn air_given(
     for ((block, felt), way) in blocks.iter().zip(felt).zip(ways) {
         let view = block.view();
         for l in 0..LANES {
-            let at = [view[X + l], view[Y + l], view[Z + l]];
             let drag = [0, 1, 2].map(|axis| felt.drag[axis][l]);
-            let moved = dot(drag, at) - way[l];
+            let moved = way_of(view, felt, l) - way[l];
             let is_free = view[W + l] > 0.0;
             let mass = 1.0 / if is_free { view[W + l] } else { 1.0 };
             for axis in 0..3 {
