@@ -130,7 +130,7 @@ fn air(criterion: &mut Criterion) {
         drag: 1.2,
         lift: 1.5,
         wind: Vec3::new(2.0, 0.0, 8.0),
-        pressure: 0.0,
+        pressure: None,
     };
     for side in [16, 64, 128] {
         let scene = in_motion(side);

@@ -80,7 +80,7 @@ mod tether;
 mod threads;
 mod twist;
 
-pub use air::Air;
+pub use air::{Air, ClothPressure};
 pub use bending::Bending;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;

@@ -74,7 +74,7 @@ impl Scene {
             drag,
             lift,
             wind,
-            pressure: 0.0,
+            pressure: None,
         };
         self.solver.set_air(&self.surface, Some(air));
     }

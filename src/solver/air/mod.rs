@@ -28,12 +28,14 @@
 
 mod areas;
 mod law;
+mod pressure;
 #[cfg(test)]
 mod tests;
 mod wind;
 
 use bevy::math::{DVec3, Vec3};
 
+pub use self::pressure::ClothPressure;
 use self::{areas::Triangles, wind::LocalWind};
 pub(crate) use self::{
     areas::{Rows, air_areas},
@@ -56,8 +58,19 @@ pub struct Air {
     pub lift: f32,
     /// Velocity of the air (m/s).
     pub wind: Vec3,
-    /// Pressure on the side that faces are turned away from, over that on the other (Pa). Of use where they enclose a volume.
-    pub pressure: f32,
+    /// What is inside of a closed mesh.
+    pub pressure: Option<ClothPressure>,
+}
+
+impl Air {
+    /// Of no density: what is left is pressure.
+    pub const NONE: Self = Self {
+        density: 0.0,
+        drag: 0.0,
+        lift: 0.0,
+        wind: Vec3::ZERO,
+        pressure: None,
+    };
 }
 
 /// What the air does to the particles of a surface.
@@ -123,10 +136,10 @@ impl Airflow {
 
     /// Begins a tick of `seconds` in this many sub-steps.
     pub fn begin(&mut self, seconds: f32, substeps: u32) {
-        let looks = if self.air.pressure == 0.0 {
-            ((seconds / LONGEST).ceil() as u32).clamp(1, substeps)
-        } else {
-            substeps
+        // What is full of air is as wide as its pressure, its springs and their stretch let it be, in each sub-step.
+        let looks = match self.air.pressure {
+            None => ((seconds / LONGEST).ceil() as u32).clamp(1, substeps),
+            Some(_) => substeps,
         };
         self.stride = substeps.div_ceil(looks);
         self.substep = seconds / substeps as f32;
@@ -173,10 +186,10 @@ impl Airflow {
             wind,
             pressure,
         } = self.air;
-        let law = Law {
+        let mut law = Law {
             drag: density * drag,
             lift: 0.5 * density * lift,
-            pressure,
+            pressure: 0.0,
             substep: self.substep,
             inverse_substep: 1.0 / self.substep,
         };
@@ -195,7 +208,10 @@ impl Airflow {
             winds.fill(wind.to_array().map(|of| [of; LANES]));
         }
         if let Some(triangles) = triangles {
-            triangles.areas(blocks, areas);
+            let volume = triangles.areas(blocks, areas);
+            if let Some(ClothPressure::Gauge(pressure)) = pressure {
+                law.pressure = pressure * volume.signum();
+            }
             if let Some(local) = local {
                 local.of_mesh(particles, winds);
             }
