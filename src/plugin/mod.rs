@@ -1,5 +1,6 @@
 //! Floor 3: the ECS: one plugin a file, and [`DrapePlugins`] over them.
 
+mod air;
 mod attach;
 mod attachments;
 mod awaited;
@@ -50,6 +51,7 @@ mod stats;
 mod threads;
 mod tick;
 mod together;
+mod wind;
 
 use bevy::{
     app::{FixedUpdate, PluginGroup, PluginGroupBuilder},
@@ -88,6 +90,7 @@ pub use sets::ClothSystems;
 pub use simulation::ClothPlugin;
 pub use state::ClothState;
 pub use stats::ClothStats;
+pub use wind::{ClothAir, ClothWind, ClothWindShape, ClothWindZone};
 
 /// All that a game needs: the simulation, its diagnostics and, with their features, mesh, gizmos and the
 /// bridge to rapier. Add it after Bevy's own plugins.

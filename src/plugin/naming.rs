@@ -12,6 +12,7 @@ pub(super) enum Part {
     Collider,
     #[cfg(feature = "mesh")]
     RenderMesh,
+    WindZone,
 }
 
 /// An entity, by its [`Name`] where it has one.
@@ -29,6 +30,7 @@ impl NamedItem<'_, '_> {
             Part::Collider => "cloth collider",
             #[cfg(feature = "mesh")]
             Part::RenderMesh => "cloth render mesh",
+            Part::WindZone => "cloth wind zone",
         };
         match self.name {
             Some(name) => format!("{part} \"{name}\""),
