@@ -4,9 +4,11 @@ mod attach;
 mod attachments;
 mod awaited;
 mod body;
+mod bones;
 mod broad_phase;
 mod build;
 mod built;
+mod carry;
 mod clock;
 mod collider_tree;
 mod colliders;
@@ -23,6 +25,7 @@ mod frame;
 #[cfg(feature = "gizmos")]
 mod gizmos;
 mod gravity;
+mod inertia;
 mod inputs;
 mod integrate;
 mod islands;
@@ -42,6 +45,7 @@ mod search;
 mod sets;
 mod shared;
 mod simulation;
+mod skin;
 mod source;
 mod state;
 mod stats;
@@ -56,6 +60,7 @@ use bevy::{
 
 pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTeleport};
 pub use body::{ClothBody, ClothPush};
+pub use bones::{ClothBone, ClothBones};
 pub use built::ClothBuilt;
 pub use components::ClothSearch;
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
@@ -68,6 +73,7 @@ pub use frame::ClothFrame;
 #[cfg(feature = "gizmos")]
 pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
 pub use gravity::ClothGravity;
+pub use inertia::ClothInertia;
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
 #[cfg(feature = "egui")]

@@ -5,10 +5,9 @@ use bevy::{
     ecs::{
         change_detection::{DetectChanges, Mut, Ref},
         entity::Entity,
-        query::QueryData,
-        system::{Commands, Query, Res, ResMut},
+        query::{QueryData, With, Without},
+        system::{Commands, Query, Res, ResMut, SystemParam},
     },
-    math::Isometry3d,
     time::Time,
 };
 
@@ -18,18 +17,21 @@ use super::{
     attach::{Targets, follow_targets},
     broad_phase::{clear_stats, reach, update_bounds},
     build::{Wanted, build},
+    carry::{carry, new_from_old},
     components::BroadPhaseBounds,
     frame::global_transform,
+    inertia::Roots,
     inputs::Inputs,
     naming::Part,
     shared::SharedParts,
+    skin::{Skins, move_with_pose, place_pose},
     source::Sources,
 };
 use crate::{
-    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
+    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, ClothSkin, Pins},
     contact::{ClothSelfCollision, ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothSettings, PinMotion, Substepping, TickStep},
+    solver::{ClothSettings, Substepping, TickStep},
 };
 
 /// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
@@ -46,6 +48,7 @@ pub(super) struct Preparing {
     material: Option<&'static ClothMaterial>,
     pins: Option<&'static Pins>,
     attachments: Option<&'static ClothAttachments>,
+    skin: Option<Ref<'static, ClothSkin>>,
     settings: Option<&'static ClothSettings>,
     method: Option<&'static SearchMethod>,
     narrow_phase: Option<&'static NarrowPhase>,
@@ -62,16 +65,29 @@ pub(super) struct Preparing {
     fault: Option<&'static ClothFault>,
 }
 
+/// What a cloth is prepared with, besides its own components.
+#[derive(SystemParam)]
+pub(super) struct Surroundings<'w, 's> {
+    targets: Targets<'w, 's>,
+    sources: Sources<'w, 's>,
+    skins: Skins<'w, 's>,
+    roots: Roots<'w, 's>,
+    /// What takes others along.
+    teleports: Query<'w, 's, Entity, (With<ClothTeleport>, Without<Cloth>)>,
+}
+
 /// Prepares each cloth, or marks it with what is wrong.
 pub(super) fn prepare_cloths(
     mut cloths: Query<Preparing>,
-    targets: Targets,
-    sources: Sources,
+    around: Surroundings,
     mut parts: ResMut<SharedParts>,
     gravity: Res<ClothGravity>,
     time: Res<Time>,
     mut commands: Commands,
 ) {
+    for entity in &around.teleports {
+        commands.entity(entity).try_remove::<ClothTeleport>();
+    }
     for mut cloth in &mut cloths {
         let inputs = Inputs::of(
             cloth.settings,
@@ -82,12 +98,12 @@ pub(super) fn prepare_cloths(
             gravity.0,
         );
         let outcome = inputs.and_then(|inputs| {
-            if cloth.sleeps_as_it_was(&inputs, &targets, &sources, time.delta_secs()) {
+            if cloth.sleeps_as_it_was(&inputs, &around, time.delta_secs()) {
                 return Ok(());
             }
             // Nothing of an earlier tick is done again.
             cloth.scratch.forget_tick();
-            cloth.prepare(&inputs, &targets, &sources, &mut parts, time.delta_secs())
+            cloth.prepare(&inputs, &around, &mut parts, time.delta_secs())
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
@@ -117,13 +133,10 @@ pub(super) fn prepare_cloths(
 
 impl PreparingItem<'_, '_> {
     /// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
-    fn sleeps_as_it_was(
-        &self,
-        inputs: &Inputs,
-        targets: &Targets,
-        sources: &Sources,
-        seconds: f32,
-    ) -> bool {
+    fn sleeps_as_it_was(&self, inputs: &Inputs, around: &Surroundings, seconds: f32) -> bool {
+        let Surroundings {
+            targets, sources, ..
+        } = around;
         let (state, built) = (&*self.state, &*self.built);
         if !(state.rest.is_asleep() && state.is_valid && self.stats.is_asleep) {
             return false;
@@ -153,6 +166,8 @@ impl PreparingItem<'_, '_> {
                 .attachments
                 .is_none_or(|attachments| attachments.as_slice().is_empty())
             && self.teleport.is_none()
+            && !around.roots.jumps(self.entity)
+            && self.is_in_same_pose(around)
             && self.fault.is_none()
             && built.is_made_from(self.cloth.last_changed(), &inputs.material, pins)
             && sources.find(self.entity, &self.cloth, source) == Ok(source)
@@ -160,22 +175,43 @@ impl PreparingItem<'_, '_> {
                 .is_ok_and(|transform| self.frame.is_of(&transform))
     }
 
+    /// Whether the pose that it follows is what it was in the last tick, or it follows none.
+    fn is_in_same_pose(&self, around: &Surroundings) -> bool {
+        let place = |joint| global_transform(&around.targets.transforms, joint).ok();
+        match (&self.skin, &self.built.skin) {
+            (None, None) => true,
+            (Some(skin), Some(known)) => {
+                skin.last_changed() == known.changed
+                    && (around.skins).are_at(self.entity, place, &self.state.pose.joints)
+            }
+            _ => false,
+        }
+    }
+
     fn prepare(
         &mut self,
         inputs: &Inputs,
-        targets: &Targets,
-        sources: &Sources,
+        around: &Surroundings,
         parts: &mut SharedParts,
         seconds: f32,
     ) -> Result<(), ClothError> {
+        let Surroundings {
+            targets, sources, ..
+        } = around;
         let transform = global_transform(&targets.transforms, self.entity)?;
-        let (frame, scale) = ClothFrame::of(&transform)?;
+        let (frame, mut scale) = ClothFrame::of(&transform)?;
         let Inputs {
             settings, material, ..
         } = inputs;
         let attachments = self.attachments.map_or(&[][..], ClothAttachments::as_slice);
         let (particles, state) = (&mut self.particles, &mut *self.state);
         let (built, scratch) = (&mut *self.built, &mut *self.scratch);
+        if self.skin.is_some() {
+            let place = |joint| global_transform(&targets.transforms, joint).ok();
+            (around.skins).read(self.entity, place, &mut scratch.pose.joints)?;
+            // How large it is in the world is the skeleton's matter.
+            scale = scratch.pose.scale().unwrap_or(scale);
+        }
         let known = built.source();
         let wanted = Wanted {
             cloth: &self.cloth,
@@ -186,11 +222,17 @@ impl PreparingItem<'_, '_> {
             attachments,
             scale,
         };
+        let is_new = built.from.is_some() || particles.is_empty();
         let was_built = build(&wanted, sources, parts, particles, built, state)?;
         let before = *self.frame;
         if !was_built {
             *self.frame = frame;
         }
+        let begins = !was_built && is_new;
+        let skin = self.skin.as_ref();
+        place_pose(
+            skin, sources, &frame, begins, particles, built, state, scratch,
+        )?;
         // Who saves or restores particles may mark them as changed without a change.
         let was_written =
             state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
@@ -209,20 +251,43 @@ impl PreparingItem<'_, '_> {
             &mut state.targets,
             &mut scratch.targets,
         )?;
-        scratch.teleports = self.teleport.is_some();
+        let target = state.targets.first().copied();
+        let roots = &around.roots;
+        scratch.carried = match seconds > 0.0 && was_built {
+            true => roots.carry(self.entity, target)?,
+            false => None,
+        };
+        let new_from_old = new_from_old([&*self.frame, &frame], scratch.carried.as_ref());
+        let is_moved = new_from_old.is_some();
+        let new_from_old = new_from_old.unwrap_or_default();
+        scratch.teleports = self.teleport.is_some()
+            || roots.jumps(self.entity)
+            || target.is_some_and(|target| roots.jumps(target));
+        if let Some(skin) = &self.skin
+            && seconds > 0.0
+            && was_built
+        {
+            let way = scratch.pose.farthest_from(&state.pose, new_from_old);
+            scratch.teleports |= way > skin.teleport_distance;
+        }
         if scratch.teleports {
+            scratch.carried = None;
             *self.frame = frame;
-        } else if seconds > 0.0 && *self.frame != frame {
-            carry(
-                particles,
-                self.frame.isometry(),
-                frame.isometry(),
-                &mut scratch.pins,
-            );
+        } else if seconds > 0.0 && is_moved {
+            carry(particles, new_from_old, &mut scratch.pins);
             state.rest.disturb();
             *self.frame = frame;
         }
         if seconds > 0.0 || !was_built || scratch.teleports {
+            move_with_pose(
+                [&before, &frame],
+                new_from_old,
+                was_built,
+                particles,
+                built,
+                state,
+                scratch,
+            );
             follow_targets(
                 attachments,
                 &scratch.targets,
@@ -319,7 +384,7 @@ impl PreparingItem<'_, '_> {
             &scratch.pins,
             acceleration.length(),
             seconds,
-        );
+        ) + scratch.constraints.travel();
         update_bounds(
             particles,
             &self.frame,
@@ -332,27 +397,6 @@ impl PreparingItem<'_, '_> {
         clear_stats(&mut self.stats, state.rest.is_asleep());
         Ok(())
     }
-}
-
-/// The frame has moved: the particles stay where they are in the world, and their pins go along in the course of the tick.
-fn carry(
-    particles: &mut ClothParticles,
-    old: Isometry3d,
-    new: Isometry3d,
-    motions: &mut Vec<PinMotion>,
-) {
-    let new_from_old = new.inverse() * old;
-    for (index, inverse_mass) in particles.inverse_masses().enumerate() {
-        if inverse_mass == 0.0 {
-            let pinned_to = particles.position_at(index);
-            motions.push(PinMotion {
-                particle: index as u32,
-                from: new_from_old * pinned_to,
-                to: pinned_to,
-            });
-        }
-    }
-    particles.transform(new_from_old);
 }
 
 /// The speed of the fastest particle (m/s), if all are valid.
