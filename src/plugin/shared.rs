@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock, Weak};
 
 use bevy::{ecs::resource::Resource, math::Vec3};
 
-use super::source::{Source, Sources};
+use super::source::Source;
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothShape, Skinning, SpringKind, Springs, Surface},
     contact::Sheet,
@@ -43,15 +43,18 @@ impl Shared {
     /// What moves its particles with joints; `None` of what is made from no asset.
     ///
     /// # Errors
-    /// What is wrong with the asset.
-    pub fn skinning(&self, sources: &Sources) -> Result<Option<&Skinning>, ClothError> {
+    /// What `make` finds wrong with the asset.
+    pub fn skinning(
+        &self,
+        make: impl FnOnce(Source, &Surface) -> Result<Skinning, ClothError>,
+    ) -> Result<Option<&Skinning>, ClothError> {
         let Some(source) = self.recipe.as_ref().and_then(|recipe| recipe.source) else {
             return Ok(None);
         };
         if let Some(known) = self.known_skinning() {
             return Ok(Some(known));
         }
-        let made = sources.skinning(source, &self.surface)?;
+        let made = make(source, &self.surface)?;
         Ok(Some(self.skinning.get_or_init(|| made)))
     }
 }

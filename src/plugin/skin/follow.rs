@@ -38,7 +38,7 @@ pub(crate) fn place_pose(
     let pose = &mut scratch.pose;
     let skinning = match pose.joints.is_empty() {
         true => None,
-        false => built.shared.skinning(sources)?,
+        false => (built.shared).skinning(|source, surface| sources.skinning(source, surface))?,
     };
     pose.place(built.surface(), skinning, frame, with_normals)?;
     if begins {

@@ -115,7 +115,7 @@ fn an_animated_bone_does_not_pass_through() {
         );
         let arm = app.world_mut().spawn(arm).id();
         change::<Transform>(&mut app, shoulder, |arm| {
-            arm.rotation = Quat::from_rotation_x(1.2)
+            arm.rotation = Quat::from_rotation_x(1.2);
         });
         if by_name {
             let hand = ClothBones::new([ClothBone::ball("hand", 0.12)]);
