@@ -45,8 +45,8 @@ pub mod solver;
 /// What most games need, to be imported with `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{
-        Cloth, ClothError, ClothMaterial, ClothParticles, ClothPlane, ClothShape, Corner, Pin,
-        Pins, Surface,
+        Cloth, ClothBackstop, ClothError, ClothMaterial, ClothPaint, ClothParticles, ClothPlane,
+        ClothShape, ClothSkin, Corner, Pin, Pins, Surface,
     };
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,
@@ -59,10 +59,11 @@ pub mod prelude {
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
-        ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothContact, ClothContacts,
-        ClothFault, ClothFrame, ClothGravity, ClothLimitExceeded, ClothPush, ClothStats,
-        ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
-        ClothWindShape, ClothWindZone, DrapePlugins,
+        ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones,
+        ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothInertia,
+        ClothLimitExceeded, ClothPush, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
+        ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
+        DrapePlugins,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

@@ -3,13 +3,25 @@
 use std::{alloc::System, sync::Arc};
 
 use bevy::{
-    ecs::schedule::SingleThreadedExecutor, math::Vec3, prelude::*, time::TimeUpdateStrategy,
+    app::Plugins,
+    asset::RenderAssetUsages,
+    ecs::schedule::SingleThreadedExecutor,
+    math::Vec3,
+    mesh::{
+        Indices, MeshPlugin, PrimitiveTopology, VertexAttributeValues,
+        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    },
+    prelude::*,
+    time::TimeUpdateStrategy,
 };
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
-    prelude::{ClothAttachments, ClothBody, ClothCollider, ClothGravity, DrapePlugins, Pin, Pins},
+    prelude::{
+        ClothAttachments, ClothBody, ClothCollider, ClothGravity, ClothInertia, ClothPaint,
+        ClothSkin, DrapePlugins, Pin, Pins,
+    },
     solver::{
         Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
         methods::meshes,
@@ -132,6 +144,7 @@ fn a_step_does_not_allocate() {
     neither_forces_nor_damping_allocate();
     what_is_attached_or_animated_allocates_nothing();
     what_is_pushed_allocates_nothing();
+    characters_allocate_nothing_more();
     cloths_made_alike_share_all_but_their_particles();
 }
 
@@ -255,9 +268,11 @@ fn a_mesh_does_not_allocate() {
 }
 
 /// An app on one thread, as each thread that is woken allocates, and without the propagation of transforms, which allocates as it likes.
-fn app_on_one_thread() -> App {
+fn app_on_one_thread<M>(plugins: impl Plugins<M>) -> App {
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, DrapePlugins::default()))
+    app.add_plugins(MinimalPlugins)
+        .add_plugins(plugins)
+        .add_plugins(DrapePlugins::default())
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
     app.finish();
     app.cleanup();
@@ -283,7 +298,7 @@ fn in_ticks(mut app: App, change: impl Fn(&mut World, u32)) -> usize {
 
 /// Allocations with a cloth whose attached pins move.
 fn with_attachments(pins: usize, is_animated: bool) -> usize {
-    let mut app = app_on_one_thread();
+    let mut app = app_on_one_thread(());
     let target = app.world_mut().spawn(Transform::default()).id();
     let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
     let attached = ClothAttachments::new(attached);
@@ -304,7 +319,7 @@ fn with_attachments(pins: usize, is_animated: bool) -> usize {
 
 /// Allocations with a ball that is moved up and down on a taut cloth, which it presses on; the cloth pushes it back or not.
 fn with_a_ball(is_body: bool) -> usize {
-    let mut app = app_on_one_thread();
+    let mut app = app_on_one_thread(());
     let edge = |row: u32, column: u32| row.is_multiple_of(19) || column.is_multiple_of(19);
     app.world_mut().spawn((
         Cloth::new(20, 20, 0.05).lying().centred(),
@@ -320,6 +335,67 @@ fn with_a_ball(is_body: bool) -> usize {
         let mut place = world.get_mut::<Transform>(ball).expect("a place");
         place.translation.y = 0.15 - 0.005 * (count % 7) as f32;
     })
+}
+
+/// Allocations with a skinned cloth whose only bone moves, and its root.
+fn with_a_character(follows: bool) -> usize {
+    let mut app = app_on_one_thread((AssetPlugin::default(), MeshPlugin));
+    app.init_asset::<SkinnedMeshInverseBindposes>();
+    let sheet = meshes::irregular(1.0, 1.0, 0.05, 0.2);
+    let count = sheet.positions.len();
+    let positions: Vec<_> = sheet.positions.iter().map(Vec3::to_array).collect();
+    let mesh = Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+    .with_inserted_indices(Indices::U32(sheet.triangles.as_flattened().to_vec()))
+    .with_inserted_attribute(
+        Mesh::ATTRIBUTE_JOINT_INDEX,
+        VertexAttributeValues::Uint16x4(vec![[0; 4]; count]),
+    )
+    .with_inserted_attribute(
+        Mesh::ATTRIBUTE_JOINT_WEIGHT,
+        vec![[1.0, 0.0, 0.0, 0.0]; count],
+    );
+    let world = app.world_mut();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    let mut poses = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
+    let inverse_bindposes = poses.add(vec![Mat4::IDENTITY]);
+    let root = world.spawn(Transform::default()).id();
+    let bone = world.spawn((Transform::default(), ChildOf(root))).id();
+    let skin = SkinnedMesh {
+        inverse_bindposes,
+        joints: vec![bone],
+    };
+    let cloth = (
+        Cloth::mesh(),
+        Mesh3d(mesh),
+        skin,
+        Pins::new([Pin::Vertex(0)]),
+    );
+    let cloth = world.spawn((cloth, ChildOf(root))).id();
+    if follows {
+        let skin = ClothSkin::within(ClothPaint::at_rest(|place| 0.1 * place.x));
+        world
+            .entity_mut(cloth)
+            .insert(skin.with_backstop(0.05, 1.0));
+        world.entity_mut(root).insert(ClothInertia::share(0.3));
+    }
+    in_ticks(app, |world, count| {
+        let some = (0.1 * count as f32).sin();
+        for (entity, angle) in [(root, 0.2), (bone, 0.3)] {
+            let mut place = world.get_mut::<Transform>(entity).expect("a place");
+            place.rotation = Quat::from_rotation_z(angle * some);
+        }
+    })
+}
+
+/// Whether a cloth follows its skeleton, and is carried along, or does not.
+fn characters_allocate_nothing_more() {
+    let [without, with] = [false, true].map(with_a_character);
+    println!("{with} of {without}");
+    assert!(with <= without, "{with} of {without}");
 }
 
 /// Whether a ball pushes cloth alone or is pushed back.

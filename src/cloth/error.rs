@@ -96,6 +96,58 @@ pub enum ClothError {
         /// The pin.
         pin: Pin,
     },
+    /// A vertex attribute that a number of each particle was to come from does not exist.
+    #[error(
+        "there is no channel {channel} of a vertex attribute \"{name}\"; the cloth has: {attributes}"
+    )]
+    NoSuchPaint {
+        /// Its name.
+        name: String,
+        /// Which channel of it, from 0.
+        channel: usize,
+        /// The names of those that there are.
+        attributes: String,
+    },
+    /// Numbers that are not one for each vertex.
+    #[error("the cloth has {expected} vertices, and {found} numbers were given for them")]
+    PaintCount {
+        /// How many vertices there are.
+        expected: usize,
+        /// How many numbers.
+        found: usize,
+    },
+    /// A skinned mesh whose joints' weights are no weights.
+    #[error("the weights of vertex {vertex}'s joints must be finite and not negative: {weights:?}")]
+    SkinWeights {
+        /// Which vertex.
+        vertex: usize,
+        /// Its weights.
+        weights: [f32; 4],
+    },
+    /// A skinned mesh without joint indices and weights, or whose vertices name more joints than there are.
+    #[error(
+        "the mesh needs a joint index and weights for each vertex, and {needed} joints with bind poses; there are {joints}"
+    )]
+    SkinJoints {
+        /// How many joints its vertices name.
+        needed: usize,
+        /// How many there are.
+        joints: usize,
+    },
+    /// No entity below a character has the name of a bone.
+    #[error("there is no bone \"{name}\" below this entity")]
+    NoSuchBone {
+        /// The name.
+        name: String,
+    },
+    /// A joint of a skinned mesh that does not exist, or whose transform is not finite.
+    #[error("joint {joint} of the skin, {entity}, must exist with a finite global transform")]
+    Joint {
+        /// Which joint.
+        joint: usize,
+        /// Its entity.
+        entity: Entity,
+    },
     /// The asset of a cloth from a mesh is not there, and nothing loads it.
     #[error(
         "the mesh has not been loaded, and nothing is loading it: is there a `Mesh3d` with it?"
@@ -302,9 +354,13 @@ pub enum ClothError {
 
 impl MapEntities for ClothError {
     fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        if let Self::NoTarget { target: entity, .. } | Self::NoDrivingCloth { cloth: entity } = self
-        {
-            *entity = mapper.get_mapped(*entity);
+        match self {
+            Self::NoTarget { target: entity, .. }
+            | Self::NoDrivingCloth { cloth: entity }
+            | Self::Joint { entity, .. } => {
+                *entity = mapper.get_mapped(*entity);
+            }
+            _ => {}
         }
     }
 }

@@ -9,6 +9,7 @@ mod particles;
 mod pins;
 mod presence;
 mod recipe;
+mod skin;
 mod springs;
 mod surface;
 
@@ -19,6 +20,7 @@ pub use material::ClothMaterial;
 pub use particles::{ClothParticles, ParticleId};
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
+pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
 pub use springs::{Spring, SpringKind, Springs};
 pub use surface::{
     MAX_MESH_PARTICLES, Spacing, Surface, SurfaceBinding, TriangleMesh, VertexAttribute,
@@ -28,5 +30,8 @@ pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X
 pub(crate) use limits::FARTHEST;
 pub(crate) use particles::{Earlier, Load, StepKind};
 pub(crate) use presence::ClothPresence;
+pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};
-pub(crate) use surface::{Flat, Graph, Link, ShortestPaths, Threads};
+#[cfg(feature = "mesh")]
+pub(crate) use surface::skin_of_asset;
+pub(crate) use surface::{Flat, Graph, JointWeights, Link, ShortestPaths, Threads};

@@ -107,7 +107,11 @@ impl ClothAttachments {
 }
 
 /// Insert this beside a new transform to have a cloth be there at once: it keeps its shape and its velocities, as
-/// seen from its entity, or from its first attachment's target where it has one, and gets none from the jump.
+/// seen from its entity, from its first attachment's target where it has one, or particle by particle from the pose of a
+/// skeleton that it [follows](crate::cloth::ClothSkin), and gets none from the jump.
+///
+/// On any other entity, as a character, it takes along all cloths and colliders below that, and cloths whose first attachment's
+/// target is below: none gets a speed from the jump. [`ClothInertia`](super::ClothInertia) does so by itself.
 /// Taken away in the next tick.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{shared::Shared, source::Source};
+use super::{shared::Shared, skin::SkinLimits, source::Source};
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothParticles, Pins, Springs, Surface},
     hierarchy::QuadTree,
@@ -40,6 +40,9 @@ pub struct ClothBuilt {
     /// Masses of its lightest and heaviest free particle (kg).
     #[reflect(ignore)]
     pub(super) masses: [f32; 2],
+    /// How far its particles may be from the pose that it follows, if it follows one.
+    #[reflect(ignore)]
+    pub(super) skin: Option<Box<SkinLimits>>,
     /// How many particles are pinned, and a number that is new whenever others are.
     #[reflect(ignore)]
     pub(super) pinned: usize,

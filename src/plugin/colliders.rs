@@ -9,6 +9,7 @@ use super::{
     ClothBody, ClothFrame,
     collider_tree::Bounds,
     frame::Places,
+    inertia::Carried,
     source::{ColliderMeshes, Source},
 };
 use crate::{
@@ -255,7 +256,11 @@ impl ColliderMotion {
     }
 
     /// The collider's way through the tick in a cloth's frame.
-    pub fn seen_from(&self, frame: &ClothFrame) -> Option<MovingCollider> {
+    pub fn seen_from(
+        &self,
+        frame: &ClothFrame,
+        carried: Option<&Carried>,
+    ) -> Option<MovingCollider> {
         let way = self.way.as_ref()?;
         let inverse = frame.isometry().inverse();
         Some(MovingCollider {
@@ -265,6 +270,22 @@ impl ColliderMotion {
             turn: inverse.rotation * way.turn,
             body: way.body.map(|body| body.turned(inverse.rotation)),
         })
+        .map(|seen| match carried {
+            Some(carried) => carried_along(seen, carried.seen_from(frame, way.from)),
+            None => seen,
+        })
+    }
+}
+
+/// A way that begins elsewhere: what carries a cloth along has it see a collider move the other way.
+fn carried_along(way: MovingCollider, from: Isometry3d) -> MovingCollider {
+    let end = Quat::from_scaled_axis(way.turn) * way.from.rotation;
+    let turned = end * from.rotation.inverse();
+    let turned = if turned.w < 0.0 { -turned } else { turned };
+    MovingCollider {
+        from,
+        turn: turned.to_scaled_axis(),
+        ..way
     }
 }
 

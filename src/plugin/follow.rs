@@ -15,6 +15,7 @@ use super::{
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
     frame::Places,
+    inertia::Roots,
     naming::Part,
     source::ColliderMeshes,
 };
@@ -36,6 +37,7 @@ pub(super) fn prepare_colliders(
     mut tree: ResMut<ColliderTree>,
     places: Places,
     meshes: ColliderMeshes,
+    roots: Roots,
     time: Res<Time>,
     mut commands: Commands,
 ) {
@@ -45,6 +47,9 @@ pub(super) fn prepare_colliders(
         let Ok((collider, mut motion, body, fault)) = colliders.get_mut(entity) else {
             continue;
         };
+        if roots.jumps(entity) {
+            motion.stop();
+        }
         let outcome = motion.follow(collider, body, &places, &meshes, entity, time_passes);
         if outcome.is_err() {
             *motion = ColliderMotion::default();

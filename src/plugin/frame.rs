@@ -129,6 +129,15 @@ impl ClothFrame {
     }
 }
 
+/// Where `b` is, seen from `a`: to a rounding of how far they are apart, wherever both are.
+pub(super) fn relative(a: Isometry3d, b: Isometry3d) -> Isometry3d {
+    let turn = a.rotation.inverse();
+    Isometry3d::new(
+        turn * (b.translation - a.translation),
+        (turn * b.rotation).normalize(),
+    )
+}
+
 /// Where something is and how it is turned, its scale left out.
 pub(super) fn rigid(affine: &Affine3A) -> Isometry3d {
     let (_, rotation, translation) = affine.to_scale_rotation_translation();

@@ -5,9 +5,11 @@ mod attach;
 mod attachments;
 mod awaited;
 mod body;
+mod bones;
 mod broad_phase;
 mod build;
 mod built;
+mod carry;
 mod clock;
 mod collider_tree;
 mod colliders;
@@ -24,6 +26,7 @@ mod frame;
 #[cfg(feature = "gizmos")]
 mod gizmos;
 mod gravity;
+mod inertia;
 mod inputs;
 mod integrate;
 mod islands;
@@ -45,6 +48,7 @@ mod search;
 mod sets;
 mod shared;
 mod simulation;
+mod skin;
 mod source;
 mod state;
 mod stats;
@@ -60,6 +64,7 @@ use bevy::{
 
 pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTeleport};
 pub use body::{ClothBody, ClothPush};
+pub use bones::{ClothBone, ClothBones};
 pub use built::ClothBuilt;
 pub use components::ClothSearch;
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
@@ -72,6 +77,7 @@ pub use frame::ClothFrame;
 #[cfg(feature = "gizmos")]
 pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
 pub use gravity::ClothGravity;
+pub use inertia::ClothInertia;
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
 #[cfg(feature = "egui")]

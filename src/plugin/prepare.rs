@@ -5,10 +5,10 @@ use bevy::{
     ecs::{
         change_detection::{DetectChanges, Mut, Ref},
         entity::Entity,
-        query::QueryData,
-        system::{Commands, Query, Res, ResMut},
+        query::{QueryData, With, Without},
+        system::{Commands, Query, Res, ResMut, SystemParam},
     },
-    math::{Isometry3d, Vec3},
+    math::Vec3,
     time::Time,
 };
 
@@ -18,19 +18,22 @@ use super::{
     attach::{Targets, follow_targets},
     broad_phase::{clear_stats, reach, update_bounds},
     build::{Wanted, build},
+    carry::{carry, new_from_old},
     components::BroadPhaseBounds,
     frame::global_transform,
+    inertia::Roots,
     inputs::Inputs,
     naming::Part,
     shared::SharedParts,
+    skin::{Skins, move_with_pose, place_pose},
     source::Sources,
     wind::{Breeze, WindField},
 };
 use crate::{
-    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
+    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, ClothSkin, Pins},
     contact::{ClothSelfCollision, ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothPressure, ClothSettings, PinMotion, Substepping, TickStep},
+    solver::{ClothPressure, ClothSettings, Substepping, TickStep},
 };
 
 /// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
@@ -47,6 +50,7 @@ pub(super) struct Preparing {
     material: Option<&'static ClothMaterial>,
     pins: Option<&'static Pins>,
     attachments: Option<&'static ClothAttachments>,
+    skin: Option<Ref<'static, ClothSkin>>,
     settings: Option<&'static ClothSettings>,
     method: Option<&'static SearchMethod>,
     narrow_phase: Option<&'static NarrowPhase>,
@@ -65,17 +69,30 @@ pub(super) struct Preparing {
     fault: Option<&'static ClothFault>,
 }
 
+/// What a cloth is prepared with, besides its own components.
+#[derive(SystemParam)]
+pub(super) struct Surroundings<'w, 's> {
+    targets: Targets<'w, 's>,
+    sources: Sources<'w, 's>,
+    skins: Skins<'w, 's>,
+    roots: Roots<'w, 's>,
+    field: Res<'w, WindField>,
+    /// What takes others along.
+    teleports: Query<'w, 's, Entity, (With<ClothTeleport>, Without<Cloth>)>,
+}
+
 /// Prepares each cloth, or marks it with what is wrong.
 pub(super) fn prepare_cloths(
     mut cloths: Query<Preparing>,
-    targets: Targets,
-    sources: Sources,
+    around: Surroundings,
     mut parts: ResMut<SharedParts>,
     gravity: Res<ClothGravity>,
-    field: Res<WindField>,
     time: Res<Time>,
     mut commands: Commands,
 ) {
+    for entity in &around.teleports {
+        commands.entity(entity).try_remove::<ClothTeleport>();
+    }
     for mut cloth in &mut cloths {
         let inputs = Inputs::of(
             cloth.settings,
@@ -87,13 +104,13 @@ pub(super) fn prepare_cloths(
         );
         let outcome = inputs.and_then(|inputs| {
             let seconds = time.delta_secs();
-            let air = (&*field, field.of_cloth(cloth.air)?);
-            if cloth.sleeps_as_it_was(&inputs, &air, &targets, &sources, seconds) {
+            let breeze = around.field.of_cloth(cloth.air)?;
+            if cloth.sleeps_as_it_was(&inputs, &around, &breeze, seconds) {
                 return Ok(());
             }
             // Nothing of an earlier tick is done again.
             cloth.scratch.forget_tick();
-            cloth.prepare(&inputs, air, &targets, &sources, &mut parts, seconds)
+            cloth.prepare(&inputs, &around, breeze, &mut parts, seconds)
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
@@ -126,11 +143,16 @@ impl PreparingItem<'_, '_> {
     fn sleeps_as_it_was(
         &self,
         inputs: &Inputs,
-        (field, breeze): &(&WindField, Option<Breeze>),
-        targets: &Targets,
-        sources: &Sources,
+        around: &Surroundings,
+        breeze: &Option<Breeze>,
         seconds: f32,
     ) -> bool {
+        let Surroundings {
+            targets,
+            sources,
+            field,
+            ..
+        } = around;
         let (state, built) = (&*self.state, &*self.built);
         if !(state.rest.is_asleep() && state.is_valid && self.stats.is_asleep) {
             return false;
@@ -160,6 +182,8 @@ impl PreparingItem<'_, '_> {
                 .attachments
                 .is_none_or(|attachments| attachments.as_slice().is_empty())
             && self.teleport.is_none()
+            && !around.roots.jumps(self.entity)
+            && self.is_in_same_pose(around)
             && self.fault.is_none()
             && built.is_made_from(self.cloth.last_changed(), &inputs.material, pins)
             && sources.find(self.entity, &self.cloth, source) == Ok(source)
@@ -170,23 +194,47 @@ impl PreparingItem<'_, '_> {
                 .is_ok_and(|transform| self.frame.is_of(&transform))
     }
 
+    /// Whether the pose that it follows is what it was in the last tick, or it follows none.
+    fn is_in_same_pose(&self, around: &Surroundings) -> bool {
+        let place = |joint| global_transform(&around.targets.transforms, joint).ok();
+        match (&self.skin, &self.built.skin) {
+            (None, None) => true,
+            (Some(skin), Some(known)) => {
+                skin.last_changed() == known.changed
+                    && (around.skins).are_at(self.entity, place, &self.state.pose.joints)
+            }
+            _ => false,
+        }
+    }
+
     fn prepare(
         &mut self,
         inputs: &Inputs,
-        (field, breeze): (&WindField, Option<Breeze>),
-        targets: &Targets,
-        sources: &Sources,
+        around: &Surroundings,
+        breeze: Option<Breeze>,
         parts: &mut SharedParts,
         seconds: f32,
     ) -> Result<(), ClothError> {
+        let Surroundings {
+            targets,
+            sources,
+            field,
+            ..
+        } = around;
         let transform = global_transform(&targets.transforms, self.entity)?;
-        let (frame, scale) = ClothFrame::of(&transform)?;
+        let (frame, mut scale) = ClothFrame::of(&transform)?;
         let Inputs {
             settings, material, ..
         } = inputs;
         let attachments = self.attachments.map_or(&[][..], ClothAttachments::as_slice);
         let (particles, state) = (&mut self.particles, &mut *self.state);
         let (built, scratch) = (&mut *self.built, &mut *self.scratch);
+        if self.skin.is_some() {
+            let place = |joint| global_transform(&targets.transforms, joint).ok();
+            (around.skins).read(self.entity, place, &mut scratch.pose.joints)?;
+            // How large it is in the world is the skeleton's matter.
+            scale = scratch.pose.scale().unwrap_or(scale);
+        }
         let known = built.source();
         let wanted = Wanted {
             cloth: &self.cloth,
@@ -197,11 +245,17 @@ impl PreparingItem<'_, '_> {
             attachments,
             scale,
         };
+        let is_new = built.from.is_some() || particles.is_empty();
         let was_built = build(&wanted, sources, parts, particles, built, state)?;
         let before = *self.frame;
         if !was_built {
             *self.frame = frame;
         }
+        let begins = !was_built && is_new;
+        let skin = self.skin.as_ref();
+        place_pose(
+            skin, sources, &frame, begins, particles, built, state, scratch,
+        )?;
         // Who saves or restores particles may mark them as changed without a change.
         let was_written =
             state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
@@ -223,20 +277,43 @@ impl PreparingItem<'_, '_> {
             &mut state.targets,
             &mut scratch.targets,
         )?;
-        scratch.teleports = self.teleport.is_some();
+        let target = state.targets.first().copied();
+        let roots = &around.roots;
+        scratch.carried = match seconds > 0.0 && was_built {
+            true => roots.carry(self.entity, target)?,
+            false => None,
+        };
+        let new_from_old = new_from_old([&*self.frame, &frame], scratch.carried.as_ref());
+        let is_moved = new_from_old.is_some();
+        let new_from_old = new_from_old.unwrap_or_default();
+        scratch.teleports = self.teleport.is_some()
+            || roots.jumps(self.entity)
+            || target.is_some_and(|target| roots.jumps(target));
+        if let Some(skin) = &self.skin
+            && seconds > 0.0
+            && was_built
+        {
+            let way = scratch.pose.farthest_from(&state.pose, new_from_old);
+            scratch.teleports |= way > skin.teleport_distance;
+        }
         if scratch.teleports {
+            scratch.carried = None;
             *self.frame = frame;
-        } else if seconds > 0.0 && *self.frame != frame {
-            carry(
-                particles,
-                self.frame.isometry(),
-                frame.isometry(),
-                &mut scratch.pins,
-            );
+        } else if seconds > 0.0 && is_moved {
+            carry(particles, new_from_old, &mut scratch.pins);
             state.rest.disturb();
             *self.frame = frame;
         }
         if seconds > 0.0 || !was_built || scratch.teleports {
+            move_with_pose(
+                [&before, &frame],
+                new_from_old,
+                was_built,
+                particles,
+                built,
+                state,
+                scratch,
+            );
             follow_targets(
                 attachments,
                 &scratch.targets,
@@ -344,7 +421,7 @@ impl PreparingItem<'_, '_> {
                     .air
                     .acceleration(material, state.largest_speed, seconds),
             seconds,
-        );
+        ) + scratch.constraints.travel();
         update_bounds(
             particles,
             &self.frame,
@@ -368,27 +445,6 @@ fn ball(
 ) -> (Vec3, f32) {
     let root = built.tree().root_sphere(particles, stretch);
     (frame.to_world(root.center.into()), root.radius())
-}
-
-/// The frame has moved: the particles stay where they are in the world, and their pins go along in the course of the tick.
-fn carry(
-    particles: &mut ClothParticles,
-    old: Isometry3d,
-    new: Isometry3d,
-    motions: &mut Vec<PinMotion>,
-) {
-    let new_from_old = new.inverse() * old;
-    for (index, inverse_mass) in particles.inverse_masses().enumerate() {
-        if inverse_mass == 0.0 {
-            let pinned_to = particles.position_at(index);
-            motions.push(PinMotion {
-                particle: index as u32,
-                from: new_from_old * pinned_to,
-                to: pinned_to,
-            });
-        }
-    }
-    particles.transform(new_from_old);
 }
 
 /// The speed of the fastest particle (m/s), if all are valid.

@@ -14,8 +14,10 @@ use crate::{
         BodyChange, ClothSelfCollision, ContactSettings, Detection, MovingCollider, MutualContact,
     },
     hierarchy::{NodeBounds, SearchMethod, TopDownQuery},
-    solver::{LimitInputs, PinMotion, Substepping, TickStep},
+    solver::{LimitInputs, MotionConstraints, PinMotion, Substepping, TickStep},
 };
+
+use super::{inertia::Carried, skin::Pose};
 
 /// What is of one tick. Kept so that a tick does not allocate; it may be dropped between two ticks
 /// (`*scratch = ClothScratch::default()`) without any change of what follows, but for the last bits of layers that touch each other:
@@ -33,6 +35,12 @@ pub struct ClothScratch {
     pub(super) pins: Vec<PinMotion>,
     /// Where the attachments' targets are, in their order.
     pub(super) targets: Vec<Affine3A>,
+    /// The pose as the tick begins, in the frame that it ends with.
+    pub(super) pose: Pose,
+    /// How far particles may be from it.
+    pub(super) constraints: MotionConstraints,
+    /// What carries the cloth along as the tick begins.
+    pub(super) carried: Option<Carried>,
     /// Whether the cloth jumps.
     pub(super) teleports: bool,
     /// How far a particle may get by itself (m).
@@ -64,6 +72,8 @@ impl ClothScratch {
     pub(super) fn forget_tick(&mut self) {
         self.step = None;
         self.pins.clear();
+        self.constraints.clear();
+        self.carried = None;
         self.pushed.clear();
     }
 }

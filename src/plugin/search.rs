@@ -160,6 +160,7 @@ impl SearchingItem<'_, '_> {
             near,
             detection,
             reach,
+            carried,
             ..
         } = &mut *self.scratch;
         // Besides by itself, a particle may get as far as a collider drags it, to others that may drag it on.
@@ -167,7 +168,7 @@ impl SearchingItem<'_, '_> {
         loop {
             near.clear();
             let seen = |(entity, motion): (Entity, &ColliderMotion)| {
-                Some((entity, motion.seen_from(self.frame)?))
+                Some((entity, motion.seen_from(self.frame, carried.as_ref())?))
             };
             let around = colliders.near(centre, radius + dragged, layers);
             near.extend(around.filter_map(seen));
@@ -217,7 +218,7 @@ impl SearchingItem<'_, '_> {
         let rests_still = |(entity, collider): &(Entity, MovingCollider)| {
             let motion = colliders.get(*entity, layers);
             motion
-                .and_then(|motion| motion.seen_from(self.frame))
+                .and_then(|motion| motion.seen_from(self.frame, None))
                 .as_ref()
                 == Some(collider)
         };
@@ -241,7 +242,7 @@ impl SearchingItem<'_, '_> {
             if rests_on.iter().any(|(known, _)| *known == entity) {
                 continue;
             }
-            let Some(collider) = motion.seen_from(self.frame) else {
+            let Some(collider) = motion.seen_from(self.frame, None) else {
                 continue;
             };
             if !has_bounds {

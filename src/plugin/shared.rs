@@ -6,7 +6,7 @@ use bevy::{ecs::resource::Resource, math::Vec3};
 
 use super::source::Source;
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothShape, SpringKind, Springs, Surface},
+    cloth::{ClothError, ClothMaterial, ClothShape, Skinning, SpringKind, Springs, Surface},
     contact::Sheet,
     hierarchy::QuadTree,
     solver::{Bending, Solver},
@@ -24,6 +24,8 @@ pub(super) struct Shared {
     pub solver: Solver,
     /// For contact of cloth with cloth: made when a cloth asks for it.
     sheet: OnceLock<Arc<Sheet>>,
+    /// What moves it with joints: made when a cloth has some.
+    skinning: OnceLock<Skinning>,
 }
 
 impl Shared {
@@ -31,6 +33,29 @@ impl Shared {
     pub fn sheet(&self) -> &Arc<Sheet> {
         self.sheet
             .get_or_init(|| Arc::new(Sheet::new(&self.surface, &self.tree)))
+    }
+
+    /// What moves its particles with joints, if that has been made.
+    pub fn known_skinning(&self) -> Option<&Skinning> {
+        self.skinning.get()
+    }
+
+    /// What moves its particles with joints; `None` of what is made from no asset.
+    ///
+    /// # Errors
+    /// What `make` finds wrong with the asset.
+    pub fn skinning(
+        &self,
+        make: impl FnOnce(Source, &Surface) -> Result<Skinning, ClothError>,
+    ) -> Result<Option<&Skinning>, ClothError> {
+        let Some(source) = self.recipe.as_ref().and_then(|recipe| recipe.source) else {
+            return Ok(None);
+        };
+        if let Some(known) = self.known_skinning() {
+            return Ok(Some(known));
+        }
+        let made = make(source, &self.surface)?;
+        Ok(Some(self.skinning.get_or_init(|| made)))
     }
 }
 
@@ -92,6 +117,7 @@ impl SharedParts {
             springs,
             tree,
             sheet: OnceLock::new(),
+            skinning: OnceLock::new(),
         });
         self.known.retain(|known| known.strong_count() > 0);
         self.known.push(Arc::downgrade(&shared));

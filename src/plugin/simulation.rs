@@ -25,10 +25,12 @@ use bevy::{
 #[cfg(feature = "mesh")]
 use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
-    ClothAir, ClothAttachments, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame,
-    ClothGravity, ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats,
-    ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindZone,
+    ClothAir, ClothAttachments, ClothBody, ClothBones, ClothBuilt, ClothContacts, ClothFault,
+    ClothFrame, ClothGravity, ClothInertia, ClothLimitExceeded, ClothPush, ClothScratch,
+    ClothSearch, ClothState, ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted,
+    ClothTouchStopped, ClothWind, ClothWindZone,
     awaited::{Deprived, note_enabled, note_removals},
+    bones::{make_bone_colliders, remove_bone_colliders},
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
     components::BroadPhaseBounds,
@@ -36,6 +38,7 @@ use super::{
     envelope::report_limits,
     fault::log_faults,
     follow::{forget_collider, prepare_colliders},
+    inertia::{Jumped, follow_roots},
     integrate::integrate,
     islands::{Islands, find_islands},
     naming::Part,
@@ -46,7 +49,7 @@ use super::{
     wind::{WindField, prepare_wind},
 };
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, Pins},
+    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, ClothSkin, Pins},
     contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothPressure, ClothSettings},
@@ -92,6 +95,9 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothStats>()
             .register_type::<ClothAttachments>()
             .register_type::<ClothTeleport>()
+            .register_type::<ClothSkin>()
+            .register_type::<ClothBones>()
+            .register_type::<ClothInertia>()
             .register_type::<ClothBuilt>()
             .register_type::<ClothSearch>()
             .register_type::<ClothFault>()
@@ -112,12 +118,14 @@ impl Plugin for ClothPlugin {
             .init_resource::<ColliderTree>()
             .init_resource::<WindField>()
             .init_resource::<Deprived>()
+            .init_resource::<Jumped>()
             .add_observer(add_parts::<Cloth, ClothParts>)
             .add_observer(add_parts::<ClothCollider, ColliderMotion>)
             .add_observer(send_stopped_messages)
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
             .add_observer(reset_motion)
+            .add_observer(remove_bone_colliders)
             .add_observer(forget_collider)
             .add_observer(note_enabled)
             .add_systems(Last, note_removals);
@@ -139,6 +147,7 @@ impl Plugin for ClothPlugin {
             (
                 (
                     note_removals,
+                    follow_roots,
                     prepare_colliders,
                     prepare_wind,
                     prepare_cloths,
@@ -156,6 +165,7 @@ impl Plugin for ClothPlugin {
                 )
                     .chain()
                     .in_set(ClothSystems::Integrate),
+                make_bone_colliders.in_set(ClothSystems::WriteBack),
                 (send_touch_messages, report_limits, log_faults)
                     .chain()
                     .in_set(ClothSystems::WriteBack),

@@ -5,7 +5,7 @@ use bevy::{
     math::{Isometry3d, Vec3},
 };
 
-use super::{ClothAttachment, air::KnownAir, attachments::Attached, excess::Excess};
+use super::{ClothAttachment, air::KnownAir, attachments::Attached, excess::Excess, skin::Pose};
 use crate::{
     contact::{Carrier, ClothSelfCollision, MovingCollider, NarrowPhase},
     hierarchy::SearchMethod,
@@ -46,6 +46,8 @@ pub struct ClothState {
     pub(super) attached: Vec<Attached>,
     /// Where the first attachment's target was.
     pub(super) first_target: Option<Isometry3d>,
+    /// The pose that it follows, as the last tick ended.
+    pub(super) pose: Pose,
     /// The colliders that it touched as it fell asleep, each where it was then.
     pub(super) rests_on: Vec<(Entity, MovingCollider)>,
     /// The particles that carried bodies as the last tick ended.
@@ -61,5 +63,6 @@ impl ClothState {
         self.attached.clear();
         self.attachments.clear();
         self.first_target = None;
+        self.pose = Pose::default();
     }
 }

@@ -13,7 +13,7 @@ use bevy::{
 
 use super::{
     ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState, ClothStats,
-    clock::milliseconds_since, colliders::ColliderMotion, threads::threads,
+    clock::milliseconds_since, colliders::ColliderMotion, inertia::Carried, threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
@@ -221,21 +221,30 @@ impl IntegratingItem<'_, '_> {
             near_set,
             detection,
             contact_settings,
+            constraints,
+            carried,
             ..
         } = &mut *self.scratch;
         let built = &mut *self.built;
         let (sheet, dt) = (&built.shared, step.seconds / step.substeps.max(1) as f32);
-        let frame = self.frame;
+        let place = Place {
+            frame: self.frame,
+            carried: *carried,
+            layers,
+        };
         let stretch =
             built
                 .solver
-                .advance(&mut self.particles, step, pins, |particles, substep| {
+                .advance(&mut self.particles, step, pins, |particles, mut substep| {
                     let settings = *contact_settings;
+                    let is_held =
+                        !constraints.is_empty() && constraints.hold(particles, &mut substep);
                     let numbered = |numbered: &mut Vec<(usize, MovingCollider)>| {
-                        add_far(near, near_set, (frame, layers), colliders, numbered);
+                        add_far(near, near_set, &place, colliders, numbered);
                     };
                     let Some((mutual, layers)) = &mut alone else {
-                        return detection.respond(particles, &settings, substep, numbered);
+                        return is_held
+                            | detection.respond(particles, &settings, substep, numbered);
                     };
                     let sheet = sheet.sheet();
                     let itself = Participant::alone(particles, sheet, *layers);
@@ -246,7 +255,7 @@ impl IntegratingItem<'_, '_> {
                     let itself = Participant::alone(particles, sheet, *layers);
                     let farthest = mutual.respond(&mut [itself], |_, _| true, dt, &mut is_pushed);
                     detection.note_push(farthest);
-                    is_touched | is_pushed[0]
+                    is_held | is_touched | is_pushed[0]
                 });
         if let Some((mutual, _)) = alone {
             self.state.touches_cloth = mutual.has_touched();
@@ -296,6 +305,12 @@ impl IntegratingItem<'_, '_> {
         }
     }
 
+    /// Holds it near its pose as a sub-step ends, if it follows one. Returns whether anything moved.
+    pub(super) fn hold(&mut self, substep: &mut SubStep) -> bool {
+        let constraints = &self.scratch.constraints;
+        !constraints.is_empty() && constraints.hold(&mut self.particles, substep)
+    }
+
     /// Pushes it out of what it touches that is no cloth. Returns whether anything moved.
     pub(super) fn touch(&mut self, substep: SubStep, colliders: &Colliders) -> bool {
         let ClothScratch {
@@ -303,30 +318,44 @@ impl IntegratingItem<'_, '_> {
             near_set,
             detection,
             contact_settings,
+            carried,
             ..
         } = &mut *self.scratch;
-        let frame = self.frame;
-        let layers = self.layers.copied().unwrap_or_default();
+        let place = Place {
+            frame: self.frame,
+            carried: *carried,
+            layers: self.layers.copied().unwrap_or_default(),
+        };
         detection.respond(&mut self.particles, contact_settings, substep, |numbered| {
-            add_far(near, near_set, (frame, layers), colliders, numbered);
+            add_far(near, near_set, &place, colliders, numbered);
         })
     }
+}
+
+/// Where a cloth sees colliders from, and which of them.
+struct Place<'a> {
+    frame: &'a ClothFrame,
+    carried: Option<Carried>,
+    layers: ClothLayers,
 }
 
 /// Adds the colliders that were far away as the tick began: they may be near now. Who is known keeps its number.
 fn add_far(
     near: &mut Vec<(Entity, MovingCollider)>,
     near_set: &mut EntityHashSet,
-    (frame, layers): (&ClothFrame, ClothLayers),
+    place: &Place,
     colliders: &Colliders,
     numbered: &mut Vec<(usize, MovingCollider)>,
 ) {
     near_set.clear();
     near_set.extend(near.iter().map(|(known, _)| *known));
     for (entity, motion, others) in colliders {
-        if others.copied().unwrap_or_default().interacts_with(layers)
+        if others
+            .copied()
+            .unwrap_or_default()
+            .interacts_with(place.layers)
             && !near_set.contains(&entity)
-            && let Some(collider) = motion.seen_from(frame)
+            && let Some(collider) = motion.seen_from(place.frame, place.carried.as_ref())
         {
             numbered.push((near.len(), collider.clone()));
             near.push((entity, collider));

@@ -136,10 +136,14 @@ fn advance(
     for _ in 0..substeps {
         moved.clear();
         for (Member { cloth, .. }, tick) in members.iter_mut().zip(&mut ticks) {
-            let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);
-            let substep = tick
-                .as_mut()
-                .and_then(|tick| solver.substep(&mut cloth.particles, pins, tick));
+            let substep = tick.as_mut().and_then(|tick| {
+                let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);
+                let mut substep = solver.substep(&mut cloth.particles, pins, tick)?;
+                if cloth.hold(&mut substep) {
+                    tick.note_push(&mut cloth.particles);
+                }
+                Some(substep)
+            });
             moved.push(substep);
         }
         contact.note_before_colliders(&participants(members));

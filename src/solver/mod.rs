@@ -59,6 +59,7 @@ mod list;
 #[cfg(feature = "methods")]
 #[doc(hidden)]
 pub mod methods;
+mod motion;
 mod pace;
 mod packet;
 mod pentadiagonal;
@@ -86,6 +87,7 @@ pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]
 pub use kernel::SimdLevel;
+pub use motion::MotionConstraints;
 pub use rest::Rest;
 pub use settings::ClothSettings;
 pub use step::{PinMotion, SubStep, TickStep, TimeOrder};

@@ -1,6 +1,7 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
 mod attach;
+mod characters;
 mod drawing;
 mod envelope;
 mod faults;

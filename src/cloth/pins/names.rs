@@ -22,15 +22,9 @@ impl Pin {
                 if *channel < 4 && attributes.iter().any(|each| each.name() == name) {
                     return self.finds_something(surface);
                 }
-                let names: Vec<&str> = attributes.iter().map(VertexAttribute::name).collect();
-                let none = "none".to_string();
                 return Err(ClothError::NoSuchAttribute {
                     pin: pin(),
-                    attributes: if names.is_empty() {
-                        none
-                    } else {
-                        names.join(", ")
-                    },
+                    attributes: VertexAttribute::names(attributes),
                 });
             }
             (_, None) => return Err(ClothError::PinNeedsGrid { pin: pin() }),

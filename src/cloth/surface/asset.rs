@@ -9,7 +9,7 @@ use bevy::{
     },
 };
 
-use super::{TriangleMesh, VertexAttribute};
+use super::{JointWeights, TriangleMesh, VertexAttribute};
 use crate::cloth::ClothError;
 
 /// Attributes that a surface has in other ways, or that mean nothing to it.
@@ -69,6 +69,31 @@ impl TriangleMesh {
             attributes: attributes.collect(),
         })
     }
+}
+
+/// What moves each vertex of a skinned mesh; `None` of one that has no joint indices and weights.
+///
+/// # Errors
+/// [`ClothError::MeshNotReadable`] of a mesh that is in the render world only.
+pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, ClothError> {
+    let read = |attribute: MeshVertexAttribute| match mesh.try_attribute_option(attribute) {
+        Ok(values) => Ok(values),
+        Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),
+        Err(_) => Ok(None),
+    };
+    let (
+        Some(VertexAttributeValues::Uint16x4(joints)),
+        Some(VertexAttributeValues::Float32x4(weights)),
+    ) = (
+        read(Mesh::ATTRIBUTE_JOINT_INDEX)?,
+        read(Mesh::ATTRIBUTE_JOINT_WEIGHT)?,
+    )
+    else {
+        return Ok(None);
+    };
+    let each = joints.iter().zip(weights);
+    let each = each.map(|(&joints, &weights)| JointWeights { joints, weights });
+    Ok(Some(each.collect()))
 }
 
 /// The triangles of a mesh, by its vertices.

@@ -34,12 +34,15 @@ pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
 pub use triangles::{TriangleMesh, VertexAttribute};
 
+#[cfg(feature = "mesh")]
+pub(crate) use asset::skin_of_asset;
 pub(crate) use faces::Faces;
 pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
 pub(crate) use threads::Threads;
+pub(crate) use triangles::JointWeights;
 
 /// A cloth's surface at rest: its particles, the triangles between them, their areas, what is next to what. In the cloth's
 /// own frame, in metres, with the transform's scale multiplied in.

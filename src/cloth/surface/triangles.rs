@@ -39,8 +39,25 @@ impl VertexAttribute {
         &self.name
     }
 
+    /// What some are called, for a message.
+    pub(crate) fn names(attributes: &[Self]) -> String {
+        let names: Vec<&str> = attributes.iter().map(Self::name).collect();
+        if names.is_empty() {
+            "none".to_string()
+        } else {
+            names.join(", ")
+        }
+    }
+
     /// Four numbers for each.
     pub fn values(&self) -> &[[f32; 4]] {
         &self.values
     }
+}
+
+/// The joints that move a vertex, and by how much each.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(crate) struct JointWeights {
+    pub joints: [u16; 4],
+    pub weights: [f32; 4],
 }

@@ -23,7 +23,7 @@ fn app_with(collider: ClothCollider, body: ClothBody, place: Transform) -> (App,
 
 fn way(app: &App, entity: Entity) -> MovingCollider {
     let motion = app.world().get::<ColliderMotion>(entity);
-    let way = motion.and_then(|motion| motion.seen_from(&ClothFrame::default()));
+    let way = motion.and_then(|motion| motion.seen_from(&ClothFrame::default(), None));
     way.expect("it is followed")
 }
 

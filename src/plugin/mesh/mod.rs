@@ -1,6 +1,7 @@
 //! Keeps a mesh on the particles.
 
 mod placing;
+mod skin;
 mod write;
 
 use std::sync::Arc;
@@ -24,7 +25,7 @@ use bevy::{
         schedule::{
             IntoScheduleConfigs, ScheduleLabel, SystemSet, common_conditions::resource_exists,
         },
-        system::{Commands, Query, Res, ResMut},
+        system::{Commands, Query, Res, ResMut, SystemParam},
     },
     math::{Affine3A, Vec3},
     mesh::{Mesh, Mesh3d},
@@ -33,9 +34,10 @@ use bevy::{
     transform::{TransformSystems, components::GlobalTransform},
 };
 
-use super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothSystems};
+use super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothSystems, skin::Skins};
 use crate::cloth::{Cloth, ClothParticles, ClothShape, Surface};
 use placing::{Carriers, Drawn};
+use skin::DrawnPose;
 use write::{Tangents, copy_of, mesh_of, write_mesh};
 
 /// On a cloth whose [`Mesh3d`] follows its particles, with UVs, normals and tangents; it replaces one that the entity
@@ -65,6 +67,9 @@ pub struct ClothMesh {
     /// What carries its pins, as of the last two ticks.
     #[reflect(ignore)]
     carriers: Carriers,
+    /// The pose that it follows, if it does.
+    #[reflect(ignore)]
+    pose: DrawnPose,
     /// Where its targets are drawn.
     #[reflect(ignore)]
     targets: Vec<Affine3A>,
@@ -157,7 +162,7 @@ impl Plugin for ClothMeshPlugin {
         // In any other schedule a tick is a frame, and there is nothing to interpolate.
         let interpolated = fixed.contains(&self.schedule);
         let update =
-            move |cloths: Query<_, _>, at: Query<_, _>, time: Res<_>, meshes: ResMut<_>| {
+            move |cloths: Query<_, _>, at: Surroundings, time: Res<_>, meshes: ResMut<_>| {
                 update_meshes(cloths, at, time, meshes, interpolated);
             };
         app.register_type::<ClothMesh>()
@@ -200,6 +205,14 @@ fn remember_positions(
         if !(rests && mesh.rested) {
             mesh.previous.clear();
             mesh.previous.extend(particles.positions());
+            // As it was before it was carried along.
+            let undone = scratch.carried.map(|carried| carried.undone_in(frame));
+            if let Some(undone) = undone {
+                mesh.previous
+                    .iter_mut()
+                    .for_each(|place| *place = undone * *place);
+            }
+            mesh.pose.follow(*frame, state, scratch, undone);
             mesh.carriers.follow(*frame, state, scratch);
         }
         mesh.rested = rests;
@@ -281,6 +294,7 @@ fn remove_mesh(
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct Drawing {
+    entity: Entity,
     built: &'static ClothBuilt,
     particles: Ref<'static, ClothParticles>,
     frame: &'static ClothFrame,
@@ -290,9 +304,16 @@ struct Drawing {
     mesh: &'static mut ClothMesh,
 }
 
+/// Where things are drawn.
+#[derive(SystemParam)]
+struct Surroundings<'w, 's> {
+    transforms: Query<'w, 's, &'static GlobalTransform>,
+    skins: Skins<'w, 's>,
+}
+
 fn update_meshes(
     mut cloths: Query<Drawing>,
-    transforms: Query<&GlobalTransform>,
+    around: Surroundings,
     time: Res<Time<Fixed>>,
     mut meshes: ResMut<Assets<Mesh>>,
     interpolated: bool,
@@ -303,17 +324,12 @@ fn update_meshes(
         1.0
     };
     for mut cloth in &mut cloths {
-        cloth.update(&transforms, &mut meshes, fraction);
+        cloth.update(&around, &mut meshes, fraction);
     }
 }
 
 impl DrawingItem<'_, '_> {
-    fn update(
-        &mut self,
-        transforms: &Query<&GlobalTransform>,
-        meshes: &mut Assets<Mesh>,
-        fraction: f32,
-    ) {
+    fn update(&mut self, around: &Surroundings, meshes: &mut Assets<Mesh>, fraction: f32) {
         let drives = std::mem::take(&mut self.mesh.drives);
         if !self.state.is_valid || !self.built.matches(&self.particles) {
             return;
@@ -331,6 +347,7 @@ impl DrawingItem<'_, '_> {
             handle,
             previous,
             carriers,
+            pose,
             targets,
             drawn,
             normals,
@@ -342,12 +359,15 @@ impl DrawingItem<'_, '_> {
         } = &mut *self.mesh;
         // Those of the tick: what has been attached since has yet to be taken over.
         let drawn_at = self.state.targets.iter();
-        let drawn_at = drawn_at.map_while(|target| transforms.get(*target).ok());
+        let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
         targets.clear();
         targets.extend(drawn_at.map(GlobalTransform::affine));
+        let place = |joint| around.transforms.get(joint).ok().copied();
+        let moves = pose.read(self.entity, &around.skins, place);
         // What sleeps is drawn once.
-        let state = (self.state.rest.is_asleep() && *rested && !carriers.differ_from(targets))
-            .then_some((self.particles.last_changed(), entity, is_seen));
+        let state =
+            (!moves && self.state.rest.is_asleep() && *rested && !carriers.differ_from(targets))
+                .then_some((self.particles.last_changed(), entity, is_seen));
         if state.is_some() && *settled == state {
             return;
         }
@@ -360,7 +380,8 @@ impl DrawingItem<'_, '_> {
             targets,
             fraction,
         };
-        place.place(carriers, drawn);
+        let is_skinned = pose.place(&self.built.shared, fraction, drawn);
+        place.place(carriers, is_skinned, drawn);
         *version = version.wrapping_add(1);
         *settled = state;
         let surface = self.built.surface();

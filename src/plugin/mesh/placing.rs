@@ -155,11 +155,15 @@ pub(super) struct Drawn<'a> {
 
 impl Drawn<'_> {
     /// Moves the interpolated particles from the frame that they are given in to that of the entity, which the mesh is
-    /// given in, along with what carries them.
-    pub fn place(&self, carriers: &mut Carriers, drawn: &mut [Vec3]) {
+    /// given in, along with what carries them. Those that have been moved along with a skeleton already are carried by nothing else.
+    pub fn place(&self, carriers: &mut Carriers, is_skinned: bool, drawn: &mut [Vec3]) {
         let frame = carriers.now.frame;
         let mut is_corrected = false;
-        if self.built.pinned > 0 {
+        if is_skinned {
+            carriers.weights.own.clear();
+            carriers.weights.made_for = None;
+            is_corrected = true;
+        } else if self.built.pinned > 0 {
             for index in 0..=self.state.attachments.len() {
                 if let Some(correction) = self.correction(carriers, index) {
                     if !is_corrected {

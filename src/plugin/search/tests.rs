@@ -132,7 +132,7 @@ fn scanned(
             let layers = layers.copied().unwrap_or_default();
             if layers.interacts_with(cloth.layers.copied().unwrap_or_default())
                 && motion.comes_near(centre, radius + dragged)
-                && let Some(near) = motion.seen_from(cloth.frame)
+                && let Some(near) = motion.seen_from(cloth.frame, None)
             {
                 farthest = farthest.max(near.max_surface_travel(near.farthest_distance(&root)));
                 found.push(entity);
@@ -217,7 +217,7 @@ proptest! {
                     let place = transforms.compute_global_transform(entity).ok()?;
                     // What is nowhere has no way, and each other has one.
                     let is_somewhere = place.affine().is_finite();
-                    let way = motion.seen_from(&ClothFrame::default());
+                    let way = motion.seen_from(&ClothFrame::default(), None);
                     Some((is_somewhere, way, place.translation()))
                 });
                 places.collect::<Vec<_>>()

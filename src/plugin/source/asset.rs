@@ -13,7 +13,7 @@ use bevy::{
 };
 
 use super::{super::ClothMesh, id::Source};
-use crate::cloth::{Cloth, ClothError, ClothShape, Surface, TriangleMesh};
+use crate::cloth::{Cloth, ClothError, ClothShape, Skinning, Surface, TriangleMesh, skin_of_asset};
 
 /// How often meshes have been changed since they were loaded; those that never were are not in it.
 #[derive(Resource, Debug, Default)]
@@ -106,6 +106,23 @@ impl Sources<'_, '_> {
     pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, ClothError> {
         let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
         TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)
+    }
+
+    /// What moves a surface with joints, which was made from that mesh.
+    ///
+    /// # Errors
+    /// What is wrong with it; [`ClothError::SkinJoints`] of one that names no joints.
+    pub fn skinning(&self, source: Source, surface: &Surface) -> Result<Skinning, ClothError> {
+        let mesh = self
+            .meshes
+            .as_ref()
+            .and_then(|meshes| meshes.get(source.mesh));
+        let mesh = mesh.ok_or(ClothError::MeshNotLoaded)?;
+        let skin = skin_of_asset(mesh)?.ok_or(ClothError::SkinJoints {
+            needed: 1,
+            joints: 0,
+        })?;
+        Skinning::new(surface, &self.triangles(source.mesh)?.positions, &skin)
     }
 
     /// The surface of a cloth.

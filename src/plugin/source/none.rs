@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothError, Surface},
+    cloth::{Cloth, ClothError, Skinning, Surface},
     contact::ClothCollider,
 };
 
@@ -18,11 +18,11 @@ pub(crate) enum Source {}
 
 /// No assets.
 #[derive(SystemParam)]
-pub(crate) struct Sources<'w> {
-    none: PhantomData<&'w ()>,
+pub(crate) struct Sources<'w, 's> {
+    none: PhantomData<(&'w (), &'s ())>,
 }
 
-impl Sources<'_> {
+impl Sources<'_, '_> {
     /// No cloth has one.
     pub fn find(
         &self,
@@ -31,6 +31,11 @@ impl Sources<'_> {
         _: Option<Source>,
     ) -> Result<Option<Source>, ClothError> {
         Ok(None)
+    }
+
+    /// There is no mesh to be skinned.
+    pub fn skinning(&self, source: Source, _: &Surface) -> Result<Skinning, ClothError> {
+        match source {}
     }
 
     /// The surface of a cloth.

@@ -1,0 +1,206 @@
+//! Linear blend skinning of a cloth's particles.
+
+use bevy::math::{Affine3A, Vec3, Vec3A};
+
+use crate::cloth::{ClothError, JointWeights, Surface};
+
+/// What moves the particles of a surface with joints. In the mesh's own metres, before any scale.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(crate) struct Skinning {
+    particles: Vec<Bound>,
+    joints: usize,
+}
+
+/// A particle as it is bound.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+struct Bound {
+    place: Vec3A,
+    normal: Vec3A,
+    skin: JointWeights,
+}
+
+impl Skinning {
+    /// Of a surface's particles, by the vertices of the mesh that it was made from: their places (m) and what moves them. A
+    /// particle of several vertices is moved as the first of them. Weights are divided by their sum; those without any go with
+    /// the first joint.
+    ///
+    /// # Errors
+    /// [`ClothError::SkinWeights`] for the first vertex whose weights are negative or not finite.
+    pub fn new(
+        surface: &Surface,
+        places: &[Vec3],
+        skin: &[JointWeights],
+    ) -> Result<Self, ClothError> {
+        let mut particles = vec![None; surface.len()];
+        let mirrors = surface.scale().element_product().signum();
+        for (vertex, (place, skin)) in places.iter().zip(skin).enumerate() {
+            let Some(particle) = surface.particle_of_vertex(vertex) else {
+                continue;
+            };
+            if particles[particle].is_none() {
+                // The surface's has the scale in it.
+                let normal = surface.normal_of(particle) * surface.scale() * mirrors;
+                particles[particle] = Some(Bound {
+                    place: (*place).into(),
+                    normal: normal.normalize_or(Vec3::Y).into(),
+                    skin: normalized(vertex, skin)?,
+                });
+            }
+        }
+        let particles: Vec<Bound> = particles
+            .into_iter()
+            .map(Option::unwrap_or_default)
+            .collect();
+        let moving = |Bound { skin, .. }: &Bound| {
+            let each = skin.joints.into_iter().zip(skin.weights);
+            each.filter(|(_, weight)| *weight > 0.0)
+                .map(|(joint, _)| usize::from(joint) + 1)
+                .max()
+        };
+        let joints = particles.iter().filter_map(moving).max().unwrap_or(0);
+        Ok(Self { particles, joints })
+    }
+
+    /// How many joints there have to be.
+    pub fn joints(&self) -> usize {
+        self.joints
+    }
+
+    /// Where each particle is in a pose: `joints` are the matrices Jⱼ Bⱼ, at least [as many](Self::joints) as it names.
+    pub fn places(&self, joints: &[Affine3A], places: &mut Vec<Vec3>) {
+        places.clear();
+        places.extend(self.particles.iter().map(|bound| {
+            let at = |joint: &Affine3A| joint.transform_point3a(bound.place);
+            Vec3::from(bound.blended(joints, at))
+        }));
+    }
+
+    /// Where each faces in a pose, of length 1.
+    pub fn normals(&self, joints: &[Affine3A], normals: &mut Vec<Vec3>) {
+        normals.clear();
+        normals.extend(self.particles.iter().map(|bound| {
+            let at = |joint: &Affine3A| joint.transform_vector3a(bound.normal);
+            Vec3::from(bound.blended(joints, at)).normalize_or(Vec3::Y)
+        }));
+    }
+}
+
+impl Bound {
+    /// The weighted sum over its joints.
+    fn blended(&self, joints: &[Affine3A], of: impl Fn(&Affine3A) -> Vec3A) -> Vec3A {
+        let JointWeights {
+            joints: indices,
+            weights,
+        } = self.skin;
+        let mut sum = Vec3A::ZERO;
+        for (joint, weight) in indices.into_iter().zip(weights) {
+            if weight > 0.0 {
+                sum += weight * of(&joints[usize::from(joint)]);
+            }
+        }
+        sum
+    }
+}
+
+fn normalized(vertex: usize, skin: &JointWeights) -> Result<JointWeights, ClothError> {
+    let sum: f32 = skin.weights.iter().sum();
+    if !(sum.is_finite() && skin.weights.iter().all(|weight| *weight >= 0.0)) {
+        return Err(ClothError::SkinWeights {
+            vertex,
+            weights: skin.weights,
+        });
+    }
+    let weights = if sum > 0.0 {
+        skin.weights.map(|weight| weight / sum)
+    } else {
+        [1.0, 0.0, 0.0, 0.0]
+    };
+    Ok(JointWeights { weights, ..*skin })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::TriangleMesh;
+    use bevy::math::{DAffine3, DVec3, Quat};
+
+    /// A strip of vertices whose skins are as different as they can be.
+    fn strip() -> (Surface, Vec<Vec3>, Vec<JointWeights>) {
+        let place = |vertex: u32| {
+            let row = (vertex / 2) as f32;
+            Vec3::new((vertex % 2) as f32, row, 0.1 * (row * 1.7).sin())
+        };
+        let places: Vec<Vec3> = (0..40).map(place).collect();
+        let triangles = (0..38).map(|first| [first, first + 1, first + 2]).collect();
+        let skin = |vertex: u32| JointWeights {
+            joints: [vertex, vertex + 1, vertex * 3, vertex / 3].map(|joint| (joint % 7) as u16),
+            // Their sum is not 1.
+            weights: [3, 5, 7, 11].map(|prime| (vertex % prime) as f32 * 0.3),
+        };
+        let mesh = TriangleMesh {
+            positions: places.clone(),
+            triangles,
+            ..TriangleMesh::default()
+        };
+        let surface = Surface::of_mesh(&mesh, 0.0, Vec3::ONE).expect("a surface");
+        (surface, places, (0..40).map(skin).collect())
+    }
+
+    fn joints() -> Vec<Affine3A> {
+        let joint = |index: u32| {
+            let turn = Quat::from_scaled_axis(Vec3::new(1.0, -0.3, 0.2) * index as f32);
+            let place = Vec3::new(index as f32, 5.0, -2.0);
+            Affine3A::from_scale_rotation_translation(Vec3::splat(0.5), turn, place)
+        };
+        (0..7).map(joint).collect()
+    }
+
+    /// Six roundings of numbers up to 30 m: four sums of four products each.
+    #[test]
+    fn places_are_those_of_brute_force_in_f64() {
+        let (surface, places, skin) = strip();
+        let joints = joints();
+        let skinning = Skinning::new(&surface, &places, &skin).expect("valid weights");
+        let (mut found, mut normals) = (Vec::new(), Vec::new());
+        skinning.places(&joints, &mut found);
+        skinning.normals(&joints, &mut normals);
+        for (vertex, (place, skin)) in places.iter().zip(&skin).enumerate() {
+            let sum: f64 = skin.weights.iter().map(|w| f64::from(*w)).sum();
+            let mut truth = DVec3::ZERO;
+            for (joint, weight) in skin.joints.iter().zip(skin.weights) {
+                let joint =
+                    DAffine3::from_mat4(bevy::math::Mat4::from(joints[*joint as usize]).as_dmat4());
+                let weight = if sum > 0.0 {
+                    f64::from(weight) / sum
+                } else {
+                    0.0
+                };
+                truth += weight * joint.transform_point3(place.as_dvec3());
+            }
+            if sum == 0.0 {
+                let first = skin.joints[0] as usize;
+                truth = joints[first].transform_point3(*place).as_dvec3();
+            }
+            let particle = surface.particle_of_vertex(vertex).expect("a particle");
+            let error = found[particle].as_dvec3().distance(truth);
+            assert!(
+                error < 6.0 * 30.0 * f64::from(f32::EPSILON),
+                "{vertex}: {error}"
+            );
+            assert!((normals[particle].length() - 1.0).abs() < 1.0e-6);
+        }
+    }
+
+    #[test]
+    fn bad_weights_are_refused() {
+        let (surface, places, mut skin) = strip();
+        for bad in [f32::NAN, -0.5, f32::INFINITY] {
+            skin[17].weights[2] = bad;
+            let error = Skinning::new(&surface, &places, &skin).expect_err("no weight");
+            assert!(
+                matches!(error, ClothError::SkinWeights { vertex: 17, .. }),
+                "{error}"
+            );
+        }
+    }
+}

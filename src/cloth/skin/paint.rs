@@ -1,0 +1,261 @@
+//! A number for each particle.
+
+use std::{fmt, sync::Arc};
+
+use bevy::{
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use crate::cloth::{ClothError, Surface, VertexAttribute};
+
+/// A number for each particle of a cloth: the same for all, painted by an artist, or given by code.
+///
+/// ```
+/// use bevy_drape::prelude::*;
+///
+/// let all = ClothPaint::from(0.2);
+/// // What is painted red moves by up to half a metre, what is black is held.
+/// let red = ClothPaint::color(0, 0.5);
+/// let code = ClothPaint::at_rest(|place| (1.4 - place.y).max(0.0));
+/// # let _ = (all, red, code);
+/// ```
+#[derive(Reflect, Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub enum ClothPaint {
+    /// The same for all.
+    Uniform(f32),
+    /// A vertex attribute times a scale. A particle of several vertices has the largest of their numbers.
+    Attribute {
+        /// The name of the attribute, as [`Pin::Attribute`](crate::cloth::Pin::Attribute) has it.
+        name: String,
+        /// Which of its channels, from 0.
+        channel: usize,
+        /// What its numbers are multiplied with.
+        scale: f32,
+    },
+    /// What a function says of the place at rest. Code can't be saved: in a scene file it says 0.
+    AtRest(#[reflect(ignore)] RestFunction),
+    /// One number for each vertex of the mesh, or for each particle of a grid. A particle of several vertices has the largest
+    /// of their numbers.
+    Vertices(Vec<f32>),
+}
+
+/// A number for the particle that is at a place at rest, in the entity's frame (m), before the transform's scale. By default 0.
+#[derive(Clone)]
+pub struct RestFunction(Arc<dyn Fn(Vec3) -> f32 + Send + Sync>);
+
+impl RestFunction {
+    /// What `of` says of each place.
+    pub fn new(of: impl Fn(Vec3) -> f32 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(of))
+    }
+}
+
+impl Default for RestFunction {
+    fn default() -> Self {
+        Self::new(|_| 0.0)
+    }
+}
+
+impl fmt::Debug for RestFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("..")
+    }
+}
+
+impl PartialEq for RestFunction {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Default for ClothPaint {
+    /// 0 for all.
+    fn default() -> Self {
+        Self::Uniform(0.0)
+    }
+}
+
+impl From<f32> for ClothPaint {
+    fn from(value: f32) -> Self {
+        Self::Uniform(value)
+    }
+}
+
+impl ClothPaint {
+    /// A channel of the vertex colours, 0 for red and 3 for alpha, times a scale.
+    pub fn color(channel: usize, scale: f32) -> Self {
+        Self::attribute("Vertex_Color", channel, scale)
+    }
+
+    /// A channel of a vertex attribute, from 0, times a scale.
+    pub fn attribute(name: impl Into<String>, channel: usize, scale: f32) -> Self {
+        Self::Attribute {
+            name: name.into(),
+            channel,
+            scale,
+        }
+    }
+
+    /// What `of` says of each particle's place at rest, in the entity's frame (m), before the transform's scale.
+    pub fn at_rest(of: impl Fn(Vec3) -> f32 + Send + Sync + 'static) -> Self {
+        Self::AtRest(RestFunction::new(of))
+    }
+
+    /// One number for each vertex of the mesh, or for each particle of a grid.
+    pub fn vertices(values: impl IntoIterator<Item = f32>) -> Self {
+        Self::Vertices(values.into_iter().collect())
+    }
+
+    /// The number of each particle of `surface`, none of which may be NaN or negative. An error calls them `quantity`.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] for the first that is NaN or negative; [`ClothError::NoSuchPaint`];
+    /// [`ClothError::PaintCount`].
+    pub(crate) fn values(
+        &self,
+        surface: &Surface,
+        quantity: &'static str,
+    ) -> Result<Vec<f32>, ClothError> {
+        let values = match self {
+            Self::Uniform(value) => vec![*value; surface.len()],
+            Self::Attribute {
+                name,
+                channel,
+                scale,
+            } => attribute(surface, name, *channel)?
+                .iter()
+                // An infinite scale leaves what is not painted 0.
+                .map(|value| {
+                    let value = value[*channel];
+                    if value == 0.0 { 0.0 } else { value * scale }
+                })
+                .collect(),
+            Self::AtRest(RestFunction(of)) => surface
+                .rest_positions()
+                .iter()
+                .map(|place| of(*place / surface.scale()))
+                .collect(),
+            Self::Vertices(values) => of_vertices(surface, values)?,
+        };
+        for value in &values {
+            ClothError::check(*value, |v| v >= 0.0, quantity, "zero or more")?;
+        }
+        Ok(values)
+    }
+}
+
+fn attribute<'a>(
+    surface: &'a Surface,
+    name: &str,
+    channel: usize,
+) -> Result<&'a [[f32; 4]], ClothError> {
+    let attributes = surface.attributes();
+    let found = attributes.iter().find(|each| each.name() == name);
+    found
+        .filter(|_| channel < 4)
+        .map(VertexAttribute::values)
+        .ok_or_else(|| ClothError::NoSuchPaint {
+            name: name.into(),
+            channel,
+            attributes: VertexAttribute::names(attributes),
+        })
+}
+
+fn of_vertices(surface: &Surface, values: &[f32]) -> Result<Vec<f32>, ClothError> {
+    if values.len() != surface.vertices() {
+        return Err(ClothError::PaintCount {
+            expected: surface.vertices(),
+            found: values.len(),
+        });
+    }
+    let mut of_particles = vec![f32::NEG_INFINITY; surface.len()];
+    for (vertex, value) in values.iter().enumerate() {
+        if let Some(particle) = surface.particle_of_vertex(vertex) {
+            let known = &mut of_particles[particle];
+            // NaN stays to be found.
+            *known = if *known > *value { *known } else { *value };
+        }
+    }
+    Ok(of_particles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::{Cloth, TriangleMesh};
+
+    /// Two triangles with a seam between them, painted differently on both sides of it.
+    fn seamed() -> Surface {
+        let places = [
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (0.0, 1.0),
+            (1.0, 0.0),
+            (0.0, 1.0),
+            (1.0, 1.0),
+        ];
+        let numbers = [0.0, 0.1, 0.2, 0.3, 0.1, 0.5].map(|value| [value, 0.0, 0.0, 1.0]);
+        let mesh = TriangleMesh {
+            positions: places.map(|(x, y)| Vec3::new(x, y, 0.0)).to_vec(),
+            triangles: vec![[0, 1, 2], [3, 5, 4]],
+            attributes: vec![VertexAttribute::new("Slack", numbers.to_vec())],
+            ..TriangleMesh::default()
+        };
+        Surface::of_mesh(&mesh, 1.0e-5, Vec3::splat(2.0)).expect("a surface")
+    }
+
+    fn by_vertex(surface: &Surface, paint: &ClothPaint) -> Vec<f32> {
+        let values = paint.values(surface, "a number").expect("valid");
+        let of = |vertex| values[surface.particle_of_vertex(vertex).expect("a particle")];
+        (0..6).map(of).collect()
+    }
+
+    #[test]
+    fn each_kind_of_paint_gives_each_particle_its_number() {
+        let surface = seamed();
+        let of = |paint: ClothPaint| by_vertex(&surface, &paint);
+        assert_eq!(of(0.7.into()), [0.7; 6]);
+        let painted = of(ClothPaint::attribute("Slack", 0, 10.0));
+        assert_eq!(
+            painted,
+            [0.0, 3.0, 2.0, 3.0, 2.0, 5.0],
+            "the larger of a seam's"
+        );
+        let free = of(ClothPaint::attribute("Slack", 0, f32::INFINITY));
+        assert_eq!((free[0], free[5]), (0.0, f32::INFINITY));
+        let places = of(ClothPaint::at_rest(|place| place.x + 2.0 * place.y));
+        assert_eq!(places, [0.0, 1.0, 2.0, 1.0, 2.0, 3.0], "before the scale");
+        let given = of(ClothPaint::vertices([0.0, 1.0, 2.0, 3.0, 1.0, 5.0]));
+        assert_eq!(given, [0.0, 3.0, 2.0, 3.0, 2.0, 5.0]);
+    }
+
+    #[test]
+    fn what_is_no_paint_is_refused() {
+        let surface = seamed();
+        let of = |paint: ClothPaint| paint.values(&surface, "a number");
+        for bad in [f32::NAN, -0.1] {
+            for paint in [
+                ClothPaint::from(bad),
+                ClothPaint::at_rest(move |_| bad),
+                ClothPaint::vertices([bad; 6]),
+            ] {
+                let error = of(paint).expect_err("not a number of metres");
+                assert!(matches!(error, ClothError::Quantity { .. }), "{error}");
+            }
+        }
+        let error = of(ClothPaint::color(0, 1.0)).expect_err("not painted");
+        assert!(error.to_string().contains("Slack"), "{error}");
+        assert!(of(ClothPaint::attribute("Slack", 4, 1.0)).is_err());
+        let error = of(ClothPaint::vertices([1.0; 5])).expect_err("too few");
+        let count = ClothError::PaintCount {
+            expected: 6,
+            found: 5,
+        };
+        assert_eq!(error, count);
+        let grid = Cloth::new(2, 2, 0.1).surface(Vec3::ONE).expect("a grid");
+        let own = ClothPaint::vertices([1.0, 2.0, 3.0, 4.0]).values(&grid, "a number");
+        assert_eq!(own, Ok(vec![1.0, 2.0, 3.0, 4.0]));
+    }
+}

@@ -1,0 +1,212 @@
+//! Colliders on the bones of a character.
+
+use bevy::{
+    ecs::{
+        change_detection::{DetectChanges, Ref},
+        component::Component,
+        entity::Entity,
+        entity_disabling::Disabled,
+        hierarchy::{ChildOf, Children},
+        lifecycle::Remove,
+        name::Name,
+        observer::On,
+        query::Allow,
+        reflect::ReflectComponent,
+        system::{Commands, Query},
+    },
+    math::{Quat, Vec3},
+    platform::collections::HashMap,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    transform::components::{GlobalTransform, Transform},
+};
+
+use super::{ClothFault, frame::Places, naming::Part};
+use crate::{cloth::ClothError, contact::ClothCollider};
+
+/// Colliders on bones below an entity, each in one line: beside a character's scene, from before it is spawned. Bones are found by
+/// their `Name`s as soon as there are any, and found again if the scene is spawned again. Each collider is a child of its bone.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// fn hero(mut commands: Commands) {
+///     commands.spawn((
+///         Transform::default(),
+///         ClothBones::new([
+///             ClothBone::ball("head", 0.12),
+///             ClothBone::capsule("hips", "neck", 0.16),
+///             ClothBone::capsule("thigh.L", "shin.L", 0.09),
+///         ]),
+///     ));
+/// }
+/// ```
+#[derive(Component, Reflect, Debug, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(BoneColliders)]
+pub struct ClothBones(Vec<ClothBone>);
+
+/// A ball around a bone's head, or a capsule from there to another bone's.
+#[derive(Reflect, Debug, Clone, PartialEq)]
+#[reflect(Debug, Clone, PartialEq)]
+pub struct ClothBone {
+    /// The `Name` of the bone that it is a child of.
+    pub bone: String,
+    /// That of the bone where a capsule ends.
+    pub end: Option<String>,
+    /// Radius (m), whatever the bone's scale is as it is found.
+    pub radius: f32,
+}
+
+impl ClothBone {
+    /// A ball of a radius (m) around a bone's head.
+    pub fn ball(bone: impl Into<String>, radius: f32) -> Self {
+        Self {
+            bone: bone.into(),
+            end: None,
+            radius,
+        }
+    }
+
+    /// A capsule of a radius (m) from a bone's head to another's, which it moves with the first: mostly its child.
+    pub fn capsule(bone: impl Into<String>, end: impl Into<String>, radius: f32) -> Self {
+        Self {
+            end: Some(end.into()),
+            ..Self::ball(bone, radius)
+        }
+    }
+}
+
+impl ClothBones {
+    /// These.
+    pub fn new(bones: impl IntoIterator<Item = ClothBone>) -> Self {
+        Self(bones.into_iter().collect())
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &ClothBone> {
+        self.0.iter()
+    }
+}
+
+/// The colliders that were made of a [`ClothBones`].
+#[derive(Component, Debug, Default)]
+pub(super) struct BoneColliders(Vec<Entity>);
+
+/// Makes colliders of bones that have been found, and of those that are to be found again.
+pub(super) fn make_bone_colliders(
+    mut all: Query<(
+        Entity,
+        Ref<ClothBones>,
+        &mut BoneColliders,
+        Option<&ClothFault>,
+    )>,
+    living: Query<(), Allow<Disabled>>,
+    named: Query<(Option<&Name>, Option<&Children>), Allow<Disabled>>,
+    places: Places,
+    mut commands: Commands,
+) {
+    for (entity, bones, mut made, fault) in &mut all {
+        let are_there = made.0.len() == bones.0.len()
+            && made.0.iter().all(|collider| living.contains(*collider));
+        if are_there && !bones.is_changed() {
+            continue;
+        }
+        let colliders = names_below(entity, &named).map(|names| {
+            let each = bones.0.iter().map(|bone| collider(bone, &names, &places));
+            each.collect::<Result<Vec<_>, _>>()
+        });
+        let outcome = match colliders {
+            // Its scene is on its way.
+            None => Ok(()),
+            Some(colliders) => colliders.map(|colliders| {
+                for old in made.0.drain(..) {
+                    commands.entity(old).try_despawn();
+                }
+                made.0.extend(
+                    colliders
+                        .into_iter()
+                        .map(|bundle| commands.spawn(bundle).id()),
+                );
+            }),
+        };
+        ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
+    }
+}
+
+/// What is no skeleton any more has no colliders.
+pub(super) fn remove_bone_colliders(
+    removed: On<Remove, ClothBones>,
+    mut made: Query<&mut BoneColliders, Allow<Disabled>>,
+    mut commands: Commands,
+) {
+    if let Ok(mut made) = made.get_mut(removed.entity) {
+        for collider in made.0.drain(..) {
+            commands.entity(collider).try_despawn();
+        }
+    }
+}
+
+/// The entities below one, and itself, by their names; of several of a name the first. `None` as long as nothing below has one.
+fn names_below<'a>(
+    root: Entity,
+    named: &'a Query<(Option<&Name>, Option<&Children>), Allow<Disabled>>,
+) -> Option<HashMap<&'a str, Entity>> {
+    let mut names = HashMap::default();
+    let mut is_named = false;
+    let mut open = vec![root];
+    while let Some(entity) = open.pop() {
+        let Ok((name, children)) = named.get(entity) else {
+            continue;
+        };
+        if let Some(name) = name {
+            names.entry(name.as_str()).or_insert(entity);
+            is_named |= entity != root;
+        }
+        open.extend(
+            children
+                .into_iter()
+                .flat_map(|children| children.iter().rev()),
+        );
+    }
+    is_named.then_some(names)
+}
+
+/// A bone's collider.
+fn collider(
+    bone: &ClothBone,
+    names: &HashMap<&str, Entity>,
+    places: &Places,
+) -> Result<(Name, ClothCollider, Transform, ChildOf), ClothError> {
+    let find = |name: &String| -> Result<(Entity, GlobalTransform), ClothError> {
+        let found = names.get(name.as_str());
+        let entity = *found.ok_or_else(|| ClothError::NoSuchBone { name: name.clone() })?;
+        Ok((entity, places.of(entity)?))
+    };
+    let (entity, place) = find(&bone.bone)?;
+    let to_bone = place.affine().inverse();
+    // A radius of the world's.
+    let scale = place.scale().abs().max_element();
+    let scale = Vec3::splat(scale.recip());
+    if !(to_bone.is_finite() && scale.is_finite()) {
+        return Err(ClothError::Transform {
+            transform: format!("{place:?}"),
+        });
+    }
+    let (shape, transform) = match &bone.end {
+        None => (ClothCollider::ball(bone.radius), Transform::default()),
+        Some(end) => {
+            let end = find(end)?.1.translation();
+            let length = end.distance(place.translation());
+            let along = to_bone.transform_point3(end);
+            let transform = Transform {
+                translation: along / 2.0,
+                rotation: Quat::from_rotation_arc(Vec3::Y, along.normalize_or(Vec3::Y)),
+                scale: Vec3::ONE,
+            };
+            (ClothCollider::capsule(bone.radius, length), transform)
+        }
+    };
+    let name = Name::new(format!("collider of {}", bone.bone));
+    Ok((name, shape, transform.with_scale(scale), ChildOf(entity)))
+}

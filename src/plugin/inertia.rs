@@ -1,0 +1,227 @@
+//! How much of a character's motion its cloth feels, and what jumps with it.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::Entity,
+        entity_disabling::Disabled,
+        hierarchy::ChildOf,
+        query::{Allow, With},
+        reflect::ReflectComponent,
+        resource::Resource,
+        system::{Query, Res, ResMut, SystemParam},
+    },
+    math::{Isometry3d, Vec3},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    time::Time,
+};
+
+use super::{
+    ClothFrame, ClothTeleport,
+    frame::{Places, relative, rigid},
+};
+use crate::cloth::ClothError;
+
+/// How much of an entity's own motion is felt by the cloths below it, or attached below it: beside a character's `Transform`, so that a
+/// cape does not fly off a hero who sprints. Without it they feel all of it.
+///
+/// The rest of the motion carries them along as if they were one body with the entity, without any speed from it: a share of 0.3
+/// is what a wearer feels who speeds up at 0.3 of the rate. Colliders are met where they are, at the speed that they have as
+/// seen from there. It counts for all at and below the entity, and for cloth whose first attachment's target is; of several
+/// above each other, the nearest.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// fn setup(mut commands: Commands) {
+///     commands.spawn((Transform::default(), ClothInertia { linear: 0.3, angular: 0.5, ..default() }));
+/// }
+/// ```
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(RootMotion)]
+pub struct ClothInertia {
+    /// The share of its translation that is felt, from 0 to 1.
+    pub linear: f32,
+    /// The share of its rotation that is felt, from 0 to 1.
+    pub angular: f32,
+    /// If it goes farther than this in a tick (m), that is a [`ClothTeleport`], and no motion. Positive; infinity for never.
+    pub teleport_distance: f32,
+    /// Likewise if it turns farther than this (rad).
+    pub teleport_angle: f32,
+}
+
+impl Default for ClothInertia {
+    /// All is felt; what goes 2 m in a tick jumps, and no turn does.
+    fn default() -> Self {
+        Self {
+            linear: 1.0,
+            angular: 1.0,
+            teleport_distance: 2.0,
+            teleport_angle: f32::INFINITY,
+        }
+    }
+}
+
+impl ClothInertia {
+    /// With this share of all motion felt, from 0 to 1.
+    pub fn share(share: f32) -> Self {
+        Self {
+            linear: share,
+            angular: share,
+            ..Self::default()
+        }
+    }
+
+    /// Whether each value is in its range.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] for the first that is not.
+    pub fn validate(&self) -> Result<(), ClothError> {
+        for share in [self.linear, self.angular] {
+            let is_share = |v: f32| (0.0..=1.0).contains(&v);
+            ClothError::check(
+                share,
+                is_share,
+                "the share of motion that is felt",
+                "from 0 to 1",
+            )?;
+        }
+        for (value, quantity) in [
+            (self.teleport_distance, "the teleport distance (m)"),
+            (self.teleport_angle, "the teleport angle (rad)"),
+        ] {
+            ClothError::check(value, |v| v > 0.0, quantity, "positive")?;
+        }
+        Ok(())
+    }
+}
+
+/// How an entity with a [`ClothInertia`] has moved.
+#[derive(Component, Debug, Default)]
+pub(super) struct RootMotion {
+    /// Where it was as the last tick ended.
+    last: Option<Isometry3d>,
+    /// By what it carries cloths in this tick, if it does, or why it does not.
+    carried: Option<Carried>,
+    error: Option<ClothError>,
+}
+
+/// What carries a cloth along as a tick begins: as a body that goes from one place to another in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Carried {
+    from: Isometry3d,
+    to: Isometry3d,
+}
+
+impl Carried {
+    /// What is somewhere as the tick begins, carried along and seen from a frame.
+    pub fn seen_from(&self, frame: &ClothFrame, place: Isometry3d) -> Isometry3d {
+        relative(frame.isometry(), self.to) * relative(self.from, place)
+    }
+
+    /// What takes back by how much something in a frame was carried.
+    pub fn undone_in(&self, frame: &ClothFrame) -> Isometry3d {
+        relative(frame.isometry(), self.from) * relative(self.to, frame.isometry())
+    }
+}
+
+/// What jumps in this tick, with all that is below it.
+#[derive(Resource, Debug, Default)]
+pub(super) struct Jumped(Vec<Entity>);
+
+/// Notes by how much each root carries what is below it, and which jump.
+pub(super) fn follow_roots(
+    mut roots: Query<(Entity, &ClothInertia, &mut RootMotion)>,
+    marked: Query<Entity, With<ClothTeleport>>,
+    places: Places,
+    time: Res<Time>,
+    mut jumped: ResMut<Jumped>,
+) {
+    jumped.0.clear();
+    jumped.0.extend(&marked);
+    for (entity, inertia, mut motion) in &mut roots {
+        let place = places.of(entity).map(|place| rigid(&place.affine()));
+        let checked = inertia.validate().and(place).and_then(|place| {
+            let is_finite = place.translation.is_finite() && place.rotation.is_finite();
+            is_finite
+                .then_some(place)
+                .ok_or_else(|| ClothError::Transform {
+                    transform: format!("{place:?}"),
+                })
+        });
+        motion.carried = None;
+        let place = match checked {
+            Ok(place) => place,
+            Err(error) => {
+                motion.error = Some(error);
+                motion.last = None;
+                continue;
+            }
+        };
+        motion.error = None;
+        // What is moved while no time passes has its way still before it.
+        let last = *motion.last.get_or_insert(place);
+        if time.delta_secs() == 0.0 {
+            continue;
+        }
+        motion.last = Some(place);
+        let way = Vec3::from(place.translation - last.translation);
+        let turn = last.rotation.angle_between(place.rotation);
+        if way.length() > inertia.teleport_distance || turn > inertia.teleport_angle {
+            jumped.0.push(entity);
+        } else if last != place && (inertia.linear < 1.0 || inertia.angular < 1.0) {
+            let rotation = last.rotation.slerp(place.rotation, 1.0 - inertia.angular);
+            motion.carried = Some(Carried {
+                from: last,
+                to: Isometry3d::new(
+                    Vec3::from(last.translation) + way * (1.0 - inertia.linear),
+                    rotation,
+                ),
+            });
+        }
+    }
+}
+
+/// What carries things, and what jumps.
+#[derive(SystemParam)]
+pub(super) struct Roots<'w, 's> {
+    roots: Query<'w, 's, &'static RootMotion>,
+    parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
+    jumped: Res<'w, Jumped>,
+}
+
+impl Roots<'_, '_> {
+    /// Whether an entity jumps, or something that it is below.
+    pub fn jumps(&self, entity: Entity) -> bool {
+        let has_jumped = |entity: Entity| self.jumped.0.contains(&entity);
+        !self.jumped.0.is_empty()
+            && (has_jumped(entity) || self.parents.iter_ancestors(entity).any(has_jumped))
+    }
+
+    /// What carries a cloth, which may be attached to something.
+    ///
+    /// # Errors
+    /// What is wrong with its root.
+    pub fn carry(
+        &self,
+        cloth: Entity,
+        target: Option<Entity>,
+    ) -> Result<Option<Carried>, ClothError> {
+        if self.roots.is_empty() {
+            return Ok(None);
+        }
+        let above = |entity: Entity| {
+            let all = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
+            all.filter_map(|entity| self.roots.get(entity).ok()).next()
+        };
+        let root = above(cloth).or_else(|| above(target?));
+        match root {
+            Some(RootMotion {
+                error: Some(error), ..
+            }) => Err(error.clone()),
+            root => Ok(root.and_then(|root| root.carried)),
+        }
+    }
+}

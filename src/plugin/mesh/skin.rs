@@ -1,0 +1,85 @@
+//! Draws a cloth that follows a pose where its skeleton is drawn.
+//!
+//! The cloth is interpolated between two ticks, and so is its pose; the skeleton is drawn where it is in this frame. By as much as
+//! the pose is off, each particle is moved along: what is held is drawn in the pose exactly, beside what the renderer skins.
+
+use bevy::{
+    ecs::entity::Entity,
+    math::{Affine3A, Isometry3d, Vec3},
+    transform::components::GlobalTransform,
+};
+
+use super::super::{
+    ClothFrame, ClothScratch, ClothState,
+    shared::Shared,
+    skin::{Pose, Skins},
+};
+
+/// Poses of the last tick, and where the skeleton is drawn.
+#[derive(Debug, Default)]
+pub(super) struct DrawnPose {
+    /// As the last tick began and ended, in the frame of its end (m).
+    from: Vec<Vec3>,
+    to: Vec<Vec3>,
+    frame: ClothFrame,
+    drawn: Pose,
+    /// The joints as they were drawn last.
+    known: Vec<Affine3A>,
+}
+
+impl DrawnPose {
+    /// Takes over a tick's. `undone` takes back what carried the cloth along as it began.
+    pub fn follow(
+        &mut self,
+        frame: ClothFrame,
+        state: &ClothState,
+        scratch: &ClothScratch,
+        undone: Option<Isometry3d>,
+    ) {
+        self.from.clone_from(&scratch.pose.places);
+        self.to.clone_from(&state.pose.places);
+        self.frame = frame;
+        if let Some(undone) = undone {
+            self.from
+                .iter_mut()
+                .for_each(|place| *place = undone * *place);
+        }
+    }
+
+    /// Reads where the joints are drawn. Returns whether they have moved since they were drawn last.
+    pub fn read(
+        &mut self,
+        entity: Entity,
+        skins: &Skins,
+        place: impl Fn(Entity) -> Option<GlobalTransform>,
+    ) -> bool {
+        if self.to.is_empty() {
+            return false;
+        }
+        std::mem::swap(&mut self.known, &mut self.drawn.joints);
+        let read = skins.read(entity, place, &mut self.drawn.joints);
+        if read.is_err() {
+            self.drawn.joints.clear();
+        }
+        self.drawn.joints != self.known
+    }
+
+    /// Moves particles, a fraction of the way from the last tick to this one, along with the skeleton that is drawn. Returns
+    /// whether there is one.
+    pub fn place(&mut self, shared: &Shared, fraction: f32, drawn: &mut [Vec3]) -> bool {
+        let count = drawn.len();
+        if self.drawn.joints.is_empty() || self.to.len() != count || self.from.len() != count {
+            return false;
+        }
+        let placed =
+            (self.drawn).place(&shared.surface, shared.known_skinning(), &self.frame, false);
+        if placed.is_err() || self.drawn.places.len() != count {
+            return false;
+        }
+        let poses = self.from.iter().zip(&self.to).zip(&self.drawn.places);
+        for (place, ((from, to), drawn)) in drawn.iter_mut().zip(poses) {
+            *place += *drawn - from.lerp(*to, fraction);
+        }
+        true
+    }
+}

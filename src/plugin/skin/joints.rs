@@ -1,0 +1,89 @@
+//! Where the joints of a skinned mesh are.
+
+use bevy::{
+    asset::{AssetServer, Assets, LoadState},
+    ecs::{
+        entity::Entity,
+        system::{Query, Res, SystemParam},
+    },
+    math::{Affine3A, Mat4},
+    mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    transform::components::GlobalTransform,
+};
+
+use crate::cloth::ClothError;
+
+/// The skins of all entities.
+#[derive(SystemParam)]
+pub(crate) struct Skins<'w, 's> {
+    skins: Query<'w, 's, &'static SkinnedMesh>,
+    bind_poses: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
+    server: Option<Res<'w, AssetServer>>,
+}
+
+impl Skins<'_, '_> {
+    /// The matrices that take an entity's mesh, as it is bound, to the world: each joint's global transform, as `place` knows it,
+    /// times its inverse bind pose. None of an entity that is not skinned.
+    ///
+    /// # Errors
+    /// [`ClothError::Joint`] for one that is nowhere, [`ClothError::MeshLoading`] while the bind poses are on their way,
+    /// [`ClothError::SkinJoints`] if there are none, or fewer than joints.
+    pub fn read(
+        &self,
+        entity: Entity,
+        place: impl Fn(Entity) -> Option<GlobalTransform>,
+        matrices: &mut Vec<Affine3A>,
+    ) -> Result<(), ClothError> {
+        matrices.clear();
+        let Ok(skin) = self.skins.get(entity) else {
+            return Ok(());
+        };
+        let bind_poses = self.bind_poses.as_ref();
+        let Some(inverse) = bind_poses.and_then(|all| all.get(&skin.inverse_bindposes)) else {
+            let server = self.server.as_ref();
+            let state = server.and_then(|server| server.get_load_state(&skin.inverse_bindposes));
+            return Err(match state {
+                Some(LoadState::Loading) => ClothError::MeshLoading,
+                _ => ClothError::SkinJoints {
+                    needed: skin.joints.len(),
+                    joints: 0,
+                },
+            });
+        };
+        if skin.joints.is_empty() || inverse.len() < skin.joints.len() {
+            return Err(ClothError::SkinJoints {
+                needed: skin.joints.len(),
+                joints: inverse.len(),
+            });
+        }
+        for (joint, (&entity, inverse)) in skin.joints.iter().zip(inverse.iter()).enumerate() {
+            let matrix = place(entity).map(|place| place.affine() * Affine3A::from_mat4(*inverse));
+            let matrix = matrix.filter(Affine3A::is_finite);
+            matrices.push(matrix.ok_or(ClothError::Joint { joint, entity })?);
+        }
+        Ok(())
+    }
+
+    /// Whether the joints are where `known` has them, to the last bit.
+    pub fn are_at(
+        &self,
+        entity: Entity,
+        place: impl Fn(Entity) -> Option<GlobalTransform>,
+        known: &[Affine3A],
+    ) -> bool {
+        let Ok(skin) = self.skins.get(entity) else {
+            return known.is_empty();
+        };
+        let bind_poses = self.bind_poses.as_ref();
+        let Some(inverse) = bind_poses.and_then(|all| all.get(&skin.inverse_bindposes)) else {
+            return false;
+        };
+        let is_at = |((joint, inverse), known): ((&Entity, &Mat4), &Affine3A)| {
+            place(*joint)
+                .is_some_and(|place| place.affine() * Affine3A::from_mat4(*inverse) == *known)
+        };
+        skin.joints.len() == known.len()
+            && inverse.len() >= known.len()
+            && skin.joints.iter().zip(inverse.iter()).zip(known).all(is_at)
+    }
+}

@@ -1,0 +1,156 @@
+//! How much of a character's motion its cloth feels.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::{meshes::sheets::fault, support::*};
+
+/// A free sheet beside a root, without gravity: nothing but what carries it moves it.
+fn beside_root(inertia: ClothInertia) -> (App, Entity, Entity) {
+    let mut app = app();
+    app.insert_resource(ClothGravity(Vec3::ZERO));
+    let root = app.world_mut().spawn((Transform::default(), inertia)).id();
+    let cloth = (
+        Cloth::new(6, 5, 0.1).flat(),
+        Pins::none(),
+        Transform::from_xyz(0.2, 0.1, 0.3),
+        ChildOf(root),
+    );
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 1);
+    (app, root, cloth)
+}
+
+fn in_world(app: &App, cloth: Entity) -> Vec<Vec3> {
+    let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+    let places = particles(app, cloth).positions();
+    places.map(|place| frame.to_world(place)).collect()
+}
+
+/// Of a translation the part 1 − share is gone along with, whatever the root's speed, and none of the speed is kept: as the root
+/// stops, the cloth stops. To the rounding of 60 ticks.
+#[test]
+fn a_translation_is_shared() {
+    for share in [0.0, 0.5, 1.0] {
+        let (mut app, root, cloth) = beside_root(ClothInertia {
+            linear: share,
+            ..default()
+        });
+        let start = in_world(&app, cloth);
+        for count in 0_u32..60 {
+            let seconds = count.min(40) as f32 * TICK;
+            let gone = Vec3::new(
+                6.0 * seconds * seconds,
+                0.5 * seconds,
+                (9.0 * seconds).sin(),
+            );
+            change::<Transform>(&mut app, root, |transform| transform.translation = gone);
+            tick(&mut app, 1);
+            for (place, start) in in_world(&app, cloth).iter().zip(&start) {
+                let truth = *start + gone * (1.0 - share);
+                assert!(place.distance(truth) < 1.0e-4, "{share}: {place} {truth}");
+            }
+        }
+    }
+}
+
+/// Likewise of a rotation about the root.
+#[test]
+fn a_rotation_is_shared() {
+    for share in [0.0, 0.5, 1.0] {
+        let (mut app, root, cloth) = beside_root(ClothInertia {
+            angular: share,
+            ..default()
+        });
+        let start = in_world(&app, cloth);
+        for count in 1_u32..60 {
+            let angle = 0.05 * count as f32;
+            change::<Transform>(&mut app, root, |transform| {
+                transform.rotation = Quat::from_rotation_y(angle);
+            });
+            tick(&mut app, 1);
+            let turn = Quat::from_rotation_y(angle * (1.0 - share));
+            for (place, start) in in_world(&app, cloth).iter().zip(&start) {
+                let truth = turn * *start;
+                assert!(place.distance(truth) < 1.0e-4, "{share}: {place} {truth}");
+            }
+        }
+    }
+}
+
+/// The nearest root above counts, and that of what a cloth is attached to.
+#[test]
+fn a_cloth_that_is_attached_is_carried_too() {
+    let mut app = app();
+    app.insert_resource(ClothGravity(Vec3::ZERO));
+    let root = (Transform::default(), ClothInertia::share(0.0));
+    let root = app.world_mut().spawn(root).id();
+    let bone = (Transform::from_xyz(0.0, 1.0, 0.0), ChildOf(root));
+    let bone = app.world_mut().spawn(bone).id();
+    let attached = ClothAttachments::new([(Pin::Row(0), bone)]);
+    let cape = (Cloth::new(6, 5, 0.1).flat(), Pins::none(), attached);
+    let cape = app.world_mut().spawn(cape).id();
+    tick(&mut app, 1);
+    let start = in_world(&app, cape);
+    for count in 1_u32..40 {
+        let gone = Vec3::X * 0.002 * (count * count) as f32;
+        change::<Transform>(&mut app, root, |transform| transform.translation = gone);
+        tick(&mut app, 1);
+        for (place, start) in in_world(&app, cape).iter().zip(&start) {
+            assert!(place.distance(*start + gone) < 1.0e-4, "{place} {start}");
+        }
+    }
+}
+
+/// What is carried stops at a wall that stands still: seen from the cloth, the wall comes.
+#[test]
+fn what_is_carried_passes_through_nothing() {
+    for share in [0.0, 0.5] {
+        let (mut app, root, cloth) = beside_root(ClothInertia::share(share));
+        let wall = Transform::from_xyz(0.0, 0.0, 1.0)
+            .with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2));
+        app.world_mut().spawn((ClothCollider::plane(), wall));
+        let mut nearest = f32::INFINITY;
+        for count in 1_u32..60 {
+            change::<Transform>(&mut app, root, |transform| {
+                transform.translation.z = 0.08 * count as f32;
+            });
+            tick(&mut app, 1);
+            for place in in_world(&app, cloth) {
+                nearest = nearest.min(1.0 - place.z);
+            }
+        }
+        // It lies on the wall at the particles' radius, to what a contact is held by.
+        assert!((0.005..0.0101).contains(&nearest), "{share}: {nearest}");
+    }
+}
+
+#[test]
+fn bad_shares_are_faults_of_the_cloth_below() {
+    let good = ClothInertia::default();
+    let (mut app, root, cloth) = beside_root(good);
+    for bad in [
+        ClothInertia::share(1.1),
+        ClothInertia::share(f32::NAN),
+        ClothInertia {
+            teleport_distance: 0.0,
+            ..good
+        },
+        ClothInertia {
+            teleport_angle: -1.0,
+            ..good
+        },
+    ] {
+        change::<ClothInertia>(&mut app, root, |inertia| *inertia = bad);
+        change::<ClothMaterial>(&mut app, cloth, |material| material.damping = 0.02);
+        tick(&mut app, 1);
+        let error = fault(&app, cloth);
+        assert!(
+            matches!(error, Some(ClothError::Quantity { .. })),
+            "{bad:?}: {error:?}"
+        );
+        change::<ClothInertia>(&mut app, root, |inertia| *inertia = good);
+        tick(&mut app, 1);
+        assert_eq!(fault(&app, cloth), None);
+    }
+}

@@ -1,0 +1,9 @@
+//! Cloth on characters: skinned poses, what it feels of their motion, colliders on their bones.
+
+mod bones;
+mod cost;
+mod errors;
+mod inertia;
+mod pose;
+mod rig;
+mod teleports;

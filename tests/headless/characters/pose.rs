@@ -1,0 +1,308 @@
+//! A cloth that follows a skinned pose.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use super::rig::*;
+use crate::{mesh::vertices, meshes::sheets::*, support::*};
+
+/// What a place may be off by, 3 m from the origin: a dozen roundings.
+const ROUNDING: f32 = 5.0e-6;
+
+fn animated(skin: impl Bundle) -> (App, Rig) {
+    let mut app = app_that_draws(FixedUpdate);
+    let rig = rig(&mut app, skin);
+    pose(&mut app, &rig, 0.0);
+    tick(&mut app, 1);
+    assert_eq!(fault(&app, rig.cloth), None);
+    (app, rig)
+}
+
+fn go(app: &mut App, rig: &Rig, ticks: std::ops::Range<u32>, mut check: impl FnMut(&mut App)) {
+    for count in ticks {
+        pose(app, rig, count as f32 * TICK);
+        tick(app, 1);
+        check(app);
+    }
+}
+
+/// With a blend of 0, and with a max distance of 0, all particles are where f64 has the skinned vertices.
+#[test]
+fn the_pose_is_that_of_brute_force() {
+    let none = ClothSkin {
+        blend: 0.0,
+        ..ClothSkin::default()
+    };
+    for skin in [none, ClothSkin::within(0.0)] {
+        let (mut app, rig) = animated((skin, Transform::from_xyz(0.3, -0.2, 0.5)));
+        go(&mut app, &rig, 1..40, |app| {
+            let places = simulated(app, rig.cloth)
+                .into_iter()
+                .zip(skinned(app, &rig));
+            for (place, truth) in places {
+                let error = place.distance(truth);
+                assert!(error < ROUNDING, "{place} {truth}: {error}");
+            }
+        });
+        let mut masses = particles(&app, rig.cloth).inverse_masses();
+        assert!(masses.all(|weight| weight == 0.0));
+    }
+}
+
+/// A new cloth begins in the pose, not where its mesh is at rest.
+#[test]
+fn a_cloth_begins_in_its_pose() {
+    let mut app = app_that_draws(FixedUpdate);
+    app.insert_resource(ClothGravity(Vec3::ZERO));
+    // Turned as one, and as small as a model in centimetres is made: nothing is stretched.
+    let rig = rig(&mut app, ClothSkin::default());
+    change::<Transform>(&mut app, rig.root, |root| {
+        *root = Transform::from_xyz(3.0, 1.0, -2.0).with_scale(Vec3::splat(0.01));
+    });
+    change::<Transform>(&mut app, rig.bones[0], |bone| bone.rotate_y(2.0));
+    tick(&mut app, 1);
+    // By no more than it begins uneven, a ten-thousandth of a spacing of a millimetre.
+    for (place, truth) in simulated(&app, rig.cloth).iter().zip(skinned(&app, &rig)) {
+        assert!(place.distance(truth) < ROUNDING, "{place} {truth}");
+    }
+    let diagonal = surface(&app, rig.cloth).diagonal();
+    assert!(
+        (diagonal - 0.008 * 2.0_f32.sqrt()).abs() < 1.0e-5,
+        "{diagonal}"
+    );
+}
+
+/// Painted distances: each particle is within its own in each tick, to rounding, and some are at it; those of the first row are
+/// in the pose.
+#[test]
+fn each_particle_stays_within_its_max_distance() {
+    let (mut app, rig) = animated(ClothSkin::painted());
+    let mut at_limit = 0;
+    go(&mut app, &rig, 1..128, |app| {
+        let places = simulated(app, rig.cloth)
+            .into_iter()
+            .zip(skinned(app, &rig));
+        for (vertex, (place, truth)) in places.enumerate() {
+            let distance = 0.05 * (vertex as u32 / SIDE) as f32;
+            let is = place.distance(truth);
+            assert!(is <= distance + ROUNDING, "{vertex}: {is} of {distance}");
+            at_limit += u32::from(distance > 0.0 && is > 0.999 * distance);
+        }
+    });
+    assert!(at_limit > 1000, "{at_limit}");
+}
+
+/// Halfway blended, half of the distance; of an infinite one, as far as the cloth is large.
+#[test]
+fn blend_shrinks_the_distance() {
+    let half = ClothSkin {
+        blend: 0.5,
+        ..ClothSkin::within(0.2)
+    };
+    let (mut app, rig) = animated(half);
+    let mut largest = 0.0_f32;
+    let mut observe = |app: &mut App| {
+        let places = simulated(app, rig.cloth)
+            .into_iter()
+            .zip(skinned(app, &rig));
+        for (place, truth) in places {
+            largest = largest.max(place.distance(truth));
+        }
+    };
+    go(&mut app, &rig, 1..64, &mut observe);
+    assert!((0.0999..0.1 + ROUNDING).contains(&largest), "{largest}");
+    // It changes while it runs, there and back; what was held falls again, with the mass that it had.
+    let masses: Vec<f32> = particles(&app, rig.cloth).inverse_masses().collect();
+    for (blend, bound) in [
+        (0.0, ROUNDING),
+        (0.25, 0.05 + ROUNDING),
+        (1.0, 0.2 + ROUNDING),
+    ] {
+        change::<ClothSkin>(&mut app, rig.cloth, |skin| skin.blend = blend);
+        let mut largest = 0.0_f32;
+        go(&mut app, &rig, 64..96, |app| {
+            let places = simulated(app, rig.cloth)
+                .into_iter()
+                .zip(skinned(app, &rig));
+            for (place, truth) in places {
+                largest = largest.max(place.distance(truth));
+            }
+        });
+        assert!(
+            largest <= bound && largest >= 0.99 * (bound - ROUNDING),
+            "{blend}: {largest}"
+        );
+    }
+    let now: Vec<f32> = particles(&app, rig.cloth).inverse_masses().collect();
+    assert_eq!(now, masses);
+}
+
+/// Nothing gets behind the backstop in any tick, and some lie on it: a sheet that faces up falls onto the balls below.
+#[test]
+fn nothing_gets_behind_the_backstop() {
+    let (behind, radius) = (0.03, 0.4);
+    let skin =
+        ClothSkin::within(ClothPaint::at_rest(|place| place.z)).with_backstop(behind, radius);
+    let mut app = app_that_draws(FixedUpdate);
+    let rig = rig(&mut app, skin);
+    let mut on_it = 0;
+    for count in 0..96 {
+        // Only turns of the whole: normals are the root's.
+        let turn = Quat::from_rotation_x(0.3 * (6.0 * count as f32 * TICK).sin());
+        change::<Transform>(&mut app, rig.root, |transform| transform.rotation = turn);
+        tick(&mut app, 1);
+        let places = simulated(&app, rig.cloth)
+            .into_iter()
+            .zip(skinned(&app, &rig));
+        for (vertex, (place, truth)) in places.enumerate() {
+            let centre = truth - turn * Vec3::Y * (behind + radius);
+            let distance = place.distance(centre);
+            assert!(distance >= radius - ROUNDING, "{vertex}: {distance}");
+            let most = (vertex as u32 / SIDE) as f32 * 0.1;
+            assert!(
+                place.distance(truth) <= most + ROUNDING,
+                "{vertex}: {place} {truth}"
+            );
+            on_it += u32::from(distance < radius + 1.0e-4);
+        }
+    }
+    assert!(on_it > 500, "{on_it}");
+}
+
+/// Pins follow the pose, whatever the max distance says.
+#[test]
+fn pins_follow_the_pose() {
+    let (mut app, rig) = animated((ClothSkin::default(), by_its_edge()));
+    go(&mut app, &rig, 1..64, |app| {
+        let places = simulated(app, rig.cloth)
+            .into_iter()
+            .zip(skinned(app, &rig));
+        for (place, truth) in places.take(SIDE as usize) {
+            assert!(place.distance(truth) < ROUNDING, "{place} {truth}");
+        }
+    });
+    let (end, truth) = (simulated(&app, rig.cloth), skinned(&app, &rig));
+    let last = (SIDE * SIDE - 1) as usize;
+    assert!(end[last].distance(truth[last]) > 0.05, "the rest is free");
+}
+
+/// The mesh that is drawn has no joints, and is, by its entity's transform alone, where the particles are: those that are held
+/// where the bones are drawn now, which here is where the tick had them, exactly.
+#[test]
+fn what_is_drawn_is_not_skinned_again() {
+    let own = Transform::from_xyz(0.3, -0.2, 0.5).with_scale(Vec3::splat(1.5));
+    let (mut app, rig) = animated((ClothSkin::painted(), own, Visibility::default()));
+    go(&mut app, &rig, 1..40, |app| {
+        let handle = mesh_of(app, rig.cloth);
+        let drawn = meshes(app).get(&handle).expect("a mesh");
+        assert!(!drawn.contains_attribute(Mesh::ATTRIBUTE_JOINT_INDEX));
+        assert!(!drawn.contains_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT));
+        let place = *app
+            .world()
+            .get::<GlobalTransform>(rig.cloth)
+            .expect("a place");
+        let drawn = vertices(app, rig.cloth, Mesh::ATTRIBUTE_POSITION);
+        let truth = skinned(app, &rig);
+        for (vertex, (drawn, truth)) in drawn.iter().zip(truth).enumerate() {
+            let drawn = place.transform_point(*drawn);
+            let distance = 0.05 * (vertex as u32 / SIDE) as f32;
+            assert!(
+                drawn.distance(truth) <= distance + ROUNDING,
+                "{vertex}: {drawn} {truth}"
+            );
+        }
+    });
+    // Once all stands still, the picture is that of the particles.
+    let still = |app: &mut App| {
+        tick(app, 1);
+        let place = *app
+            .world()
+            .get::<GlobalTransform>(rig.cloth)
+            .expect("a place");
+        let drawn = vertices(app, rig.cloth, Mesh::ATTRIBUTE_POSITION);
+        let drawn: Vec<Vec3> = drawn.iter().map(|at| place.transform_point(*at)).collect();
+        drawn
+    };
+    for _ in 0..400 {
+        still(&mut app);
+    }
+    let before = simulated(&app, rig.cloth);
+    let drawn = still(&mut app);
+    for (drawn, particle) in drawn.iter().zip(before) {
+        assert!(drawn.distance(particle) < ROUNDING, "{drawn} {particle}");
+    }
+}
+
+/// Bones that are moved after the last tick of a frame are drawn there: what is held goes along at once.
+#[test]
+fn what_is_held_is_drawn_where_the_bones_are_drawn() {
+    let (mut app, rig) = animated((ClothSkin::painted(), Visibility::default()));
+    app.add_systems(Update, move |mut bones: Query<&mut Transform>| {
+        let mut bone = bones.get_mut(rig.bones[1]).expect("a bone");
+        bone.rotate_local_z(0.05);
+        let mut root = bones.get_mut(rig.root).expect("a root");
+        root.translation.x += 0.05;
+    });
+    for _ in 0..30 {
+        tick(&mut app, 1);
+        let place = *app
+            .world()
+            .get::<GlobalTransform>(rig.cloth)
+            .expect("a place");
+        let drawn = vertices(&app, rig.cloth, Mesh::ATTRIBUTE_POSITION);
+        let truth = skinned(&app, &rig);
+        for (drawn, truth) in drawn.iter().zip(truth).take(SIDE as usize) {
+            let drawn = place.transform_point(*drawn);
+            assert!(drawn.distance(truth) < ROUNDING, "{drawn} {truth}");
+        }
+    }
+}
+
+/// A character that stands still lets its cloth sleep; a bone that moves wakes it.
+#[test]
+fn a_bone_wakes_what_sleeps() {
+    let (mut app, rig) = animated(ClothSkin::painted());
+    app.world_mut().entity_mut(rig.cloth).insert(ClothMaterial {
+        damping: 0.1,
+        ..ClothMaterial::COTTON
+    });
+    let mut ticks = 0;
+    while !stats(&app, rig.cloth).is_asleep {
+        tick(&mut app, 1);
+        ticks += 1;
+        assert!(ticks < 1500, "it falls asleep");
+    }
+    let still: Vec<Vec3> = particles(&app, rig.cloth).positions().collect();
+    tick(&mut app, 10);
+    assert!(particles(&app, rig.cloth).positions().eq(still));
+    change::<Transform>(&mut app, rig.bones[2], |bone| bone.rotate_z(0.05));
+    tick(&mut app, 2);
+    assert!(!stats(&app, rig.cloth).is_asleep);
+}
+
+/// A grid that has no skeleton stays near where it is at rest, wherever its entity goes; with the component gone it falls.
+#[test]
+fn without_a_skeleton_the_pose_is_the_cloth_at_rest() {
+    let mut app = app();
+    let cloth = (Cloth::new(9, 9, 0.1), ClothSkin::within(0.07));
+    let cloth = app.world_mut().spawn(cloth).id();
+    let largest = |app: &App| {
+        let rest = surface(app, cloth).rest_positions().to_vec();
+        let pairs = particles(app, cloth).positions().zip(rest);
+        pairs
+            .map(|(at, rest)| at.distance(rest))
+            .fold(0.0, f32::max)
+    };
+    let mut most = 0.0_f32;
+    for count in 0..64 {
+        let swing = Transform::from_xyz((count as f32 * 0.2).sin(), 0.0, 0.0);
+        app.world_mut().entity_mut(cloth).insert(swing);
+        tick(&mut app, 1);
+        most = most.max(largest(&app));
+    }
+    assert!((0.0699..0.07 + ROUNDING).contains(&most), "{most}");
+    app.world_mut().entity_mut(cloth).insert(Pins::none());
+    app.world_mut().entity_mut(cloth).remove::<ClothSkin>();
+    tick(&mut app, 64);
+    assert!(largest(&app) > 1.0);
+}
