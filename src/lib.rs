@@ -57,8 +57,9 @@ pub mod prelude {
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
         ClothAttachment, ClothAttachments, ClothBody, ClothContact, ClothContacts, ClothFault,
-        ClothFrame, ClothGravity, ClothLimitExceeded, ClothPush, ClothStats, ClothSystems,
-        ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, DrapePlugins,
+        ClothFrame, ClothGravity, ClothLimitExceeded, ClothLod, ClothLodLevel, ClothPush,
+        ClothStats, ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped,
+        DrapePlugins, GlobalClothLod,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

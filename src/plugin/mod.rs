@@ -7,6 +7,7 @@ mod body;
 mod broad_phase;
 mod build;
 mod built;
+mod cameras;
 mod clock;
 mod collider_tree;
 mod colliders;
@@ -20,12 +21,16 @@ mod fabric;
 mod fault;
 mod follow;
 mod frame;
+mod freeze;
 #[cfg(feature = "gizmos")]
 mod gizmos;
 mod gravity;
 mod inputs;
 mod integrate;
 mod islands;
+mod levels;
+mod lod;
+mod lod_state;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod naming;
@@ -70,6 +75,7 @@ pub use frame::ClothFrame;
 #[cfg(feature = "gizmos")]
 pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
 pub use gravity::ClothGravity;
+pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
 #[cfg(feature = "egui")]

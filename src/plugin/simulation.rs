@@ -38,6 +38,8 @@ use super::{
     follow::{forget_collider, prepare_colliders},
     integrate::integrate,
     islands::{Islands, find_islands},
+    levels::choose_levels,
+    lod::{ClothLod, GlobalClothLod},
     naming::Part,
     prepare::prepare_cloths,
     push::push_bodies,
@@ -94,7 +96,9 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothBuilt>()
             .register_type::<ClothSearch>()
             .register_type::<ClothFault>()
-            .register_type::<ClothGravity>();
+            .register_type::<ClothGravity>()
+            .register_type::<ClothLod>()
+            .register_type::<GlobalClothLod>();
         add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
         add_parts_to_earlier::<ClothCollider, ColliderMotion>(app.world_mut());
         app.init_resource::<ClothGravity>()
@@ -134,6 +138,7 @@ impl Plugin for ClothPlugin {
                 (
                     note_removals,
                     prepare_colliders,
+                    choose_levels,
                     prepare_cloths,
                     find_islands,
                 )
