@@ -56,11 +56,6 @@ impl LodState {
         self.level == ClothLodLevel::Full && self.waited == 0.0 && self.span <= 1
     }
 
-    /// Ticks from the last move to the next.
-    pub fn span(&self) -> u32 {
-        self.span.max(1)
-    }
-
     /// Of how many ticks the last move was.
     pub fn moved_by(&self) -> u32 {
         self.moved_by.max(1)
@@ -96,17 +91,26 @@ impl LodState {
             self.since += 1;
             return;
         }
-        // What is moved before it is drawn where the last move left it would jump there.
-        if has_stood || self.since + 1 < self.span {
-            self.cuts = self.cuts.wrapping_add(1);
-        }
-        self.turn = Turn::Move;
-        self.left = if was == level {
+        let left = if was == level {
             ticks
         } else {
             1 + phase % ticks
         };
-        (self.since, self.span) = (0, self.left);
+        // What is moved before it is drawn where the last move left it would jump there, and what is drawn less late than before
+        // would jump ahead.
+        if has_stood || self.since + 1 < self.span || self.ticks + 1 > left {
+            self.cuts = self.cuts.wrapping_add(1);
+        }
+        self.turn = Turn::Move;
+        (self.left, self.since, self.span) = (left, 0, left);
+    }
+
+    /// The part of the last move that is drawn, so many ticks after it: all of it as the next one comes, at the speed at which it
+    /// moves or, where it was by fewer ticks than there are until then, slower.
+    pub fn drawn_part(&self, ticks: f32) -> f32 {
+        let (moved_by, span) = (self.moved_by.max(1) as f32, self.span.max(1) as f32);
+        let skipped = (moved_by - span).max(0.0) / moved_by;
+        skipped + (1.0 - skipped) * (ticks / span).min(1.0)
     }
 
     /// Takes the time to be moved by in a tick of `seconds` (s), and how many ticks that is of.
@@ -163,13 +167,36 @@ mod tests {
         );
     }
 
+    #[test]
+    fn is_drawn_as_fast_as_it_moves() {
+        let mut state = LodState::default();
+        moved(&mut state, Full, 0, 1);
+        assert_eq!(
+            [0.0, 0.25, 1.0].map(|ticks| state.drawn_part(ticks)),
+            [0.0, 0.25, 1.0]
+        );
+        moved(&mut state, Every(4), 3, 5);
+        assert_eq!(
+            [0.0, 2.0, 4.0].map(|ticks| state.drawn_part(ticks)),
+            [0.0, 0.5, 1.0]
+        );
+        moved(&mut state, Full, 3, 1);
+        // By three ticks at once, of which two are past where it is drawn a tick late.
+        moved(&mut state, Every(4), 3, 7);
+        moved(&mut state, Full, 3, 1);
+        assert_eq!(
+            [0.0, 0.5, 1.0].map(|ticks| state.drawn_part(ticks)),
+            [2.0 / 3.0, 2.5 / 3.0, 1.0]
+        );
+    }
+
     /// Between moves the picture takes as many ticks as there are to the next move, and is cut only where it is moved before.
     #[test]
     fn is_drawn_over_the_ticks_to_the_next_move() {
         let mut state = LodState::default();
         let mut run = |level, ticks| {
             moved(&mut state, level, 1, ticks);
-            (state.since, state.span(), state.cuts)
+            (state.since, state.span, state.cuts)
         };
         assert_eq!(run(Full, 2), (0, 1, 0));
         assert_eq!(run(Every(4), 1), (0, 2, 0));

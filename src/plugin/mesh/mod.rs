@@ -192,7 +192,7 @@ impl DrawingItem<'_, '_> {
             return;
         }
         // Over the ticks from the last move to the next.
-        let fraction = ((lod.since as f32 + fraction) / lod.span() as f32).min(1.0);
+        let fraction = lod.drawn_part(lod.since as f32 + fraction);
         let own = GlobalTransform::from(self.frame.affine());
         let entity = self.transform.copied().unwrap_or(own);
         let ClothMesh {
