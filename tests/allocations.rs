@@ -9,7 +9,10 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
-    prelude::{ClothAttachments, ClothCollider, ClothGravity, DrapePlugins, Pin, Pins},
+    prelude::{
+        ClothAttachments, ClothCollider, ClothGravity, ClothLod, ClothLodLevel, DrapePlugins, Pin,
+        Pins,
+    },
     solver::{
         Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
         methods::meshes,
@@ -255,7 +258,7 @@ fn a_mesh_does_not_allocate() {
 
 /// Allocations of 20 ticks of an app on one thread: Bevy's own, whatever they are, and ours. The least of five times: buffers of Bevy's
 /// grow now and then. All of its schedules are on one thread, as each thread that is woken allocates.
-fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
+fn in_ticks(pins: usize, moves: bool, is_animated: bool, levels: &[ClothLodLevel]) -> usize {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
@@ -269,7 +272,8 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
     let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
     let attached = ClothAttachments::new(attached);
     let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached);
-    let cloth = app.world_mut().spawn(cloth).id();
+    let lod = ClothLod::at(ClothLodLevel::Full);
+    let cloth = app.world_mut().spawn((cloth, lod)).id();
     let mut tick = |count: u32| {
         let some = 0.01 * (count % 7) as f32;
         let world = app.world_mut();
@@ -283,6 +287,10 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
             material.damping = 0.01 + some;
             material.friction = 0.4 + some;
         }
+        if let Some(level) = levels.get(count as usize / 6 % levels.len().max(1)) {
+            let mut lod = world.get_mut::<ClothLod>(cloth).expect("a level");
+            lod.level = Some(*level);
+        }
         app.update();
     };
     (0..100).for_each(&mut tick);
@@ -295,13 +303,21 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
     windows.min().expect("windows")
 }
 
-/// Whether a cloth has one attached pin or two hundred, and whether what tethers do not depend on is animated.
+/// Whether a cloth has one attached pin or two hundred, whether what tethers do not depend on is animated, and however its level of
+/// detail changes.
 fn attachments_and_what_is_animated_allocate_nothing_more() {
-    let one = in_ticks(1, true, false);
+    let one = in_ticks(1, true, false, &[]);
     for (pins, is_animated) in [(200, false), (1, true)] {
-        let more = in_ticks(pins, true, is_animated);
+        let more = in_ticks(pins, true, is_animated, &[]);
         assert!(more <= one, "{more} of {one}: {pins} pins, {is_animated}");
     }
+    let levels = [
+        ClothLodLevel::Every(2),
+        ClothLodLevel::Frozen,
+        ClothLodLevel::Full,
+    ];
+    let more = in_ticks(1, true, false, &levels);
+    assert!(more <= one, "{more} of {one}: levels of detail");
 }
 
 /// Bytes that a cloth takes after some ticks, pinned at its upper edge, where others are made alike. Run with `--nocapture` it

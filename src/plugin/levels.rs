@@ -11,14 +11,18 @@ use bevy::{
 };
 
 use super::{
-    ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothTeleport,
+    ClothBuilt, ClothFrame, ClothState, ClothTeleport,
     cameras::Cameras,
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
     islands::{Islands, Span},
     lod::{ClothLod, ClothLodLevel, GlobalClothLod},
 };
-use crate::{cloth::ClothParticles, contact::ClothLayers};
+use crate::{
+    cloth::ClothParticles,
+    contact::{ClothLayers, ClothSelfCollision},
+    solver::ClothSettings,
+};
 
 /// For how many ticks a cloth is moved in each after something that moves was near: half a second of Bevy's 64 Hz.
 const KEPT: u32 = 32;
@@ -31,7 +35,8 @@ pub(super) struct Levelled {
     built: &'static ClothBuilt,
     particles: &'static ClothParticles,
     frame: &'static ClothFrame,
-    scratch: &'static ClothScratch,
+    settings: Option<&'static ClothSettings>,
+    self_collision: Option<&'static ClothSelfCollision>,
     state: &'static mut ClothState,
     layers: Option<&'static ClothLayers>,
     teleports: Has<ClothTeleport>,
@@ -177,13 +182,10 @@ impl LevelledItem<'_, '_> {
         let ticks = wanted.level.ticks().unwrap_or(1) as f32;
         // What the acceleration does grows with the square of the time.
         let times = (ticks / state.moved_by() as f32).max(1.0);
-        let settings = &self.scratch.contact_settings;
-        let self_collision = self.scratch.self_collision;
-        let thickness = self_collision.map_or(0.0, |of| of.thickness);
-        wanted.radius = root.radius()
-            + 2.0 * self.scratch.reach * times * times
-            + settings.particle_radius.max(thickness);
-        wanted.touches_cloth = self_collision.is_some();
+        let around = self.settings.copied().unwrap_or_default().particle_radius;
+        let thickness = self.self_collision.map_or(0.0, |of| of.thickness);
+        wanted.radius = root.radius() + 2.0 * state.reach * times * times + around.max(thickness);
+        wanted.touches_cloth = self.self_collision.is_some();
         wanted.is_due = self.teleports || self.state.lod.is_due();
         wanted
     }

@@ -217,18 +217,18 @@ mod tests {
 
     #[test]
     fn what_is_out_of_range_is_named() {
-        let by = ClothLod::by_distance;
+        let by = |distances: &[(f32, ClothLodLevel)]| ClothLod::by_distance(distances.to_vec());
         assert_eq!(ClothLod::default().validate(), Ok(()));
-        assert_eq!(by([(0.0, Frozen), (0.0, Every(16))]).validate(), Ok(()));
+        assert_eq!(by(&[(0.0, Frozen), (0.0, Every(16))]).validate(), Ok(()));
         let bad_hysteresis = ClothLod {
             hysteresis: 1.0,
             ..ClothLod::default()
         };
         for bad in [
-            by([(-1.0, Frozen)]),
-            by([(f32::NAN, Frozen)]),
-            by([(2.0, Frozen), (1.0, Frozen)]),
-            by([(2.0, Every(0))]),
+            by(&[(-1.0, Frozen)]),
+            by(&[(f32::NAN, Frozen)]),
+            by(&[(2.0, Frozen), (1.0, Frozen)]),
+            by(&[(2.0, Every(0))]),
             ClothLod::at(Every(17)),
             bad_hysteresis,
         ] {

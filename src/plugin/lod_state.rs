@@ -40,6 +40,8 @@ pub(super) struct LodState {
     left: u32,
     /// Of how many ticks the last move was.
     moved_by: u32,
+    /// How far a particle may have got in that by itself (m).
+    pub reach: f32,
     /// Ticks since it was moved, and how many there are from then until it is moved again: over as many it is drawn.
     pub since: u32,
     span: u32,

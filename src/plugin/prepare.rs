@@ -232,7 +232,8 @@ impl PreparingItem<'_, '_> {
             *self.frame = frame;
         }
         scratch.teleports = self.teleport.is_some();
-        let jumps = scratch.teleports;
+        // What was at fault may have been put anywhere meanwhile.
+        let jumps = scratch.teleports || !state.is_valid;
         let has_stood = thaw(targets, frame, (seconds, jumps), before, particles, state);
         // Who saves or restores particles may mark them as changed without a change.
         let was_written = has_stood
@@ -364,6 +365,7 @@ impl PreparingItem<'_, '_> {
             acceleration.length(),
             seconds,
         );
+        state.lod.reach = scratch.reach;
         update_bounds(
             particles,
             &self.frame,

@@ -87,7 +87,7 @@ fn is_drawn_where_the_cloth_is() {
             }
             // The mesh's entity may be anywhere.
             change::<Transform>(&mut app, fine, |own| {
-                own.translation += Vec3::new(5.0, 0.0, 1.0)
+                own.translation += Vec3::new(5.0, 0.0, 1.0);
             });
         }
         // The cloth's own mesh is not written while it is hidden.
@@ -271,7 +271,7 @@ fn is_bound_anew_where_something_changes() {
     tick(&mut app, 2);
     assert_eq!(mesh_of(&app, fine), bound, "once");
     change::<Cloth>(&mut app, cloth, |cloth| {
-        *cloth = Cloth::new(4, 4, 0.2).lying()
+        *cloth = Cloth::new(4, 4, 0.2).lying();
     });
     tick(&mut app, 3);
     assert_ne!(mesh_of(&app, fine), bound);

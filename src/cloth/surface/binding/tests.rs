@@ -77,7 +77,7 @@ fn moved(
 #[test]
 fn follows_a_rigid_motion() {
     let close = |found: Vec3, expected: Vec3| {
-        assert!(found.distance(expected) < 3.0e-6, "{found} {expected}")
+        assert!(found.distance(expected) < 3.0e-6, "{found} {expected}");
     };
     for scale in [Vec3::ONE, Vec3::new(1.5, 1.0, 0.7)] {
         let surface = sheet(scale);
