@@ -61,9 +61,9 @@ pub mod prelude {
     pub use crate::plugin::{
         ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones,
         ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothInertia,
-        ClothLimitExceeded, ClothPush, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
-        ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
-        DrapePlugins,
+        ClothLimitExceeded, ClothLod, ClothLodLevel, ClothPush, ClothStats, ClothSystems,
+        ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
+        ClothWindShape, ClothWindZone, DrapePlugins, GlobalClothLod,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

@@ -19,8 +19,8 @@ use bevy_drape::{
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::{
-        ClothAttachments, ClothBody, ClothCollider, ClothGravity, ClothInertia, ClothPaint,
-        ClothSkin, DrapePlugins, Pin, Pins,
+        ClothAttachments, ClothBody, ClothCollider, ClothGravity, ClothInertia, ClothLod,
+        ClothLodLevel, ClothPaint, ClothSkin, DrapePlugins, Pin, Pins,
     },
     solver::{
         Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
@@ -297,17 +297,22 @@ fn in_ticks(mut app: App, change: impl Fn(&mut World, u32)) -> usize {
 }
 
 /// Allocations with a cloth whose attached pins move.
-fn with_attachments(pins: usize, is_animated: bool) -> usize {
+fn with_attachments(pins: usize, is_animated: bool, levels: &[ClothLodLevel]) -> usize {
     let mut app = app_on_one_thread(());
     let target = app.world_mut().spawn(Transform::default()).id();
     let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
     let attached = ClothAttachments::new(attached);
     let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached);
-    let cloth = app.world_mut().spawn(cloth).id();
+    let lod = ClothLod::at(ClothLodLevel::Full);
+    let cloth = app.world_mut().spawn((cloth, lod)).id();
     in_ticks(app, |world, count| {
         let some = 0.01 * (count % 7) as f32;
         let mut place = world.get_mut::<Transform>(target).expect("a place");
         place.translation.x = some;
+        if let Some(level) = levels.get(count as usize / 6 % levels.len().max(1)) {
+            let mut lod = world.get_mut::<ClothLod>(cloth).expect("a level");
+            lod.level = Some(*level);
+        }
         if is_animated {
             world.resource_mut::<ClothGravity>().0.y = -9.81 - 10.0 * some;
             let mut material = world.get_mut::<ClothMaterial>(cloth).expect("a material");
@@ -406,12 +411,20 @@ fn what_is_pushed_allocates_nothing() {
     }
 }
 
-/// Whether a cloth has one attached pin or two hundred, and whether what tethers do not depend on is animated.
+/// Whether a cloth has one attached pin or two hundred, whether what tethers do not depend on is animated, and however its level of detail
+/// changes.
 fn what_is_attached_or_animated_allocates_nothing() {
     for (pins, is_animated) in [(1, false), (200, false), (1, true)] {
-        let allocations = with_attachments(pins, is_animated);
+        let allocations = with_attachments(pins, is_animated, &[]);
         assert_eq!(allocations, 0, "{pins} pins, animated: {is_animated}");
     }
+    let levels = [
+        ClothLodLevel::Every(2),
+        ClothLodLevel::Frozen,
+        ClothLodLevel::Full,
+    ];
+    let allocations = with_attachments(1, false, &levels);
+    assert_eq!(allocations, 0, "levels of detail");
 }
 
 /// Bytes that a cloth takes after some ticks, pinned at its upper edge, where others are made alike. Run with `--nocapture` it

@@ -24,6 +24,7 @@ mod experiment;
 mod frames;
 mod hung;
 mod layers;
+mod lod;
 mod measure;
 mod needs;
 mod pareto;
@@ -95,6 +96,8 @@ enum Name {
     Needs,
     /// What colliders cost, by number and shape
     Colliders,
+    /// What cloths cost that are far from the camera, with and without level of detail
+    Lod,
     /// Cloth on cloth: what it costs, and what passes through
     #[value(name = "self")]
     Layers,
@@ -116,7 +119,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 15] = [
+const EXPERIMENTS: [(Name, Conduct); 16] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -125,6 +128,7 @@ const EXPERIMENTS: [(Name, Conduct); 15] = [
     (Name::Exactness, conduct::<exactness::Exactness>),
     (Name::Needs, conduct::<needs::Needs>),
     (Name::Colliders, conduct::<colliders::Colliders>),
+    (Name::Lod, conduct::<lod::Lod>),
     (Name::Layers, conduct::<layers::Layers>),
     (Name::Pareto, conduct::<pareto::Pareto>),
     (Name::Hung, conduct::<hung::Hung>),

@@ -199,6 +199,11 @@ impl ColliderMotion {
             .is_some_and(|way| way.turn != Vec3::ZERO || way.travel() > 0.0)
     }
 
+    /// Whether cloth pushes it.
+    pub fn is_body(&self) -> bool {
+        self.way.as_ref().is_some_and(|way| way.body.is_some())
+    }
+
     /// How many cloths are expected to push it: each has a part of its mass.
     pub fn cloths(&self) -> u32 {
         self.cloths.max(1)

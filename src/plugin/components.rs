@@ -47,3 +47,13 @@ pub(super) struct BroadPhaseBounds {
     /// Whether what an earlier search found is still there.
     pub is_stale: bool,
 }
+
+impl BroadPhaseBounds {
+    /// Leaves the cloth out of the tick.
+    pub fn leave_out(&mut self) {
+        self.takes_part = false;
+        self.has_sleeping_contacts = false;
+        self.is_stale |= self.is_searched;
+        self.is_searched = false;
+    }
+}

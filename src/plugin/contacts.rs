@@ -75,6 +75,12 @@ impl ClothContacts {
         self.points.get(first..end).unwrap_or_default()
     }
 
+    /// What stands still by decree touches nothing.
+    pub(super) fn clear(&mut self) {
+        self.now.clear();
+        self.points.clear();
+    }
+
     /// Takes the contacts of a new tick, found in a frame that is turned by `rotation`; those of no particle are none.
     pub(super) fn renew(
         &mut self,

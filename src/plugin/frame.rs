@@ -96,6 +96,11 @@ impl ClothFrame {
         }
     }
 
+    /// The same entity's, with the particles' frame elsewhere.
+    pub(super) fn with_isometry(self, isometry: Isometry3d) -> Self {
+        Self { isometry, ..self }
+    }
+
     /// Whether it is that of a global transform, to the last bit.
     pub(super) fn is_of(&self, transform: &GlobalTransform) -> bool {
         self.affine == transform.affine()

@@ -37,14 +37,15 @@ pub(super) struct Island {
     pub contact: MutualContact,
 }
 
+/// Where a cloth may be.
 #[derive(Debug, Clone, Copy)]
-struct Span {
-    entity: Entity,
-    centre: Vec3,
-    radius: f32,
-    layers: ClothLayers,
+pub(super) struct Span {
+    pub entity: Entity,
+    pub centre: Vec3,
+    pub radius: f32,
+    pub layers: ClothLayers,
     /// The least and the greatest corner of the box that it stays in (m), once it was asked for.
-    bounds: Option<[Vec3; 2]>,
+    pub bounds: Option<[Vec3; 2]>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -96,8 +97,22 @@ pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours)
 }
 
 impl Islands {
+    /// Cloths that are each alone, to be joined.
+    pub fn begin(&mut self, spans: impl Iterator<Item = Span>) {
+        self.spans.clear();
+        self.spans.extend(spans);
+    }
+
+    /// Each cloth, with one that all have in common that it was joined with.
+    pub fn roots(&mut self) -> impl Iterator<Item = (Entity, Entity)> {
+        (0..self.spans.len()).map(|span| {
+            let root = self.find(span as u32) as usize;
+            (self.spans[span].entity, self.spans[root].entity)
+        })
+    }
+
     /// Joins all cloths whose spheres meet, by a sweep along the x axis, and then the boxes that they stay in.
-    fn join(&mut self, bounds: impl Fn(Entity) -> Option<[Vec3; 2]>) {
+    pub fn join(&mut self, bounds: impl Fn(Entity) -> Option<[Vec3; 2]>) {
         let first = |span: &Span| span.centre.x - span.radius;
         self.spans
             .sort_unstable_by(|a, b| first(a).total_cmp(&first(b)).then(a.entity.cmp(&b.entity)));

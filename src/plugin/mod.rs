@@ -9,6 +9,7 @@ mod bones;
 mod broad_phase;
 mod build;
 mod built;
+mod cameras;
 mod carry;
 mod clock;
 mod collider_tree;
@@ -23,6 +24,7 @@ mod fabric;
 mod fault;
 mod follow;
 mod frame;
+mod freeze;
 #[cfg(feature = "gizmos")]
 mod gizmos;
 mod gravity;
@@ -30,6 +32,9 @@ mod inertia;
 mod inputs;
 mod integrate;
 mod islands;
+mod levels;
+mod lod;
+mod lod_state;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod naming;
@@ -78,6 +83,7 @@ pub use frame::ClothFrame;
 pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
 pub use gravity::ClothGravity;
 pub use inertia::ClothInertia;
+pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
 #[cfg(feature = "egui")]

@@ -13,16 +13,19 @@ use bevy::{
 };
 
 use super::{
-    ClothAir, ClothAttachments, ClothBuilt, ClothFault, ClothFrame, ClothGravity, ClothScratch,
-    ClothSearch, ClothState, ClothStats, ClothTeleport,
+    ClothAir, ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
+    ClothScratch, ClothSearch, ClothState, ClothStats, ClothTeleport,
     attach::{Targets, follow_targets},
     broad_phase::{clear_stats, reach, update_bounds},
     build::{Wanted, build},
     carry::{carry, new_from_old},
     components::BroadPhaseBounds,
     frame::global_transform,
+    freeze::{stand, thaw},
     inertia::Roots,
     inputs::Inputs,
+    lod::{ClothLod, GlobalClothLod},
+    lod_state::Turn,
     naming::Part,
     shared::SharedParts,
     skin::{Skins, move_with_pose, place_pose},
@@ -57,6 +60,7 @@ pub(super) struct Preparing {
     self_collision: Option<&'static ClothSelfCollision>,
     air: Option<&'static ClothAir>,
     pressure: Option<&'static ClothPressure>,
+    lod: Option<&'static ClothLod>,
     particles: &'static mut ClothParticles,
     built: &'static mut ClothBuilt,
     state: &'static mut ClothState,
@@ -65,6 +69,7 @@ pub(super) struct Preparing {
     stats: &'static mut ClothStats,
     bounds: &'static mut BroadPhaseBounds,
     search: &'static mut ClothSearch,
+    contacts: &'static mut ClothContacts,
     teleport: Option<&'static ClothTeleport>,
     fault: Option<&'static ClothFault>,
 }
@@ -87,13 +92,24 @@ pub(super) fn prepare_cloths(
     around: Surroundings,
     mut parts: ResMut<SharedParts>,
     gravity: Res<ClothGravity>,
+    global_lod: Option<Res<GlobalClothLod>>,
     time: Res<Time>,
     mut commands: Commands,
 ) {
     for entity in &around.teleports {
         commands.entity(entity).try_remove::<ClothTeleport>();
     }
+    let global_lod = global_lod.as_ref().map(|global| &global.0);
     for mut cloth in &mut cloths {
+        let level = cloth.state.lod.level;
+        if cloth.stats.level != level {
+            cloth.stats.level = level;
+        }
+        if cloth.state.lod.turn == Turn::Wait {
+            cloth.pass();
+            continue;
+        }
+        let (seconds, ticks) = cloth.state.lod.take(time.delta_secs());
         let inputs = Inputs::of(
             cloth.settings,
             cloth.material,
@@ -102,22 +118,26 @@ pub(super) fn prepare_cloths(
             cloth.self_collision,
             gravity.0,
         );
+        let lod = cloth.lod.or(global_lod);
+        let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
         let outcome = inputs.and_then(|inputs| {
-            let seconds = time.delta_secs();
+            if cloth.state.lod.turn == Turn::Stand {
+                cloth.pass();
+                return cloth.stand(&around.targets);
+            }
             let breeze = around.field.of_cloth(cloth.air)?;
             if cloth.sleeps_as_it_was(&inputs, &around, &breeze, seconds) {
                 return Ok(());
             }
             // Nothing of an earlier tick is done again.
             cloth.scratch.forget_tick();
+            let seconds = (seconds, ticks);
             cloth.prepare(&inputs, &around, breeze, &mut parts, seconds)
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
             cloth.scratch.forget_tick();
-            cloth.bounds.takes_part = false;
-            cloth.bounds.is_stale |= cloth.bounds.is_searched;
-            cloth.bounds.is_searched = false;
+            cloth.bounds.leave_out();
             cloth.state.rest.disturb();
         }
         if cloth.teleport.is_some() && outcome.is_ok() {
@@ -139,6 +159,25 @@ pub(super) fn prepare_cloths(
 }
 
 impl PreparingItem<'_, '_> {
+    /// Lets the tick pass without the cloth.
+    fn pass(&mut self) {
+        self.scratch.forget_tick();
+        self.bounds.leave_out();
+        clear_stats(&mut self.stats, false);
+        (self.stats.integrate_ms, self.stats.substeps) = (0.0, 0);
+        self.stats.is_asleep = false;
+    }
+
+    /// Has the cloth keep its shape, and go with what carries it.
+    fn stand(&mut self, targets: &Targets) -> Result<(), ClothError> {
+        if self.state.written != Some(self.particles.last_changed()) {
+            check_particles(&mut self.particles)?;
+        }
+        self.contacts.clear();
+        let (frame, state) = (&mut self.frame, &mut *self.state);
+        stand(self.entity, targets, frame, &mut self.particles, state)
+    }
+
     /// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
     fn sleeps_as_it_was(
         &self,
@@ -213,7 +252,7 @@ impl PreparingItem<'_, '_> {
         around: &Surroundings,
         breeze: Option<Breeze>,
         parts: &mut SharedParts,
-        seconds: f32,
+        (seconds, ticks): (f32, u32),
     ) -> Result<(), ClothError> {
         let Surroundings {
             targets,
@@ -256,9 +295,12 @@ impl PreparingItem<'_, '_> {
         place_pose(
             skin, sources, &frame, begins, particles, built, state, scratch,
         )?;
+        // What was at fault may have been put anywhere meanwhile.
+        let jumps = self.teleport.is_some() || around.roots.jumps(self.entity) || !state.is_valid;
+        let has_stood = thaw(targets, frame, (seconds, jumps), before, particles, state);
         // Who saves or restores particles may mark them as changed without a change.
-        let was_written =
-            state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
+        let was_written = has_stood
+            || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
         // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
         if was_written || !state.rest.is_asleep() {
             state.largest_speed = check_particles(particles)?;
@@ -368,11 +410,13 @@ impl PreparingItem<'_, '_> {
             (state.air).set(&mut built.solver, surface, particles, &self.frame, field);
         }
         let along = surface.particles_along();
+        // A tick that stands for several has as many as one: that is what it saves.
+        let one = seconds / ticks as f32;
         let needed = match settings.substepping {
             // Nobody asks.
-            _ if state.rest.is_asleep() => Substepping::needed(along, seconds),
+            _ if state.rest.is_asleep() => Substepping::needed(along, one),
             Substepping::Fixed(substeps) => substeps,
-            _ => (built.solver).needed(particles, along, seconds, settings.order),
+            _ => (built.solver).needed(particles, along, one, settings.order),
         };
         // Layers may come nearer in a sub-step by a part of their thickness alone.
         let needed = match inputs.self_collision {
@@ -422,6 +466,7 @@ impl PreparingItem<'_, '_> {
                     .acceleration(material, state.largest_speed, seconds),
             seconds,
         ) + scratch.constraints.travel();
+        state.lod.reach = scratch.reach;
         update_bounds(
             particles,
             &self.frame,

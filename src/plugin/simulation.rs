@@ -41,6 +41,8 @@ use super::{
     inertia::{Jumped, follow_roots},
     integrate::integrate,
     islands::{Islands, find_islands},
+    levels::choose_levels,
+    lod::{ClothLod, GlobalClothLod},
     naming::Part,
     prepare::prepare_cloths,
     push::push_bodies,
@@ -105,7 +107,9 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothWind>()
             .register_type::<ClothWindZone>()
             .register_type::<ClothAir>()
-            .register_type::<ClothPressure>();
+            .register_type::<ClothPressure>()
+            .register_type::<ClothLod>()
+            .register_type::<GlobalClothLod>();
         add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
         add_parts_to_earlier::<ClothCollider, ColliderMotion>(app.world_mut());
         app.init_resource::<ClothGravity>()
@@ -150,6 +154,7 @@ impl Plugin for ClothPlugin {
                     follow_roots,
                     prepare_colliders,
                     prepare_wind,
+                    choose_levels,
                     prepare_cloths,
                     find_islands,
                 )

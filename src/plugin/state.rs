@@ -5,7 +5,10 @@ use bevy::{
     math::{Isometry3d, Vec3},
 };
 
-use super::{ClothAttachment, air::KnownAir, attachments::Attached, excess::Excess, skin::Pose};
+use super::{
+    ClothAttachment, air::KnownAir, attachments::Attached, excess::Excess, lod_state::LodState,
+    skin::Pose,
+};
 use crate::{
     contact::{Carrier, ClothSelfCollision, MovingCollider, NarrowPhase},
     hierarchy::SearchMethod,
@@ -19,6 +22,8 @@ use crate::{
 pub struct ClothState {
     /// Whether the last preparation found nothing wrong: what is not valid is neither moved nor drawn.
     pub(super) is_valid: bool,
+    /// At which level of detail it is.
+    pub(super) lod: LodState,
     /// Of the coming tick's sub-steps.
     pub(super) control: Control,
     pub(super) rest: Rest,

@@ -6,6 +6,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
+use super::lod::ClothLodLevel;
 use crate::{
     hierarchy::{SearchMethod, SearchReason},
     solver::{ClothLimit, Stretch},
@@ -46,8 +47,11 @@ pub struct ClothStats {
     pub stretch: Stretch,
     /// The impulse (N s, in the world) that the air gave the cloth in the tick, by drag, lift and pressure; 0 for one that sleeps.
     pub air_impulse: Vec3,
-    /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps.
+    /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps, is frozen, or waits
+    /// for a tick in which it is moved.
     pub substeps: u32,
+    /// The level of detail that the cloth is at.
+    pub level: ClothLodLevel,
     /// Whether the cloth sleeps.
     pub is_asleep: bool,
     /// The first limit beyond which it is not simulated well, if it was beyond one as its last tick ended.

@@ -11,6 +11,7 @@ mod heavy;
 mod hostile;
 mod layers;
 mod lifetime;
+mod lod;
 mod log;
 mod mesh;
 mod meshes;

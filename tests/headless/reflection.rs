@@ -59,6 +59,7 @@ fn everything() -> (App, [Entity; 3]) {
         ]),
         ClothAttachments::new([(Pin::Column(0), pole)]),
         ShowClothGizmos::default(),
+        ClothLod::default(),
         Visibility::default(),
     );
     let cloth = app.world_mut().spawn(cloth).id();
@@ -70,16 +71,20 @@ fn everything() -> (App, [Entity; 3]) {
     let bad = app.world_mut().spawn(Cloth::new(1, 1, 0.1)).id();
     tick(&mut app, 5);
     app.world_mut().entity_mut(cloth).insert(ClothTeleport);
+    app.world_mut()
+        .entity_mut(bad)
+        .insert(ClothRenderMesh { cloth });
     assert!(app.world().get::<ClothFault>(bad).is_some());
     assert!(stats(&app, cloth).contacts > 0);
     (app, [cloth, ball, bad])
 }
 
 /// Entities and ranges are text with Bevy's feature `serialize` only: what has them travels as a value.
-const AS_VALUES: [&str; 4] = [
+const AS_VALUES: [&str; 5] = [
     "ClothAttachments",
     "ClothContacts",
     "ClothFault",
+    "ClothRenderMesh",
     "ShowClothGizmos",
 ];
 
@@ -140,6 +145,8 @@ fn every_component_travels() {
         type_name::<ClothCollider>(),
         type_name::<RapierClothCollider>(),
         type_name::<ShowClothGizmos>(),
+        type_name::<ClothLod>(),
+        type_name::<ClothRenderMesh>(),
     ] {
         assert!(names.iter().any(|known| known == name), "{name}");
     }
@@ -187,6 +194,7 @@ fn named_entities_are_mapped() {
         .get::<ClothContacts>(cloth)
         .expect("contacts")
         .clone();
+    let mut driven = ClothRenderMesh { cloth: ball };
     let Some(ClothTarget::Entity(pole)) = old(&attachments) else {
         panic!("a pole");
     };
@@ -204,7 +212,9 @@ fn named_entities_are_mapped() {
         use std::any::TypeId;
         map_entities(TypeId::of::<ClothAttachments>()).map_entities(&mut attachments, mapper);
         map_entities(TypeId::of::<ClothContacts>()).map_entities(&mut contacts, mapper);
+        map_entities(TypeId::of::<ClothRenderMesh>()).map_entities(&mut driven, mapper);
     });
     assert_eq!(old(&attachments), Some(new[0].into()));
     assert!(contacts.with(new[1]).is_some() && contacts.with(ball).is_none());
+    assert_eq!(driven.cloth, new[1]);
 }

@@ -1,5 +1,6 @@
 //! The particles of a cloth, in columns.
 
+mod body;
 mod id;
 mod load;
 mod loads;

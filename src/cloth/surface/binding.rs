@@ -3,10 +3,11 @@
 //! Each vertex is bound to the nearest point of the surface at rest, which lies in a face of the corners *a*, *b*, *c* with
 //! the barycentric coordinates *u*, *v*, *w*. There it has a frame of its own:
 //!
-//! - *N* = `(u N_a + v N_b + w N_c)` normalised, the interpolated normal;
-//! - *T*, the part of `α (x_b − x_a) + β (x_c − x_a)` that is at right angles to *N*, normalised. α and β say which way in the face the
-//!   vertex's own tangent points;
-//! - *B* = *N* × *T*.
+//! ```text
+//! N = normalised (u N_a + v N_b + w N_c)                              the interpolated normal
+//! T = normalised part of α (x_b − x_a) + β (x_c − x_a) across N       as the vertex's own tangent points, by α and β
+//! B = N × T
+//! ```
 //!
 //! What the vertex is away from its point, its normal and its tangent are kept in that frame. Where the surface has moved, the
 //! frame is made again from where the particles are, and all three are taken along by it, as by a rotation: what is at right angles stays

@@ -57,6 +57,12 @@ impl Carriers {
         }
     }
 
+    /// Takes over where a cloth stands in a tick in which it is not moved: what comes next begins there.
+    pub fn stand(&mut self, frame: ClothFrame) {
+        self.now.frame = frame;
+        self.now.targets.clear();
+    }
+
     /// Whether a target is drawn elsewhere than where the last tick had it.
     pub fn differ_from(&self, drawn: &[Affine3A]) -> bool {
         let known = self.now.targets.iter().map(|(_, target)| target);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use bevy::{
     app::{App, Plugin, PostUpdate},
-    asset::{AssetEvent, AssetEventSystems, AssetServer, Assets, Handle, LoadState},
+    asset::{AssetEvent, AssetEventSystems, AssetId, AssetServer, Assets, Handle, LoadState},
     camera::visibility::InheritedVisibility,
     ecs::{
         component::Component,
@@ -17,7 +17,7 @@ use bevy::{
         query::{QueryData, With, Without},
         reflect::{ReflectComponent, ReflectMapEntities},
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Commands, Query, Res, ResMut},
+        system::{Commands, Local, Query, Res, ResMut},
     },
     mesh::{Mesh, Mesh3d},
     reflect::Reflect,
@@ -125,19 +125,18 @@ fn bind(
     mut meshes: ResMut<Assets<Mesh>>,
     server: Option<Res<AssetServer>>,
     mut events: MessageReader<AssetEvent<Mesh>>,
+    mut changed: Local<Vec<AssetId<Mesh>>>,
     mut commands: Commands,
 ) {
     if wanted.is_empty() {
         events.clear();
         return;
     }
-    let changed: Vec<_> = events
-        .read()
-        .filter_map(|event| match event {
-            AssetEvent::Modified { id } => Some(*id),
-            _ => None,
-        })
-        .collect();
+    changed.clear();
+    changed.extend(events.read().filter_map(|event| match event {
+        AssetEvent::Modified { id } => Some(*id),
+        _ => None,
+    }));
     for each in &mut wanted {
         let cloth = each.wanted.cloth;
         let outcome = match driving.get_mut(cloth) {

@@ -1,0 +1,35 @@
+//! Where cameras are.
+
+#[cfg(not(feature = "mesh"))]
+use std::marker::PhantomData;
+
+#[cfg(feature = "mesh")]
+use bevy::{camera::Camera, ecs::system::Query, transform::components::GlobalTransform};
+use bevy::{ecs::system::SystemParam, math::Vec3};
+
+/// The cameras of the app; none where nothing is drawn.
+#[derive(SystemParam)]
+pub(super) struct Cameras<'w, 's> {
+    #[cfg(feature = "mesh")]
+    all: Query<'w, 's, (&'static Camera, &'static GlobalTransform)>,
+    #[cfg(not(feature = "mesh"))]
+    none: PhantomData<(&'w (), &'s ())>,
+}
+
+impl Cameras<'_, '_> {
+    /// How far a point is from the nearest camera that is active (m), as of the last frame; `None` if none is.
+    pub fn nearest(&self, point: Vec3) -> Option<f32> {
+        #[cfg(feature = "mesh")]
+        let places = self
+            .all
+            .iter()
+            .filter(|(camera, _)| camera.is_active)
+            .map(|(_, place)| place.translation());
+        #[cfg(not(feature = "mesh"))]
+        let places = {
+            let PhantomData = self.none;
+            std::iter::empty::<Vec3>()
+        };
+        places.map(|place| place.distance(point)).reduce(f32::min)
+    }
+}

@@ -1,0 +1,219 @@
+//! Chooses the level of detail of each cloth, and which cloths are moved in a tick.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        query::{Has, QueryData, With},
+        system::{Local, Query, Res, ResMut},
+    },
+    math::Vec3,
+    time::Time,
+};
+
+use super::{
+    ClothBuilt, ClothFrame, ClothState, ClothTeleport,
+    cameras::Cameras,
+    collider_tree::ColliderTree,
+    colliders::ColliderMotion,
+    islands::{Islands, Span},
+    lod::{ClothLod, ClothLodLevel, GlobalClothLod},
+};
+use crate::{
+    cloth::ClothParticles,
+    contact::{ClothLayers, ClothSelfCollision},
+    solver::ClothSettings,
+};
+
+/// For how many ticks a cloth is moved in each after something that moves was near: half a second of Bevy's 64 Hz.
+const KEPT: u32 = 32;
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct Levelled {
+    entity: Entity,
+    lod: Option<&'static ClothLod>,
+    built: &'static ClothBuilt,
+    particles: &'static ClothParticles,
+    frame: &'static ClothFrame,
+    settings: Option<&'static ClothSettings>,
+    self_collision: Option<&'static ClothSelfCollision>,
+    state: &'static mut ClothState,
+    layers: Option<&'static ClothLayers>,
+    teleports: Has<ClothTeleport>,
+}
+
+/// A cloth, and the level that it is to have.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    entity: Entity,
+    level: ClothLodLevel,
+    /// Around the whole of it, as far as it may get until it is moved again, in the world (m).
+    centre: Vec3,
+    radius: f32,
+    layers: ClothLayers,
+    touches_cloth: bool,
+    /// The place of the one whose level and phase all have that are near each other.
+    group: usize,
+    phase: u32,
+    is_due: bool,
+}
+
+/// Memory that a tick works in.
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    wanted: Vec<Wanted>,
+    groups: Islands,
+    /// Whether a cloth was at another level than the full one.
+    is_used: bool,
+}
+
+type Colliders<'w, 's> = Query<'w, 's, (&'static ColliderMotion, Option<&'static ClothLayers>)>;
+
+/// Says what becomes of each cloth in the tick. Costs nothing where no level of detail is asked for.
+pub(super) fn choose_levels(
+    mut cloths: Query<Levelled>,
+    own: Query<(), With<ClothLod>>,
+    global: Option<Res<GlobalClothLod>>,
+    cameras: Cameras,
+    colliders: Colliders,
+    mut tree: ResMut<ColliderTree>,
+    time: Res<Time>,
+    mut work: Local<Work>,
+) {
+    let is_asked_for = !own.is_empty() || global.is_some();
+    if !is_asked_for && !work.is_used {
+        return;
+    }
+    tree.refit();
+    let seconds = time.delta_secs();
+    let global = global.as_ref().map(|global| &global.0);
+    let Work {
+        wanted,
+        groups,
+        is_used,
+    } = &mut *work;
+    wanted.clear();
+    for mut cloth in &mut cloths {
+        let mut own = cloth.wanted(global, &cameras);
+        if let ClothLodLevel::Every(_) = own.level {
+            let comes_near = tree
+                .near(own.centre, own.radius)
+                .filter_map(|entity| colliders.get(entity).ok())
+                .any(|(motion, layers)| {
+                    layers
+                        .copied()
+                        .unwrap_or_default()
+                        .interacts_with(own.layers)
+                        && (motion.is_moving() || motion.is_body())
+                        && motion.comes_near(own.centre, own.radius)
+                });
+            let kept = &mut cloth.state.lod.kept;
+            *kept = if comes_near {
+                KEPT
+            } else {
+                kept.saturating_sub(1)
+            };
+            if *kept > 0 {
+                own.level = ClothLodLevel::Full;
+            }
+        }
+        wanted.push(own);
+    }
+    wanted.sort_unstable_by_key(|own| own.entity);
+    for (place, own) in wanted.iter_mut().enumerate() {
+        own.group = place;
+    }
+    let is_coarse = |own: &Wanted| own.touches_cloth && own.level != ClothLodLevel::Full;
+    if wanted.iter().any(is_coarse) {
+        group(wanted, groups);
+    }
+    *is_used = false;
+    for place in 0..wanted.len() {
+        let own = wanted[place];
+        let of_group = wanted[own.group];
+        let Ok(mut cloth) = cloths.get_mut(own.entity) else {
+            continue;
+        };
+        // What sleeps is looked at as ever: that costs next to nothing.
+        let is_due = of_group.is_due || cloth.state.rest.is_asleep();
+        let lod = &mut cloth.state.lod;
+        lod.begin(of_group.level, of_group.phase, is_due, seconds);
+        *is_used |= !lod.is_full();
+    }
+}
+
+impl LevelledItem<'_, '_> {
+    /// The level that it would have alone.
+    fn wanted(&mut self, global: Option<&ClothLod>, cameras: &Cameras) -> Wanted {
+        let layers = self.layers.copied().unwrap_or_default();
+        let mut wanted = Wanted {
+            entity: self.entity,
+            level: ClothLodLevel::Full,
+            centre: Vec3::ZERO,
+            radius: 0.0,
+            layers,
+            touches_cloth: false,
+            group: 0,
+            phase: self.entity.index_u32(),
+            is_due: true,
+        };
+        // What is wrong with a level of detail is said where the cloth is prepared.
+        let lod = self.lod.or(global).filter(|lod| lod.validate().is_ok());
+        // One that was not built yet, or can't be, is looked at in each tick.
+        if !(self.state.is_valid && self.built.matches(self.particles)) {
+            return wanted;
+        }
+        let root = self
+            .built
+            .tree()
+            .root_sphere(self.particles, self.state.stretch.bound);
+        wanted.centre = self.frame.to_world(root.center.into());
+        let state = &mut self.state.lod;
+        if let Some(lod) = lod {
+            let distance = cameras.nearest(wanted.centre);
+            let distance = distance.map_or(0.0, |distance| (distance - root.radius()).max(0.0));
+            state.passed = lod.passed(distance, state.passed);
+            let by_distance = state
+                .passed
+                .checked_sub(1)
+                .map(|last| lod.distances[last].1);
+            wanted.level = lod.level.or(by_distance).unwrap_or_default();
+        }
+        let ticks = wanted.level.ticks().unwrap_or(1) as f32;
+        // What the acceleration does grows with the square of the time.
+        let times = (ticks / state.moved_by() as f32).max(1.0);
+        let around = self.settings.copied().unwrap_or_default().particle_radius;
+        let thickness = self.self_collision.map_or(0.0, |of| of.thickness);
+        wanted.radius = root.radius() + 2.0 * state.reach * times * times + around.max(thickness);
+        wanted.touches_cloth = self.self_collision.is_some();
+        wanted.is_due = self.teleports || self.state.lod.is_due();
+        wanted
+    }
+}
+
+/// Has cloths that may touch each other be at the finest of their levels, and be moved in the same ticks.
+fn group(wanted: &mut [Wanted], groups: &mut Islands) {
+    let spans = wanted.iter().filter(|own| own.touches_cloth);
+    groups.begin(spans.map(|own| Span {
+        entity: own.entity,
+        centre: own.centre,
+        radius: own.radius,
+        layers: own.layers,
+        bounds: None,
+    }));
+    groups.join(|_| None);
+    let place_of =
+        |wanted: &[Wanted], entity| wanted.binary_search_by_key(&entity, |own| own.entity);
+    for (entity, root) in groups.roots() {
+        let (Ok(place), Ok(root)) = (place_of(wanted, entity), place_of(wanted, root)) else {
+            continue;
+        };
+        let own = wanted[place];
+        wanted[place].group = root;
+        let all = &mut wanted[root];
+        if own.level.coarseness() < all.level.coarseness() {
+            all.level = own.level;
+        }
+        all.is_due |= own.is_due;
+    }
+}

@@ -1,0 +1,94 @@
+//! Gives cloths their meshes, and takes them away.
+
+use std::sync::Arc;
+
+use bevy::{
+    asset::Assets,
+    ecs::{
+        entity::Entity,
+        lifecycle::Remove,
+        observer::On,
+        system::{Commands, Query, ResMut},
+    },
+    mesh::{Mesh, Mesh3d},
+};
+
+use super::{
+    super::ClothBuilt,
+    component::ClothMesh,
+    write::{Tangents, copy_of, mesh_of},
+};
+use crate::cloth::{Cloth, ClothShape};
+
+/// Gives a mesh to each cloth that has none, or that of another surface.
+pub(super) fn add_meshes(
+    cloths: Query<(
+        Entity,
+        &Cloth,
+        &ClothBuilt,
+        Option<&Mesh3d>,
+        Option<&ClothMesh>,
+    )>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, cloth, built, mesh, drawn) in &cloths {
+        let surface = built.surface();
+        let is_right = |drawn: &ClothMesh| {
+            Arc::ptr_eq(&drawn.surface, surface) && meshes.contains(&drawn.handle)
+        };
+        if surface.is_empty() {
+            continue;
+        }
+        if let Some(drawn) = drawn.filter(|drawn| is_right(drawn)) {
+            // The game has put back what the cloth was made from.
+            if mesh.is_some_and(|mesh| Some(&mesh.0) == drawn.source.as_ref()) {
+                let own = Mesh3d(drawn.handle.clone());
+                commands.entity(entity).try_insert(own);
+            }
+            continue;
+        }
+        // What the entity drew before the plugin's own mesh.
+        let known = drawn.and_then(|drawn| drawn.source.clone());
+        let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
+        let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
+        let source = other
+            .map(|mesh| mesh.0.clone())
+            .or(known)
+            .filter(|_| is_asset);
+        // What the cloth was made from may have gone meanwhile, or be the renderer's alone.
+        let copy = source
+            .as_ref()
+            .and_then(|source| copy_of(meshes.get(source)?, surface));
+        let copy = copy.unwrap_or_else(|| mesh_of(surface));
+        let tangents = Tangents::of(&copy);
+        let handle = meshes.add(copy);
+        let drawn = ClothMesh {
+            handle: handle.clone(),
+            source,
+            surface: surface.clone(),
+            tangents,
+            ..Default::default()
+        };
+        commands.entity(entity).try_insert((Mesh3d(handle), drawn));
+    }
+}
+
+/// What is no cloth any more is not drawn as one, but as what it was made from, if it was. What the game has put in place of
+/// the plugin's mesh stays.
+pub(super) fn remove_mesh(
+    removed: On<Remove, Cloth>,
+    meshes: Query<(&ClothMesh, Option<&Mesh3d>)>,
+    mut commands: Commands,
+) {
+    if let Ok((own, drawn)) = meshes.get(removed.entity) {
+        let mut entity = commands.entity(removed.entity);
+        if drawn.is_some_and(|drawn| drawn.0 == own.handle) {
+            match &own.source {
+                Some(source) => entity.try_insert(Mesh3d(source.clone())),
+                None => entity.try_remove::<Mesh3d>(),
+            };
+        }
+        entity.try_remove::<ClothMesh>();
+    }
+}
