@@ -34,3 +34,4 @@ mod substepping;
 mod support;
 mod touch;
 mod uneven;
+mod wind;
