@@ -105,7 +105,7 @@ impl KnownAir {
         let Some(breeze) = &self.breeze else {
             return 0.0;
         };
-        let zones = self.zones.iter().map(|zone| zone.fastest());
+        let zones = self.zones.iter().map(PlacedZone::fastest);
         let wind = breeze.velocity.length() + 2.0 * breeze.stray + zones.sum::<f32>();
         let relative = wind + speed;
         let force = 0.5 * breeze.density * (breeze.drag + breeze.lift) * relative * relative;

@@ -37,3 +37,4 @@ mod substepping;
 mod support;
 mod touch;
 mod uneven;
+mod wind;

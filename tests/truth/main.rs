@@ -3,6 +3,7 @@
 
 mod air;
 mod awning;
+mod balloon;
 mod bending;
 mod capstan;
 mod catenary;

@@ -115,9 +115,9 @@ impl ClothWind {
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothAir {
-    /// C_d, the coefficient of drag of cloth that the wind meets broadside, from 0 to 10⁶.
+    /// `C_d`, the coefficient of drag of cloth that the wind meets broadside, from 0 to 10⁶.
     pub drag: f32,
-    /// C_l, the slope of the coefficient of the normal force over the sine of a small angle to the wind, from 0 to 10⁶.
+    /// `C_l`, the slope of the coefficient of the normal force over the sine of a small angle to the wind, from 0 to 10⁶.
     pub lift: f32,
     /// A velocity of the air (m/s) for this cloth alone, in place of [`ClothWind`]: inside of a vehicle, that of the vehicle. Zones
     /// come on top, as to the world's.

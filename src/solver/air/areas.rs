@@ -19,7 +19,7 @@ pub(crate) struct Rows<'a> {
 #[inline(always)]
 pub(crate) fn air_areas(rows: &Rows, areas: &mut [Trio]) {
     let strip = rows.own.len();
-    for j in 0..strip {
+    for (j, area) in areas.iter_mut().enumerate().take(strip) {
         let own = rows.own[j].view();
         let right = match rows.own.get(j + 1) {
             Some(block) => places(block.view()),
@@ -35,7 +35,6 @@ pub(crate) fn air_areas(rows: &Rows, areas: &mut [Trio]) {
             None => behind(&places(rows.own[strip - 1].view()), own),
         };
         let (above, below) = (rows.above[j].view(), rows.below[j].view());
-        let area = &mut areas[j];
         for l in 0..LANES {
             let a = [0, 1, 2].map(|axis| below[X + axis * LANES + l] - above[X + axis * LANES + l]);
             let b = [0, 1, 2].map(|axis| right[axis][l] - left[axis][l]);

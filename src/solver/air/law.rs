@@ -29,9 +29,9 @@ impl Felt {
 /// What is alike for all particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law {
-    /// ρ C_d (kg/m³).
+    /// `ρ C_d` (kg/m³).
     pub drag: f32,
-    /// ρ C_l ⁄ 2 (kg/m³).
+    /// `ρ C_l ⁄ 2` (kg/m³).
     pub lift: f32,
     /// Of the inside over the outside (Pa).
     pub pressure: f32,

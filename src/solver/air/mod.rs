@@ -1,6 +1,6 @@
 //! Air: drag and lift of a wind, and pressure.
 //!
-//! The air moves at U, a face with its normal n at v, so that what it feels is `u = U − v`: u_n along its normal, u_t along itself.
+//! The air moves at U, a face with its normal n at v, so that what it feels is `u = U − v`: `u_n` along its normal, `u_t` along itself.
 //! The force on a face of the area A is
 //!
 //! ```text
@@ -10,8 +10,8 @@
 //!               face             C_l: the slope of a plate's normal force at grazing angles
 //! ```
 //!
-//! A hinged sheet of ρ_s kg/m² leans in it by t with `sin t = ρ U² (C_d cos² t + C_l sin t cos t)/(2 ρ_s g)`, and a flat one falls
-//! at √(2 ρ_s g/(ρ C_d)) in the end, whatever its resolution and its sub-steps (`cargo test --test truth air`).
+//! A hinged sheet of `ρ_s` kg/m² leans in it by t with `sin t = ρ U² (C_d cos² t + C_l sin t cos t)/(2 ρ_s g)`, and a flat one falls
+//! at `√(2 ρ_s g/(ρ C_d))` in the end, whatever its resolution and its sub-steps (`cargo test --test truth air`).
 //!
 //! **A face** is what a particle stands for: on a grid half of the diamond of its neighbours, on a mesh a third of each of its
 //! triangles. So its force is along one normal and moves one particle, and what slows it is a number, not a matrix.
@@ -24,7 +24,8 @@
 //! 1/(1 + κ Δt) of itself. Where κ Δt is above 1 (cotton in 20 sub-steps of 1/64 s: from 130 m/s on), b and κ are divided by it,
 //! so that a particle comes to its speed in one sub-step, and the load is less than it would be.
 //!
-//! **Cost** (64², 20 sub-steps, one thread): see `cargo bench --profile dev --bench solver air`.
+//! **Cost** (64², 20 sub-steps, one thread): 6 % of a tick, whether the wind is the same everywhere or not: a third of it for the two
+//! looks, the rest for 14 operations and six loads a block in each sub-step (`cargo bench --profile dev --bench solver -- air`).
 
 mod areas;
 mod law;
@@ -52,9 +53,9 @@ const LONGEST: f32 = 0.01;
 pub struct Air {
     /// Density (kg/m³).
     pub density: f32,
-    /// C_d: the coefficient of drag of a face that the wind meets broadside.
+    /// `C_d`: the coefficient of drag of a face that the wind meets broadside.
     pub drag: f32,
-    /// C_l: the slope of the coefficient of a face's normal force over the sine of a small angle to the wind.
+    /// `C_l`: the slope of the coefficient of a face's normal force over the sine of a small angle to the wind.
     pub lift: f32,
     /// Velocity of the air (m/s).
     pub wind: Vec3,
@@ -80,7 +81,9 @@ pub(super) struct Airflow {
     layout: Layout,
     /// Of a mesh.
     triangles: Option<Triangles>,
-    local: Option<LocalWind>,
+    local: LocalWind,
+    /// Whether the wind is `local`, and not the same everywhere.
+    is_local: bool,
     felt: Vec<Felt>,
     /// As the faces were looked at, see [`Felt`].
     ways: Vec<Lanes>,
@@ -104,7 +107,8 @@ impl Airflow {
             air,
             layout,
             triangles: (!is_grid).then(|| Triangles::new(surface)),
-            local: None,
+            local: LocalWind::default(),
+            is_local: false,
             felt: vec![Felt::NONE; layout.blocks()],
             ways: vec![[0.0; LANES]; layout.blocks()],
             areas: vec![[[0.0; LANES]; 3]; strip],
@@ -119,14 +123,14 @@ impl Airflow {
     /// The same wind everywhere from now on.
     pub fn set(&mut self, air: Air) {
         self.air = air;
-        self.local = None;
+        self.is_local = false;
     }
 
     /// A wind that is asked for at some places from now on (m, m/s).
     pub fn set_local_wind(&mut self, particles: &ClothParticles, at: impl FnMut(Vec3) -> Vec3) {
         let is_grid = self.triangles.is_none();
-        let local = self.local.get_or_insert_default();
-        local.sample(particles, is_grid, at);
+        self.local.sample(particles, is_grid, at);
+        self.is_local = true;
     }
 
     /// What the air gave the cloth in the last tick (N s).
@@ -198,13 +202,14 @@ impl Airflow {
         let Self {
             triangles,
             local,
+            is_local,
             areas,
             winds,
             felt,
             ways,
             ..
         } = self;
-        if local.is_none() {
+        if !*is_local {
             winds.fill(wind.to_array().map(|of| [of; LANES]));
         }
         if let Some(triangles) = triangles {
@@ -212,7 +217,7 @@ impl Airflow {
             if let Some(ClothPressure::Gauge(pressure)) = pressure {
                 law.pressure = pressure * volume.signum();
             }
-            if let Some(local) = local {
+            if *is_local {
                 local.of_mesh(particles, winds);
             }
             (kernels.air_feel)(blocks, areas, winds, &law, felt, ways);
@@ -229,7 +234,7 @@ impl Airflow {
                 last,
             };
             (kernels.air_areas)(&around, areas);
-            if let Some(local) = local {
+            if *is_local {
                 local.of_row(index, layout, winds);
             }
             (kernels.air_feel)(row(index), areas, winds, &law, felt, ways);

@@ -1,1 +1,151 @@
-//! The faces of particles, and what they feel.
+//! The faces of particles, the wind between its knots, and the bits of both.
+
+use bevy::math::Vec3;
+
+use super::*;
+use crate::{
+    cloth::{Cloth, ClothMaterial, Springs},
+    solver::{SimdLevel, Solver, TickStep},
+};
+
+const AIR: Air = Air {
+    density: 1.2,
+    drag: 1.2,
+    lift: 1.5,
+    wind: Vec3::new(2.0, -1.0, 6.0),
+    pressure: None,
+};
+
+/// A crumpled grid.
+fn crumpled(columns: u32, rows: u32) -> (Surface, ClothParticles) {
+    let grid = Cloth::new(columns, rows, 0.1)
+        .grid(Vec3::ONE)
+        .expect("a grid");
+    let surface = Surface::of_grid(&grid);
+    let material = ClothMaterial::COTTON;
+    let mut particles = ClothParticles::at_rest(&surface, &material).expect("a material");
+    for index in 0..particles.len() {
+        let phase = index as f32;
+        let shake = Vec3::new(phase.sin(), (1.7 * phase).cos(), (0.3 * phase).sin());
+        let place = particles.position_at(index) + 0.02 * shake;
+        particles.set_position(index, place).expect("it exists");
+    }
+    (surface, particles)
+}
+
+/// As brute force finds it, of each number of columns that fills its lanes in another way; to the rounding of three products.
+#[test]
+fn a_particle_stands_for_half_the_diamond_of_its_neighbours() {
+    for (columns, rows) in [(2, 2), (7, 3), (8, 4), (9, 5), (16, 3), (33, 6), (64, 2)] {
+        let (surface, particles) = crumpled(columns, rows);
+        let mut airflow = Airflow::new(&surface, AIR);
+        airflow.begin(1.0 / 64.0, 1);
+        let layout = particles.layout();
+        let strip = layout.strip as usize;
+        for row in 0..rows as usize {
+            let of = |row: usize| &particles.blocks()[row * strip..(row + 1) * strip];
+            let around = Rows {
+                own: of(row),
+                above: of(row.saturating_sub(1)),
+                below: of((row + 1).min(rows as usize - 1)),
+                last: layout.slot(0, columns - 1),
+            };
+            air_areas(&around, &mut airflow.areas);
+            for column in 0..columns as usize {
+                let at = |row: usize, column: usize| {
+                    let row = row.min(rows as usize - 1);
+                    let column = column.min(columns as usize - 1);
+                    particles.position_at(row * columns as usize + column)
+                };
+                let down = at(row + 1, column) - at(row.saturating_sub(1), column);
+                let across = at(row, column + 1) - at(row, column.saturating_sub(1));
+                let expected = down.cross(across) / 4.0;
+                let slot = layout.slot(0, column as u32);
+                let found = airflow.areas[slot.block].map(|lanes| lanes[slot.lane]);
+                assert!(
+                    expected.distance(found.into()) < 1.0e-8,
+                    "{columns} × {rows}: {expected} {found:?} in {row}, {column}"
+                );
+            }
+        }
+    }
+}
+
+/// A wind that grows evenly along a flat grid, and through a mesh, is met to the last digits; each knot is where it is asked for.
+#[test]
+fn a_wind_that_grows_evenly_is_interpolated_exactly() {
+    for (columns, rows) in [(2, 2), (9, 3), (33, 40), (64, 64)] {
+        let grid = Cloth::new(columns, rows, 0.1)
+            .grid(Vec3::ONE)
+            .expect("a grid");
+        let flat = Surface::of_grid(&grid);
+        let material = ClothMaterial::COTTON;
+        let particles = ClothParticles::at_rest(&flat, &material).expect("a material");
+        let wind = |place: Vec3| Vec3::new(1.0 + place.x, 2.0 * place.y, place.x - 3.0 * place.y);
+        let layout = particles.layout();
+        let strip = layout.strip as usize;
+        let mut local = LocalWind::default();
+        local.sample(&particles, true, wind);
+        let mut winds = vec![[[0.0; LANES]; 3]; strip];
+        for row in 0..rows {
+            local.of_row(row as usize, layout, &mut winds);
+            for column in 0..columns {
+                let slot = layout.slot(0, column);
+                let found = Vec3::from(winds[slot.block].map(|lanes| lanes[slot.lane]));
+                let place = particles.position((row, column)).expect("it exists");
+                assert!(
+                    found.distance(wind(place)) < 1.0e-4,
+                    "{columns} × {rows}: {found}"
+                );
+            }
+        }
+        local.sample(&particles, false, wind);
+        let mut winds = vec![[[0.0; LANES]; 3]; layout.blocks()];
+        local.of_mesh(&particles, &mut winds);
+        for (place, slot) in particles.positions().zip(layout.slots()) {
+            let found = Vec3::from(winds[slot.block].map(|lanes| lanes[slot.lane]));
+            assert!(
+                found.distance(wind(place)) < 1.0e-4,
+                "{columns} × {rows}: {found}"
+            );
+        }
+    }
+}
+
+/// Soft cloth, whose springs push by their forces, and stiff cloth; what the air gave included.
+#[test]
+fn every_instruction_set_and_thread_count_gives_the_same_bits() {
+    for compliance in [0.0, 1.0e-2] {
+        let material = ClothMaterial {
+            stretch_compliance: compliance,
+            shear_compliance: compliance,
+            ..ClothMaterial::COTTON
+        };
+        let (surface, start) = crumpled(33, 80);
+        let springs = Springs::of_surface(&surface, &material);
+        let run = |level: SimdLevel, bands: usize| {
+            let mut solver = Solver::of_surface(&surface, &springs);
+            solver.set_simd_level(level);
+            solver.set_bands(bands);
+            solver.set_air(&surface, Some(AIR));
+            let mut particles = start.clone();
+            for _ in 0..6 {
+                solver.set_local_wind(&particles, |place| AIR.wind + place);
+                solver.advance(&mut particles, TickStep::default(), &[], |_, _| false);
+            }
+            let impulse = solver.air_impulse().to_array().map(f32::to_bits);
+            (particles, impulse)
+        };
+        let truth = run(SimdLevel::Baseline, 1);
+        for (level, bands) in [
+            (SimdLevel::Auto, 1),
+            (SimdLevel::Auto, 2),
+            (SimdLevel::Baseline, 2),
+        ] {
+            assert!(
+                run(level, bands) == truth,
+                "{compliance} m/N, {level:?}, {bands} bands"
+            );
+        }
+    }
+}

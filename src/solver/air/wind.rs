@@ -59,13 +59,11 @@ impl LocalWind {
         let (from, to) = (border(index), border(index + 1));
         let part = (row - from) as f32 / (to - from).max(1) as f32;
         let mut ends = [[[0.0; LANES]; 3]; 2];
-        for (after, ends) in ends.iter_mut().enumerate() {
-            for l in 0..LANES {
+        for (after, [x, y, z]) in ends.iter_mut().enumerate() {
+            let lanes = x.iter_mut().zip(y).zip(z).enumerate();
+            for (l, ((x, y), z)) in lanes {
                 let knot = |index: usize| self.knots[index * (ALONG_ROW + 1) + l + after];
-                let wind = knot(index).lerp(knot(index + 1), part).to_array();
-                for axis in 0..3 {
-                    ends[axis][l] = wind[axis];
-                }
+                [*x, *y, *z] = knot(index).lerp(knot(index + 1), part).to_array();
             }
         }
         let strip = winds.len() as f32;
