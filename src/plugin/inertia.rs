@@ -48,7 +48,7 @@ pub struct ClothInertia {
     pub angular: f32,
     /// If it goes farther than this in a tick (m), that is a [`ClothTeleport`], and no motion. Positive; infinity for never.
     pub teleport_distance: f32,
-    /// Likewise if it turns farther than this (rad).
+    /// Likewise if it turns farther than this (rad): it turns by π at most.
     pub teleport_angle: f32,
 }
 
@@ -59,7 +59,7 @@ impl Default for ClothInertia {
             linear: 1.0,
             angular: 1.0,
             teleport_distance: 2.0,
-            teleport_angle: f32::INFINITY,
+            teleport_angle: std::f32::consts::PI,
         }
     }
 }
@@ -122,6 +122,7 @@ impl Carried {
     }
 
     /// What takes back by how much something in a frame was carried.
+    #[cfg(feature = "mesh")]
     pub fn undone_in(&self, frame: &ClothFrame) -> Isometry3d {
         relative(frame.isometry(), self.from) * relative(self.to, frame.isometry())
     }

@@ -30,9 +30,14 @@ fn components(app: &App, entity: Entity) -> Vec<(ComponentId, String)> {
     let archetype = entity.archetype();
     let info = |id: &ComponentId| {
         let name = world.components().get_name(*id)?.to_string();
-        let is_private = ["BroadPhaseBounds", "ColliderMotion"]
-            .iter()
-            .any(|private| name.ends_with(private));
+        let is_private = [
+            "BroadPhaseBounds",
+            "ColliderMotion",
+            "BoneColliders",
+            "RootMotion",
+        ]
+        .iter()
+        .any(|private| name.ends_with(private));
         let of_the_run = [type_name::<ClothState>(), type_name::<ClothScratch>()];
         (name.starts_with("bevy_drape") && !is_private && !of_the_run.contains(&name.as_str()))
             .then_some((*id, name))
@@ -63,6 +68,11 @@ fn everything() -> (App, [Entity; 3]) {
         Visibility::default(),
     );
     let cloth = app.world_mut().spawn(cloth).id();
+    let bones = ClothBones::new([ClothBone::capsule("hips", "neck", 0.2)]);
+    let skin = ClothSkin::default().with_backstop(0.1, 0.5);
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert((skin, ClothInertia::default(), bones));
     let ball = (ClothCollider::ball(0.3), RapierClothCollider);
     let ball = app
         .world_mut()
@@ -135,6 +145,9 @@ fn every_component_travels() {
         type_name::<NarrowPhase>(),
         type_name::<ClothAttachments>(),
         type_name::<ClothTeleport>(),
+        type_name::<ClothSkin>(),
+        type_name::<ClothInertia>(),
+        type_name::<ClothBones>(),
         type_name::<ClothContacts>(),
         type_name::<ClothFrame>(),
         type_name::<ClothStats>(),

@@ -2,7 +2,9 @@
 
 use bevy::math::{Affine3A, Vec3, Vec3A};
 
-use crate::cloth::{ClothError, JointWeights, Surface};
+use crate::cloth::JointWeights;
+#[cfg(feature = "mesh")]
+use crate::cloth::{ClothError, Surface};
 
 /// What moves the particles of a surface with joints. In the mesh's own metres, before any scale.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -26,6 +28,7 @@ impl Skinning {
     ///
     /// # Errors
     /// [`ClothError::SkinWeights`] for the first vertex whose weights are negative or not finite.
+    #[cfg(feature = "mesh")]
     pub fn new(
         surface: &Surface,
         places: &[Vec3],
@@ -102,6 +105,7 @@ impl Bound {
     }
 }
 
+#[cfg(feature = "mesh")]
 fn normalized(vertex: usize, skin: &JointWeights) -> Result<JointWeights, ClothError> {
     let sum: f32 = skin.weights.iter().sum();
     if !(sum.is_finite() && skin.weights.iter().all(|weight| *weight >= 0.0)) {
@@ -118,7 +122,7 @@ fn normalized(vertex: usize, skin: &JointWeights) -> Result<JointWeights, ClothE
     Ok(JointWeights { weights, ..*skin })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "mesh"))]
 mod tests {
     use super::*;
     use crate::cloth::TriangleMesh;

@@ -29,12 +29,14 @@ pub use paint::{ClothPaint, RestFunction};
 /// attributes of floats, in metres: `_MAX_DISTANCE` and `_BACKSTOP` in a glTF file, as Blender exports attributes of these
 /// names (*Data, Mesh, Attributes*). They have to be registered with Bevy's `GltfPlugin`:
 ///
-/// ```ignore
-/// DefaultPlugins.set(
-///     GltfPlugin::default()
-///         .add_custom_vertex_attribute("MAX_DISTANCE", ClothSkin::MAX_DISTANCE)
-///         .add_custom_vertex_attribute("BACKSTOP", ClothSkin::BACKSTOP),
-/// )
+/// ```no_run
+/// use bevy::{gltf::GltfPlugin, prelude::*};
+/// use bevy_drape::prelude::*;
+///
+/// let painted = GltfPlugin::default()
+///     .add_custom_vertex_attribute("MAX_DISTANCE", ClothSkin::MAX_DISTANCE)
+///     .add_custom_vertex_attribute("BACKSTOP", ClothSkin::BACKSTOP);
+/// App::new().add_plugins((DefaultPlugins.set(painted), DrapePlugins::default())).run();
 /// ```
 ///
 /// [`ClothPaint::color`] takes a colour channel in their place, which needs no registration.
@@ -51,7 +53,8 @@ pub use paint::{ClothPaint, RestFunction};
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSkin {
-    /// How far each particle may be from its place in the pose (m): 0 holds it there, infinity leaves it free.
+    /// How far each particle may be from its place in the pose (m): 0 holds it there; infinity, or anything
+    /// beyond 10¹² m, leaves it free.
     pub max_distance: ClothPaint,
     /// What particles stay in front of, if anything.
     pub backstop: Option<ClothBackstop>,
@@ -76,7 +79,7 @@ pub struct ClothSkin {
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[reflect(Debug, Clone, PartialEq)]
 pub struct ClothBackstop {
-    /// How far behind the pose it begins (m); infinity for particles that have none.
+    /// How far behind the pose it begins (m); likewise infinity for particles that have none.
     pub distance: ClothPaint,
     /// Radius of the ball (m), positive: about as large as what is behind the cloth.
     pub radius: f32,
@@ -85,7 +88,8 @@ pub struct ClothBackstop {
 impl Default for ClothSkin {
     /// Pins follow the pose, and all else is free.
     fn default() -> Self {
-        Self::within(f32::INFINITY)
+        // Not infinity, for files that can't hold it.
+        Self::within(f32::MAX)
     }
 }
 

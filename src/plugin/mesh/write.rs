@@ -66,6 +66,8 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<Mesh> {
     // Bones would move what the simulation has moved already.
     mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_INDEX);
     mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
+    // And the bounds of a skeleton are not the cloth's.
+    mesh.set_skinned_mesh_bounds(None);
     if normals.is_empty() {
         mesh.insert_attribute(
             Mesh::ATTRIBUTE_NORMAL,

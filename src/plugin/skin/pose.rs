@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::super::{ClothFrame, frame::rigid};
-use crate::cloth::{ClothError, ClothSkin, Skinning, Surface};
+use crate::cloth::{ClothError, ClothSkin, FARTHEST, Skinning, Surface};
 
 /// Where a skeleton has the particles of a cloth, in the cloth's frame.
 #[derive(Debug, Default, Clone)]
@@ -52,12 +52,15 @@ impl SkinLimits {
             .max_distance
             .values(surface, "a particle's max distance (m)")?;
         for distance in &mut max_distances {
-            *distance = skin.blended(*distance, surface.diagonal());
+            *distance = skin.blended(unbounded(*distance), surface.diagonal());
         }
-        let backstops = match &skin.backstop {
+        let mut backstops = match &skin.backstop {
             Some(backstop) => (backstop.distance).values(surface, "a particle's backstop (m)")?,
             None => Vec::new(),
         };
+        for distance in &mut backstops {
+            *distance = unbounded(*distance);
+        }
         let is_ball = |distance: &f32| *distance > 0.0 && *distance < f32::INFINITY;
         Ok(Self {
             changed,
@@ -78,6 +81,15 @@ impl SkinLimits {
         distances
             .filter(|(_, distance)| **distance == 0.0)
             .map(|(index, _)| index)
+    }
+}
+
+/// A distance (m); one that is beyond all measure is none.
+fn unbounded(distance: f32) -> f32 {
+    if distance < FARTHEST {
+        distance
+    } else {
+        f32::INFINITY
     }
 }
 

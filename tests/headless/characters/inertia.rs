@@ -3,11 +3,14 @@
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
-use crate::{meshes::sheets::fault, support::*};
+use crate::{mesh::vertices, meshes::sheets::fault, support::*};
 
 /// A free sheet beside a root, without gravity: nothing but what carries it moves it.
 fn beside_root(inertia: ClothInertia) -> (App, Entity, Entity) {
-    let mut app = app();
+    beside_root_in(app(), inertia)
+}
+
+fn beside_root_in(mut app: App, inertia: ClothInertia) -> (App, Entity, Entity) {
     app.insert_resource(ClothGravity(Vec3::ZERO));
     let root = app.world_mut().spawn((Transform::default(), inertia)).id();
     let cloth = (
@@ -122,6 +125,30 @@ fn what_is_carried_passes_through_nothing() {
         }
         // It lies on the wall at the particles' radius, to what a contact is held by.
         assert!((0.005..0.0101).contains(&nearest), "{share}: {nearest}");
+    }
+}
+
+/// What is carried is drawn between where it was in the world and where it is: with no overstep where it was a tick ago.
+#[test]
+fn what_is_carried_is_drawn_on_its_way() {
+    for share in [0.0, 0.3, 1.0] {
+        let inertia = ClothInertia::share(share);
+        let (mut app, root, cloth) = beside_root_in(app_that_draws(FixedUpdate), inertia);
+        tick(&mut app, 1);
+        for count in 1_u32..30 {
+            let before = in_world(&app, cloth);
+            change::<Transform>(&mut app, root, |root| {
+                root.translation.x = 0.003 * (count * count) as f32;
+                root.rotation = Quat::from_rotation_y(0.05 * count as f32);
+            });
+            tick(&mut app, 1);
+            let place = *app.world().get::<GlobalTransform>(cloth).expect("a place");
+            let drawn = vertices(&app, cloth, Mesh::ATTRIBUTE_POSITION);
+            for (drawn, before) in drawn.iter().zip(before) {
+                let drawn = place.transform_point(*drawn);
+                assert!(drawn.distance(before) < 1.0e-5, "{share}: {drawn} {before}");
+            }
+        }
     }
 }
 

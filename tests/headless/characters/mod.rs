@@ -3,6 +3,7 @@
 mod bones;
 mod cost;
 mod errors;
+mod file;
 mod inertia;
 mod pose;
 mod rig;

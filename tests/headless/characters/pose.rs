@@ -1,6 +1,9 @@
 //! A cloth that follows a skinned pose.
 
-use bevy::prelude::*;
+use bevy::{
+    camera::{primitives::Aabb, visibility::DynamicSkinnedMeshBounds},
+    prelude::*,
+};
 use bevy_drape::prelude::*;
 
 use super::rig::*;
@@ -191,7 +194,9 @@ fn pins_follow_the_pose() {
 #[test]
 fn what_is_drawn_is_not_skinned_again() {
     let own = Transform::from_xyz(0.3, -0.2, 0.5).with_scale(Vec3::splat(1.5));
-    let (mut app, rig) = animated((ClothSkin::painted(), own, Visibility::default()));
+    // As a glTF file's have, whose bounds are those of its skeleton.
+    let bounds = DynamicSkinnedMeshBounds;
+    let (mut app, rig) = animated((ClothSkin::painted(), own, bounds, Visibility::default()));
     go(&mut app, &rig, 1..40, |app| {
         let handle = mesh_of(app, rig.cloth);
         let drawn = meshes(app).get(&handle).expect("a mesh");
@@ -202,6 +207,20 @@ fn what_is_drawn_is_not_skinned_again() {
             .get::<GlobalTransform>(rig.cloth)
             .expect("a place");
         let drawn = vertices(app, rig.cloth, Mesh::ATTRIBUTE_POSITION);
+        let bounds = app.world().get::<Aabb>(rig.cloth).expect("bounds");
+        let [low, high] = drawn
+            .iter()
+            .fold([Vec3::MAX, Vec3::MIN], |[low, high], at| {
+                [low.min(*at), high.max(*at)]
+            });
+        assert!(
+            Vec3::from(bounds.min()).distance(low) < ROUNDING,
+            "{bounds:?} {low}"
+        );
+        assert!(
+            Vec3::from(bounds.max()).distance(high) < ROUNDING,
+            "{bounds:?} {high}"
+        );
         let truth = skinned(app, &rig);
         for (vertex, (drawn, truth)) in drawn.iter().zip(truth).enumerate() {
             let drawn = place.transform_point(*drawn);
@@ -305,4 +324,61 @@ fn without_a_skeleton_the_pose_is_the_cloth_at_rest() {
     app.world_mut().entity_mut(cloth).remove::<ClothSkin>();
     tick(&mut app, 64);
     assert!(largest(&app) > 1.0);
+}
+
+/// A free sheet that falls into its limits, and onto its backstops, has never more than the energy that it began with: to what its
+/// unevenness is worth. What its springs hold, never negative, is left out.
+#[test]
+fn limits_feed_in_no_energy() {
+    for material in [ClothMaterial::COTTON, ClothMaterial::RUBBER] {
+        for backstop in [false, true] {
+            let mut app = app();
+            let material = ClothMaterial {
+                damping: 0.0,
+                ..material
+            };
+            let slack = ClothSkin::within(ClothPaint::at_rest(|place| 0.1 + place.x.abs()));
+            let skin = match backstop {
+                true => slack.with_backstop(0.05, 0.3),
+                false => slack,
+            };
+            let cloth = (
+                Cloth::new(12, 12, 0.05).lying(),
+                Pins::none(),
+                material,
+                skin,
+            );
+            let cloth = app.world_mut().spawn(cloth).id();
+            tick(&mut app, 1);
+            let energy = |app: &App| -> f64 {
+                let particles = particles(app, cloth);
+                let each = (0..particles.len()).map(|index| {
+                    let weight = particles.inverse_mass(index).expect("it exists");
+                    let speed = particles.velocity(index).expect("it exists").length();
+                    let height = particles.position(index).expect("it exists").y;
+                    f64::from((0.5 * speed * speed + GRAVITY * height) / weight)
+                });
+                each.sum()
+            };
+            let lowest = |app: &App| {
+                let places = particles(app, cloth).positions();
+                places.map(|place| place.y).fold(0.0, f32::min)
+            };
+            let start = energy(&app);
+            let mass: f64 = particles(&app, cloth)
+                .inverse_masses()
+                .map(|weight| 1.0 / f64::from(weight))
+                .sum();
+            let mut depth = 0.0_f32;
+            for count in 0..256 {
+                tick(&mut app, 1);
+                depth = depth.min(lowest(&app));
+                // A millimetre of height.
+                let most = start + mass * f64::from(GRAVITY) * 1.0e-3;
+                let now = energy(&app);
+                assert!(now <= most, "{count}: {now} {start}, {backstop}");
+            }
+            assert!(depth < if backstop { -0.04 } else { -0.2 }, "{depth}");
+        }
+    }
 }

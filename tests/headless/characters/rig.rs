@@ -65,6 +65,8 @@ pub fn skinned_sheet() -> Mesh {
         )
         .with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, weights)
         .with_inserted_attribute(ClothSkin::MAX_DISTANCE, distances)
+        .with_generated_skinned_mesh_bounds()
+        .expect("a skinned mesh")
 }
 
 /// A character in an app, with a cloth that follows its bones.
