@@ -86,8 +86,8 @@ impl LodState {
             (self.waited, self.ticks) = (0.0, 0);
             return;
         };
-        // While no time passes, what waits or stands goes on doing so.
-        if seconds == 0.0 && self.turn != Turn::Move {
+        // While no time passes, it goes on as it is.
+        if seconds == 0.0 {
             return;
         }
         let has_stood = self.turn == Turn::Stand;
