@@ -134,10 +134,11 @@ pub(super) fn choose_levels(
         let Ok(mut cloth) = cloths.get_mut(own.entity) else {
             continue;
         };
-        // What sleeps is looked at as ever: that costs next to nothing.
-        let is_due = of_group.is_due || cloth.state.rest.is_asleep();
+        // What sleeps costs next to nothing.
+        let rests = cloth.state.rest.is_asleep();
         let lod = &mut cloth.state.lod;
-        lod.begin(of_group.level, of_group.phase, is_due, seconds);
+        let turn = (of_group.phase, of_group.is_due, rests);
+        lod.begin(of_group.level, turn, seconds);
         *is_used |= !lod.is_full();
     }
 }

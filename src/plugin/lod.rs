@@ -22,8 +22,9 @@ pub enum ClothLodLevel {
     #[default]
     Full,
     /// It is moved in each second, third … tick, from 1 to 16, by the time of as many ticks, with as many sub-steps as one tick has
-    /// otherwise: a half, a third … of the cost. It stretches more, as its sub-steps are longer. It is drawn as many ticks
-    /// late, evenly.
+    /// otherwise: a half, a third … of the cost. It stretches more, as its sub-steps are longer, which is no
+    /// [`ClothLimitExceeded`](super::ClothLimitExceeded). It is drawn as many ticks late, evenly; its
+    /// [`ClothParticles`](crate::cloth::ClothParticles) are those of the last tick in which it was moved.
     Every(u32),
     /// It keeps its shape, as seen from its entity, or from its first attachment's target where it has one, and passes through
     /// colliders. Costs no more than a look at where that is.

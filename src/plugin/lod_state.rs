@@ -69,10 +69,16 @@ impl LodState {
     }
 
     /// Begins a tick of `seconds` at `level`: of cloths of the same level those of different `phase` are moved in different
-    /// ones. `is_due` moves it now in any case.
-    pub fn begin(&mut self, level: ClothLodLevel, phase: u32, is_due: bool, seconds: f32) {
+    /// ones. `is_due` moves it now in any case, and what `rests` is looked at in each tick: it does not move.
+    pub fn begin(
+        &mut self,
+        level: ClothLodLevel,
+        (phase, is_due, rests): (u32, bool, bool),
+        seconds: f32,
+    ) {
         let was = std::mem::replace(&mut self.level, level);
-        let Some(ticks) = level.ticks() else {
+        let ticks = level.ticks().map(|ticks| if rests { 1 } else { ticks });
+        let Some(ticks) = ticks else {
             if self.turn != Turn::Stand {
                 self.cuts = self.cuts.wrapping_add(1);
             }
@@ -80,12 +86,12 @@ impl LodState {
             (self.waited, self.ticks) = (0.0, 0);
             return;
         };
-        // While no time passes, what waits or stands goes on doing so.
-        if seconds == 0.0 && self.turn != Turn::Move {
+        // While no time passes, it goes on as it is.
+        if seconds == 0.0 {
             return;
         }
         let has_stood = self.turn == Turn::Stand;
-        if !(is_due || has_stood || was != level || self.left <= 1) {
+        if !(is_due || rests || has_stood || was != level || self.left <= 1) {
             self.turn = Turn::Wait;
             self.waited += seconds;
             self.ticks += 1;
@@ -109,6 +115,7 @@ impl LodState {
 
     /// The part of the last move that is drawn, so many ticks after it: all of it as the next one comes, at the speed at which it
     /// moves or, where it was by fewer ticks than there are until then, slower.
+    #[cfg(any(feature = "mesh", test))]
     pub fn drawn_part(&self, ticks: f32) -> f32 {
         let (moved_by, span) = (self.moved_by.max(1) as f32, self.span.max(1) as f32);
         let skipped = (moved_by - span).max(0.0) / moved_by;
@@ -134,7 +141,7 @@ mod tests {
     fn moved(state: &mut LodState, level: ClothLodLevel, phase: u32, ticks: usize) -> Vec<f32> {
         (0..ticks)
             .map(|_| {
-                state.begin(level, phase, false, TICK);
+                state.begin(level, (phase, false, false), TICK);
                 match state.turn {
                     Turn::Move => state.take(TICK).0,
                     Turn::Wait | Turn::Stand => 0.0,
@@ -189,6 +196,23 @@ mod tests {
         assert_eq!(
             [0.0, 0.5, 1.0].map(|ticks| state.drawn_part(ticks)),
             [2.0 / 3.0, 2.5 / 3.0, 1.0]
+        );
+    }
+
+    /// What rests at a lower rate is looked at in each tick, and drawn as it is.
+    #[test]
+    fn what_rests_is_not_cut() {
+        let mut state = LodState::default();
+        moved(&mut state, Every(4), 3, 3);
+        for _ in 0..8 {
+            state.begin(Every(4), (3, false, true), TICK);
+            assert_eq!((state.turn, state.cuts), (Turn::Move, 1));
+            state.take(TICK);
+        }
+        assert_eq!(state.drawn_part(1.0), 1.0);
+        assert_eq!(
+            moved(&mut state, Every(4), 3, 5),
+            [0.25, 0.0, 0.0, 0.0, 1.0]
         );
     }
 
