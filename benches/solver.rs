@@ -5,10 +5,11 @@ mod shared;
 
 use std::time::Duration;
 
+use bevy::math::Vec3;
 use bevy_drape::{
     cloth::ClothMaterial,
     solver::{
-        Bending, SimdLevel, Solver,
+        Air, Bending, SimdLevel, Solver,
         methods::{Method, Scene, Stepper},
     },
 };
@@ -117,6 +118,49 @@ fn bending(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// What air adds to a tick: an element is a particle in a sub-step. A wind that is not the same everywhere is asked for in each tick.
+fn air(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("air");
+    group
+        .sample_size(40)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(2));
+    let breeze = Air {
+        density: 1.2,
+        drag: 1.2,
+        lift: 1.5,
+        wind: Vec3::new(2.0, 0.0, 8.0),
+        pressure: None,
+    };
+    for side in [16, 64, 128] {
+        let scene = in_motion(side);
+        group.throughput(Throughput::Elements(
+            scene.particles.len() as u64 * u64::from(SUBSTEPS),
+        ));
+        for (name, air, is_local) in [
+            ("none", None, false),
+            ("a wind", Some(breeze), false),
+            ("a wind of each place", Some(breeze), true),
+        ] {
+            let mut solver = scene.solver(false);
+            solver.set_air(&scene.surface, air);
+            group.bench_function(BenchmarkId::new(name, side), |bencher| {
+                bencher.iter_batched_ref(
+                    || scene.particles.clone(),
+                    |particles| {
+                        if is_local {
+                            solver.set_local_wind(particles, |place| breeze.wind + place);
+                        }
+                        solver.advance(particles, scene.step(SUBSTEPS), &[], |_, _| false)
+                    },
+                    BatchSize::LargeInput,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
 /// The methods that the solver is compared with, on a swinging cloth of 32² with a compliance that all of them take.
 fn methods(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("methods, a frame of 32²");
@@ -157,5 +201,5 @@ fn methods(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, sweeps, bending, ticks, methods);
+criterion_group!(benches, sweeps, bending, air, ticks, methods);
 criterion_main!(benches);

@@ -54,15 +54,16 @@ pub mod prelude {
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
-        ClothAttachment, ClothAttachments, ClothBody, ClothContact, ClothContacts, ClothFault,
-        ClothFrame, ClothGravity, ClothLimitExceeded, ClothPush, ClothStats, ClothSystems,
-        ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, DrapePlugins,
+        ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothContact, ClothContacts,
+        ClothFault, ClothFrame, ClothGravity, ClothLimitExceeded, ClothPush, ClothStats,
+        ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
+        ClothWindShape, ClothWindZone, DrapePlugins,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
     #[cfg(feature = "rapier")]
     pub use crate::plugin::{ClothPushBack, RapierClothCollider};
-    pub use crate::solver::{ClothLimit, ClothSettings, Substepping, TimeOrder};
+    pub use crate::solver::{ClothLimit, ClothPressure, ClothSettings, Substepping, TimeOrder};
 }
 
 /// The README's snippets, compiled with the doc tests.

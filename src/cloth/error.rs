@@ -61,6 +61,11 @@ pub enum ClothError {
     /// Rows and columns were asked of a cloth that was not made from a grid.
     #[error("the cloth is a mesh, which has neither rows nor columns")]
     NotAGrid,
+    /// Pressure was asked for in a cloth that does not enclose a volume.
+    #[error(
+        "a cloth with pressure must be a closed mesh: each edge between two faces, and this one has a border"
+    )]
+    NotClosed,
     /// A pin that names a particle outside of the cloth.
     #[error("{pin:?} is outside of a cloth of {cloth}")]
     PinOutOfRange {

@@ -1,5 +1,7 @@
 //! How far around a cloth anything may be touched in a tick.
 
+use bevy::math::Vec3;
+
 use super::{
     ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats,
     components::BroadPhaseBounds,
@@ -86,5 +88,6 @@ pub(super) fn clear_stats(stats: &mut ClothStats, is_asleep: bool) {
     (stats.nodes_visited, stats.leaf_tests) = (0, 0);
     (stats.colliders_near, stats.by_triangles) = (0, 0);
     stats.requeries = 0;
+    stats.air_impulse = Vec3::ZERO;
     (stats.layer_pairs, stats.layer_searches) = (0, 0);
 }

@@ -1,5 +1,6 @@
 //! Floor 3: the ECS: one plugin a file, and [`DrapePlugins`] over them.
 
+mod air;
 mod attach;
 mod attachments;
 mod awaited;
@@ -48,6 +49,7 @@ mod stats;
 mod threads;
 mod tick;
 mod together;
+mod wind;
 
 use bevy::{
     app::{FixedUpdate, PluginGroup, PluginGroupBuilder},
@@ -84,6 +86,7 @@ pub use sets::ClothSystems;
 pub use simulation::ClothPlugin;
 pub use state::ClothState;
 pub use stats::ClothStats;
+pub use wind::{ClothAir, ClothWind, ClothWindShape, ClothWindZone};
 
 /// All that a game needs: the simulation, its diagnostics and, with their features, mesh, gizmos and the
 /// bridge to rapier. Add it after Bevy's own plugins.

@@ -10,6 +10,7 @@ use bevy::{
 pub(super) enum Part {
     Cloth,
     Collider,
+    WindZone,
 }
 
 /// An entity, by its [`Name`] where it has one.
@@ -25,6 +26,7 @@ impl NamedItem<'_, '_> {
         let part = match part {
             Part::Cloth => "cloth",
             Part::Collider => "cloth collider",
+            Part::WindZone => "cloth wind zone",
         };
         match self.name {
             Some(name) => format!("{part} \"{name}\""),

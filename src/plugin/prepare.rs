@@ -8,13 +8,13 @@ use bevy::{
         query::QueryData,
         system::{Commands, Query, Res, ResMut},
     },
-    math::Isometry3d,
+    math::{Isometry3d, Vec3},
     time::Time,
 };
 
 use super::{
-    ClothAttachments, ClothBuilt, ClothFault, ClothFrame, ClothGravity, ClothScratch, ClothSearch,
-    ClothState, ClothStats, ClothTeleport,
+    ClothAir, ClothAttachments, ClothBuilt, ClothFault, ClothFrame, ClothGravity, ClothScratch,
+    ClothSearch, ClothState, ClothStats, ClothTeleport,
     attach::{Targets, follow_targets},
     broad_phase::{clear_stats, reach, update_bounds},
     build::{Wanted, build},
@@ -24,12 +24,13 @@ use super::{
     naming::Part,
     shared::SharedParts,
     source::Sources,
+    wind::{Breeze, WindField},
 };
 use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
     contact::{ClothSelfCollision, ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothSettings, PinMotion, Substepping, TickStep},
+    solver::{ClothPressure, ClothSettings, PinMotion, Substepping, TickStep},
 };
 
 /// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
@@ -50,6 +51,8 @@ pub(super) struct Preparing {
     method: Option<&'static SearchMethod>,
     narrow_phase: Option<&'static NarrowPhase>,
     self_collision: Option<&'static ClothSelfCollision>,
+    air: Option<&'static ClothAir>,
+    pressure: Option<&'static ClothPressure>,
     particles: &'static mut ClothParticles,
     built: &'static mut ClothBuilt,
     state: &'static mut ClothState,
@@ -69,6 +72,7 @@ pub(super) fn prepare_cloths(
     sources: Sources,
     mut parts: ResMut<SharedParts>,
     gravity: Res<ClothGravity>,
+    field: Res<WindField>,
     time: Res<Time>,
     mut commands: Commands,
 ) {
@@ -82,12 +86,14 @@ pub(super) fn prepare_cloths(
             gravity.0,
         );
         let outcome = inputs.and_then(|inputs| {
-            if cloth.sleeps_as_it_was(&inputs, &targets, &sources, time.delta_secs()) {
+            let seconds = time.delta_secs();
+            let air = (&*field, field.of_cloth(cloth.air)?);
+            if cloth.sleeps_as_it_was(&inputs, &air, &targets, &sources, seconds) {
                 return Ok(());
             }
             // Nothing of an earlier tick is done again.
             cloth.scratch.forget_tick();
-            cloth.prepare(&inputs, &targets, &sources, &mut parts, time.delta_secs())
+            cloth.prepare(&inputs, air, &targets, &sources, &mut parts, seconds)
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
@@ -120,6 +126,7 @@ impl PreparingItem<'_, '_> {
     fn sleeps_as_it_was(
         &self,
         inputs: &Inputs,
+        (field, breeze): &(&WindField, Option<Breeze>),
         targets: &Targets,
         sources: &Sources,
         seconds: f32,
@@ -156,6 +163,9 @@ impl PreparingItem<'_, '_> {
             && self.fault.is_none()
             && built.is_made_from(self.cloth.last_changed(), &inputs.material, pins)
             && sources.find(self.entity, &self.cloth, source) == Ok(source)
+            && (state.air).is_still(breeze.as_ref(), self.pressure, field, || {
+                ball(built, &self.particles, state.stretch.bound, &self.frame)
+            })
             && global_transform(&targets.transforms, self.entity)
                 .is_ok_and(|transform| self.frame.is_of(&transform))
     }
@@ -163,6 +173,7 @@ impl PreparingItem<'_, '_> {
     fn prepare(
         &mut self,
         inputs: &Inputs,
+        (field, breeze): (&WindField, Option<Breeze>),
         targets: &Targets,
         sources: &Sources,
         parts: &mut SharedParts,
@@ -201,6 +212,9 @@ impl PreparingItem<'_, '_> {
         let surface = built.surface().clone();
         if let Some(self_collision) = &inputs.self_collision {
             self_collision.validate(&surface)?;
+        }
+        if let Some(pressure) = self.pressure {
+            pressure.validate(&surface)?;
         }
         targets.find(
             attachments,
@@ -257,7 +271,11 @@ impl PreparingItem<'_, '_> {
             inputs.self_collision,
             acceleration,
         ));
-        if state.known != known || !scratch.pins.is_empty() || !settings.sleeps {
+        let ball = || ball(built, particles, state.stretch.bound, &self.frame);
+        let pressure = self.pressure;
+        let is_still = state.air.is_still(breeze.as_ref(), pressure, field, ball);
+        state.air.renew(breeze, pressure.copied(), field, ball);
+        if state.known != known || !is_still || !scratch.pins.is_empty() || !settings.sleeps {
             state.known = known;
             state.rest.disturb();
         } else if !state.rest.is_asleep() {
@@ -268,6 +286,10 @@ impl PreparingItem<'_, '_> {
         // The plugin's own writing, up to here.
         state.written = Some(particles.last_changed());
         built.solver.set_stretch_damping(material.stretch_damping);
+        if !state.rest.is_asleep() {
+            let surface = &*surface;
+            (state.air).set(&mut built.solver, surface, particles, &self.frame, field);
+        }
         let along = surface.particles_along();
         let needed = match settings.substepping {
             // Nobody asks.
@@ -317,7 +339,10 @@ impl PreparingItem<'_, '_> {
             state,
             &surface,
             &scratch.pins,
-            acceleration.length(),
+            acceleration.length()
+                + state
+                    .air
+                    .acceleration(material, state.largest_speed, seconds),
             seconds,
         );
         update_bounds(
@@ -332,6 +357,17 @@ impl PreparingItem<'_, '_> {
         clear_stats(&mut self.stats, state.rest.is_asleep());
         Ok(())
     }
+}
+
+/// What is around a cloth in the world: a middle, and a radius (m).
+fn ball(
+    built: &ClothBuilt,
+    particles: &ClothParticles,
+    stretch: f32,
+    frame: &ClothFrame,
+) -> (Vec3, f32) {
+    let root = built.tree().root_sphere(particles, stretch);
+    (frame.to_world(root.center.into()), root.radius())
 }
 
 /// The frame has moved: the particles stay where they are in the world, and their pins go along in the course of the tick.

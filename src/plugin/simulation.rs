@@ -25,9 +25,9 @@ use bevy::{
 #[cfg(feature = "mesh")]
 use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
-    ClothAttachments, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-    ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
-    ClothTeleport, ClothTouchStarted, ClothTouchStopped,
+    ClothAir, ClothAttachments, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame,
+    ClothGravity, ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats,
+    ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindZone,
     awaited::{Deprived, note_enabled, note_removals},
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
@@ -43,12 +43,13 @@ use super::{
     push::push_bodies,
     search::{query_collisions, rebuild_hierarchies},
     shared::SharedParts,
+    wind::{WindField, prepare_wind},
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, Pins},
     contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::ClothSettings,
+    solver::{ClothPressure, ClothSettings},
 };
 
 /// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws.
@@ -94,7 +95,11 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothBuilt>()
             .register_type::<ClothSearch>()
             .register_type::<ClothFault>()
-            .register_type::<ClothGravity>();
+            .register_type::<ClothGravity>()
+            .register_type::<ClothWind>()
+            .register_type::<ClothWindZone>()
+            .register_type::<ClothAir>()
+            .register_type::<ClothPressure>();
         add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
         add_parts_to_earlier::<ClothCollider, ColliderMotion>(app.world_mut());
         app.init_resource::<ClothGravity>()
@@ -105,6 +110,7 @@ impl Plugin for ClothPlugin {
             .init_resource::<SharedParts>()
             .init_resource::<Islands>()
             .init_resource::<ColliderTree>()
+            .init_resource::<WindField>()
             .init_resource::<Deprived>()
             .add_observer(add_parts::<Cloth, ClothParts>)
             .add_observer(add_parts::<ClothCollider, ColliderMotion>)
@@ -134,6 +140,7 @@ impl Plugin for ClothPlugin {
                 (
                     note_removals,
                     prepare_colliders,
+                    prepare_wind,
                     prepare_cloths,
                     find_islands,
                 )

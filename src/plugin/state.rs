@@ -5,7 +5,7 @@ use bevy::{
     math::{Isometry3d, Vec3},
 };
 
-use super::{ClothAttachment, attachments::Attached, excess::Excess};
+use super::{ClothAttachment, air::KnownAir, attachments::Attached, excess::Excess};
 use crate::{
     contact::{Carrier, ClothSelfCollision, MovingCollider, NarrowPhase},
     hierarchy::SearchMethod,
@@ -38,6 +38,8 @@ pub struct ClothState {
         Option<ClothSelfCollision>,
         Vec3,
     )>,
+    /// Likewise the air.
+    pub(super) air: KnownAir,
     /// What `attached` was made from, and the entities that it names.
     pub(super) attachments: Vec<ClothAttachment>,
     pub(super) targets: Vec<Entity>,

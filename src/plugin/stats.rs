@@ -2,6 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
@@ -43,6 +44,8 @@ pub struct ClothStats {
     pub layer_searches: u32,
     /// The largest stretch, at the end of the tick.
     pub stretch: Stretch,
+    /// The impulse (N s, in the world) that the air gave the cloth in the tick, by drag, lift and pressure; 0 for one that sleeps.
+    pub air_impulse: Vec3,
     /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps.
     pub substeps: u32,
     /// Whether the cloth sleeps.

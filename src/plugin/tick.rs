@@ -91,6 +91,7 @@ impl IntegratingItem<'_, '_> {
             .renew(&self.scratch.near, &self.scratch.detection, rotation);
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
+        self.stats.air_impulse = rotation * self.built.solver.air_impulse();
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 

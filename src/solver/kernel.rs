@@ -13,6 +13,7 @@ use bevy::math::Vec4;
 use multiversion::{inherit_target, multiversion};
 
 use super::{
+    air::{Felt, Law, Rows, air_areas, air_feel, air_given, air_push},
     barrier::one_block_at_a_time,
     commit::commit,
     forces::{ElasticGrid, Force, Kick, kick},
@@ -23,7 +24,10 @@ use super::{
         thread_moments, thread_rows,
     },
     plate::{Moments, Stiffness, plate_moments, plate_places, plate_push},
-    predict::{Prediction, begin_past, predict, predict_first},
+    predict::{
+        Breath, Prediction, begin_past, predict, predict_first, predict_first_in_air,
+        predict_in_air,
+    },
     run::Run,
     threads::{
         Family, Link, RowThreads, Solved, Step, Threads, bundle_backward, bundle_forward,
@@ -272,7 +276,13 @@ macro_rules! kernels {
 kernels! {
     predict_first(row: &mut [Block], prediction: &Prediction),
     predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction),
+    predict_first_in_air(row: &mut [Block], felt: &[Felt], prediction: &Prediction, breath: &Breath),
+    predict_in_air(row: &mut [Block], past: &mut [Earlier], felt: &[Felt], prediction: &Prediction, breath: &Breath),
     begin_past(row: &[Block], past: &mut [Earlier]),
+    air_areas(rows: &Rows, areas: &mut [Trio]),
+    air_feel(blocks: &[Block], areas: &[Trio], winds: &[Trio], law: &Law, felt: &mut [Felt], ways: &mut [Lanes]),
+    air_given(blocks: &[Block], felt: &[Felt], ways: &[Lanes], seconds: f32, sum: &mut Trio),
+    air_push(row: &mut [Block], felt: &[Felt], weight: f32, inverse_substep: f32),
     solve_threads(threads: &mut Threads, family: &Family),
     solve_damped_threads(threads: &mut Threads, family: &Family),
     solve_rows(rows: &mut RowThreads, families: &[Family; 2]),

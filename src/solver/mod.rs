@@ -46,6 +46,7 @@
 //!
 //! [`needed`]: Substepping::needed
 
+mod air;
 mod bands;
 mod barrier;
 mod bending;
@@ -79,6 +80,7 @@ mod tether;
 mod threads;
 mod twist;
 
+pub use air::{Air, ClothPressure};
 pub use bending::Bending;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;

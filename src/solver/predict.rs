@@ -9,7 +9,10 @@
 //! what a constant acceleration would have made them. A sub-step of first order in its place would leave a velocity that is
 //! off by a Δt/2, and all that follows of first order.
 
-use super::barrier::one_block_at_a_time;
+use super::{
+    air::{Felt, acceleration},
+    barrier::one_block_at_a_time,
+};
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
 
 /// What a displacement becomes: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
@@ -94,6 +97,81 @@ pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
             for l in 0..LANES {
                 let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
                 let moved = own * now + one * (now - before) + two * (before - first) + pull[axis];
+                let chosen = (moved.to_bits() & free[l]) | (now.to_bits() & !free[l]);
+                view[at + l] = f32::from_bits(chosen);
+                earlier[axis + 3][l] = before;
+                earlier[axis][l] = now;
+            }
+        }
+        one_block_at_a_time();
+    }
+}
+
+/// What the air does in a sub-step: its weight (s²), and one over its length (1/s).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Breath {
+    pub weight: f32,
+    pub inverse_substep: f32,
+}
+
+/// Without a past, in air.
+#[inline(always)]
+pub(super) fn predict_first_in_air(
+    row: &mut [Block],
+    felt: &[Felt],
+    prediction: &Prediction,
+    breath: &Breath,
+) {
+    for (block, felt) in row.iter_mut().zip(felt) {
+        let view = block.view_mut();
+        for l in 0..LANES {
+            let now = [view[DX + l], view[DY + l], view[DZ + l]];
+            let air = acceleration(felt, now, breath.inverse_substep, l);
+            for axis in 0..3 {
+                let at = DX + axis * LANES + l;
+                let pull = prediction.pull[axis] + breath.weight * air[axis];
+                let moved = now[axis] * prediction.own + pull;
+                view[at] = if view[W + l] > 0.0 { moved } else { now[axis] };
+            }
+        }
+        one_block_at_a_time();
+    }
+}
+
+/// With a past, which moves on by a sub-step, in air.
+#[inline(always)]
+pub(super) fn predict_in_air(
+    row: &mut [Block],
+    past: &mut [Earlier],
+    felt: &[Felt],
+    prediction: &Prediction,
+    breath: &Breath,
+) {
+    let Prediction {
+        own,
+        one,
+        two,
+        pull,
+    } = *prediction;
+    let Breath {
+        weight,
+        inverse_substep,
+    } = *breath;
+    for ((block, Earlier(earlier)), felt) in row.iter_mut().zip(past).zip(felt) {
+        let view = block.view_mut();
+        let (mut free, mut air) = ([0; LANES], [[0.0; LANES]; 3]);
+        for l in 0..LANES {
+            free[l] = if view[W + l] > 0.0 { u32::MAX } else { 0 };
+            let now = [view[DX + l], view[DY + l], view[DZ + l]];
+            let [x, y, z] = acceleration(felt, now, inverse_substep, l);
+            (air[0][l], air[1][l], air[2][l]) = (x, y, z);
+        }
+        for axis in 0..3 {
+            let at = DX + axis * LANES;
+            for l in 0..LANES {
+                let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
+                let moved = own * now + one * (now - before) + two * (before - first);
+                let moved = moved + (pull[axis] + weight * air[axis][l]);
                 let chosen = (moved.to_bits() & free[l]) | (now.to_bits() & !free[l]);
                 view[at + l] = f32::from_bits(chosen);
                 earlier[axis + 3][l] = before;

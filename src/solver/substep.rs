@@ -7,10 +7,12 @@ mod tests;
 
 use std::sync::Arc;
 
+use bevy::math::Vec3;
+
 use super::{
-    Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, bands::with_threads_awake,
-    forces::Forces, list::ListSweep, pipeline::GridSweep, sweep::Sweep, tether::Anchors,
-    threads::ThreadSweep,
+    Air, Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, air::Airflow,
+    bands::with_threads_awake, forces::Forces, list::ListSweep, pipeline::GridSweep, sweep::Sweep,
+    tether::Anchors, threads::ThreadSweep,
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
 
@@ -38,6 +40,7 @@ pub struct Solver {
     /// Of a grid without rigid springs.
     forces: Option<Box<Forces>>,
     bending: Option<Bending>,
+    air: Option<Box<Airflow>>,
     tethers: Tethers,
     anchors: Anchors,
     /// Of damping along springs (s).
@@ -121,6 +124,7 @@ impl Solver {
             sweep,
             forces: None,
             bending: None,
+            air: None,
             tethers: Tethers::default(),
             anchors: Anchors::default(),
             retardation: 0.0,
@@ -132,6 +136,30 @@ impl Solver {
     /// With this resistance to bending from now on, which must be that of the solver's particles; `None` for none.
     pub fn set_bending(&mut self, bending: Option<Bending>) {
         self.bending = bending;
+    }
+
+    /// In this air from now on, the same everywhere, around the surface that the solver was made for; `None` for none, which costs
+    /// nothing.
+    pub fn set_air(&mut self, surface: &Surface, air: Option<Air>) {
+        match (air, &mut self.air) {
+            (Some(air), Some(known)) => known.set(air),
+            (Some(air), none) => *none = Some(Box::new(Airflow::new(surface, air))),
+            (None, known) => *known = None,
+        }
+    }
+
+    /// With a wind of its own at each place in place of [`Air::wind`], until the air is set again: `at` says what it is (m/s) at a
+    /// place (m), both in the cloth's frame. It is asked at some 80 places, where the particles are now, and interpolated between them:
+    /// at nine in each direction of a grid, in a lattice of up to 5 × 5 × 5 around a mesh. Without air it is not asked.
+    pub fn set_local_wind(&mut self, particles: &ClothParticles, at: impl FnMut(Vec3) -> Vec3) {
+        if let Some(air) = &mut self.air {
+            air.set_local_wind(particles, at);
+        }
+    }
+
+    /// What the air gave the cloth in the last tick (N s), in its frame.
+    pub fn air_impulse(&self) -> Vec3 {
+        self.air.as_ref().map_or(Vec3::ZERO, |air| air.impulse())
     }
 
     /// With damping along springs from now on: [`ClothMaterial::stretch_damping`](crate::cloth::ClothMaterial::stretch_damping)

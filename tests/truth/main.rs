@@ -1,6 +1,7 @@
 //! The solver against what is true: closed forms, conservation, a converged run in f64. `-- --nocapture` prints
 //! the figures.
 
+mod air;
 mod awning;
 mod bending;
 mod capstan;

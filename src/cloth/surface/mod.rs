@@ -170,6 +170,11 @@ impl Surface {
         self.grid.as_ref()
     }
 
+    /// Whether it encloses a volume: a mesh of which each edge has two faces.
+    pub fn is_closed(&self) -> bool {
+        !self.is_border.is_empty() && !self.is_border.contains(&true)
+    }
+
     /// Particles side by side where it is narrow.
     pub(crate) fn particles_across(&self) -> usize {
         self.extent.particles_across

@@ -35,6 +35,7 @@ use std::array;
 pub(crate) use self::pass::{ElasticGrid, Force, Kick, kick};
 use super::{
     Bending, PinMotion, SubStep, TickStep,
+    air::Felt,
     bands::{MAX_BANDS, in_bands, take},
     kernel::Kernels,
     step::{DAMPING_REFERENCE, existing},
@@ -129,7 +130,7 @@ impl Forces {
         }
     }
 
-    /// A sub-step of particles that remember nothing but their velocity: forces alone, and what bends. The one after the last
+    /// A sub-step of particles that remember nothing but their velocity: forces alone, what bends, and air. The one after the last
     /// only ends the tick, and is none.
     pub fn substep(
         &mut self,
@@ -138,6 +139,7 @@ impl Forces {
         index: u32,
         pins: &[PinMotion],
         bending: Option<&mut Bending>,
+        felt: Option<&[Felt]>,
         kernels: &Kernels,
     ) -> Option<SubStep> {
         let count = step.substeps.max(1);
@@ -170,6 +172,9 @@ impl Forces {
         if let Some(bending) = bending {
             // Before the kick, which keeps a part of it.
             bending.push(blocks, weight / kept, kernels);
+        }
+        if let Some(felt) = felt {
+            (kernels.air_push)(blocks, felt, weight / kept, 1.0 / dt);
         }
         let moved = self.kick(blocks, &kick, kernels);
         substep.farthest_move = moved.into_iter().fold(0.0, f32::max).sqrt();

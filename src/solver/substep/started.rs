@@ -2,13 +2,13 @@
 
 use super::{AFTER_CONTACT, RESOLVED, Solver, UNSOLVED, WARY_TICKS};
 use crate::{
-    cloth::{ClothParticles, StepKind},
+    cloth::{Block, ClothParticles, Earlier, StepKind},
     solver::{
         PinMotion, Stretch, SubStep, TickStep, TimeOrder,
         bands::in_bands,
         energy::Energy,
         pace::Pace,
-        predict::{Prediction, weight},
+        predict::{Breath, Prediction, weight},
         spin::Spin,
         step::{DAMPING_REFERENCE, existing, put_pins},
         sweep::Motion,
@@ -88,6 +88,9 @@ impl Solver {
             return tick;
         }
         let dt = tick.substep();
+        if let Some(air) = &mut self.air {
+            air.begin(step.seconds, tick.substeps());
+        }
         tick.is_explicit = self.is_explicit(particles, &step);
         if tick.is_explicit {
             particles.set_substep(dt);
@@ -95,14 +98,19 @@ impl Solver {
             particles.zero_pin_displacements();
             return tick;
         }
-        tick.watched = Energy::watched(particles, dt, step.acceleration);
+        // What a wind does is no excess, and not known here.
+        if self.air.is_none() {
+            tick.watched = Energy::watched(particles, dt, step.acceleration);
+        }
         particles.set_substep(dt);
         particles.zero_pin_displacements();
         if step.order == TimeOrder::First {
             particles.past_mut().forget(0);
         }
         // What else turns the cloth, or carries it in another way, is not known here.
-        tick.spin = Spin::of(particles, &step, pins);
+        if self.air.is_none() {
+            tick.spin = Spin::of(particles, &step, pins);
+        }
         tick
     }
 
@@ -162,17 +170,38 @@ impl Solver {
         let weight_dt2 = weight(kind) * dt * dt;
         let pull = (step.acceleration * weight_dt2).to_array();
         let prediction = Prediction::new(kind, kept, pull);
+        if let Some(air) = &mut self.air {
+            air.before_substep(tick.next, particles, &kernels);
+        }
+        let breath = Breath {
+            weight: weight_dt2,
+            inverse_substep: 1.0 / dt,
+        };
+        let felt = self.air.as_ref().map(|air| air.felt());
         let (blocks, past) = particles.blocks_and_past();
-        match step.order {
-            TimeOrder::First => (kernels.predict_first)(blocks, &prediction),
-            TimeOrder::Second if bands > 1 => {
-                let size = blocks.len().div_ceil(bands);
-                let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
-                in_bands(parts, |(blocks, past)| {
-                    (kernels.predict)(blocks, past, &prediction);
-                });
+        match (step.order, felt) {
+            (TimeOrder::First, None) => (kernels.predict_first)(blocks, &prediction),
+            (TimeOrder::First, Some(felt)) => {
+                (kernels.predict_first_in_air)(blocks, felt, &prediction, &breath);
             }
-            TimeOrder::Second => (kernels.predict)(blocks, past, &prediction),
+            (TimeOrder::Second, felt) => {
+                let predict = |first: usize, blocks: &mut [Block], past: &mut [Earlier]| {
+                    let Some(felt) = felt else {
+                        return (kernels.predict)(blocks, past, &prediction);
+                    };
+                    let felt = &felt[first..first + blocks.len()];
+                    (kernels.predict_in_air)(blocks, past, felt, &prediction, &breath);
+                };
+                if bands > 1 {
+                    let size = blocks.len().div_ceil(bands);
+                    let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
+                    in_bands(parts.enumerate(), |(band, (blocks, past))| {
+                        predict(band * size, blocks, past);
+                    });
+                } else {
+                    predict(0, blocks, past);
+                }
+            }
         }
         if let Some(bending) = &mut self.bending {
             bending.prepare(blocks, weight_dt2);
@@ -209,9 +238,17 @@ impl Solver {
         tick: &mut StartedTick,
     ) -> Option<SubStep> {
         let kernels = self.simd_level.kernels();
+        if let Some(air) = &mut self.air
+            && tick.next < tick.substeps()
+        {
+            air.before_substep(tick.next, particles, &kernels);
+        }
         let forces = self.forces.as_mut().expect("forces");
         let bending = self.bending.as_mut();
-        let substep = forces.substep(particles, &tick.step, tick.next, pins, bending, &kernels);
+        let felt = self.air.as_ref().map(|air| air.felt());
+        let substep = forces.substep(
+            particles, &tick.step, tick.next, pins, bending, felt, &kernels,
+        );
         tick.next = if substep.is_some() {
             tick.next + 1
         } else {
@@ -237,6 +274,9 @@ impl Solver {
         } = tick;
         if step.seconds <= 0.0 {
             return self.measure(particles);
+        }
+        if let Some(air) = &mut self.air {
+            air.settle(particles, &self.simd_level.kernels());
         }
         if tick.is_explicit {
             put_pins(particles, pins);

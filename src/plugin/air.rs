@@ -1,0 +1,114 @@
+//! The air of a cloth in a tick.
+
+use bevy::math::Vec3;
+
+use super::{
+    ClothFrame,
+    wind::{Breeze, PlacedZone, WindField},
+};
+use crate::{
+    cloth::{ClothMaterial, ClothParticles, Surface},
+    solver::{Air, ClothPressure, Solver},
+};
+
+/// What a cloth was last moved in, in the world.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(super) struct KnownAir {
+    breeze: Option<Breeze>,
+    pressure: Option<ClothPressure>,
+    zones: Vec<PlacedZone>,
+}
+
+impl KnownAir {
+    /// Whether a cloth that holds this pressure meets the same air as before in `ball`, whose middle and radius (m) are around it, and
+    /// air that stays the same at that.
+    pub fn is_still(
+        &self,
+        breeze: Option<&Breeze>,
+        pressure: Option<&ClothPressure>,
+        field: &WindField,
+        ball: impl FnOnce() -> (Vec3, f32),
+    ) -> bool {
+        if self.pressure.as_ref() != pressure {
+            return false;
+        }
+        let Some(breeze) = breeze else {
+            return self.breeze.is_none();
+        };
+        let mut zones = self.zones.iter();
+        let is_same = if field.zones.is_empty() {
+            zones.next().is_none()
+        } else {
+            let (centre, radius) = ball();
+            zones.eq(field.near(centre, radius))
+        };
+        let feels = breeze.is_everywhere || !self.zones.is_empty();
+        let known = feels.then_some(breeze);
+        is_same && self.breeze.as_ref() == known && !(feels && breeze.is_turbulent())
+    }
+
+    /// Takes over what a cloth meets in `ball`.
+    pub fn renew(
+        &mut self,
+        breeze: Option<Breeze>,
+        pressure: Option<ClothPressure>,
+        field: &WindField,
+        ball: impl FnOnce() -> (Vec3, f32),
+    ) {
+        self.zones.clear();
+        if breeze.is_some() && !field.zones.is_empty() {
+            let (centre, radius) = ball();
+            self.zones.extend(field.near(centre, radius));
+        }
+        self.breeze = breeze.filter(|breeze| breeze.is_everywhere || !self.zones.is_empty());
+        self.pressure = pressure;
+    }
+
+    /// Has a cloth be moved in it.
+    pub fn set(
+        &self,
+        solver: &mut Solver,
+        surface: &Surface,
+        particles: &ClothParticles,
+        frame: &ClothFrame,
+        field: &WindField,
+    ) {
+        let to_cloth = frame.isometry().rotation.inverse();
+        let Some(breeze) = self.breeze else {
+            let pressure = self.pressure;
+            let nothing = Air {
+                pressure,
+                ..Air::NONE
+            };
+            return solver.set_air(surface, pressure.map(|_| nothing));
+        };
+        let air = Air {
+            density: breeze.density,
+            drag: breeze.drag,
+            lift: breeze.lift,
+            wind: to_cloth * breeze.velocity,
+            pressure: self.pressure,
+        };
+        solver.set_air(surface, Some(air));
+        if breeze.is_turbulent() || !self.zones.is_empty() {
+            solver.set_local_wind(particles, |place| {
+                let place = frame.to_world(place);
+                let zones = self.zones.iter().map(|zone| zone.at(place));
+                to_cloth * (breeze.velocity + field.stray(&breeze, place) + zones.sum::<Vec3>())
+            });
+        }
+    }
+
+    /// How fast the air may make a cloth that is as fast as `speed` (m/s) faster, at most (m/s²): in one tick of `seconds` not beyond
+    /// what it goes itself.
+    pub fn acceleration(&self, material: &ClothMaterial, speed: f32, seconds: f32) -> f32 {
+        let Some(breeze) = &self.breeze else {
+            return 0.0;
+        };
+        let zones = self.zones.iter().map(|zone| zone.fastest());
+        let wind = breeze.velocity.length() + 2.0 * breeze.stray + zones.sum::<f32>();
+        let relative = wind + speed;
+        let force = 0.5 * breeze.density * (breeze.drag + breeze.lift) * relative * relative;
+        (force / material.areal_density).min(relative / seconds.max(f32::MIN_POSITIVE))
+    }
+}

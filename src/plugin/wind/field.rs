@@ -1,0 +1,150 @@
+//! What the air does at a place and at a time.
+
+use bevy::{
+    ecs::resource::Resource,
+    math::{DVec3, Vec3},
+    time::Time,
+};
+use fastnoise_lite::{FastNoiseLite, NoiseType};
+
+use super::{ClothAir, ClothWind, DENSITY, zone::PlacedZone};
+use crate::cloth::ClothError;
+
+/// Far apart in the noise, so that what it says along the axes has nothing to do with each other.
+const APART: [f64; 3] = [0.0, 1013.7, 2027.3];
+
+/// The world's wind in the tick, and its zones.
+#[derive(Resource, Default)]
+pub(in crate::plugin) struct WindField {
+    pub zones: Vec<PlacedZone>,
+    /// The noise, and what it was made from.
+    noise: Option<(i32, FastNoiseLite)>,
+    /// The way that the air has come (m).
+    way: DVec3,
+    /// Of the world in the tick.
+    world: Option<Result<World, ClothError>>,
+}
+
+/// The world's wind in a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct World {
+    /// With its gusts (m/s).
+    velocity: Vec3,
+    density: f32,
+    /// How far the air strays from that at most (m/s), and over which lengths (m).
+    stray: f32,
+    length: f32,
+}
+
+/// What the air is for a cloth in the tick, zones aside, in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::plugin) struct Breeze {
+    pub density: f32,
+    pub drag: f32,
+    pub lift: f32,
+    /// m/s.
+    pub velocity: Vec3,
+    /// See [`World`].
+    pub stray: f32,
+    /// Whether there is air where no zone is.
+    pub is_everywhere: bool,
+}
+
+impl Breeze {
+    /// Whether it is another one in each tick, wherever a cloth is.
+    pub fn is_turbulent(&self) -> bool {
+        self.stray > 0.0
+    }
+}
+
+impl WindField {
+    /// Moves the world's wind on.
+    pub fn advance(&mut self, wind: Option<&ClothWind>, time: &Time) {
+        self.world = wind.map(|wind| wind.validate().map(|()| self.blow(wind, time)));
+    }
+
+    fn blow(&mut self, wind: &ClothWind, time: &Time) -> World {
+        let mut velocity = wind.velocity;
+        if wind.gusts > 0.0 {
+            let noise = self.noise(wind.seed);
+            let along = time.elapsed_secs_f64() / f64::from(wind.gust_period);
+            velocity *= 1.0 + wind.gusts * noise.get_noise_2d(along, APART[1]);
+        }
+        self.way += velocity.as_dvec3() * time.delta_secs_f64();
+        let stray = wind.turbulence * velocity.length();
+        if stray > 0.0 {
+            self.noise(wind.seed);
+        }
+        World {
+            velocity,
+            density: wind.density,
+            stray,
+            length: wind.turbulence_length,
+        }
+    }
+
+    fn noise(&mut self, seed: i32) -> &FastNoiseLite {
+        if self.noise.as_ref().is_none_or(|(known, _)| *known != seed) {
+            let mut noise = FastNoiseLite::with_seed(seed);
+            noise.set_noise_type(Some(NoiseType::OpenSimplex2));
+            noise.set_frequency(Some(1.0));
+            self.noise = Some((seed, noise));
+        }
+        let (_, noise) = self.noise.as_ref().expect("made above");
+        noise
+    }
+
+    /// The air of a cloth; `None` where there is none, zones aside.
+    ///
+    /// # Errors
+    /// The first value that is out of range, of the world's wind if it blows here, or of the cloth's own.
+    pub fn of_cloth(&self, own: Option<&ClothAir>) -> Result<Option<Breeze>, ClothError> {
+        if let Some(own) = own {
+            own.validate()?;
+        }
+        let ClothAir {
+            drag,
+            lift,
+            velocity,
+        } = own.copied().unwrap_or_default();
+        let world = self.world.clone().transpose()?;
+        let (density, world) = match (world, velocity) {
+            (None, None) if self.zones.is_empty() => return Ok(None),
+            (None, _) => (DENSITY, None),
+            (Some(world), _) => (world.density, Some(world)),
+        };
+        // A velocity of its own has neither gusts nor eddies.
+        let (velocity, stray) = match (velocity, world) {
+            (Some(own), _) => (own, 0.0),
+            (None, Some(world)) => (world.velocity, world.stray),
+            (None, None) => (Vec3::ZERO, 0.0),
+        };
+        Ok(Some(Breeze {
+            is_everywhere: world.is_some() || own.is_some_and(|own| own.velocity.is_some()),
+            density,
+            drag,
+            lift,
+            velocity,
+            stray,
+        }))
+    }
+
+    /// The zones that may blow in a ball (m).
+    pub fn near(&self, centre: Vec3, radius: f32) -> impl Iterator<Item = &PlacedZone> {
+        let zones = self.zones.iter();
+        zones.filter(move |zone| zone.reaches(centre, radius))
+    }
+
+    /// How far the air strays from a cloth's velocity at a place of the world (m/s).
+    pub fn stray(&self, breeze: &Breeze, place: Vec3) -> Vec3 {
+        let (Some(Ok(world)), Some((_, noise))) = (&self.world, &self.noise) else {
+            return Vec3::ZERO;
+        };
+        if breeze.stray == 0.0 {
+            return Vec3::ZERO;
+        }
+        let at = (place.as_dvec3() - self.way) / f64::from(world.length);
+        let of = |apart: f64| noise.get_noise_3d(at.x + apart, at.y, at.z);
+        breeze.stray * Vec3::from(APART.map(of))
+    }
+}

@@ -1,0 +1,254 @@
+//! Where a wind blows that is not everywhere.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::Entity,
+        reflect::ReflectComponent,
+        system::{Commands, Query, Res, ResMut},
+    },
+    math::{Affine3A, Quat, Vec3},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    time::Time,
+};
+
+use super::{ClothWind, check_velocity, field::WindField};
+use crate::{
+    cloth::ClothError,
+    plugin::{ClothFault, frame::Places, naming::Part},
+};
+
+/// A wind in one place, as of a fan: added to that of the world. It is where its entity's `GlobalTransform` is, scaled and turned with
+/// it, and may move as it likes, in systems before `ClothSystems::Prepare`. Inside of it there is air even if the world has none.
+///
+/// It blows with all its strength in the middle and falls off softly towards the border, over `softness` of its size.
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct ClothWindZone {
+    /// Where it blows.
+    pub shape: ClothWindShape,
+    /// The air's velocity (m/s), turned with the entity and not scaled; at most 10⁶ along each axis.
+    pub velocity: Vec3,
+    /// The part of its size, from 0 to 1, over which it falls off towards the border.
+    pub softness: f32,
+}
+
+/// A shape around an entity's origin, in its own lengths.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Debug, Clone, PartialEq)]
+pub enum ClothWindShape {
+    /// A ball.
+    Ball {
+        /// Radius (m), positive.
+        radius: f32,
+    },
+    /// A box.
+    Cuboid {
+        /// Half of its sides (m), positive.
+        half_size: Vec3,
+    },
+    /// What a fan blows into: a cone from the origin along −z, which is `forward` of a `Transform`.
+    Cone {
+        /// Its length (m), positive. It falls off along all of it.
+        length: f32,
+        /// From its axis to its side (rad), positive and less than a right angle.
+        angle: f32,
+    },
+}
+
+impl Default for ClothWindZone {
+    /// A ball of 1 m, in which 5 m/s blow forward, falling off over half of it.
+    fn default() -> Self {
+        Self {
+            shape: ClothWindShape::Ball { radius: 1.0 },
+            velocity: Vec3::NEG_Z * 5.0,
+            softness: 0.5,
+        }
+    }
+}
+
+impl ClothWindZone {
+    /// A ball of this radius (m) with this velocity (m/s).
+    pub fn ball(radius: f32, velocity: Vec3) -> Self {
+        Self {
+            shape: ClothWindShape::Ball { radius },
+            velocity,
+            ..Self::default()
+        }
+    }
+
+    /// A box of these half sides (m) with this velocity (m/s).
+    pub fn cuboid(half_size: Vec3, velocity: Vec3) -> Self {
+        Self {
+            shape: ClothWindShape::Cuboid { half_size },
+            velocity,
+            ..Self::default()
+        }
+    }
+
+    /// A fan that blows forward, along −z: `speed` (m/s) at the fan, nothing at this `length` (m) and at this `angle` (rad) beside it.
+    pub fn fan(length: f32, angle: f32, speed: f32) -> Self {
+        Self {
+            shape: ClothWindShape::Cone { length, angle },
+            velocity: Vec3::NEG_Z * speed,
+            ..Self::default()
+        }
+    }
+
+    /// Whether each value is in its range.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] for the first that is not.
+    pub fn validate(&self) -> Result<(), ClothError> {
+        check_velocity(self.velocity)?;
+        let softness = "softness of a wind zone";
+        ClothError::check(
+            self.softness,
+            |s| (0.0..=1.0).contains(&s),
+            softness,
+            "from 0 to 1",
+        )?;
+        let lengths = match self.shape {
+            ClothWindShape::Ball { radius } => Vec3::splat(radius),
+            ClothWindShape::Cuboid { half_size } => half_size,
+            ClothWindShape::Cone { length, angle } => {
+                let is_acute = |a: f32| a > 0.0 && a < std::f32::consts::FRAC_PI_2;
+                let quantity = "angle of a wind zone (rad)";
+                ClothError::check(angle, is_acute, quantity, "positive, and less than π/2")?;
+                Vec3::splat(length)
+            }
+        };
+        for length in lengths.to_array() {
+            let is_some = |l: f32| (1.0e-6..=1.0e12).contains(&l);
+            ClothError::check(
+                length,
+                is_some,
+                "size of a wind zone (m)",
+                "from 10⁻⁶ to 10¹²",
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl ClothWindShape {
+    /// How far a place is from the middle to the border, of which 1 is; beyond 1 outside.
+    fn depth(&self, place: Vec3) -> f32 {
+        match *self {
+            Self::Ball { radius } => place.length() / radius,
+            Self::Cuboid { half_size } => (place / half_size).abs().max_element(),
+            Self::Cone { length, angle } => {
+                let along = -place.z;
+                let beside = place.truncate().length();
+                if along <= 0.0 {
+                    return f32::INFINITY;
+                }
+                (along / length).max(beside / (along * angle.tan()))
+            }
+        }
+    }
+
+    /// A ball around it: its middle, and its radius.
+    fn around(&self) -> (Vec3, f32) {
+        match *self {
+            Self::Ball { radius } => (Vec3::ZERO, radius),
+            Self::Cuboid { half_size } => (Vec3::ZERO, half_size.length()),
+            Self::Cone { length, angle } => {
+                (Vec3::NEG_Z * length, length.max(length * angle.tan()))
+            }
+        }
+    }
+}
+
+/// A zone, where it is in the tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::plugin) struct PlacedZone {
+    entity: Entity,
+    zone: ClothWindZone,
+    from_world: Affine3A,
+    /// In the world (m/s).
+    velocity: Vec3,
+    centre: Vec3,
+    radius: f32,
+}
+
+impl PlacedZone {
+    fn new(entity: Entity, zone: &ClothWindZone, places: &Places) -> Result<Self, ClothError> {
+        zone.validate()?;
+        let place = places.of(entity)?;
+        let affine = place.affine();
+        let from_world = affine.inverse();
+        let (scale, rotation, _) = affine.to_scale_rotation_translation();
+        let rotation: Quat = rotation.normalize();
+        if !(affine.is_finite() && from_world.is_finite() && rotation.is_finite()) {
+            return Err(ClothError::Transform {
+                transform: format!("{affine:?}"),
+            });
+        }
+        let (centre, radius) = zone.shape.around();
+        Ok(Self {
+            entity,
+            zone: *zone,
+            from_world,
+            velocity: rotation * zone.velocity,
+            centre: affine.transform_point3(centre),
+            radius: radius * scale.abs().max_element(),
+        })
+    }
+
+    /// Whether it may blow in a ball (m).
+    pub fn reaches(&self, centre: Vec3, radius: f32) -> bool {
+        let reach = self.radius + radius;
+        self.centre.distance_squared(centre) <= reach * reach
+    }
+
+    /// How it blows at a place of the world (m/s): all of it, less `3 s² − 2 s³` of the way s through what is soft.
+    pub fn at(&self, place: Vec3) -> Vec3 {
+        let depth = self
+            .zone
+            .shape
+            .depth(self.from_world.transform_point3(place));
+        let inner = 1.0 - self.softness();
+        if depth <= inner {
+            return self.velocity;
+        }
+        if depth >= 1.0 {
+            return Vec3::ZERO;
+        }
+        let s = (depth - inner) / (1.0 - inner);
+        self.velocity * (1.0 - s * s * (3.0 - 2.0 * s))
+    }
+
+    /// Its speed in the middle (m/s).
+    pub fn fastest(&self) -> f32 {
+        self.velocity.length()
+    }
+
+    /// A fan's wind falls off all along its way.
+    fn softness(&self) -> f32 {
+        match self.zone.shape {
+            ClothWindShape::Cone { .. } => 1.0,
+            _ => self.zone.softness,
+        }
+    }
+}
+
+/// Moves the world's wind on, looks where the zones are, and notes what is wrong with one.
+pub(in crate::plugin) fn prepare_wind(
+    wind: Option<Res<ClothWind>>,
+    zones: Query<(Entity, &ClothWindZone, Option<&ClothFault>)>,
+    places: Places,
+    time: Res<Time>,
+    mut field: ResMut<WindField>,
+    mut commands: Commands,
+) {
+    field.advance(wind.as_deref(), &time);
+    field.zones.clear();
+    for (entity, zone, fault) in &zones {
+        let placed = PlacedZone::new(entity, zone, &places);
+        let outcome = placed.map(|placed| field.zones.push(placed));
+        ClothFault::report(&mut commands, entity, fault, Part::WindZone, outcome);
+    }
+    // Whatever the order of the world's tables.
+    field.zones.sort_unstable_by_key(|zone| zone.entity);
+}

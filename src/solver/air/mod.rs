@@ -1,0 +1,238 @@
+//! Air: drag and lift of a wind, and pressure.
+//!
+//! The air moves at U, a face with its normal n at v, so that what it feels is `u = U − v`: u_n along its normal, u_t along itself.
+//! The force on a face of the area A is
+//!
+//! ```text
+//!        U ──▶  │                F = ρ/2 A (C_d |u_n| + C_l u_t) u_n n
+//!               │──▶ n
+//!        ──▶    │                C_d: a plate that the wind meets broadside
+//!               face             C_l: the slope of a plate's normal force at grazing angles
+//! ```
+//!
+//! A hinged sheet of ρ_s kg/m² leans in it by t with `sin t = ρ U² (C_d cos² t + C_l sin t cos t)/(2 ρ_s g)`, and a flat one falls
+//! at √(2 ρ_s g/(ρ C_d)) in the end, whatever its resolution and its sub-steps (`cargo test --test truth air`).
+//!
+//! **A face** is what a particle stands for: on a grid half of the diamond of its neighbours, on a mesh a third of each of its
+//! triangles. So its force is along one normal and moves one particle, and what slows it is a number, not a matrix.
+//!
+//! **Steps.** The faces are looked at some times a tick ([`LONGEST`]), whatever the sub-steps; in between, the force follows the
+//! particle's velocity along its slope, `a = b − κ n (n·v)` with `κ = ρ A (C_d |u_n| + C_l u_t/2)/m`, in each sub-step anew. As
+//! the slope is that of a square, what it leads to lies between the velocity that the particle had and that of the wind: no wind
+//! and no tick makes it overshoot. The velocity is that with which the sub-step begins, for by the one that it is foreseen to
+//! end with, before springs have acted, the air would hold against what springs undo: a load of wind, too, would count by
+//! 1/(1 + κ Δt) of itself. Where κ Δt is above 1 (cotton in 20 sub-steps of 1/64 s: from 130 m/s on), b and κ are divided by it,
+//! so that a particle comes to its speed in one sub-step, and the load is less than it would be.
+//!
+//! **Cost** (64², 20 sub-steps, one thread): see `cargo bench --profile dev --bench solver air`.
+
+mod areas;
+mod law;
+mod pressure;
+#[cfg(test)]
+mod tests;
+mod wind;
+
+use bevy::math::{DVec3, Vec3};
+
+pub use self::pressure::ClothPressure;
+use self::{areas::Triangles, wind::LocalWind};
+pub(crate) use self::{
+    areas::{Rows, air_areas},
+    law::{Felt, Law, acceleration, air_feel, air_given, air_push},
+};
+use super::{kernel::Kernels, pentadiagonal::Trio};
+use crate::cloth::{ClothParticles, LANES, Lanes, Layout, Surface};
+
+/// The faces are looked at again after this time (s) at the latest: twice in a tick of 1/64 s. A flag's waves take ten times as long.
+const LONGEST: f32 = 0.01;
+
+/// The air around a cloth, in the cloth's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Air {
+    /// Density (kg/m³).
+    pub density: f32,
+    /// C_d: the coefficient of drag of a face that the wind meets broadside.
+    pub drag: f32,
+    /// C_l: the slope of the coefficient of a face's normal force over the sine of a small angle to the wind.
+    pub lift: f32,
+    /// Velocity of the air (m/s).
+    pub wind: Vec3,
+    /// What is inside of a closed mesh.
+    pub pressure: Option<ClothPressure>,
+}
+
+impl Air {
+    /// Of no density: what is left is pressure.
+    pub const NONE: Self = Self {
+        density: 0.0,
+        drag: 0.0,
+        lift: 0.0,
+        wind: Vec3::ZERO,
+        pressure: None,
+    };
+}
+
+/// What the air does to the particles of a surface.
+#[derive(Debug, Clone)]
+pub(super) struct Airflow {
+    air: Air,
+    layout: Layout,
+    /// Of a mesh.
+    triangles: Option<Triangles>,
+    local: Option<LocalWind>,
+    felt: Vec<Felt>,
+    /// As the faces were looked at, see [`Felt`].
+    ways: Vec<Lanes>,
+    /// Of a row, or of all of a mesh.
+    areas: Vec<Trio>,
+    winds: Vec<Trio>,
+    /// Sub-steps between two looks, and since the last.
+    stride: u32,
+    since: u32,
+    substep: f32,
+    /// What the air gave the cloth in the tick (N s).
+    impulse: DVec3,
+}
+
+impl Airflow {
+    pub fn new(surface: &Surface, air: Air) -> Self {
+        let layout = Layout::of(surface);
+        let is_grid = surface.as_grid().is_some();
+        let strip = layout.strip as usize;
+        Self {
+            air,
+            layout,
+            triangles: (!is_grid).then(|| Triangles::new(surface)),
+            local: None,
+            felt: vec![Felt::NONE; layout.blocks()],
+            ways: vec![[0.0; LANES]; layout.blocks()],
+            areas: vec![[[0.0; LANES]; 3]; strip],
+            winds: vec![[[0.0; LANES]; 3]; strip],
+            stride: 1,
+            since: 0,
+            substep: 0.0,
+            impulse: DVec3::ZERO,
+        }
+    }
+
+    /// The same wind everywhere from now on.
+    pub fn set(&mut self, air: Air) {
+        self.air = air;
+        self.local = None;
+    }
+
+    /// A wind that is asked for at some places from now on (m, m/s).
+    pub fn set_local_wind(&mut self, particles: &ClothParticles, at: impl FnMut(Vec3) -> Vec3) {
+        let is_grid = self.triangles.is_none();
+        let local = self.local.get_or_insert_default();
+        local.sample(particles, is_grid, at);
+    }
+
+    /// What the air gave the cloth in the last tick (N s).
+    pub fn impulse(&self) -> Vec3 {
+        self.impulse.as_vec3()
+    }
+
+    /// Begins a tick of `seconds` in this many sub-steps.
+    pub fn begin(&mut self, seconds: f32, substeps: u32) {
+        // What is full of air is as wide as its pressure, its springs and their stretch let it be, in each sub-step.
+        let looks = match self.air.pressure {
+            None => ((seconds / LONGEST).ceil() as u32).clamp(1, substeps),
+            Some(_) => substeps,
+        };
+        self.stride = substeps.div_ceil(looks);
+        self.substep = seconds / substeps as f32;
+        self.since = 0;
+        self.impulse = DVec3::ZERO;
+    }
+
+    /// Before a sub-step: looks at the faces if it is time.
+    pub fn before_substep(&mut self, index: u32, particles: &ClothParticles, kernels: &Kernels) {
+        if index.is_multiple_of(self.stride) {
+            self.settle(particles, kernels);
+            self.look(particles, kernels);
+        }
+        self.since += 1;
+    }
+
+    /// Adds what the air gave since it looked last.
+    pub fn settle(&mut self, particles: &ClothParticles, kernels: &Kernels) {
+        if self.since == 0 {
+            return;
+        }
+        let strip = self.layout.strip as usize;
+        let seconds = self.since as f32 * self.substep;
+        let rows = particles.blocks().chunks(strip);
+        let known = self.felt.chunks(strip).zip(self.ways.chunks(strip));
+        for (row, (felt, ways)) in rows.zip(known) {
+            let mut sum = [[0.0; LANES]; 3];
+            (kernels.air_given)(row, felt, ways, seconds, &mut sum);
+            self.impulse += DVec3::from(sum.map(|lanes| lanes.into_iter().map(f64::from).sum()));
+        }
+        self.since = 0;
+    }
+
+    /// What each particle of a row feels.
+    pub fn felt(&self) -> &[Felt] {
+        &self.felt
+    }
+
+    fn look(&mut self, particles: &ClothParticles, kernels: &Kernels) {
+        let Air {
+            density,
+            drag,
+            lift,
+            wind,
+            pressure,
+        } = self.air;
+        let mut law = Law {
+            drag: density * drag,
+            lift: 0.5 * density * lift,
+            pressure: 0.0,
+            substep: self.substep,
+            inverse_substep: 1.0 / self.substep,
+        };
+        let (layout, blocks) = (self.layout, particles.blocks());
+        let (rows, strip) = (layout.rows as usize, layout.strip as usize);
+        let Self {
+            triangles,
+            local,
+            areas,
+            winds,
+            felt,
+            ways,
+            ..
+        } = self;
+        if local.is_none() {
+            winds.fill(wind.to_array().map(|of| [of; LANES]));
+        }
+        if let Some(triangles) = triangles {
+            let volume = triangles.areas(blocks, areas);
+            if let Some(ClothPressure::Gauge(pressure)) = pressure {
+                law.pressure = pressure * volume.signum();
+            }
+            if let Some(local) = local {
+                local.of_mesh(particles, winds);
+            }
+            (kernels.air_feel)(blocks, areas, winds, &law, felt, ways);
+            return;
+        }
+        let last = layout.slot(0, layout.columns - 1);
+        let row = |row: usize| &blocks[row * strip..(row + 1) * strip];
+        let outs = felt.chunks_mut(strip).zip(ways.chunks_mut(strip));
+        for (index, (felt, ways)) in outs.enumerate() {
+            let around = Rows {
+                own: row(index),
+                above: row(index.saturating_sub(1)),
+                below: row((index + 1).min(rows - 1)),
+                last,
+            };
+            (kernels.air_areas)(&around, areas);
+            if let Some(local) = local {
+                local.of_row(index, layout, winds);
+            }
+            (kernels.air_feel)(row(index), areas, winds, &law, felt, ways);
+        }
+    }
+}

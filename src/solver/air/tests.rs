@@ -1,0 +1,1 @@
+//! The faces of particles, and what they feel.
