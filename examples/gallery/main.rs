@@ -28,6 +28,10 @@ struct Entry {
 
 const ENTRIES: &[Entry] = &[
     Entry {
+        name: "flag",
+        pictures: &[("flag.png", "a flag in the wind")],
+    },
+    Entry {
         name: "curtain",
         pictures: &[("curtain.png", "a walk through a curtain")],
     },
@@ -40,8 +44,12 @@ const ENTRIES: &[Entry] = &[
         pictures: &[("dress.png", "a skirt that twirls")],
     },
     Entry {
-        name: "ball",
-        pictures: &[("ball.png", "how a touch is searched for")],
+        name: "castle",
+        pictures: &[("castle.png", "sixty flags")],
+    },
+    Entry {
+        name: "balloon",
+        pictures: &[("balloon.png", "pressure in closed meshes")],
     },
     Entry {
         name: "fold",
@@ -62,6 +70,10 @@ const ENTRIES: &[Entry] = &[
     Entry {
         name: "shapes",
         pictures: &[("shapes.png", "every kind of collider")],
+    },
+    Entry {
+        name: "ball",
+        pictures: &[("ball.png", "how a touch is searched for")],
     },
     Entry {
         name: "volumes",
