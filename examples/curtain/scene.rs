@@ -28,11 +28,11 @@ const TURNING: f32 = 2.3;
 const SPEED: f32 = 1.1;
 
 /// When the walker comes out between the halves (s).
-pub const PARTED_AT: f64 = 2.45;
+pub const PARTED_AT: f64 = 2.6;
 
 /// From where the walker comes to, a little from the side.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.7, 1.7, 4.6),
+    from: Vec3::new(1.6, 1.66, 4.25),
     focus: Vec3::new(0.0, 1.12, 0.0),
     fov: 0.56,
 };
@@ -235,7 +235,7 @@ fn spawn_walker(
         ClothCollider::ball(0.15),
         Mesh3d(meshes.add(Sphere::new(0.15).mesh().uv(48, 24))),
         MeshMaterial3d(clay),
-        Transform::from_xyz(0.0, 1.56, 0.0),
+        Transform::from_xyz(0.0, 1.53, 0.0),
     );
     commands.spawn((
         Name::new("walker"),

@@ -27,8 +27,8 @@ const TICKS_A_COUNT: u32 = 16;
 
 /// From the side, where the folds show.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(0.8, 0.6, 1.15),
-    focus: Vec3::new(0.0, 0.18, 0.0),
+    from: Vec3::new(0.72, 0.52, 1.0),
+    focus: Vec3::new(0.0, 0.17, 0.0),
     fov: 0.5,
 };
 
@@ -104,7 +104,7 @@ fn spawn_cloth(
     grid: Res<Grid>,
 ) {
     // Broad stripes across: each fold shows another.
-    let weave = woven(Weave::Plain, &mut images, 5, |runs_down, yarn| {
+    let weave = woven(Weave::WeftTwill, &mut images, 5, |runs_down, yarn| {
         match (runs_down, yarn / 16) {
             (true, _) | (false, 1) => Color::srgb(0.86, 0.84, 0.78),
             (false, 0 | 2) => Color::srgb(0.13, 0.36, 0.52),

@@ -32,9 +32,9 @@ const DROP: f32 = 0.1;
 
 /// The whole of it, from the side and a little above.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.6, 2.1, 4.3),
-    focus: Vec3::new(0.0, 0.72, 0.0),
-    fov: 0.52,
+    from: Vec3::new(1.5, 2.0, 4.0),
+    focus: Vec3::new(0.0, 0.7, 0.0),
+    fov: 0.5,
 };
 
 /// The scene, without a camera.
@@ -97,7 +97,7 @@ fn spawn_hammock(
         (Pin::Corner(corner), post)
     });
     // Stripes across, as hammocks have.
-    let weave = woven(Weave::Plain, &mut images, 3, |runs_down, yarn| {
+    let weave = woven(Weave::Twill, &mut images, 3, |runs_down, yarn| {
         match (runs_down, yarn / 8 % 4) {
             (true, 0) => Color::srgb(0.80, 0.22, 0.16),
             (true, 2) => Color::srgb(0.10, 0.40, 0.45),

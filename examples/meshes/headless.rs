@@ -65,7 +65,6 @@ pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
         app.register_required_components::<Cloth, Measured>()
             .add_systems(FixedLast, measure);
     });
-    run.wait_for_assets();
     run.finish();
     let pictures = SHOTS.map(|(file, shot)| run.take_picture(shot, &options.out, file));
     let world = run.app.world_mut();

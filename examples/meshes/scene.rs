@@ -20,14 +20,14 @@ pub const FINENESS: u32 = 24;
 /// The tent, as a modelling program exports it: metres, y up, the ground at 0.
 const TENT: &str = "models/tent.glb";
 
-const POLE: Vec3 = Vec3::new(-2.5, 0.0, 0.1);
-const YARD: Vec3 = Vec3::new(-2.5, 2.1, 0.15);
+const POLE: Vec3 = Vec3::new(-3.4, 0.0, 0.1);
+const YARD: Vec3 = Vec3::new(-3.4, 2.1, 0.15);
 const PERSON: Vec3 = Vec3::new(-0.6, 0.0, 0.5);
-const CAMP: Vec3 = Vec3::new(2.2, 0.0, -0.2);
+const CAMP: Vec3 = Vec3::new(3.0, 0.0, -0.2);
 
 /// All of it, and each by itself.
 pub const ALL: Shot = Shot {
-    from: Vec3::new(0.3, 2.4, 7.6),
+    from: Vec3::new(0.3, 2.6, 8.8),
     focus: Vec3::new(0.05, 0.95, 0.0),
     fov: 0.46,
 };
@@ -35,25 +35,25 @@ pub const SHOTS: [(&str, Shot); 3] = [
     (
         "pennant.png",
         Shot {
-            from: Vec3::new(-1.6, 1.7, 4.4),
-            focus: Vec3::new(-2.5, 1.3, 0.15),
-            fov: 0.48,
+            from: Vec3::new(-3.0, 1.3, 4.4),
+            focus: Vec3::new(-3.4, 1.3, 0.15),
+            fov: 0.46,
         },
     ),
     (
         "poncho.png",
         Shot {
-            from: Vec3::new(0.6, 2.2, 3.7),
-            focus: Vec3::new(-0.6, 1.05, 0.5),
-            fov: 0.48,
+            from: Vec3::new(-0.4, 1.9, 3.9),
+            focus: Vec3::new(-0.6, 1.06, 0.5),
+            fov: 0.44,
         },
     ),
     (
         "tent.png",
         Shot {
-            from: Vec3::new(5.4, 1.7, 2.3),
-            focus: Vec3::new(2.25, 0.5, -0.1),
-            fov: 0.52,
+            from: Vec3::new(6.7, 1.7, 2.3),
+            focus: Vec3::new(3.1, 0.5, -0.1),
+            fov: 0.48,
         },
     ),
 ];

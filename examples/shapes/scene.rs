@@ -27,9 +27,9 @@ const HEIGHTS: usize = 19;
 
 /// The whole of it, from a little above.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(2.0, 3.1, 4.9),
-    focus: Vec3::new(1.25, 0.0, 0.0),
-    fov: 0.56,
+    from: Vec3::new(1.9, 3.0, 4.6),
+    focus: Vec3::new(1.25, 0.02, 0.12),
+    fov: 0.5,
 };
 
 /// The scene, without a camera.

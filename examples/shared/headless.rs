@@ -72,18 +72,20 @@ impl Run {
             ProgressStyle::with_template("{bar:40} {pos}/{len} ticks, {eta} left")
                 .unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
-        Self {
+        let mut run = Self {
             app,
             view,
             ticks,
             wall_seconds: 0.0,
             done: 0,
             bar,
-        }
+        };
+        run.wait_for_assets();
+        run
     }
 
     /// Lets time stand still until all meshes are there.
-    pub fn wait_for_assets(&mut self) {
+    fn wait_for_assets(&mut self) {
         self.app
             .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
         for _ in 0..PATIENCE * 100 {
@@ -221,10 +223,15 @@ fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, St
 /// Saves what is drawn, at half its size.
 fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>) {
     move |captured| {
-        let saved = Pixels::of(&captured.image)
-            .ok_or_else(|| "the picture is empty".to_string())
-            .and_then(|pixels| pixels.halved().save(&path));
-        if let Err(why) = saved {
+        let bytes = captured.image.data.as_deref().unwrap_or_default();
+        let rgb = bytes.chunks_exact(4).map(|at| [at[0], at[1], at[2]]);
+        let drawn = Pixels {
+            width: captured.image.width() as usize,
+            height: captured.image.height() as usize,
+            rgb: rgb.collect(),
+        };
+        let [width, height] = SIZE.map(|side| side as usize);
+        if let Err(why) = drawn.scaled(width, height).save(&path) {
             error!("{why}");
         }
     }

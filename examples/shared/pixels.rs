@@ -2,7 +2,6 @@
 
 use std::{collections::BTreeMap, fs, io::BufWriter, path::Path};
 
-use bevy::image::Image;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 /// Colours of a file.
@@ -16,35 +15,23 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// Of an image that is drawn with four bytes a pixel.
-    pub fn of(image: &Image) -> Option<Self> {
-        let bytes = image.data.as_ref()?;
-        let rgb = bytes.chunks_exact(4).map(|at| [at[0], at[1], at[2]]);
-        Some(Self {
-            width: image.width() as usize,
-            height: image.height() as usize,
-            rgb: rgb.collect(),
-        })
-    }
-
-    /// Half as wide and high: the mean of each four pixels, so that edges are smooth.
-    pub fn halved(&self) -> Self {
-        let (width, height) = (self.width / 2, self.height / 2);
+    /// Smaller, of this width and height: the mean of what each pixel covers, so that edges are smooth.
+    pub fn scaled(&self, width: usize, height: usize) -> Self {
         let mean = |place: usize| {
-            let corner = 2 * (place / width) * self.width + 2 * (place % width);
-            let four = [
-                corner,
-                corner + 1,
-                corner + self.width,
-                corner + self.width + 1,
-            ];
-            std::array::from_fn(|channel| {
-                let sum: u16 = four
-                    .iter()
-                    .map(|at| u16::from(self.rgb[*at][channel]))
-                    .sum();
-                ((sum + 2) / 4) as u8
-            })
+            let across = covered(place % width, width, self.width);
+            let down = covered(place / width, height, self.height);
+            let (mut sum, mut whole) = ([0.0; 3], 0.0);
+            for (row, part) in &down {
+                for (column, share) in &across {
+                    let color = self.rgb[row * self.width + column];
+                    let weight = part * share;
+                    whole += weight;
+                    for (sum, value) in sum.iter_mut().zip(color) {
+                        *sum += weight * f32::from(value);
+                    }
+                }
+            }
+            sum.map(|sum| (sum / whole).round() as u8)
         };
         Self {
             width,
@@ -82,6 +69,15 @@ impl Pixels {
             .and_then(|()| writer.finish())
             .map_err(|error| fail(&error))
     }
+}
+
+/// Which of `whole` pixels the one at this place of `count` covers, and how much of each.
+fn covered(place: usize, count: usize, whole: usize) -> Vec<(usize, f32)> {
+    let scale = whole as f32 / count as f32;
+    let (from, to) = (place as f32 * scale, (place + 1) as f32 * scale);
+    let part = |pixel: usize| to.min((pixel + 1) as f32) - from.max(pixel as f32);
+    let pixels = from as usize..(to.ceil() as usize).min(whole);
+    pixels.map(|pixel| (pixel, part(pixel))).collect()
 }
 
 /// Colours that are alike, with how often each occurs.

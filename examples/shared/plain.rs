@@ -51,7 +51,6 @@ pub fn run(
             .init_resource::<Touching>()
             .add_systems(FixedLast, count_contacts);
     });
-    run.wait_for_assets();
     run.until(ticks_in(&run.app, moment.at).min(run.ticks));
     let picture = run.take_picture(moment.shot, &options.out, moment.file);
     run.finish();

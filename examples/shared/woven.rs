@@ -26,6 +26,8 @@ pub enum Weave {
     Plain,
     /// At three crossings of four, one further with each row, so that ribs run aslant: denim.
     Twill,
+    /// At one crossing of four: what runs across shows.
+    WeftTwill,
     /// At two of four, the ribs turning back every eighth yarn: tweed.
     Herringbone,
 }
@@ -35,6 +37,7 @@ impl Weave {
         match self {
             Self::Plain => (column + row).is_multiple_of(2),
             Self::Twill => !(column + row).is_multiple_of(4),
+            Self::WeftTwill => (column + row).is_multiple_of(4),
             Self::Herringbone => {
                 let there = column % 16;
                 (there.min(15 - there) + row) % 4 < 2

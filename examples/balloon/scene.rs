@@ -1,0 +1,118 @@
+//! Three balloons on sticks.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::{
+    models::discs,
+    shared::{
+        stage::{Grid, Shot, StagePlugin},
+        woven::{Weave, woven},
+    },
+};
+
+/// Rings of triangles on either side.
+pub const PARTICLES: u32 = 16;
+/// Radius of the discs that a balloon is made of (m).
+const RADIUS: f32 = 0.28;
+/// Of the inside over the outside (Pa).
+const PRESSURE: f32 = 40.0;
+
+/// When the picture is drawn (s).
+pub const DRAWN_AT: f64 = 4.0;
+
+/// All three.
+pub const SHOT: Shot = Shot {
+    from: Vec3::new(0.4, 1.1, 2.6),
+    focus: Vec3::new(0.03, 1.02, 0.0),
+    fov: 0.42,
+};
+
+/// The scene, without a camera.
+pub struct ScenePlugin;
+
+impl Plugin for ScenePlugin {
+    fn build(&self, app: &mut App) {
+        let stage = StagePlugin {
+            has_floor: true,
+            light_from: Vec3::new(-2.5, 4.5, 3.5),
+        };
+        app.init_resource::<Grid>()
+            .insert_resource(ClothWind::gusty(Vec3::new(0.8, 0.0, -0.3)))
+            .add_plugins((stage, DrapePlugins::default()))
+            .add_systems(Startup, spawn_balloons);
+    }
+}
+
+fn spawn_balloons(
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    grid: Res<Grid>,
+) {
+    let balloon = meshes.add(discs(RADIUS, grid.0.max(3)));
+    let white = materials.add(Color::srgb(0.92, 0.92, 0.90));
+    for (name, color, place, turn) in [
+        (
+            "red",
+            Color::srgb(0.82, 0.05, 0.12),
+            Vec3::new(-0.52, 0.98, 0.0),
+            0.35,
+        ),
+        (
+            "gold",
+            Color::srgb(0.95, 0.66, 0.10),
+            Vec3::new(0.02, 1.22, -0.25),
+            0.0,
+        ),
+        (
+            "teal",
+            Color::srgb(0.02, 0.48, 0.52),
+            Vec3::new(0.54, 0.92, 0.05),
+            -0.3,
+        ),
+    ] {
+        let height = place.y - RADIUS;
+        commands.spawn((
+            Mesh3d(meshes.add(Cylinder::new(0.008, height))),
+            MeshMaterial3d(white.clone()),
+            Transform::from_translation(place.with_y(0.5 * height)),
+        ));
+        // Silk with a thread of light now and then, and as shiny.
+        let silk = woven(Weave::Plain, &mut images, 2, |_, yarn| match yarn % 16 {
+            0 => color.mix(&Color::WHITE, 0.5),
+            _ => color,
+        });
+        let silk = StandardMaterial {
+            metallic: 0.3,
+            perceptual_roughness: 0.35,
+            reflectance: 0.6,
+            ..silk
+        };
+        let tip = Pin::Near {
+            point: Vec3::NEG_Y * RADIUS,
+            radius: 0.035,
+        };
+        commands.spawn((
+            Name::new(name),
+            Cloth::mesh(),
+            Mesh3d(balloon.clone()),
+            Pins::new([tip]),
+            ClothPressure::Gauge(PRESSURE),
+            ClothMaterial {
+                areal_density: 0.06,
+                damping: 0.03,
+                ..ClothMaterial::CANVAS
+            },
+            ClothSettings {
+                // Filled with what is lighter than air.
+                gravity: Some(Vec3::Y),
+                ..ClothSettings::substeps(24)
+            },
+            ShowClothGizmos::nothing(),
+            MeshMaterial3d(materials.add(silk)),
+            Transform::from_translation(place).with_rotation(Quat::from_rotation_y(turn)),
+        ));
+    }
+}
