@@ -2,15 +2,23 @@
 //!
 //! 1. [Your first cloth](first_cloth): a sheet, a ball, a material, and where its particles are.
 //! 2. [Your own model](own_model): any triangle mesh, from Blender to Bevy.
-//! 3. [Tuning](tuning): what stretches, what swings, what costs.
-//! 4. [When it fails](when_it_fails): faults, limits, and what to do about each.
-//! 5. [Migrating from `bevy_silk`](migrating_from_bevy_silk): its names, and ours.
+//! 3. [Characters](characters): capes, skirts and coats on a skeleton, level of detail.
+//! 4. [Wind](wind): the air of the world, of a place, and of one cloth; pressure.
+//! 5. [Tuning](tuning): what stretches, what swings, what costs.
+//! 6. [When it fails](when_it_fails): faults, limits, and what to do about each.
+//! 7. [Migrating from `bevy_silk`](migrating_from_bevy_silk): its names, and ours.
 
 #[doc = include_str!("guide/first_cloth.md")]
 pub mod first_cloth {}
 
 #[doc = include_str!("guide/own_model.md")]
 pub mod own_model {}
+
+#[doc = include_str!("guide/characters.md")]
+pub mod characters {}
+
+#[doc = include_str!("guide/wind.md")]
+pub mod wind {}
 
 #[doc = include_str!("guide/tuning.md")]
 pub mod tuning {}
