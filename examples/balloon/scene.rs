@@ -12,11 +12,11 @@ use crate::{
 };
 
 /// Rings of triangles on either side.
-pub const PARTICLES: u32 = 16;
+pub const PARTICLES: u32 = 20;
 /// Radius of the discs that a balloon is made of (m).
 const RADIUS: f32 = 0.28;
 /// Of the inside over the outside (Pa).
-const PRESSURE: f32 = 40.0;
+const PRESSURE: f32 = 60.0;
 
 /// When the picture is drawn (s).
 pub const DRAWN_AT: f64 = 4.0;
@@ -103,6 +103,8 @@ fn spawn_balloons(
             ClothMaterial {
                 areal_density: 0.06,
                 damping: 0.03,
+                // Thin, and stretched by next to nothing.
+                bend_rigidity: ClothMaterial::SILK.bend_rigidity,
                 ..ClothMaterial::CANVAS
             },
             ClothSettings {
