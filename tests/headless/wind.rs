@@ -95,7 +95,7 @@ fn each_cloth_feels_its_own_air() {
     assert!(leans(&app, blown) > 1.1 * lean);
 }
 
-/// Sheets lie in the air and fall at `√(2 ρ_s g/(ρ C_d))` = 1.43 m/s in the end, in still air too; after a second, 7 times V ⁄ g, by a part of 10⁻⁵ less.
+/// Sheets lie in the air and fall at ``√(2 ρ_s g/(ρ C_d))`` = 1.43 m/s in the end, in still air too; after a second, 7 times V ⁄ g, by a part of 10⁻⁵ less.
 #[test]
 fn still_air_holds_a_sheet_that_falls() {
     let mut app = app();
