@@ -39,7 +39,7 @@ use bevy_drape::prelude::*;
 
 use crate::{
     plain::Moment,
-    scene::ScenePlugin,
+    scene::{Pump, ScenePlugin},
     shared::{start::Example, window},
 };
 
@@ -74,16 +74,12 @@ fn main() -> ExitCode {
 
 fn press_keys(
     keys: Res<ButtonInput<KeyCode>>,
-    mut balloons: Query<&mut ClothPressure>,
+    mut pump: ResMut<Pump>,
     mut wind: ResMut<ClothWind>,
 ) {
-    for mut pressure in &mut balloons {
-        for (key, change) in [(KeyCode::ArrowUp, 5.0), (KeyCode::ArrowDown, -5.0)] {
-            if keys.just_pressed(key)
-                && let ClothPressure::Gauge(pascals) = &mut *pressure
-            {
-                *pascals = (*pascals + change).clamp(0.0, 80.0);
-            }
+    for (key, change) in [(KeyCode::ArrowUp, 5.0), (KeyCode::ArrowDown, -5.0)] {
+        if keys.just_pressed(key) {
+            pump.0 = (pump.0 + change).clamp(0.0, 80.0);
         }
     }
     for (key, factor) in [(KeyCode::ArrowRight, 1.25), (KeyCode::ArrowLeft, 0.8)] {

@@ -15,8 +15,9 @@ use crate::{
 pub const PARTICLES: u32 = 20;
 /// Radius of the discs that a balloon is made of (m).
 const RADIUS: f32 = 0.28;
-/// Of the inside over the outside (Pa).
-const PRESSURE: f32 = 60.0;
+/// What they are blown up to at first, of the inside over the outside (Pa), and how fast (Pa/s).
+const PRESSURE: f32 = 45.0;
+const BLOWING: f32 = 20.0;
 
 /// When the picture is drawn (s).
 pub const DRAWN_AT: f64 = 4.0;
@@ -40,7 +41,25 @@ impl Plugin for ScenePlugin {
         app.init_resource::<Grid>()
             .insert_resource(ClothWind::gusty(Vec3::new(0.8, 0.0, -0.3)))
             .add_plugins((stage, DrapePlugins::default()))
-            .add_systems(Startup, spawn_balloons);
+            .insert_resource(Pump(PRESSURE))
+            .add_systems(Startup, spawn_balloons)
+            .add_systems(FixedUpdate, blow_up.before(ClothSystems::Prepare));
+    }
+}
+
+/// The pressure that all are brought to (Pa).
+#[derive(Resource)]
+pub struct Pump(pub f32);
+
+/// Slowly: what is blown up at a stroke bursts.
+fn blow_up(mut balloons: Query<&mut ClothPressure>, pump: Res<Pump>, time: Res<Time>) {
+    let step = BLOWING * time.delta_secs();
+    for mut pressure in &mut balloons {
+        if let ClothPressure::Gauge(now) = *pressure
+            && now != pump.0
+        {
+            *pressure = ClothPressure::Gauge(now + (pump.0 - now).clamp(-step, step));
+        }
     }
 }
 
@@ -99,7 +118,7 @@ fn spawn_balloons(
             Cloth::mesh(),
             Mesh3d(balloon.clone()),
             Pins::new([tip]),
-            ClothPressure::Gauge(PRESSURE),
+            ClothPressure::Gauge(0.0),
             ClothMaterial {
                 areal_density: 0.06,
                 damping: 0.03,
@@ -110,7 +129,7 @@ fn spawn_balloons(
             ClothSettings {
                 // Filled with what is lighter than air.
                 gravity: Some(Vec3::Y),
-                ..ClothSettings::substeps(24)
+                ..ClothSettings::substeps(40)
             },
             ShowClothGizmos::nothing(),
             MeshMaterial3d(materials.add(silk)),

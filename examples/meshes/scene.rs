@@ -188,7 +188,7 @@ fn spawn_poncho(
         [150, 44, 48],
         [58, 94, 120],
     ];
-    let weave = woven(Weave::Plain, &mut images, 1, |runs_down, yarn| {
+    let weave = woven(Weave::Herringbone, &mut images, 1, |runs_down, yarn| {
         let [r, g, b] = colors[(yarn as usize / 6) % colors.len()];
         if runs_down {
             Color::srgb_u8(226, 216, 196)
