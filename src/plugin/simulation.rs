@@ -154,7 +154,8 @@ impl Plugin for ClothPlugin {
                     follow_roots,
                     prepare_colliders,
                     prepare_wind,
-                    choose_levels,
+                    // Where the schedule is that of transforms, too, cameras are where this frame or the last has them.
+                    choose_levels.ambiguous_with(TransformSystems::Propagate),
                     prepare_cloths,
                     find_islands,
                 )
