@@ -1,6 +1,7 @@
 //! The air of the world, and that of one cloth.
 
 mod field;
+mod prepare;
 mod zone;
 
 use bevy::{
@@ -14,8 +15,9 @@ use bevy::{
 };
 
 pub(super) use field::{Breeze, WindField};
+pub(super) use prepare::prepare_wind;
+pub(super) use zone::PlacedZone;
 pub use zone::{ClothWindShape, ClothWindZone};
-pub(super) use zone::{PlacedZone, prepare_wind};
 
 use crate::cloth::ClothError;
 

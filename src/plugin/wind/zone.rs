@@ -1,22 +1,13 @@
 //! Where a wind blows that is not everywhere.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::Entity,
-        reflect::ReflectComponent,
-        system::{Commands, Query, Res, ResMut},
-    },
+    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
     math::{Affine3A, Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
-    time::Time,
 };
 
-use super::{ClothWind, check_velocity, field::WindField};
-use crate::{
-    cloth::ClothError,
-    plugin::{ClothFault, frame::Places, naming::Part},
-};
+use super::check_velocity;
+use crate::{cloth::ClothError, plugin::frame::Places};
 
 /// A wind in one place, as of a fan: added to that of the world. It is where its entity's `GlobalTransform` is, scaled and turned with
 /// it, and may move as it likes, in systems before `ClothSystems::Prepare`. Inside of it there is air even if the world has none.
@@ -163,7 +154,7 @@ impl ClothWindShape {
 /// A zone, where it is in the tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::plugin) struct PlacedZone {
-    entity: Entity,
+    pub entity: Entity,
     zone: ClothWindZone,
     from_world: Affine3A,
     /// In the world (m/s).
@@ -173,7 +164,11 @@ pub(in crate::plugin) struct PlacedZone {
 }
 
 impl PlacedZone {
-    fn new(entity: Entity, zone: &ClothWindZone, places: &Places) -> Result<Self, ClothError> {
+    /// Looks where a zone is.
+    ///
+    /// # Errors
+    /// What is wrong with it, or with where it is.
+    pub fn new(entity: Entity, zone: &ClothWindZone, places: &Places) -> Result<Self, ClothError> {
         zone.validate()?;
         let place = places.of(entity)?;
         let affine = place.affine();
@@ -231,24 +226,4 @@ impl PlacedZone {
             _ => self.zone.softness,
         }
     }
-}
-
-/// Moves the world's wind on, looks where the zones are, and notes what is wrong with one.
-pub(in crate::plugin) fn prepare_wind(
-    wind: Option<Res<ClothWind>>,
-    zones: Query<(Entity, &ClothWindZone, Option<&ClothFault>)>,
-    places: Places,
-    time: Res<Time>,
-    mut field: ResMut<WindField>,
-    mut commands: Commands,
-) {
-    field.advance(wind.as_deref(), &time);
-    field.zones.clear();
-    for (entity, zone, fault) in &zones {
-        let placed = PlacedZone::new(entity, zone, &places);
-        let outcome = placed.map(|placed| field.zones.push(placed));
-        ClothFault::report(&mut commands, entity, fault, Part::WindZone, outcome);
-    }
-    // Whatever the order of the world's tables.
-    field.zones.sort_unstable_by_key(|zone| zone.entity);
 }
