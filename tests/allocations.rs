@@ -23,7 +23,7 @@ use bevy_drape::{
         ClothLodLevel, ClothPaint, ClothSkin, DrapePlugins, Pin, Pins,
     },
     solver::{
-        Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
+        Air, Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
         methods::meshes,
     },
 };
@@ -141,6 +141,7 @@ fn a_step_does_not_allocate() {
     }
     sharp_colliders_do_not_allocate();
     a_mesh_does_not_allocate();
+    air_does_not_allocate();
     neither_forces_nor_damping_allocate();
     what_is_attached_or_animated_allocates_nothing();
     what_is_pushed_allocates_nothing();
@@ -265,6 +266,36 @@ fn a_mesh_does_not_allocate() {
     ticks(30);
     let change = region.change();
     assert_eq!((change.allocations, change.reallocations), (0, 0));
+}
+
+/// In a wind of each place.
+fn air_does_not_allocate() {
+    let material = ClothMaterial::COTTON;
+    let mesh = meshes::irregular(1.0, 1.0, 1.0 / 20.0, 0.3);
+    let of_mesh = Surface::of_mesh(&mesh, 0.0, Vec3::ONE).expect("a surface");
+    let grid = Cloth::new(20, 20, 0.05).grid(Vec3::ONE).expect("a grid");
+    for surface in [Surface::of_grid(&grid), of_mesh] {
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
+        particles.set_inverse_mass(0, 0.0).expect("it exists");
+        let mut solver = Solver::of_surface(&surface, &Springs::of_surface(&surface, &material));
+        let air = Air {
+            density: 1.2,
+            drag: 1.2,
+            ..Air::NONE
+        };
+        let mut ticks = |count: u32| {
+            for _ in 0..count {
+                solver.set_air(&surface, Some(air));
+                solver.set_local_wind(&particles, |place| place + Vec3::Z);
+                solver.advance(&mut particles, TickStep::default(), &[], |_, _| false);
+            }
+        };
+        ticks(20);
+        let region = Region::new(ALLOCATOR);
+        ticks(30);
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0));
+    }
 }
 
 /// An app on one thread, as each thread that is woken allocates, and without the propagation of transforms, which allocates as it likes.

@@ -164,6 +164,10 @@ pub(in crate::plugin) struct PlacedZone {
 }
 
 impl PlacedZone {
+    /// Looks where a zone is.
+    ///
+    /// # Errors
+    /// What is wrong with it, or with where it is.
     pub fn new(entity: Entity, zone: &ClothWindZone, places: &Places) -> Result<Self, ClothError> {
         zone.validate()?;
         let place = places.of(entity)?;

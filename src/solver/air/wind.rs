@@ -44,6 +44,8 @@ impl LocalWind {
             self.knots.extend(places.map(at));
         } else {
             self.lattice = Lattice::around(particles);
+            // As many as there may be: a mesh that moves asks for others in each tick.
+            self.knots.reserve((ALONG_SIDE + 1).pow(3));
             self.knots.extend(self.lattice.places().map(at));
         }
     }
