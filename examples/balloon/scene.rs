@@ -12,11 +12,11 @@ use crate::{
 };
 
 /// Rings of triangles on either side.
-pub const PARTICLES: u32 = 20;
+pub const PARTICLES: u32 = 16;
 /// Radius of the discs that a balloon is made of (m).
 const RADIUS: f32 = 0.28;
 /// What they are blown up to at first, of the inside over the outside (Pa), and how fast (Pa/s).
-const PRESSURE: f32 = 40.0;
+const PRESSURE: f32 = 32.0;
 const BLOWING: f32 = 20.0;
 
 /// When the picture is drawn (s).
@@ -111,7 +111,7 @@ fn spawn_balloons(
         };
         let tip = Pin::Near {
             point: Vec3::NEG_Y * RADIUS,
-            radius: 0.02,
+            radius: 0.018,
         };
         commands.spawn((
             Name::new(name),
@@ -127,7 +127,7 @@ fn spawn_balloons(
             ClothSettings {
                 // Filled with what is lighter than air.
                 gravity: Some(Vec3::Y),
-                ..ClothSettings::substeps(24)
+                ..ClothSettings::substeps(48)
             },
             ShowClothGizmos::nothing(),
             MeshMaterial3d(materials.add(silk)),
