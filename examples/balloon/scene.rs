@@ -12,11 +12,11 @@ use crate::{
 };
 
 /// Rings of triangles on either side.
-pub const PARTICLES: u32 = 20;
+pub const PARTICLES: u32 = 16;
 /// Radius of the discs that a balloon is made of (m).
 const RADIUS: f32 = 0.28;
 /// What they are blown up to at first, of the inside over the outside (Pa), and how fast (Pa/s).
-const PRESSURE: f32 = 45.0;
+const PRESSURE: f32 = 32.0;
 const BLOWING: f32 = 20.0;
 
 /// When the picture is drawn (s).
@@ -39,7 +39,7 @@ impl Plugin for ScenePlugin {
             light_from: Vec3::new(-2.5, 4.5, 3.5),
         };
         app.init_resource::<Grid>()
-            .insert_resource(ClothWind::gusty(Vec3::new(0.8, 0.0, -0.3)))
+            .insert_resource(ClothWind::gusty(Vec3::new(0.5, 0.0, -0.2)))
             .add_plugins((stage, DrapePlugins::default()))
             .insert_resource(Pump(PRESSURE))
             .add_systems(Startup, spawn_balloons)
@@ -111,7 +111,7 @@ fn spawn_balloons(
         };
         let tip = Pin::Near {
             point: Vec3::NEG_Y * RADIUS,
-            radius: 0.035,
+            radius: 0.018,
         };
         commands.spawn((
             Name::new(name),
@@ -122,14 +122,12 @@ fn spawn_balloons(
             ClothMaterial {
                 areal_density: 0.06,
                 damping: 0.03,
-                // Thin, and stretched by next to nothing.
-                bend_rigidity: ClothMaterial::SILK.bend_rigidity,
-                ..ClothMaterial::CANVAS
+                ..ClothMaterial::SILK
             },
             ClothSettings {
                 // Filled with what is lighter than air.
                 gravity: Some(Vec3::Y),
-                ..ClothSettings::substeps(40)
+                ..ClothSettings::substeps(48)
             },
             ShowClothGizmos::nothing(),
             MeshMaterial3d(materials.add(silk)),
