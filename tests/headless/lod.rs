@@ -286,7 +286,7 @@ fn what_moves_nearby_is_met_at_the_full_rate() {
     app.world_mut()
         .spawn((ClothCollider::plane(), Transform::from_xyz(0.0, -1.51, 0.0)));
     let (mut touched, mut waited) = (0, 0);
-    for _ in 0..200 {
+    for _ in 0..300 {
         tick(&mut app, 1);
         let stats = stats(&app, cloth);
         let place = app
