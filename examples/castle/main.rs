@@ -1,7 +1,7 @@
 //! A castle with sixty flags in one wind.
 //!
-//! Flags that are alike share what is built of them, and all of them are moved at once, on as many threads as there are. See
-//! `scene.rs`.
+//! Flags that are alike share what is built of them, all of them are moved at once, on as many threads as there are, and those that are
+//! far from the camera are moved in fewer ticks. See `scene.rs`.
 //!
 //! ```sh
 //! cargo run --example castle               # a window, or a report where there is none
@@ -12,6 +12,7 @@
 //! |---|---|
 //! | left drag, right drag, wheel | orbit, pan, zoom |
 //! | Up, Down | a stronger, weaker wind |
+//! | D | level of detail on and off |
 //! | Space | pause and go on |
 //! | N | single step, while paused |
 //! | L | next level of the tree, beginning with none |
@@ -50,7 +51,10 @@ fn main() -> ExitCode {
         seconds: "5",
         particles: scene::PARTICLES,
         window: |grid| {
-            let keys = [("Up, Down", "stronger, weaker wind")];
+            let keys = [
+                ("Up, Down", "stronger, weaker wind"),
+                ("D", "level of detail on and off"),
+            ];
             let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
             app.insert_resource(grid).add_systems(Update, press_keys);
             window::run(app)
@@ -67,7 +71,18 @@ fn main() -> ExitCode {
     .run()
 }
 
-fn press_keys(keys: Res<ButtonInput<KeyCode>>, mut wind: ResMut<ClothWind>) {
+fn press_keys(
+    keys: Res<ButtonInput<KeyCode>>,
+    mut wind: ResMut<ClothWind>,
+    lod: Option<Res<GlobalClothLod>>,
+    mut commands: Commands,
+) {
+    if keys.just_pressed(KeyCode::KeyD) {
+        match lod {
+            Some(_) => commands.remove_resource::<GlobalClothLod>(),
+            None => commands.insert_resource(GlobalClothLod(ClothLod::default())),
+        }
+    }
     for (key, factor) in [(KeyCode::ArrowUp, 1.25), (KeyCode::ArrowDown, 0.8)] {
         if keys.just_pressed(key) {
             wind.velocity *= factor;

@@ -51,6 +51,8 @@ impl Plugin for ScenePlugin {
                 turbulence_length: 4.0,
                 ..ClothWind::gusty(Vec3::new(7.0, 0.0, 1.5))
             })
+            // From 25 m on each flag moves in every second tick, from 50 m on in every fourth.
+            .insert_resource(GlobalClothLod(ClothLod::default()))
             .add_plugins((stage, DrapePlugins::default()))
             .add_systems(Startup, (spawn_castle, spawn_flags));
     }

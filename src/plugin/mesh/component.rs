@@ -13,7 +13,7 @@ use bevy::{
 use super::{blend::Blend, placing::Carriers, skin::DrawnPose, write::Tangents};
 use crate::cloth::Surface;
 
-/// On a cloth whose [`Mesh3d`] follows its particles, with UVs, normals and tangents; it replaces one that the entity
+/// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents; it replaces one that the entity
 /// had. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
 /// both sides.
 ///

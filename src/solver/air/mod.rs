@@ -24,7 +24,7 @@
 //! 1/(1 + κ Δt) of itself. Where κ Δt is above 1 (cotton in 20 sub-steps of 1/64 s: from 130 m/s on), b and κ are divided by it,
 //! so that a particle comes to its speed in one sub-step, and the load is less than it would be.
 //!
-//! **Cost** (64², 20 sub-steps, one thread): about 6 % of a tick, whether the wind is the same everywhere or not
+//! **Cost** (64², 20 sub-steps, one thread): 1 % of a tick where the wind is the same everywhere, 3 % where it is not
 //! (`cargo bench --profile dev --bench solver -- air`).
 
 mod areas;
