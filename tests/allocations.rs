@@ -9,7 +9,9 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
-    prelude::{ClothAttachments, ClothCollider, ClothGravity, DrapePlugins, Pin, Pins},
+    prelude::{
+        ClothAttachments, ClothCollider, ClothGravity, ClothSettings, DrapePlugins, Pin, Pins,
+    },
     solver::{
         Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
         methods::meshes,
@@ -268,7 +270,11 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
     let target = app.world_mut().spawn(Transform::default()).id();
     let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
     let attached = ClothAttachments::new(attached);
-    let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached);
+    let settings = ClothSettings {
+        tethers: true,
+        ..Default::default()
+    };
+    let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached, settings);
     let cloth = app.world_mut().spawn(cloth).id();
     let mut tick = |count: u32| {
         let some = 0.01 * (count % 7) as f32;
@@ -278,7 +284,9 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
             place.translation.x = some;
         }
         if is_animated {
-            world.resource_mut::<ClothGravity>().0.y = -9.81 - 10.0 * some;
+            // Up to six times the usual, in all directions of a plane.
+            let gravity = Vec2::from_angle(some * 50.0) * (1.0 + 1000.0 * some);
+            world.resource_mut::<ClothGravity>().0 = gravity.extend(0.0);
             let mut material = world.get_mut::<ClothMaterial>(cloth).expect("a material");
             material.damping = 0.01 + some;
             material.friction = 0.4 + some;
@@ -295,7 +303,7 @@ fn in_ticks(pins: usize, moves: bool, is_animated: bool) -> usize {
     windows.min().expect("windows")
 }
 
-/// Whether a cloth has one attached pin or two hundred, and whether what tethers do not depend on is animated.
+/// Whether a cloth has one attached pin or two hundred, and whether gravity and what tethers do not depend on are animated.
 fn attachments_and_what_is_animated_allocate_nothing_more() {
     let one = in_ticks(1, true, false);
     for (pins, is_animated) in [(200, false), (1, true)] {

@@ -273,6 +273,7 @@ impl PreparingItem<'_, '_> {
             // Nobody asks.
             _ if state.rest.is_asleep() => Substepping::needed(along, seconds),
             Substepping::Fixed(substeps) => substeps,
+            &mut state.largest_gravity,
             _ => (built.solver).needed(particles, along, seconds, settings.order),
         };
         // Layers may come nearer in a sub-step by a part of their thickness alone.

@@ -50,6 +50,8 @@ pub struct ClothState {
     pub(super) carriers: Vec<(Entity, Carrier)>,
     /// How far it is beyond each limit.
     pub(super) excess: [Excess; ClothLimit::ALL.len()],
+    /// The largest gravity that it has known, as 9.81 or a doubling of that (m/s²): tethers are made for it.
+    pub(super) largest_gravity: f32,
 }
 
 impl ClothState {
@@ -57,6 +59,7 @@ impl ClothState {
     pub(super) fn detach(&mut self) {
         self.carriers.clear();
         self.attached.clear();
+        self.largest_gravity = 0.0;
         self.attachments.clear();
         self.first_target = None;
     }
