@@ -128,7 +128,8 @@ pub(super) fn follow_targets(
             particles.transform(to.inverse() * jump * from);
         }
     }
-    let is_carried = !motions.is_empty();
+    // In the order of the particles.
+    let carried = motions.len();
     for attached in &state.attached {
         let target = places[attached.attachment];
         let particle = attached.particle as usize;
@@ -136,13 +137,18 @@ pub(super) fn follow_targets(
         let from = particles.position_at(particle);
         if teleport_from.is_some() {
             particles.put(particle, to);
-        } else if is_carried || from != to {
-            // A later motion of the same particle is the one that counts.
-            motions.push(PinMotion {
-                particle: attached.particle,
-                from,
-                to,
-            });
+            continue;
+        }
+        let motion = PinMotion {
+            particle: attached.particle,
+            from,
+            to,
+        };
+        let by_frame = motions[..carried].binary_search_by_key(&motion.particle, |of| of.particle);
+        match by_frame {
+            Ok(at) => motions[at] = motion,
+            Err(_) if from != to => motions.push(motion),
+            Err(_) => {}
         }
     }
 }

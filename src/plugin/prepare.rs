@@ -8,7 +8,7 @@ use bevy::{
         query::QueryData,
         system::{Commands, Query, Res, ResMut},
     },
-    math::Isometry3d,
+    math::{Isometry3d, Vec3},
     time::Time,
 };
 
@@ -29,7 +29,7 @@ use crate::{
     cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins},
     contact::{ClothSelfCollision, ContactSettings, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothSettings, PinMotion, Substepping, TickStep},
+    solver::{ClothSettings, DampingFrame, PinMotion, Substepping, TickStep},
 };
 
 /// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
@@ -314,6 +314,7 @@ impl PreparingItem<'_, '_> {
             narrow_phase: inputs.narrow_phase,
             ..ContactSettings::default()
         };
+            damped_against: carrier(&scratch.pins, built.pinned, seconds),
         scratch.reach = reach(
             state,
             &surface,
@@ -367,3 +368,15 @@ fn check_particles(particles: &mut Mut<ClothParticles>) -> Result<f32, ClothErro
     particles.clear_padding();
     Ok(particles.survey().largest_speed)
 }
+/// What damping is relative to: what a cloth of that many pins hangs by, in the mean of all of them; itself if it has none.
+fn carrier(pins: &[PinMotion], pinned: usize, seconds: f32) -> DampingFrame {
+    if pinned == 0 {
+        return DampingFrame::CentreOfMass;
+    }
+    let moved: Vec3 = pins.iter().map(|pin| pin.to - pin.from).sum();
+    if moved == Vec3::ZERO || seconds == 0.0 {
+        return DampingFrame::Still;
+    }
+    DampingFrame::Moving(moved / (pinned as f32 * seconds))
+}
+

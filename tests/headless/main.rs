@@ -1,6 +1,8 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
 mod attach;
+mod cape;
+mod damping;
 mod drawing;
 mod envelope;
 mod faults;

@@ -36,6 +36,7 @@ pub(crate) use self::pass::{ElasticGrid, Force, Kick, kick};
 use super::{
     Bending, PinMotion, SubStep, TickStep,
     bands::{MAX_BANDS, in_bands, take},
+    drift::Drift,
     kernel::Kernels,
     step::{DAMPING_REFERENCE, existing},
 };
@@ -136,6 +137,7 @@ impl Forces {
         particles: &mut ClothParticles,
         step: &TickStep,
         index: u32,
+        drift: &mut Drift,
         pins: &[PinMotion],
         bending: Option<&mut Bending>,
         kernels: &Kernels,
@@ -149,10 +151,12 @@ impl Forces {
             false => (1.0, kept),
         };
         let weight = part * dt * dt;
+        let [way, _] = drift.follow(particles.blocks());
+        drift.gain(part);
         let kick = Kick {
             kept,
             weight,
-            pull: (step.acceleration * weight).to_array(),
+            pull: (step.acceleration * weight + (1.0 - kept) * way).to_array(),
             moves: index < count,
         };
         let mut substep = SubStep {
