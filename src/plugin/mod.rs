@@ -38,6 +38,7 @@ mod rapier;
 #[cfg(feature = "rapier")]
 mod rapier_body;
 mod scratch;
+mod resample;
 mod search;
 mod sets;
 mod shared;

@@ -17,7 +17,7 @@ use super::{
     ClothState, ClothStats, ClothTeleport,
     attach::{Targets, follow_targets},
     broad_phase::{clear_stats, reach, update_bounds},
-    build::{Wanted, build},
+    build::{Build, Wanted, build},
     components::BroadPhaseBounds,
     frame::global_transform,
     inputs::Inputs,
@@ -186,9 +186,9 @@ impl PreparingItem<'_, '_> {
             attachments,
             scale,
         };
-        let was_built = build(&wanted, sources, parts, particles, built, state)?;
+        let build = build(&wanted, sources, parts, particles, built, state)?;
         let before = *self.frame;
-        if !was_built {
+        if build == Build::New {
             *self.frame = frame;
         }
         // Who saves or restores particles may mark them as changed without a change.
@@ -222,7 +222,7 @@ impl PreparingItem<'_, '_> {
             state.rest.disturb();
             *self.frame = frame;
         }
-        if seconds > 0.0 || !was_built || scratch.teleports {
+        if seconds > 0.0 || build != Build::Kept || scratch.teleports {
             follow_targets(
                 attachments,
                 &scratch.targets,
@@ -296,7 +296,7 @@ impl PreparingItem<'_, '_> {
         scratch.substepping = settings.substepping;
         scratch.is_in_island = false;
         scratch.self_collision = inputs.self_collision;
-        scratch.was_put = was_written || !was_built || scratch.teleports;
+        scratch.was_put = was_written || build != Build::Kept || scratch.teleports;
         if scratch.was_put {
             state.carriers.clear();
         }

@@ -24,6 +24,7 @@ mod rapier;
 mod reflection;
 mod rest;
 mod scene_files;
+mod resolution;
 mod schedule;
 mod scratch;
 mod search;
