@@ -55,8 +55,9 @@ pub mod prelude {
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
         ClothAttachment, ClothAttachments, ClothBody, ClothContact, ClothContacts, ClothFault,
-        ClothFrame, ClothGravity, ClothLimitExceeded, ClothPush, ClothStats, ClothSystems,
-        ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, DrapePlugins,
+        ClothFrame, ClothGravity, ClothLimitExceeded, ClothPaused, ClothPush, ClothStats,
+        ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped,
+        DrapePlugins,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

@@ -157,7 +157,7 @@ pub(super) fn send_touch_messages(
             continue;
         }
         let ClothContacts { now, reported, .. } = &mut *contacts;
-        if !state.is_valid {
+        if !state.is_valid || state.was_paused {
             now.clear();
         }
         for contact in now.iter() {

@@ -31,14 +31,15 @@ mod mesh;
 mod naming;
 #[cfg(feature = "egui")]
 mod panel;
+mod paused;
 mod prepare;
 mod push;
 #[cfg(feature = "rapier")]
 mod rapier;
 #[cfg(feature = "rapier")]
 mod rapier_body;
-mod scratch;
 mod resample;
+mod scratch;
 mod search;
 mod sets;
 mod shared;
@@ -76,6 +77,7 @@ pub use mesh::{ClothMesh, ClothMeshPlugin};
 pub use panel::ClothColliderSpeed;
 #[cfg(feature = "egui")]
 pub use panel::{ClothPanel, ClothPanelPlugin};
+pub use paused::ClothPaused;
 #[cfg(feature = "rapier")]
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
 #[cfg(feature = "rapier")]

@@ -5,7 +5,7 @@ use bevy::{
     ecs::{
         change_detection::{DetectChanges, Mut, Ref},
         entity::Entity,
-        query::QueryData,
+        query::{Has, QueryData},
         system::{Commands, Query, Res, ResMut},
     },
     math::{Isometry3d, Vec3},
@@ -13,8 +13,8 @@ use bevy::{
 };
 
 use super::{
-    ClothAttachments, ClothBuilt, ClothFault, ClothFrame, ClothGravity, ClothScratch, ClothSearch,
-    ClothState, ClothStats, ClothTeleport,
+    ClothAttachments, ClothBuilt, ClothFault, ClothFrame, ClothGravity, ClothPaused, ClothScratch,
+    ClothSearch, ClothState, ClothStats, ClothTeleport,
     attach::{Targets, follow_targets},
     broad_phase::{clear_stats, reach, update_bounds},
     build::{Build, Wanted, build},
@@ -59,6 +59,7 @@ pub(super) struct Preparing {
     bounds: &'static mut BroadPhaseBounds,
     search: &'static mut ClothSearch,
     teleport: Option<&'static ClothTeleport>,
+    is_paused: Has<ClothPaused>,
     fault: Option<&'static ClothFault>,
 }
 
@@ -82,6 +83,10 @@ pub(super) fn prepare_cloths(
             gravity.0,
         );
         let outcome = inputs.and_then(|inputs| {
+            let is_known = cloth.state.is_valid && cloth.built.matches(&cloth.particles);
+            if cloth.is_paused && is_known {
+                return Ok(());
+            }
             if cloth.sleeps_as_it_was(&inputs, &targets, &sources, time.delta_secs()) {
                 return Ok(());
             }
@@ -90,6 +95,9 @@ pub(super) fn prepare_cloths(
             cloth.prepare(&inputs, &targets, &sources, &mut parts, time.delta_secs())
         });
         cloth.state.is_valid = outcome.is_ok();
+        if cloth.is_paused && outcome.is_ok() {
+            cloth.pause();
+        }
         if outcome.is_err() {
             cloth.scratch.forget_tick();
             cloth.bounds.takes_part = false;
@@ -116,6 +124,19 @@ pub(super) fn prepare_cloths(
 }
 
 impl PreparingItem<'_, '_> {
+    /// Has nothing happen to the cloth in this tick. It goes on as it was, seen from where its entity is then.
+    fn pause(&mut self) {
+        if !self.state.was_paused {
+            self.state.was_paused = true;
+            self.scratch.forget_tick();
+            self.bounds.takes_part = false;
+            self.bounds.is_stale |= self.bounds.is_searched;
+            self.bounds.is_searched = false;
+            clear_stats(&mut self.stats, false);
+            (self.stats.integrate_ms, self.stats.substeps) = (0.0, 0);
+        }
+    }
+
     /// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
     fn sleeps_as_it_was(
         &self,
@@ -143,7 +164,8 @@ impl PreparingItem<'_, '_> {
         let source = built.source();
         let pins = self.pins.unwrap_or(&NO_PINS);
         // What may wake it in this tick goes on with the step that it would have been prepared with.
-        let is_prepared = (self.scratch.step).is_some_and(|step| step.seconds == seconds);
+        let is_prepared =
+            !state.was_paused && (self.scratch.step).is_some_and(|step| step.seconds == seconds);
         is_prepared
             && state.known == Some(known)
             && known_contact == (inputs.settings.particle_radius, inputs.material.friction)
@@ -209,7 +231,9 @@ impl PreparingItem<'_, '_> {
             &mut state.targets,
             &mut scratch.targets,
         )?;
-        scratch.teleports = self.teleport.is_some();
+        // It has stood still meanwhile, seen from its entity.
+        let resumes = std::mem::take(&mut state.was_paused);
+        scratch.teleports = self.teleport.is_some() || resumes;
         if scratch.teleports {
             *self.frame = frame;
         } else if seconds > 0.0 && *self.frame != frame {
@@ -249,6 +273,7 @@ impl PreparingItem<'_, '_> {
             material,
             particles,
             inputs.gravity.length(),
+            &mut state.largest_gravity,
         );
         let known = Some((
             *settings,
@@ -273,7 +298,6 @@ impl PreparingItem<'_, '_> {
             // Nobody asks.
             _ if state.rest.is_asleep() => Substepping::needed(along, seconds),
             Substepping::Fixed(substeps) => substeps,
-            &mut state.largest_gravity,
             _ => (built.solver).needed(particles, along, seconds, settings.order),
         };
         // Layers may come nearer in a sub-step by a part of their thickness alone.
@@ -290,6 +314,7 @@ impl PreparingItem<'_, '_> {
             substeps: state.control.substeps(settings.substepping, needed),
             acceleration,
             damping: material.damping,
+            damped_against: carrier(&scratch.pins, built.pinned, seconds),
             order: settings.order,
             material_stretch: built.material_stretch,
         });
@@ -314,7 +339,6 @@ impl PreparingItem<'_, '_> {
             narrow_phase: inputs.narrow_phase,
             ..ContactSettings::default()
         };
-            damped_against: carrier(&scratch.pins, built.pinned, seconds),
         scratch.reach = reach(
             state,
             &surface,
@@ -357,17 +381,6 @@ fn carry(
     particles.transform(new_from_old);
 }
 
-/// The speed of the fastest particle (m/s), if all are valid.
-fn check_particles(particles: &mut Mut<ClothParticles>) -> Result<f32, ClothError> {
-    let survey = particles.survey();
-    if survey.is_valid {
-        return Ok(survey.largest_speed);
-    }
-    particles.validate()?;
-    // What was not valid has been mended, but for what it left beside the particles.
-    particles.clear_padding();
-    Ok(particles.survey().largest_speed)
-}
 /// What damping is relative to: what a cloth of that many pins hangs by, in the mean of all of them; itself if it has none.
 fn carrier(pins: &[PinMotion], pinned: usize, seconds: f32) -> DampingFrame {
     if pinned == 0 {
@@ -380,3 +393,14 @@ fn carrier(pins: &[PinMotion], pinned: usize, seconds: f32) -> DampingFrame {
     DampingFrame::Moving(moved / (pinned as f32 * seconds))
 }
 
+/// The speed of the fastest particle (m/s), if all are valid.
+fn check_particles(particles: &mut Mut<ClothParticles>) -> Result<f32, ClothError> {
+    let survey = particles.survey();
+    if survey.is_valid {
+        return Ok(survey.largest_speed);
+    }
+    particles.validate()?;
+    // What was not valid has been mended, but for what it left beside the particles.
+    particles.clear_padding();
+    Ok(particles.survey().largest_speed)
+}

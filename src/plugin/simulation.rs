@@ -26,8 +26,8 @@ use bevy::{
 use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
     ClothAttachments, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-    ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats, ClothSystems,
-    ClothTeleport, ClothTouchStarted, ClothTouchStopped,
+    ClothLimitExceeded, ClothPaused, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats,
+    ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped,
     awaited::{Deprived, note_enabled, note_removals},
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
@@ -91,6 +91,7 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothStats>()
             .register_type::<ClothAttachments>()
             .register_type::<ClothTeleport>()
+            .register_type::<ClothPaused>()
             .register_type::<ClothBuilt>()
             .register_type::<ClothSearch>()
             .register_type::<ClothFault>()

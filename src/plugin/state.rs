@@ -19,6 +19,8 @@ use crate::{
 pub struct ClothState {
     /// Whether the last preparation found nothing wrong: what is not valid is neither moved nor drawn.
     pub(super) is_valid: bool,
+    /// Whether nothing was to happen to it in the last tick.
+    pub(super) was_paused: bool,
     /// Of the coming tick's sub-steps.
     pub(super) control: Control,
     pub(super) rest: Rest,
@@ -48,18 +50,18 @@ pub struct ClothState {
     pub(super) rests_on: Vec<(Entity, MovingCollider)>,
     /// The particles that carried bodies as the last tick ended.
     pub(super) carriers: Vec<(Entity, Carrier)>,
-    /// How far it is beyond each limit.
-    pub(super) excess: [Excess; ClothLimit::ALL.len()],
     /// The largest gravity that it has known, as 9.81 or a doubling of that (m/s²): tethers are made for it.
     pub(super) largest_gravity: f32,
+    /// How far it is beyond each limit.
+    pub(super) excess: [Excess; ClothLimit::ALL.len()],
 }
 
 impl ClothState {
-    /// Forgets what it was attached to, and what it carried: the particles are others.
+    /// Forgets what it was attached to, what it carried and what pulled at it: the particles are others.
     pub(super) fn detach(&mut self) {
+        self.largest_gravity = 0.0;
         self.carriers.clear();
         self.attached.clear();
-        self.largest_gravity = 0.0;
         self.attachments.clear();
         self.first_target = None;
     }

@@ -18,6 +18,8 @@ mod meshes;
 mod motion;
 mod near;
 mod parents;
+mod paused;
+mod pole;
 mod push_back;
 mod push_rapier;
 mod rapier;

@@ -19,7 +19,7 @@ use bevy::{
         intern::Interned,
         lifecycle::Remove,
         observer::On,
-        query::QueryData,
+        query::{Has, QueryData, Without},
         reflect::ReflectComponent,
         schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
         system::{Commands, Query, Res, ResMut},
@@ -31,17 +31,19 @@ use bevy::{
     transform::{TransformSystems, components::GlobalTransform},
 };
 
-use super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothSystems};
+use super::{ClothBuilt, ClothFrame, ClothPaused, ClothScratch, ClothState, ClothSystems};
 use crate::cloth::{Cloth, ClothParticles, ClothShape, Surface};
 use placing::{Carriers, Drawn};
 use write::{Tangents, copy_of, mesh_of, write_mesh};
 
 /// On a cloth whose [`Mesh3d`] follows its particles, with UVs, normals and tangents; it replaces one that the entity
-/// had. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
+/// had, which comes back when [`Cloth`] is removed. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
 /// both sides.
 ///
 /// Pinned and attached particles are drawn where the cloth's entity and their targets are drawn. Interpolate what moves in
 /// `FixedUpdate` and touches cloth, as the cloth is, for instance by the crate `bevy_transform_interpolation`.
+///
+/// The mesh of a cloth that Bevy's visibility hides, its own or an ancestor's, is not written; the cloth moves on all the same.
 ///
 /// Reflected as nothing: it is made again.
 #[derive(Component, Reflect, Debug, Default)]
@@ -52,6 +54,9 @@ pub struct ClothMesh {
     /// The asset that the cloth was made from.
     #[reflect(ignore)]
     source: Option<Handle<Mesh>>,
+    /// What the entity drew before.
+    #[reflect(ignore)]
+    before: Option<Handle<Mesh>>,
     /// What it is a mesh of.
     #[reflect(ignore)]
     surface: Arc<Surface>,
@@ -74,6 +79,9 @@ pub struct ClothMesh {
     drawn: Vec<Vec3>,
     #[reflect(ignore)]
     normals: Vec<Vec3>,
+    /// Whether the mesh shows the particles yet.
+    #[reflect(ignore)]
+    is_drawn: bool,
     /// What is drawn of a cloth that sleeps: when its particles were written, and where its entity is.
     #[reflect(ignore)]
     settled: Option<(Tick, GlobalTransform)>,
@@ -152,13 +160,16 @@ impl Plugin for ClothMeshPlugin {
 }
 
 fn remember_positions(
-    mut cloths: Query<(
-        &ClothParticles,
-        &ClothFrame,
-        &ClothState,
-        &ClothScratch,
-        &mut ClothMesh,
-    )>,
+    mut cloths: Query<
+        (
+            &ClothParticles,
+            &ClothFrame,
+            &ClothState,
+            &ClothScratch,
+            &mut ClothMesh,
+        ),
+        Without<ClothPaused>,
+    >,
 ) {
     for (particles, frame, state, scratch, mut mesh) in &mut cloths {
         let rests = state.rest.is_asleep();
@@ -199,13 +210,11 @@ fn add_meshes(
             continue;
         }
         // What the entity drew before the plugin's own mesh.
-        let known = drawn.and_then(|drawn| drawn.source.clone());
+        let known = drawn.and_then(|drawn| drawn.before.clone());
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
-        let source = other
-            .map(|mesh| mesh.0.clone())
-            .or(known)
-            .filter(|_| is_asset);
+        let before = other.map(|mesh| mesh.0.clone()).or(known);
+        let source = before.clone().filter(|_| is_asset);
         // What the cloth was made from may have gone meanwhile, or be the renderer's alone.
         let copy = source
             .as_ref()
@@ -216,6 +225,7 @@ fn add_meshes(
         let drawn = ClothMesh {
             handle: handle.clone(),
             source,
+            before,
             surface: surface.clone(),
             tangents,
             ..Default::default()
@@ -224,7 +234,7 @@ fn add_meshes(
     }
 }
 
-/// What is no cloth any more is not drawn as one, but as what it was made from, if it was. What the game has put in place of
+/// What is no cloth any more is not drawn as one, but as what the entity drew before, if it did. What the game has put in place of
 /// the plugin's mesh stays.
 fn remove_mesh(
     removed: On<Remove, Cloth>,
@@ -234,8 +244,8 @@ fn remove_mesh(
     if let Ok((own, drawn)) = meshes.get(removed.entity) {
         let mut entity = commands.entity(removed.entity);
         if drawn.is_some_and(|drawn| drawn.0 == own.handle) {
-            match &own.source {
-                Some(source) => entity.try_insert(Mesh3d(source.clone())),
+            match &own.before {
+                Some(before) => entity.try_insert(Mesh3d(before.clone())),
                 None => entity.try_remove::<Mesh3d>(),
             };
         }
@@ -252,6 +262,7 @@ struct Drawing {
     state: &'static ClothState,
     transform: Option<&'static GlobalTransform>,
     visibility: Option<&'static InheritedVisibility>,
+    is_paused: Has<ClothPaused>,
     mesh: &'static mut ClothMesh,
 }
 
@@ -288,6 +299,10 @@ impl DrawingItem<'_, '_> {
             self.mesh.settled = None;
             return;
         }
+        // It goes with its entity as it is, once it has been drawn at all.
+        if self.is_paused && self.mesh.is_drawn {
+            return;
+        }
         let own = GlobalTransform::from(self.frame.affine());
         let entity = self.transform.copied().unwrap_or(own);
         let ClothMesh {
@@ -299,6 +314,7 @@ impl DrawingItem<'_, '_> {
             normals,
             tangents,
             rested,
+            is_drawn,
             settled,
             ..
         } = &mut *self.mesh;
@@ -331,6 +347,7 @@ impl DrawingItem<'_, '_> {
         };
         place.place(carriers, drawn);
         write_mesh(&mut mesh, surface, drawn, normals, tangents);
+        *is_drawn = true;
         *settled = state;
     }
 }
