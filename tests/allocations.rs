@@ -20,7 +20,7 @@ use bevy_drape::{
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::{
         ClothAttachments, ClothBody, ClothCollider, ClothGravity, ClothInertia, ClothLod,
-        ClothLodLevel, ClothPaint, ClothSkin, DrapePlugins, Pin, Pins,
+        ClothLodLevel, ClothPaint, ClothSettings, ClothSkin, DrapePlugins, Pin, Pins,
     },
     solver::{
         Air, Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
@@ -333,7 +333,11 @@ fn with_attachments(pins: usize, is_animated: bool, levels: &[ClothLodLevel]) ->
     let target = app.world_mut().spawn(Transform::default()).id();
     let attached = (0..pins).map(|pin| (Pin::Index(pin), target));
     let attached = ClothAttachments::new(attached);
-    let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached);
+    let settings = ClothSettings {
+        tethers: true,
+        ..Default::default()
+    };
+    let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached, settings);
     let lod = ClothLod::at(ClothLodLevel::Full);
     let cloth = app.world_mut().spawn((cloth, lod)).id();
     in_ticks(app, |world, count| {
@@ -345,7 +349,9 @@ fn with_attachments(pins: usize, is_animated: bool, levels: &[ClothLodLevel]) ->
             lod.level = Some(*level);
         }
         if is_animated {
-            world.resource_mut::<ClothGravity>().0.y = -9.81 - 10.0 * some;
+            // Up to six times the usual, in all directions of a plane.
+            let gravity = Vec2::from_angle(some * 50.0) * (1.0 + 1000.0 * some);
+            world.resource_mut::<ClothGravity>().0 = gravity.extend(0.0);
             let mut material = world.get_mut::<ClothMaterial>(cloth).expect("a material");
             material.damping = 0.01 + some;
             material.friction = 0.4 + some;

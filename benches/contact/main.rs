@@ -5,11 +5,16 @@
 //!
 //! Then a ball is pressed six spacings deep into the middle of a cell of a cloth that is held by its rim, and held there. How
 //! deep the flat triangles then are inside of the ball, and what a sub-step's response takes, by either narrow phase (`-- press`).
+//!
+//! Then a flag of 48 × 32 that is attached to a pole by its left column: a whole tick of it in an app, without a collider on the pole, with
+//! a capsule of 2 cm, and with a cylinder (`-- pole`).
 
+mod pole;
 mod press;
 mod resting;
 
 use bevy_drape::{contact::NarrowPhase, solver::TickStep};
+use pole::{Pole, flag};
 use press::{SPACING, press};
 use resting::rest;
 
@@ -25,6 +30,9 @@ fn main() {
     }
     if wanted("press") {
         pressed();
+    }
+    if wanted("pole") {
+        on_poles();
     }
 }
 
@@ -46,6 +54,21 @@ fn at_rest() {
             );
         }
         println!("{turn},without,{:.3},1,0,0", 1.0e3 * without);
+    }
+}
+
+fn on_poles() {
+    println!("turn,pole,ms_a_tick,times_without");
+    for turn in 0..TURNS {
+        let without = flag(Pole::None);
+        for (name, pole) in [
+            ("none", Pole::None),
+            ("capsule", Pole::Capsule),
+            ("cylinder", Pole::Cylinder),
+        ] {
+            let ms = flag(pole);
+            println!("{turn},{name},{ms:.3},{:.2}", ms / without);
+        }
     }
 }
 

@@ -39,7 +39,11 @@ pub struct ClothMaterial {
     /// 1/e, τ of a Kelvin-Voigt solid, zero or more and finite. A bounce of angular frequency ω is damped by τ ω/2 of what is
     /// critical. It takes no momentum, and slows no fall; rigid springs, which do not stretch, lose nothing. Zero costs nothing.
     pub stretch_damping: f32,
-    /// The paper's D, as of air: the part of its velocity that the cloth loses in 1/60 s, from 0 to 1.
+    /// The paper's D, inner loss of the material: the part of its motion that the cloth loses in 1/60 s, from 0 to 1. Of a cloth with
+    /// pins that is its velocity relative to the mean velocity of its pins, so that a cape in a vehicle hangs as in one that stands;
+    /// of a free cloth its velocity relative to its centre of mass, so that all materials fall alike, and a free cloth that turns
+    /// slows down in its turn alone. [`Solver`](crate::solver::Solver), used by itself, damps relative to what its
+    /// [`TickStep`](crate::solver::TickStep) says.
     pub damping: f32,
     /// Coulomb's μ against colliders, zero or more.
     pub friction: f32,

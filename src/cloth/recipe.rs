@@ -24,7 +24,12 @@ use super::{
 /// triangles.
 ///
 /// Position, rotation and scale are respected at spawn; moved later, the transform carries the pinned particles along and the
-/// others follow by their springs. Changing this component builds a new cloth at rest.
+/// others follow by their springs.
+///
+/// This component may change at any time. A grid that gets another resolution and stays the same rectangle, so that columns − 1 times the
+/// spacing and rows − 1 times the spacing stay what they are, stays where it is and moves on as it did: so may a cloth become coarser
+/// with its distance. Folds that are finer than the new spacing unfold, as fast as they are stretched out. Masses that the game gave to single particles are those of the material again. Any other change builds a new
+/// cloth at rest.
 ///
 /// ```
 /// use bevy::math::Vec3;

@@ -86,10 +86,21 @@ impl Fans {
         self.faces.clear();
     }
 
-    /// Adds the faces that a particle stands for. Returns from where to where their corners and they are.
-    pub fn add(&mut self, surface: &Surface, layout: Layout, particle: u32) -> [[u32; 2]; 2] {
+    /// Adds the faces that a particle stands for, or none if one of them is left out. Returns from where to where their corners and
+    /// they are.
+    pub fn add(
+        &mut self,
+        surface: &Surface,
+        layout: Layout,
+        particle: u32,
+        is_left_out: impl Fn(&[u32; 3]) -> bool,
+    ) -> [[u32; 2]; 2] {
         let (first_corner, first_face) = (self.corners.len(), self.faces.len());
-        let faces = surface.faces().of(particle);
+        let mut faces = surface.faces().of(particle);
+        // All or none: what is remembered of a particle's faces counts on the same ones.
+        if faces.iter().any(is_left_out) {
+            faces = &[];
+        }
         if !faces.is_empty() {
             self.corners.push(layout.slot_of(particle as usize));
         }
@@ -147,14 +158,15 @@ impl Candidates {
         self.helds.fill(Held::NONE);
     }
 
-    /// Adds those of a collider, whatever their order. Returns where they and their blocks are, each in the order of the cloth: so the
+    /// Adds those of a collider, whatever their order; with the triangles that they stand for, if `is_left_out`
+    /// is given, which says of each whether it is not to be tested. Returns where they and their blocks are, each in the order of the cloth: so the
     /// result is the same whichever search has found them.
     pub fn add(
         &mut self,
         found: &[u32],
         surface: &Surface,
         layout: Layout,
-        by_triangles: bool,
+        is_left_out: Option<&impl Fn(&[u32; 3]) -> bool>,
     ) -> Ranges {
         let first = [self.all.len(), self.blocks.len(), self.helds.len()];
         self.all.extend(found.iter().map(|&particle| Candidate {
@@ -170,9 +182,9 @@ impl Candidates {
             let Slot { block, lane } = layout.slot_of(candidate.particle as usize);
             candidate.place = (block * LANES + lane) as u32;
             self.mark(block, first[1]);
-            if by_triangles {
+            if let Some(is_left_out) = is_left_out {
                 let particle = self.all[index].particle;
-                let [corners, faces] = self.fans.add(surface, layout, particle);
+                let [corners, faces] = self.fans.add(surface, layout, particle, is_left_out);
                 (self.all[index].corners, self.all[index].faces) = (corners, faces);
                 for corner in corners[0]..corners[1] {
                     let corner = self.fans.corners([corner, corner + 1])[0];
@@ -203,7 +215,7 @@ impl Candidates {
                 contact.around = around.map(|block| self.marks[block] - first[1] as u32);
             }
         }
-        if by_triangles {
+        if is_left_out.is_some() {
             let count = self.blocks.len() - first[1];
             self.helds.resize(first[2] + count, Held::NONE);
         }

@@ -2,13 +2,15 @@
 
 mod carrying;
 mod requery;
+mod sewn;
 
 use std::sync::Arc;
 
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
+use self::sewn::is_sewn_on;
 use super::{
-    BodyChange, MovingCollider, NarrowPhase,
+    BodyChange, ColliderShape, MovingCollider, NarrowPhase,
     body::{Before, Body},
     candidates::Candidates,
     carriers::Carriers,
@@ -46,6 +48,8 @@ pub struct Detection {
     /// All that were searched for, touching or not, and among what: to search again.
     colliders: Vec<(usize, MovingCollider)>,
     surface: Arc<Surface>,
+    /// Of the particles (m), as far as is known as a tick begins.
+    particle_radius: f32,
     /// How far a particle may move before the candidates are searched for again (m).
     margin: f32,
     /// How far one may have moved since they were (m): as the largest moves and pushes add up, or as measured.
@@ -92,6 +96,11 @@ impl Detection {
         self.requeries = 0;
     }
 
+    /// With this radius of the particles (m) from now on, where triangles at pins are [left out](Self::add); 0 until then.
+    pub fn set_particle_radius(&mut self, particle_radius: f32) {
+        self.particle_radius = particle_radius;
+    }
+
     /// What to search for, for this collider to be tested in the tick, and against what it then is tested. Triangles
     /// reach `longest_edge` (m) from the particle that stands for them.
     pub fn probe(
@@ -122,7 +131,11 @@ impl Detection {
     }
 
     /// Takes over which particles the search has found for a collider, which is the caller's number `id`. To be called
-    /// for each collider, whether any were found or not: others may yet push some to it.
+    /// for each collider, whether any were found or not: others may yet push some to it. They are as the tick begins.
+    ///
+    /// Triangles of which a corner is pinned right there, inside of the collider or at most a
+    /// [particle's radius](Self::set_particle_radius) before it, are not tested, nor those that a particle stands for together with them: as those of
+    /// a flag along its pole.
     pub fn add(
         &mut self,
         id: usize,
@@ -136,7 +149,7 @@ impl Detection {
         if is_new || self.colliders.iter().all(|(known, _)| *known != id) {
             self.colliders.push((id, collider.clone()));
         }
-        self.hold(id, collider, narrow_phase, found, particles);
+        self.hold(id, collider, narrow_phase, 0, found, particles);
     }
 
     /// What the cloth has changed of a collider's motion so far, if it gives way and was near.
@@ -147,11 +160,13 @@ impl Detection {
             .map(Body::change)
     }
 
+    /// When so many sub-steps have passed.
     fn hold(
         &mut self,
         id: usize,
         collider: &MovingCollider,
         narrow_phase: NarrowPhase,
+        passed: u32,
         found: &[u32],
         particles: &ClothParticles,
     ) {
@@ -166,10 +181,14 @@ impl Detection {
             self.remember(particles);
         }
         let layout = particles.layout();
+        let is_sewn =
+            |face: &[u32; 3]| is_sewn_on(face, collider, (passed, self.particle_radius), particles);
+        // Cells are tested eight at a time, with pins or without.
+        let is_by_cells = layout.rows > 1 && matches!(collider.shape, ColliderShape::Ball { .. });
+        let is_left_out = |face: &[u32; 3]| !is_by_cells && is_sewn(face);
         let by_triangles = narrow_phase == NarrowPhase::Triangles;
-        let of = self
-            .candidates
-            .add(found, &self.surface, layout, by_triangles);
+        let triangles = by_triangles.then_some(&is_left_out);
+        let of = self.candidates.add(found, &self.surface, layout, triangles);
         match self.touches.binary_search_by_key(&id, |touch| touch.id) {
             Ok(at) => self.touches[at].of = of,
             Err(at) => self.touches.insert(
@@ -235,7 +254,7 @@ impl Detection {
         loop {
             if self.is_outrun(particles) {
                 others(&mut self.colliders);
-                self.search(particles, settings);
+                self.search(particles, settings, substep.index + 1);
             }
             let at = self.touches.partition_point(|touch| touch.id < next);
             let Some(touch) = self.touches.get_mut(at) else {

@@ -14,6 +14,7 @@ use bevy::{
 use super::{
     ClothAttachment, ClothBuilt, ClothFrame, ClothState, ClothTarget,
     attachments::Attached,
+    carry::set_motion,
     frame::{global_transform, rigid},
 };
 use crate::{
@@ -128,7 +129,7 @@ pub(super) fn follow_targets(
             particles.transform(to.inverse() * jump * from);
         }
     }
-    let is_carried = !motions.is_empty();
+    let carried = motions.len();
     for attached in &state.attached {
         let target = places[attached.attachment];
         let particle = attached.particle as usize;
@@ -136,14 +137,14 @@ pub(super) fn follow_targets(
         let from = particles.position_at(particle);
         if teleport_from.is_some() {
             particles.put(particle, to);
-        } else if is_carried || from != to {
-            // A later motion of the same particle is the one that counts.
-            motions.push(PinMotion {
-                particle: attached.particle,
-                from,
-                to,
-            });
+            continue;
         }
+        let motion = PinMotion {
+            particle: attached.particle,
+            from,
+            to,
+        };
+        set_motion(motions, carried, motion);
     }
 }
 

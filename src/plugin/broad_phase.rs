@@ -59,6 +59,8 @@ pub(super) fn update_bounds(
     if !is_asleep {
         scratch.near.clear();
         scratch.detection.begin(built.surface(), scratch.reach);
+        let radius = scratch.contact_settings.particle_radius;
+        scratch.detection.set_particle_radius(radius);
         state.rests_on.clear();
         if is_stale {
             search.query.clear();

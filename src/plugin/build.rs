@@ -8,10 +8,14 @@ use bevy::{
 use super::{
     ClothAttachment, ClothBuilt, ClothState,
     built::{BuiltFrom, Tried},
-    shared::{Recipe, SharedParts, stiffnesses},
+    resample::{is_same_rectangle, resample},
+    shared::{Recipe, Shared, SharedParts, stiffnesses},
     source::{Source, Sources},
 };
-use crate::cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, Surface};
+use crate::{
+    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, Surface},
+    solver::{TickStep, TimeOrder},
+};
 
 /// What the game says that a cloth is. In place of components that it took away the defaults count, and no pins.
 pub(super) struct Wanted<'a> {
@@ -26,8 +30,18 @@ pub(super) struct Wanted<'a> {
     pub scale: Vec3,
 }
 
-/// Builds a new cloth, or follows changes of an old one. Returns whether it had been built before. Changes nothing on an
-/// error.
+/// What came of building.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Build {
+    /// The particles are those of the last tick.
+    Kept,
+    /// Of another resolution, and where those of the last tick were.
+    Resampled,
+    /// Others.
+    New,
+}
+
+/// Builds a new cloth, or follows changes of an old one. Changes nothing on an error.
 pub(super) fn build(
     wanted: &Wanted,
     sources: &Sources,
@@ -35,10 +49,10 @@ pub(super) fn build(
     particles: &mut Mut<ClothParticles>,
     built: &mut ClothBuilt,
     state: &mut ClothState,
-) -> Result<bool, ClothError> {
+) -> Result<Build, ClothError> {
     if is_built(wanted, built) && !particles.is_empty() {
         follow_changes(wanted, parts, particles, built, state)?;
-        return Ok(true);
+        return Ok(Build::Kept);
     }
     // What was refused once would be again: a mesh takes milliseconds to look at.
     let tried = Tried {
@@ -56,9 +70,9 @@ pub(super) fn build(
     }
     let new = build_new(wanted, sources, parts, particles, built, state);
     built.refused = new.as_ref().err().map(|error| (tried, error.clone()));
-    new?;
+    let build = new?;
     state.rest.disturb();
-    Ok(false)
+    Ok(build)
 }
 
 /// Whether what was built is that cloth, whatever its pins and material.
@@ -88,7 +102,7 @@ fn build_new(
     particles: &mut Mut<ClothParticles>,
     built: &mut ClothBuilt,
     state: &mut ClothState,
-) -> Result<(), ClothError> {
+) -> Result<Build, ClothError> {
     let Wanted {
         cloth,
         material,
@@ -108,7 +122,11 @@ fn build_new(
     pins.validate(surface)?;
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
     // not.
-    let mut new = if built.from.is_some() || particles.is_empty() {
+    let mut build = Build::New;
+    let mut new = if let Some(resampled) = resampled(wanted, &shared, particles, built)? {
+        build = Build::Resampled;
+        resampled
+    } else if built.from.is_some() || particles.is_empty() {
         at_rest(wanted, surface)?
     } else {
         check_count(particles, surface)?;
@@ -126,7 +144,44 @@ fn build_new(
         material: *material,
         pins: pins.clone(),
     });
-    Ok(())
+    Ok(build)
+}
+
+/// The particles of a cloth of the same rectangle as the one that was built, whose resolution alone has changed, where that is.
+fn resampled(
+    wanted: &Wanted,
+    shared: &Shared,
+    particles: &ClothParticles,
+    built: &ClothBuilt,
+) -> Result<Option<ClothParticles>, ClothError> {
+    let surface = &shared.surface;
+    let (Some(from), Some(to)) = (built.surface().as_grid(), surface.as_grid()) else {
+        return Ok(None);
+    };
+    let is_known = built.matches(particles) && particles.validate().is_ok();
+    if !is_known || !is_same_rectangle(from, to) {
+        return Ok(None);
+    }
+    let mut new = ClothParticles::at_rest(surface, wanted.material)?;
+    new.assign_masses(surface, wanted.material, wanted.pins)?;
+    // What is attached will be pinned where it is.
+    for attachment in wanted.attachments {
+        if attachment.pin.validate(surface).is_ok() {
+            attachment.pin.for_each(surface, |index| new.pin(index));
+        }
+    }
+    // Sub-steps in which nothing pulls and no velocity is kept: threads get the lengths that they have, without a jolt.
+    let step = TickStep {
+        seconds: 1.0 / 16.0,
+        substeps: 80,
+        damping: 1.0,
+        order: TimeOrder::First,
+        ..TickStep::default()
+    };
+    resample((particles, from), (&mut new, to), |new| {
+        shared.solver.clone().advance(new, step, &[], |_, _| false);
+    })?;
+    Ok(Some(new))
 }
 
 /// The scale of a cloth. That of a mesh without its last digits, which depend on how the cloth is turned: so that those made

@@ -31,12 +31,14 @@ pub struct ClothBuilt {
     pub(super) refused: Option<(Tried, ClothError)>,
     #[reflect(ignore)]
     pub(super) solver: Solver,
-    /// Whether there are tethers, and for which acceleration (m/s²); `None` if they have to be made again.
+    /// Whether there are tethers, and for which acceleration (m/s²), 0 without; `None` if they have to be made again.
     #[reflect(ignore)]
     tethered: Option<(bool, f32)>,
-    /// The stretch that its material gives by itself.
+    /// The stretch that its material gives by itself: under the gravity of the tick, and under the largest that it has known.
     #[reflect(ignore)]
     pub(super) material_stretch: f32,
+    #[reflect(ignore)]
+    pub(super) largest_material_stretch: f32,
     /// Masses of its lightest and heaviest free particle (kg).
     #[reflect(ignore)]
     pub(super) masses: [f32; 2],
@@ -152,33 +154,84 @@ impl ClothBuilt {
         self.tethered = None;
     }
 
-    /// Makes tethers again if what they were made for has changed: the pins, the material, or what pulls at them; and
-    /// what follows from the same.
+    /// Makes tethers again if what they were made for has changed: the pins, the material, or that gravity
+    /// (m/s²) is larger than ever before; and what follows from the same. Returns whether it did.
     pub(super) fn tether(
         &mut self,
         wanted: bool,
         material: &ClothMaterial,
         particles: &ClothParticles,
-        acceleration: f32,
-    ) {
+        gravity: f32,
+        largest_gravity: &mut f32,
+    ) -> bool {
         if self.tethered.is_none() {
             self.pinned = particles.inverse_masses().filter(|w| *w == 0.0).count();
             self.masses = particles.free_masses();
             self.pins_version = self.pins_version.wrapping_add(1);
         }
         let surface = &self.shared.surface;
-        self.material_stretch = material_stretch(surface, material, self.pinned, acceleration);
-        let acceleration = Tethers::made_for(acceleration);
-        let made_for = Some((wanted, acceleration));
+        let gives = |gravity: f32| material_stretch(surface, material, self.pinned, gravity);
+        // Gravity that comes and goes finds all as it was; what it stretched before is no fault after.
+        *largest_gravity = largest_gravity.max(Tethers::made_for(gravity));
+        self.material_stretch = gives(gravity);
+        self.largest_material_stretch = gives(largest_gravity.max(gravity));
+        let made_for = Some((wanted, if wanted { *largest_gravity } else { 0.0 }));
         if self.tethered == made_for {
-            return;
+            return false;
         }
         self.tethered = made_for;
         let tethers = if wanted {
-            Tethers::new(surface, material, particles, acceleration)
+            Tethers::new(surface, material, particles, *largest_gravity)
         } else {
             Tethers::default()
         };
         self.solver.set_tethers(tethers);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::shared::{Recipe, SharedParts},
+        *,
+    };
+    use crate::cloth::Cloth;
+
+    /// Gravity swings between nothing and 60 m/s² for 200 ticks: tethers are made as it first grows, for 9.81 and each
+    /// doubling of it up to four fifths of 60, and never again.
+    #[test]
+    fn gravity_that_comes_and_goes_makes_no_tethers_again() {
+        let cloth = Cloth::new(8, 8, 0.1);
+        let surface = cloth.surface(Vec3::ONE).expect("a valid grid");
+        let material = ClothMaterial::COTTON;
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a material");
+        particles.pin(0);
+        let mut parts = SharedParts::default();
+        let recipe = Recipe {
+            shape: cloth.shape,
+            scale: Vec3::ONE,
+            source: None,
+        };
+        let mut built = ClothBuilt {
+            shared: parts
+                .get(&recipe, &material, || Ok(surface))
+                .expect("a surface"),
+            ..Default::default()
+        };
+        let mut largest = 0.0;
+        let mut made = |tick: u32, wanted: bool, largest: &mut f32| {
+            let gravity = 30.0 * (1.0 - (0.3 * tick as f32).cos());
+            built.tether(wanted, &material, &particles, gravity, largest)
+        };
+        let count = |ticks: std::ops::Range<u32>| {
+            ticks.filter(|&tick| made(tick, true, &mut largest)).count()
+        };
+        assert_eq!([0..200, 200..400].map(count), [4, 0]);
+        assert_eq!(largest, 8.0 * 9.81);
+        // And none are made where none are wanted, whatever pulls.
+        let mut largest = 0.0;
+        assert!(made(400, false, &mut largest));
+        assert!(!(401..600).any(|tick| made(tick, false, &mut largest)));
     }
 }

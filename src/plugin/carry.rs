@@ -1,9 +1,12 @@
 //! What becomes of the particles when their frame moves.
 
-use bevy::math::Isometry3d;
+use bevy::math::{Isometry3d, Vec3};
 
 use super::{ClothFrame, inertia::Carried};
-use crate::{cloth::ClothParticles, solver::PinMotion};
+use crate::{
+    cloth::ClothParticles,
+    solver::{DampingFrame, PinMotion},
+};
 
 /// What takes a cloth from the frame that it was in to the one that it is in now, carried along or not; `None` if neither moves it.
 pub(super) fn new_from_old(
@@ -14,6 +17,29 @@ pub(super) fn new_from_old(
         Some(carried) => Some(carried.seen_from(new, old.isometry())),
         None => (old != new).then(|| new.isometry().inverse() * old.isometry()),
     }
+}
+
+/// Has a pin move so in the tick, instead of as it was to be moved by one of the first `carried` motions, which are in the order of the
+/// particles.
+pub(super) fn set_motion(motions: &mut Vec<PinMotion>, carried: usize, motion: PinMotion) {
+    let known = motions[..carried].binary_search_by_key(&motion.particle, |known| known.particle);
+    match known {
+        Ok(at) => motions[at] = motion,
+        Err(_) if motion.from != motion.to => motions.push(motion),
+        Err(_) => {}
+    }
+}
+
+/// What damping is relative to: what a cloth of that many pins hangs by, in the mean of all of them; itself if it has none.
+pub(super) fn carrier(pins: &[PinMotion], pinned: usize, seconds: f32) -> DampingFrame {
+    if pinned == 0 {
+        return DampingFrame::CentreOfMass;
+    }
+    let moved: Vec3 = pins.iter().map(|pin| pin.to - pin.from).sum();
+    if moved == Vec3::ZERO || seconds == 0.0 {
+        return DampingFrame::Still;
+    }
+    DampingFrame::Moving(moved / (pinned as f32 * seconds))
 }
 
 /// The frame has moved: the particles stay where they are in the world, but for what carries them along, and their pins go along

@@ -48,6 +48,7 @@ mod rapier;
 mod rapier_body;
 #[cfg(feature = "mesh")]
 mod render_mesh;
+mod resample;
 mod scratch;
 mod search;
 mod sets;

@@ -1,90 +1,40 @@
 //! The first step of a tick: new cloths are built, every input is checked and taken over. One function after the other, each
 //! with what it needs.
 
+mod asleep;
+mod preparing;
+mod step;
+
 use bevy::{
     ecs::{
-        change_detection::{DetectChanges, Mut, Ref},
-        entity::Entity,
-        query::{QueryData, With, Without},
-        system::{Commands, Query, Res, ResMut, SystemParam},
+        change_detection::{DetectChanges, Mut},
+        system::{Commands, Query, Res, ResMut},
     },
-    math::Vec3,
     time::Time,
 };
 
+use self::{
+    asleep::sleeps_as_it_was,
+    preparing::{NO_PINS, Preparing, PreparingItem, Surroundings},
+    step::{prepare_contact, prepare_step, see_whether_it_rests},
+};
 use super::{
-    ClothAir, ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-    ClothScratch, ClothSearch, ClothState, ClothStats, ClothTeleport,
+    ClothAttachments, ClothFault, ClothFrame, ClothGravity, ClothTeleport,
     attach::{Targets, follow_targets},
-    broad_phase::{clear_stats, reach, update_bounds},
-    build::{Wanted, build},
+    broad_phase::clear_stats,
+    build::{Build, Wanted, build},
     carry::{carry, new_from_old},
-    components::BroadPhaseBounds,
     frame::global_transform,
     freeze::{stand, thaw},
-    inertia::Roots,
     inputs::Inputs,
     lod::{ClothLod, GlobalClothLod},
     lod_state::Turn,
     naming::Part,
     shared::SharedParts,
-    skin::{Skins, move_with_pose, place_pose},
-    source::Sources,
-    wind::{Breeze, WindField},
+    skin::{move_with_pose, place_pose},
+    wind::Breeze,
 };
-use crate::{
-    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, ClothSkin, Pins},
-    contact::{ClothSelfCollision, ContactSettings, NarrowPhase},
-    hierarchy::SearchMethod,
-    solver::{ClothPressure, ClothSettings, Substepping, TickStep},
-};
-
-/// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
-const FOR_LAYERS: u32 = 16;
-
-/// The pins of a cloth from which the game took its [`Pins`].
-static NO_PINS: Pins = Pins::none();
-
-#[derive(QueryData)]
-#[query_data(mutable)]
-pub(super) struct Preparing {
-    entity: Entity,
-    cloth: Ref<'static, Cloth>,
-    material: Option<&'static ClothMaterial>,
-    pins: Option<&'static Pins>,
-    attachments: Option<&'static ClothAttachments>,
-    skin: Option<Ref<'static, ClothSkin>>,
-    settings: Option<&'static ClothSettings>,
-    method: Option<&'static SearchMethod>,
-    narrow_phase: Option<&'static NarrowPhase>,
-    self_collision: Option<&'static ClothSelfCollision>,
-    air: Option<&'static ClothAir>,
-    pressure: Option<&'static ClothPressure>,
-    lod: Option<&'static ClothLod>,
-    particles: &'static mut ClothParticles,
-    built: &'static mut ClothBuilt,
-    state: &'static mut ClothState,
-    scratch: &'static mut ClothScratch,
-    frame: &'static mut ClothFrame,
-    stats: &'static mut ClothStats,
-    bounds: &'static mut BroadPhaseBounds,
-    search: &'static mut ClothSearch,
-    contacts: &'static mut ClothContacts,
-    teleport: Option<&'static ClothTeleport>,
-    fault: Option<&'static ClothFault>,
-}
-
-/// What a cloth is prepared with, besides its own components.
-#[derive(SystemParam)]
-pub(super) struct Surroundings<'w, 's> {
-    targets: Targets<'w, 's>,
-    sources: Sources<'w, 's>,
-    skins: Skins<'w, 's>,
-    roots: Roots<'w, 's>,
-    field: Res<'w, WindField>,
-    /// What takes others along.
-    teleports: Query<'w, 's, Entity, (With<ClothTeleport>, Without<Cloth>)>,
-}
+use crate::cloth::{ClothError, ClothParticles};
 
 /// Prepares each cloth, or marks it with what is wrong.
 pub(super) fn prepare_cloths(
@@ -106,7 +56,7 @@ pub(super) fn prepare_cloths(
             cloth.stats.level = level;
         }
         if cloth.state.lod.turn == Turn::Wait {
-            cloth.pass();
+            pass(&mut cloth);
             continue;
         }
         let (seconds, ticks) = cloth.state.lod.take(time.delta_secs());
@@ -122,17 +72,17 @@ pub(super) fn prepare_cloths(
         let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
         let outcome = inputs.and_then(|inputs| {
             if cloth.state.lod.turn == Turn::Stand {
-                cloth.pass();
-                return cloth.stand(&around.targets);
+                pass(&mut cloth);
+                return stand_still(&mut cloth, &around.targets);
             }
             let breeze = around.field.of_cloth(cloth.air)?;
-            if cloth.sleeps_as_it_was(&inputs, &around, &breeze, seconds) {
+            if sleeps_as_it_was(&cloth, &inputs, &around, &breeze, seconds) {
                 return Ok(());
             }
             // Nothing of an earlier tick is done again.
             cloth.scratch.forget_tick();
             let seconds = (seconds, ticks);
-            cloth.prepare(&inputs, &around, breeze, &mut parts, seconds)
+            prepare(&mut cloth, &inputs, &around, breeze, &mut parts, seconds)
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
@@ -158,338 +108,206 @@ pub(super) fn prepare_cloths(
     }
 }
 
-impl PreparingItem<'_, '_> {
-    /// Lets the tick pass without the cloth.
-    fn pass(&mut self) {
-        self.scratch.forget_tick();
-        self.bounds.leave_out();
-        clear_stats(&mut self.stats, false);
-        (self.stats.integrate_ms, self.stats.substeps) = (0.0, 0);
-        self.stats.is_asleep = false;
-    }
+/// Lets the tick pass without the cloth.
+fn pass(cloth: &mut PreparingItem) {
+    cloth.scratch.forget_tick();
+    cloth.bounds.leave_out();
+    clear_stats(&mut cloth.stats, false);
+    (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+    cloth.stats.is_asleep = false;
+}
 
-    /// Has the cloth keep its shape, and go with what carries it.
-    fn stand(&mut self, targets: &Targets) -> Result<(), ClothError> {
-        if self.state.written != Some(self.particles.last_changed()) {
-            check_particles(&mut self.particles)?;
-        }
-        self.contacts.clear();
-        let (frame, state) = (&mut self.frame, &mut *self.state);
-        stand(self.entity, targets, frame, &mut self.particles, state)
+/// Has the cloth keep its shape, and go with what carries it.
+fn stand_still(cloth: &mut PreparingItem, targets: &Targets) -> Result<(), ClothError> {
+    if cloth.state.written != Some(cloth.particles.last_changed()) {
+        check_particles(&mut cloth.particles)?;
     }
+    cloth.contacts.clear();
+    let (frame, state) = (&mut cloth.frame, &mut *cloth.state);
+    stand(cloth.entity, targets, frame, &mut cloth.particles, state)
+}
 
-    /// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
-    fn sleeps_as_it_was(
-        &self,
-        inputs: &Inputs,
-        around: &Surroundings,
-        breeze: &Option<Breeze>,
-        seconds: f32,
-    ) -> bool {
-        let Surroundings {
-            targets,
-            sources,
-            field,
-            ..
-        } = around;
-        let (state, built) = (&*self.state, &*self.built);
-        if !(state.rest.is_asleep() && state.is_valid && self.stats.is_asleep) {
-            return false;
+fn prepare(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    breeze: Option<Breeze>,
+    parts: &mut SharedParts,
+    (seconds, ticks): (f32, u32),
+) -> Result<(), ClothError> {
+    let before = *cloth.frame;
+    let (frame, build) = build_cloth(cloth, inputs, around, parts)?;
+    let was_written = take_over(cloth, inputs, around, [&before, &frame], seconds)?;
+    go_along(cloth, around, [&before, &frame], build, seconds)?;
+    let acceleration = cloth.frame.isometry().rotation.inverse() * inputs.gravity;
+    let (built, state) = (&mut *cloth.built, &mut *cloth.state);
+    if was_written || cloth.scratch.teleports {
+        state.stretch = built.solver.measure(&cloth.particles);
+        built.masses = cloth.particles.free_masses();
+        cloth.stats.stretch = state.stretch;
+        if !built.solver.tethers().matches(&cloth.particles) {
+            built.forget_tethers();
         }
-        let acceleration = self.frame.isometry().rotation.inverse() * inputs.gravity;
-        let known = (
-            inputs.settings,
-            inputs.search,
-            inputs.narrow_phase,
-            inputs.self_collision,
-            acceleration,
-        );
-        let known_contact = (
-            self.scratch.contact_settings.particle_radius,
-            self.scratch.contact_settings.friction,
-        );
-        let source = built.source();
-        let pins = self.pins.unwrap_or(&NO_PINS);
-        // What may wake it in this tick goes on with the step that it would have been prepared with.
-        let is_prepared = (self.scratch.step).is_some_and(|step| step.seconds == seconds);
-        is_prepared
-            && state.known == Some(known)
-            && known_contact == (inputs.settings.particle_radius, inputs.material.friction)
-            && state.written == Some(self.particles.last_changed())
-            && state.attachments.is_empty()
-            && self
-                .attachments
-                .is_none_or(|attachments| attachments.as_slice().is_empty())
-            && self.teleport.is_none()
-            && !around.roots.jumps(self.entity)
-            && self.is_in_same_pose(around)
-            && self.fault.is_none()
-            && built.is_made_from(self.cloth.last_changed(), &inputs.material, pins)
-            && sources.find(self.entity, &self.cloth, source) == Ok(source)
-            && (state.air).is_still(breeze.as_ref(), self.pressure, field, || {
-                ball(built, &self.particles, state.stretch.bound, &self.frame)
-            })
-            && global_transform(&targets.transforms, self.entity)
-                .is_ok_and(|transform| self.frame.is_of(&transform))
+        state.rest.disturb();
     }
+    built.tether(
+        inputs.settings.tethers,
+        &inputs.material,
+        &cloth.particles,
+        inputs.gravity.length(),
+        &mut state.largest_gravity,
+    );
+    cloth.scratch.was_put = was_written || build != Build::Kept || cloth.scratch.teleports;
+    see_whether_it_rests(cloth, inputs, around, breeze, acceleration, seconds);
+    prepare_step(cloth, inputs, around, acceleration, (seconds, ticks));
+    prepare_contact(cloth, inputs, acceleration, seconds);
+    clear_stats(&mut cloth.stats, cloth.state.rest.is_asleep());
+    Ok(())
+}
 
-    /// Whether the pose that it follows is what it was in the last tick, or it follows none.
-    fn is_in_same_pose(&self, around: &Surroundings) -> bool {
-        let place = |joint| global_transform(&around.targets.transforms, joint).ok();
-        match (&self.skin, &self.built.skin) {
-            (None, None) => true,
-            (Some(skin), Some(known)) => {
-                skin.last_changed() == known.changed
-                    && (around.skins).are_at(self.entity, place, &self.state.pose.joints)
-            }
-            _ => false,
-        }
+/// Builds what is not built yet. Returns where the cloth's entity is, and what came of it.
+fn build_cloth(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    parts: &mut SharedParts,
+) -> Result<(ClothFrame, Build), ClothError> {
+    let (targets, sources) = (&around.targets, &around.sources);
+    let transform = global_transform(&targets.transforms, cloth.entity)?;
+    let (frame, mut scale) = ClothFrame::of(&transform)?;
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+    if cloth.skin.is_some() {
+        let place = |joint| global_transform(&targets.transforms, joint).ok();
+        (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
+        // How large it is in the world is the skeleton's matter.
+        scale = scratch.pose.scale().unwrap_or(scale);
     }
+    let wanted = Wanted {
+        cloth: &cloth.cloth,
+        changed: cloth.cloth.last_changed(),
+        source: sources.find(cloth.entity, &cloth.cloth, built.source())?,
+        material: &inputs.material,
+        pins: cloth.pins.unwrap_or(&NO_PINS),
+        attachments: cloth
+            .attachments
+            .map_or(&[][..], ClothAttachments::as_slice),
+        scale,
+    };
+    let is_new = built.from.is_some() || particles.is_empty();
+    let build = build(&wanted, sources, parts, particles, built, state)?;
+    if build == Build::New {
+        *cloth.frame = frame;
+    }
+    let begins = build == Build::New && is_new;
+    let skin = cloth.skin.as_ref();
+    place_pose(
+        skin, sources, &frame, begins, particles, built, state, scratch,
+    )?;
+    Ok((frame, build))
+}
 
-    fn prepare(
-        &mut self,
-        inputs: &Inputs,
-        around: &Surroundings,
-        breeze: Option<Breeze>,
-        parts: &mut SharedParts,
-        (seconds, ticks): (f32, u32),
-    ) -> Result<(), ClothError> {
-        let Surroundings {
-            targets,
-            sources,
-            field,
-            ..
-        } = around;
-        let transform = global_transform(&targets.transforms, self.entity)?;
-        let (frame, mut scale) = ClothFrame::of(&transform)?;
-        let Inputs {
-            settings, material, ..
-        } = inputs;
-        let attachments = self.attachments.map_or(&[][..], ClothAttachments::as_slice);
-        let (particles, state) = (&mut self.particles, &mut *self.state);
-        let (built, scratch) = (&mut *self.built, &mut *self.scratch);
-        if self.skin.is_some() {
-            let place = |joint| global_transform(&targets.transforms, joint).ok();
-            (around.skins).read(self.entity, place, &mut scratch.pose.joints)?;
-            // How large it is in the world is the skeleton's matter.
-            scale = scratch.pose.scale().unwrap_or(scale);
-        }
-        let known = built.source();
-        let wanted = Wanted {
-            cloth: &self.cloth,
-            changed: self.cloth.last_changed(),
-            source: sources.find(self.entity, &self.cloth, known)?,
-            material,
-            pins: self.pins.unwrap_or(&NO_PINS),
-            attachments,
-            scale,
-        };
-        let is_new = built.from.is_some() || particles.is_empty();
-        let was_built = build(&wanted, sources, parts, particles, built, state)?;
-        let before = *self.frame;
-        if !was_built {
-            *self.frame = frame;
-        }
-        let begins = !was_built && is_new;
-        let skin = self.skin.as_ref();
-        place_pose(
-            skin, sources, &frame, begins, particles, built, state, scratch,
-        )?;
-        // What was at fault may have been put anywhere meanwhile.
-        let jumps = self.teleport.is_some() || around.roots.jumps(self.entity) || !state.is_valid;
-        let has_stood = thaw(targets, frame, (seconds, jumps), before, particles, state);
-        // Who saves or restores particles may mark them as changed without a change.
-        let was_written = has_stood
-            || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
-        // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
-        if was_written || !state.rest.is_asleep() {
-            state.largest_speed = check_particles(particles)?;
-        }
-        let surface = built.surface().clone();
-        if let Some(self_collision) = &inputs.self_collision {
-            self_collision.validate(&surface)?;
-        }
-        if let Some(pressure) = self.pressure {
-            pressure.validate(&surface)?;
-        }
-        targets.find(
-            attachments,
-            &state.attachments,
-            &surface,
-            &mut state.targets,
-            &mut scratch.targets,
-        )?;
-        let target = state.targets.first().copied();
-        let roots = &around.roots;
-        scratch.carried = match seconds > 0.0 && was_built {
-            true => roots.carry(self.entity, target)?,
-            false => None,
-        };
-        let new_from_old = new_from_old([&*self.frame, &frame], scratch.carried.as_ref());
-        let is_moved = new_from_old.is_some();
-        let new_from_old = new_from_old.unwrap_or_default();
-        scratch.teleports = self.teleport.is_some()
-            || roots.jumps(self.entity)
-            || target.is_some_and(|target| roots.jumps(target));
-        if let Some(skin) = &self.skin
-            && seconds > 0.0
-            && was_built
-        {
-            let way = scratch.pose.farthest_from(&state.pose, new_from_old);
-            scratch.teleports |= way > skin.teleport_distance;
-        }
-        if scratch.teleports {
-            scratch.carried = None;
-            *self.frame = frame;
-        } else if seconds > 0.0 && is_moved {
-            carry(particles, new_from_old, &mut scratch.pins);
-            state.rest.disturb();
-            *self.frame = frame;
-        }
-        if seconds > 0.0 || !was_built || scratch.teleports {
-            move_with_pose(
-                [&before, &frame],
-                new_from_old,
-                was_built,
-                particles,
-                built,
-                state,
-                scratch,
-            );
-            follow_targets(
-                attachments,
-                &scratch.targets,
-                *self.frame,
-                scratch.teleports.then_some(before),
-                particles,
-                built,
-                state,
-                &mut scratch.pins,
-            );
-        }
-        if was_written || scratch.teleports {
-            state.stretch = built.solver.measure(particles);
-            built.masses = particles.free_masses();
-            self.stats.stretch = state.stretch;
-            if !built.solver.tethers().matches(particles) {
-                built.forget_tethers();
-            }
-            state.rest.disturb();
-        }
-        let acceleration = self.frame.isometry().rotation.inverse() * inputs.gravity;
-        built.tether(
-            settings.tethers,
-            material,
+/// Takes over what somebody else wrote, and checks what the surface has to allow. Returns whether the particles are others than those of
+/// the last tick.
+fn take_over(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    [before, frame]: [&ClothFrame; 2],
+    seconds: f32,
+) -> Result<bool, ClothError> {
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    // What was at fault may have been put anywhere meanwhile.
+    let jumps = cloth.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
+    let seconds = (seconds, jumps);
+    let has_stood = thaw(&around.targets, *frame, seconds, *before, particles, state);
+    // Who saves or restores particles may mark them as changed without a change.
+    let was_written = has_stood
+        || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
+    // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
+    if was_written || !state.rest.is_asleep() {
+        state.largest_speed = check_particles(particles)?;
+    }
+    let surface = cloth.built.surface();
+    if let Some(self_collision) = &inputs.self_collision {
+        self_collision.validate(surface)?;
+    }
+    if let Some(pressure) = cloth.pressure {
+        pressure.validate(surface)?;
+    }
+    Ok(was_written)
+}
+
+/// Goes where the entity, the root that carries it, the pose and the targets of attachments have gone.
+fn go_along(
+    cloth: &mut PreparingItem,
+    around: &Surroundings,
+    [before, frame]: [&ClothFrame; 2],
+    build: Build,
+    seconds: f32,
+) -> Result<(), ClothError> {
+    let Surroundings { targets, roots, .. } = around;
+    let attachments = cloth
+        .attachments
+        .map_or(&[][..], ClothAttachments::as_slice);
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+    targets.find(
+        attachments,
+        &state.attachments,
+        built.surface(),
+        &mut state.targets,
+        &mut scratch.targets,
+    )?;
+    let target = state.targets.first().copied();
+    let (moves, was_built) = (seconds > 0.0, build == Build::Kept);
+    scratch.carried = match moves && build != Build::New {
+        true => roots.carry(cloth.entity, target)?,
+        false => None,
+    };
+    let new_from_old = new_from_old([&*cloth.frame, frame], scratch.carried.as_ref());
+    let is_moved = new_from_old.is_some();
+    let new_from_old = new_from_old.unwrap_or_default();
+    scratch.teleports = cloth.teleport.is_some()
+        || roots.jumps(cloth.entity)
+        || target.is_some_and(|target| roots.jumps(target));
+    if let Some(skin) = &cloth.skin
+        && moves
+        && was_built
+    {
+        let way = scratch.pose.farthest_from(&state.pose, new_from_old);
+        scratch.teleports |= way > skin.teleport_distance;
+    }
+    if scratch.teleports {
+        scratch.carried = None;
+        *cloth.frame = *frame;
+    } else if moves && is_moved {
+        carry(particles, new_from_old, &mut scratch.pins);
+        state.rest.disturb();
+        *cloth.frame = *frame;
+    }
+    if moves || !was_built || scratch.teleports {
+        move_with_pose(
+            [before, frame],
+            new_from_old,
+            was_built,
             particles,
-            inputs.gravity.length(),
-        );
-        let known = Some((
-            *settings,
-            inputs.search,
-            inputs.narrow_phase,
-            inputs.self_collision,
-            acceleration,
-        ));
-        let ball = || ball(built, particles, state.stretch.bound, &self.frame);
-        let pressure = self.pressure;
-        let is_still = state.air.is_still(breeze.as_ref(), pressure, field, ball);
-        state.air.renew(breeze, pressure.copied(), field, ball);
-        if state.known != known || !is_still || !scratch.pins.is_empty() || !settings.sleeps {
-            state.known = known;
-            state.rest.disturb();
-        } else if !state.rest.is_asleep() {
-            let scale = (surface.diagonal(), acceleration.length());
-            let lies_on_cloth = inputs.self_collision.is_some() && state.touches_cloth;
-            state.rest.observe(seconds, particles, scale, lies_on_cloth);
-        }
-        // The plugin's own writing, up to here.
-        state.written = Some(particles.last_changed());
-        built.solver.set_stretch_damping(material.stretch_damping);
-        if !state.rest.is_asleep() {
-            let surface = &*surface;
-            (state.air).set(&mut built.solver, surface, particles, &self.frame, field);
-        }
-        let along = surface.particles_along();
-        // A tick that stands for several has as many as one: that is what it saves.
-        let one = seconds / ticks as f32;
-        let needed = match settings.substepping {
-            // Nobody asks.
-            _ if state.rest.is_asleep() => Substepping::needed(along, one),
-            Substepping::Fixed(substeps) => substeps,
-            _ => (built.solver).needed(particles, along, one, settings.order),
-        };
-        // Layers may come nearer in a sub-step by a part of their thickness alone.
-        let needed = match inputs.self_collision {
-            Some(_) if state.touches_cloth => needed.max(FOR_LAYERS),
-            _ => needed,
-        };
-        if !state.rest.is_asleep() {
-            // The tick says so again.
-            state.touches_cloth = false;
-        }
-        scratch.step = Some(TickStep {
-            seconds,
-            substeps: state.control.substeps(settings.substepping, needed),
-            acceleration,
-            damping: material.damping,
-            order: settings.order,
-            material_stretch: built.material_stretch,
-        });
-        scratch.substepping = settings.substepping;
-        scratch.is_in_island = false;
-        scratch.self_collision = inputs.self_collision;
-        scratch.was_put = was_written || !was_built || scratch.teleports;
-        if scratch.was_put {
-            state.carriers.clear();
-        }
-        if inputs.self_collision.is_none() {
-            scratch.mutual = None;
-        } else if let Some(mutual) = &mut scratch.mutual
-            && scratch.was_put
-        {
-            mutual.forget();
-        }
-        scratch.search = inputs.search;
-        scratch.contact_settings = ContactSettings {
-            particle_radius: settings.particle_radius,
-            friction: material.friction,
-            narrow_phase: inputs.narrow_phase,
-            ..ContactSettings::default()
-        };
-        scratch.reach = reach(
-            state,
-            &surface,
-            &scratch.pins,
-            acceleration.length()
-                + state
-                    .air
-                    .acceleration(material, state.largest_speed, seconds),
-            seconds,
-        ) + scratch.constraints.travel();
-        state.lod.reach = scratch.reach;
-        update_bounds(
-            particles,
-            &self.frame,
             built,
             state,
             scratch,
-            &mut self.search,
-            &mut self.bounds,
         );
-        clear_stats(&mut self.stats, state.rest.is_asleep());
-        Ok(())
+        follow_targets(
+            attachments,
+            &scratch.targets,
+            *cloth.frame,
+            scratch.teleports.then_some(*before),
+            particles,
+            built,
+            state,
+            &mut scratch.pins,
+        );
     }
-}
-
-/// What is around a cloth in the world: a middle, and a radius (m).
-fn ball(
-    built: &ClothBuilt,
-    particles: &ClothParticles,
-    stretch: f32,
-    frame: &ClothFrame,
-) -> (Vec3, f32) {
-    let root = built.tree().root_sphere(particles, stretch);
-    (frame.to_world(root.center.into()), root.radius())
+    Ok(())
 }
 
 /// The speed of the fastest particle (m/s), if all are valid.

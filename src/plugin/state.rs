@@ -57,13 +57,16 @@ pub struct ClothState {
     pub(super) rests_on: Vec<(Entity, MovingCollider)>,
     /// The particles that carried bodies as the last tick ended.
     pub(super) carriers: Vec<(Entity, Carrier)>,
+    /// The largest gravity that it has known, as 9.81 or a doubling of that (m/s²): tethers are made for it.
+    pub(super) largest_gravity: f32,
     /// How far it is beyond each limit.
     pub(super) excess: [Excess; ClothLimit::ALL.len()],
 }
 
 impl ClothState {
-    /// Forgets what it was attached to, and what it carried: the particles are others.
+    /// Forgets what it was attached to, what it carried and what pulled at it: the particles are others.
     pub(super) fn detach(&mut self) {
+        self.largest_gravity = 0.0;
         self.carriers.clear();
         self.attached.clear();
         self.attachments.clear();

@@ -194,7 +194,7 @@ impl IntegratingItem<'_, '_> {
             is_beyond: self.state.control.is_beyond(),
             substep: step.seconds / count,
             damping: step.damping,
-            material_stretch: self.built.material_stretch,
+            material_stretch: self.built.largest_material_stretch,
             holds_weight: self.built.surface().as_grid().is_some()
                 || !self.built.solver.tethers().is_empty(),
             masses: self.built.masses,

@@ -5,9 +5,14 @@
 //! `d = d₀ + (6 (d₀ − d₁) − (d₁ − d₂))/9 + (4/9) a Δt²` where nothing is damped. What forces and springs do in a sub-step
 //! counts with a weight c then: 1 and 4/9.
 //!
+//! Damping takes from velocities relative to what carries the cloth. That is a shift of all particles alike: what they would lose if
+//! all moved as the carrier does is given back, so that they move on with it.
+//!
 //! It begins with a sub-step of weight ½ from position and velocity, `d = d₀ + ½ a Δt²`; the two displacements before are
 //! what a constant acceleration would have made them. A sub-step of first order in its place would leave a velocity that is
 //! off by a Δt/2, and all that follows of first order.
+
+use bevy::math::Vec3;
 
 use super::{
     air::{Felt, acceleration},
@@ -21,13 +26,14 @@ pub(super) struct Prediction {
     own: f32,
     one: f32,
     two: f32,
-    /// c a Δt² (m).
+    /// c a Δt², and what damping gives back (m).
     pull: [f32; 3],
 }
 
 impl Prediction {
-    /// With velocities kept to the part `kept`, and c a Δt² (m).
-    pub fn new(kind: StepKind, kept: f32, pull: [f32; 3]) -> Self {
+    /// With velocities kept to the part `kept`, and c a Δt² (m). They are relative to what has moved by `way` in the sub-step
+    /// before, and gains `gain` in each (m).
+    pub fn new(kind: StepKind, kept: f32, pull: Vec3, [way, gain]: [Vec3; 2]) -> Self {
         let k = f64::from(kept);
         let [own, one, two] = match kind {
             StepKind::First => [k, 0.0, 0.0],
@@ -39,11 +45,17 @@ impl Prediction {
                 -k * k / 9.0,
             ],
         };
+        // All of them together, as they are where nothing is lost, come to d₀ + 5/9 of the gain.
+        let lost = (1.0 - own) as f32;
+        let lost_gain = match kind {
+            StepKind::First | StepKind::Start => 0.0,
+            StepKind::Second => (5.0 / 9.0 - one - two) as f32,
+        };
         Self {
             own: own as f32,
             one: one as f32,
             two: two as f32,
-            pull,
+            pull: (pull + lost * way + lost_gain * gain).to_array(),
         }
     }
 }

@@ -25,6 +25,8 @@ pub(super) struct Spin {
     /// How far the line moves in the tick, and in a sub-step (m).
     shift: Vec3,
     way: Vec3,
+    /// How far it moves in a sub-step relative to what damping is relative to (m).
+    against: Vec3,
     substeps: u32,
     /// As the tick begins.
     before: Turning,
@@ -37,13 +39,20 @@ struct Turning {
     momentum: f32,
     /// Moment of inertia (kg m²).
     inertia: f32,
-    /// What the line's own way in a sub-step would be as angular momentum, if the cloth went along (kg m²).
+    /// What the line's own way in a sub-step, against what damping is relative to, would be as angular momentum, if the cloth went
+    /// along (kg m²).
     carried: f32,
 }
 
 impl Spin {
-    /// Of a cloth whose pins are on one line along gravity, which stands still or moves without turning, if they are.
-    pub fn of(particles: &ClothParticles, step: &TickStep, pins: &[PinMotion]) -> Option<Self> {
+    /// Of a cloth whose pins are on one line along gravity, which stands still or moves without turning, if they are. Damping is
+    /// relative to what moves by `drift` in a sub-step (m).
+    pub fn of(
+        particles: &ClothParticles,
+        step: &TickStep,
+        pins: &[PinMotion],
+        drift: Vec3,
+    ) -> Option<Self> {
         let axis = step.acceleration.try_normalize()?;
         let layout = particles.layout();
         let blocks = particles.blocks().iter().enumerate();
@@ -85,6 +94,7 @@ impl Spin {
                 axis,
                 shift,
                 way: shift / substeps as f32,
+                against: shift / substeps as f32 - drift,
                 substeps,
                 before: Turning::default(),
             };
@@ -104,7 +114,7 @@ impl Spin {
                 let mass = if is_free { 1.0 / view[W + lane] } else { 0.0 };
                 sums[0][lane] += mass * turned.dot(moved);
                 sums[1][lane] += mass * turned.length_squared();
-                sums[2][lane] += mass * turned.dot(self.way);
+                sums[2][lane] += mass * turned.dot(self.against);
             }
         }
         let [momentum, inertia, carried] = sums.map(|lanes| lanes.iter().sum());
@@ -120,7 +130,7 @@ impl Spin {
     pub fn restore(&self, particles: &mut ClothParticles, kept: f32) {
         let origin = self.origin + self.shift;
         let after = self.measure(particles, origin);
-        // Damping holds against the air, not against the line.
+        // Damping holds against what it is relative to, which need not be the line.
         let expected = kept * self.before.momentum - (1.0 - kept) * self.before.carried;
         let turn = (expected - after.momentum) / after.inertia;
         if !turn.is_finite() {

@@ -21,10 +21,24 @@ pub struct TickStep {
     pub acceleration: Vec3,
     /// The paper's D: the part of its velocity that the cloth loses in 1/60 s.
     pub damping: f32,
+    /// Which velocity that is.
+    pub damped_against: DampingFrame,
     /// Of which order in time.
     pub order: TimeOrder,
     /// The stretch that the material itself gives: what is far beyond it has not been solved, and is no motion to go on from.
     pub material_stretch: f32,
+}
+
+/// What the velocity that damping takes from is relative to.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub enum DampingFrame {
+    /// To what stands still: the paper's equation (2). What falls freely is slowed down as well.
+    #[default]
+    Still,
+    /// To something that moves evenly, such as what a cloth is pinned to: its velocity in the cloth's frame (m/s).
+    Moving(Vec3),
+    /// To the centre of mass of all particles that are free: damping takes no momentum.
+    CentreOfMass,
 }
 
 /// How the error of a motion falls with the length of a sub-step Δt.
@@ -49,6 +63,7 @@ impl Default for TickStep {
             substeps: 20,
             acceleration: Vec3::ZERO,
             damping: 0.0,
+            damped_against: DampingFrame::default(),
             order: TimeOrder::default(),
             material_stretch: 0.0,
         }

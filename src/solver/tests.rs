@@ -3,7 +3,8 @@
 use bevy::math::{DVec3, Vec3};
 
 use super::{
-    Bending, PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, TimeOrder, commit::MIN_MOVE,
+    Bending, DampingFrame, PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, TimeOrder,
+    commit::MIN_MOVE,
 };
 use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs, Surface};
 
@@ -12,6 +13,7 @@ const STEP: TickStep = TickStep {
     substeps: 20,
     acceleration: Vec3::new(0.3, -9.81, 0.2),
     damping: 0.01,
+    damped_against: DampingFrame::Still,
     order: TimeOrder::Second,
     material_stretch: 0.0,
 };

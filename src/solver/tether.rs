@@ -209,7 +209,7 @@ impl Tethers {
     }
 
     /// The acceleration (m/s²) to make tethers for where `acceleration` acts: 9.81, doubled until four fifths of
-    /// `acceleration` are no more, so that tethers outlast one that changes from tick to tick.
+    /// `acceleration` are no more, so that tethers outlast one that grows from tick to tick.
     pub(crate) fn made_for(acceleration: f32) -> f32 {
         let mut rounded = MIN_ACCELERATION;
         while rounded < 0.8 * acceleration {

@@ -1,7 +1,7 @@
 //! Beyond the envelope in which cloth is simulated well: reported once for each cloth and limit, with the quantity.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::{plugin::ClothBuilt, prelude::*};
 
 use crate::support::*;
 
@@ -176,6 +176,60 @@ fn a_cloth_that_turns_is_reported_once() {
         .spawn((Cloth::new(8, 8, 0.1), heavy, settings, tilted));
     tick(&mut app, 64);
     assert_eq!(messages::<ClothLimitExceeded>(&mut app).len(), 1);
+}
+
+/// Gravity swings between nothing and six times the usual, and turns all around, for 200 ticks, of all cloths or of one: rubber
+/// that it stretched is no fault as it lets go, what is a fault is reported once, nothing is built again, and nothing sleeps before
+/// it is over.
+#[test]
+fn animated_gravity_builds_and_reports_nothing_again() {
+    for of_one in [false, true] {
+        let mut app = app();
+        let settings = |tethers: bool| ClothSettings {
+            tethers,
+            ..ClothSettings::substeps(20)
+        };
+        let damped = ClothMaterial {
+            damping: 0.99,
+            ..default()
+        };
+        let cloth = Cloth::new(16, 16, 0.05);
+        let rubber = (cloth.clone(), ClothMaterial::RUBBER, settings(true));
+        let cotton = (cloth.clone(), ClothMaterial::COTTON, settings(true));
+        let faulty = (cloth, damped, settings(false));
+        let cloths = [rubber, cotton, faulty].map(|cloth| app.world_mut().spawn(cloth).id());
+        tick(&mut app, 1);
+        let surfaces = |app: &App| {
+            let built = cloths.map(|cloth| app.world().get::<ClothBuilt>(cloth));
+            built.map(|built| std::sync::Arc::as_ptr(built.expect("built").surface()))
+        };
+        let before = surfaces(&app);
+        let mut reported = Vec::new();
+        for count in 0..200 {
+            let turn = 0.13 * count as f32;
+            let size = 30.0 * (1.0 - (0.2 * count as f32).cos());
+            let gravity = size * Vec3::new(0.5 * turn.sin(), -1.0, 0.5 * turn.cos());
+            if of_one {
+                for cloth in cloths {
+                    change::<ClothSettings>(&mut app, cloth, |own| own.gravity = Some(gravity));
+                }
+            } else {
+                app.insert_resource(ClothGravity(gravity));
+            }
+            tick(&mut app, 1);
+            assert!(cloths.iter().all(|&cloth| !stats(&app, cloth).is_asleep));
+            reported.extend(messages::<ClothLimitExceeded>(&mut app));
+        }
+        assert!(
+            matches!(reported[..], [reported] if reported.limit == ClothLimit::Damping && reported.cloth == cloths[2]),
+            "{reported:?}"
+        );
+        assert_eq!(surfaces(&app), before);
+        // It hangs to one side, and comes to rest there.
+        tick(&mut app, 64 * 40);
+        assert!(cloths.iter().all(|&cloth| stats(&app, cloth).is_asleep));
+        assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
+    }
 }
 
 /// A bullet that passes beside a cloth is none of its business.

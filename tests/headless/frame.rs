@@ -119,7 +119,8 @@ fn a_moved_transform_carries_its_pins() {
         frame.to_world(position(app, cloth, cell)).z
     };
     assert_eq!(world(&app, (0, 3)), 0.05);
-    assert!(world(&app, (15, 3)).abs() < 1e-3);
+    // Its pins go at 3.2 m/s in that tick, and damping, relative to them, takes the others along: ½ k v Δt², k = −60 ln(1 − D).
+    assert!((1e-4..1.5e-3).contains(&world(&app, (15, 3))));
     tick(&mut app, 64 * 30);
     assert!(
         (world(&app, (15, 3)) - 0.05).abs() < 1e-3,

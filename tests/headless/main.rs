@@ -1,13 +1,16 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
 mod attach;
+mod cape;
 mod characters;
+mod damping;
 mod drawing;
 mod envelope;
 mod faults;
 mod frame;
 mod gizmos;
 mod heavy;
+mod hidden;
 mod hostile;
 mod layers;
 mod lifetime;
@@ -18,11 +21,13 @@ mod meshes;
 mod motion;
 mod near;
 mod parents;
+mod pole;
 mod push_back;
 mod push_rapier;
 mod rapier;
 mod reflection;
 mod render_mesh;
+mod resolution;
 mod rest;
 mod scene_files;
 mod schedule;

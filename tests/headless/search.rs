@@ -9,7 +9,7 @@ use bevy_drape::{
     hierarchy::SearchReason,
     plugin::ClothBuilt,
     prelude::*,
-    solver::{Bending, Solver, TickStep},
+    solver::{Bending, DampingFrame, Solver, TickStep},
 };
 
 use crate::{faults::expect_fault, support::*};
@@ -262,6 +262,7 @@ fn what_snaps_back_is_not_missed() {
             substeps: Substepping::needed(16, TICK),
             acceleration: Vec3::NEG_Y * GRAVITY,
             damping: stiff.damping,
+            damped_against: DampingFrame::CentreOfMass,
             ..default()
         };
         let mut solver = Solver::new(built.springs(), &by_hand);

@@ -57,8 +57,14 @@ impl Detection {
         is_beyond(self.moved + self.deviation, self.margin)
     }
 
-    /// Searches for the candidates of all colliders again, among the particles as they are.
-    pub(super) fn search(&mut self, particles: &ClothParticles, settings: &ContactSettings) {
+    /// Searches for the candidates of all colliders again, among the particles as they are when so many sub-steps
+    /// have passed.
+    pub(super) fn search(
+        &mut self,
+        particles: &ClothParticles,
+        settings: &ContactSettings,
+        passed: u32,
+    ) {
         if self.colliders.is_empty() {
             // There is nothing to miss.
             self.margin = f32::INFINITY;
@@ -103,7 +109,7 @@ impl Detection {
             let mut all: Vec<u32> = self.kept.particles(*id).chain(found).collect();
             all.sort_unstable();
             all.dedup();
-            self.hold(*id, collider, narrow_phase, &all, particles);
+            self.hold(*id, collider, narrow_phase, passed, &all, particles);
         }
         self.colliders = colliders;
         self.found = found;

@@ -49,13 +49,11 @@ pub(super) fn add_meshes(
             continue;
         }
         // What the entity drew before the plugin's own mesh.
-        let known = drawn.and_then(|drawn| drawn.source.clone());
+        let known = drawn.and_then(|drawn| drawn.replaced.clone());
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
-        let source = other
-            .map(|mesh| mesh.0.clone())
-            .or(known)
-            .filter(|_| is_asset);
+        let replaced = other.map(|mesh| mesh.0.clone()).or(known);
+        let source = replaced.clone().filter(|_| is_asset);
         // What the cloth was made from may have gone meanwhile, or be the renderer's alone.
         let copy = source
             .as_ref()
@@ -66,6 +64,7 @@ pub(super) fn add_meshes(
         let drawn = ClothMesh {
             handle: handle.clone(),
             source,
+            replaced,
             surface: surface.clone(),
             tangents,
             ..Default::default()
@@ -74,7 +73,7 @@ pub(super) fn add_meshes(
     }
 }
 
-/// What is no cloth any more is not drawn as one, but as what it was made from, if it was. What the game has put in place of
+/// What is no cloth any more is not drawn as one, but as what the entity drew before, if it did. What the game has put in place of
 /// the plugin's mesh stays.
 pub(super) fn remove_mesh(
     removed: On<Remove, Cloth>,
@@ -84,8 +83,8 @@ pub(super) fn remove_mesh(
     if let Ok((own, drawn)) = meshes.get(removed.entity) {
         let mut entity = commands.entity(removed.entity);
         if drawn.is_some_and(|drawn| drawn.0 == own.handle) {
-            match &own.source {
-                Some(source) => entity.try_insert(Mesh3d(source.clone())),
+            match &own.replaced {
+                Some(replaced) => entity.try_insert(Mesh3d(replaced.clone())),
                 None => entity.try_remove::<Mesh3d>(),
             };
         }

@@ -14,11 +14,14 @@ use super::{blend::Blend, placing::Carriers, skin::DrawnPose, write::Tangents};
 use crate::cloth::Surface;
 
 /// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents; it replaces one that the entity
-/// had. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
+/// had, which comes back when [`Cloth`](crate::cloth::Cloth) is removed. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
 /// both sides.
 ///
 /// Pinned and attached particles are drawn where the cloth's entity and their targets are drawn. Interpolate what moves in
 /// `FixedUpdate` and touches cloth, as the cloth is, for instance by the crate `bevy_transform_interpolation`.
+///
+/// The mesh of a cloth that Bevy's visibility hides, its own or an ancestor's, is not written; the cloth moves on all the same, unless its
+/// [`ClothLod`](crate::plugin::ClothLod) says otherwise.
 ///
 /// Reflected as nothing: it is made again.
 #[derive(Component, Reflect, Debug, Default)]
@@ -29,6 +32,9 @@ pub struct ClothMesh {
     /// The asset that the cloth was made from.
     #[reflect(ignore)]
     pub(super) source: Option<Handle<Mesh>>,
+    /// What the entity drew before.
+    #[reflect(ignore)]
+    pub(super) replaced: Option<Handle<Mesh>>,
     /// What it is a mesh of.
     #[reflect(ignore)]
     pub(super) surface: Arc<Surface>,

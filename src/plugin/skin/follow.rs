@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::{
-    super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, source::Sources},
+    super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, carry::set_motion, source::Sources},
     pose::{Pose, SkinLimits},
 };
 use crate::{
@@ -180,7 +180,7 @@ fn follow_pose(
     if limits.has_balls || has_backstops {
         constraints.begin(particles, has_backstops);
     }
-    let is_carried = !motions.is_empty();
+    let carried = motions.len();
     if jumps {
         for index in 0..particles.len() {
             if particles.inverse_mass(index) == Some(0.0) {
@@ -191,14 +191,12 @@ fn follow_pose(
         let masses = particles.inverse_masses().enumerate();
         for (index, _) in masses.filter(|(_, weight)| *weight == 0.0) {
             let (at, to) = (particles.position_at(index), to.places[index]);
-            // A later motion of the same particle is the one that counts.
-            if is_carried || at != to {
-                motions.push(PinMotion {
-                    particle: index as u32,
-                    from: at,
-                    to,
-                });
-            }
+            let motion = PinMotion {
+                particle: index as u32,
+                from: at,
+                to,
+            };
+            set_motion(motions, carried, motion);
         }
     }
     if limits.has_balls {

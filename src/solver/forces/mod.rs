@@ -37,6 +37,7 @@ use super::{
     Bending, PinMotion, SubStep, TickStep,
     air::Felt,
     bands::{MAX_BANDS, in_bands, take},
+    drift::Drift,
     kernel::Kernels,
     step::{DAMPING_REFERENCE, existing},
 };
@@ -137,6 +138,7 @@ impl Forces {
         particles: &mut ClothParticles,
         step: &TickStep,
         index: u32,
+        drift: &mut Drift,
         pins: &[PinMotion],
         bending: Option<&mut Bending>,
         felt: Option<&[Felt]>,
@@ -151,10 +153,12 @@ impl Forces {
             false => (1.0, kept),
         };
         let weight = part * dt * dt;
+        let [way, _] = drift.follow(particles.blocks());
+        drift.gain(part);
         let kick = Kick {
             kept,
             weight,
-            pull: (step.acceleration * weight).to_array(),
+            pull: (step.acceleration * weight + (1.0 - kept) * way).to_array(),
             moves: index < count,
         };
         let mut substep = SubStep {

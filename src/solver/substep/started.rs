@@ -6,6 +6,7 @@ use crate::{
     solver::{
         PinMotion, Stretch, SubStep, TickStep, TimeOrder,
         bands::in_bands,
+        drift::Drift,
         energy::Energy,
         pace::Pace,
         predict::{Breath, Prediction, weight},
@@ -26,6 +27,7 @@ pub struct StartedTick {
     /// What the cloth's energy was, where it is watched.
     watched: Option<Energy>,
     spin: Option<Spin>,
+    drift: Drift,
     is_pushed: bool,
     /// The stretch, where it was measured on the way.
     measured: Option<Stretch>,
@@ -50,6 +52,7 @@ impl StartedTick {
     pub fn note_push(&mut self, particles: &mut ClothParticles) {
         self.is_pushed = true;
         self.measured = None;
+        self.drift.note_push();
         if !self.is_explicit {
             particles.forget_past(AFTER_CONTACT);
         }
@@ -78,6 +81,7 @@ impl Solver {
             is_explicit: false,
             watched: None,
             spin: None,
+            drift: Drift::of(&step),
             is_pushed: false,
             measured: None,
             material: 0.0,
@@ -109,7 +113,8 @@ impl Solver {
         }
         // What else turns the cloth, or carries it in another way, is not known here.
         if self.air.is_none() {
-            tick.spin = Spin::of(particles, &step, pins);
+            let [drift, _] = tick.drift.follow(particles.blocks());
+            tick.spin = Spin::of(particles, &step, pins, drift);
         }
         tick
     }
@@ -168,8 +173,12 @@ impl Solver {
             TimeOrder::Second => particles.next_step(),
         };
         let weight_dt2 = weight(kind) * dt * dt;
-        let pull = (step.acceleration * weight_dt2).to_array();
-        let prediction = Prediction::new(kind, kept, pull);
+        let pull = step.acceleration * weight_dt2;
+        let drift = tick.drift.follow(particles.blocks());
+        let prediction = Prediction::new(kind, kept, pull, drift);
+        // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
+        tick.drift
+            .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });
         if let Some(air) = &mut self.air {
             air.before_substep(tick.next, particles, &kernels);
         }
@@ -207,7 +216,7 @@ impl Solver {
             bending.prepare(blocks, weight_dt2);
             bending.solve(blocks, &kernels);
         }
-        particles.put_loads_on(pull.into());
+        particles.put_loads_on(pull);
         self.sweep
             .set_pace(Pace::new(weight_dt2, dt, self.retardation));
         tick.next += 1;
@@ -246,8 +255,9 @@ impl Solver {
         let forces = self.forces.as_mut().expect("forces");
         let bending = self.bending.as_mut();
         let felt = self.air.as_ref().map(|air| air.felt());
+        let drift = &mut tick.drift;
         let substep = forces.substep(
-            particles, &tick.step, tick.next, pins, bending, felt, &kernels,
+            particles, &tick.step, tick.next, drift, pins, bending, felt, &kernels,
         );
         tick.next = if substep.is_some() {
             tick.next + 1

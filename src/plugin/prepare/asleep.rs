@@ -1,0 +1,88 @@
+//! Cloths that sleep, and have nothing to be prepared for.
+
+use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
+
+use super::{
+    super::{ClothBuilt, ClothFrame, frame::global_transform, inputs::Inputs, wind::Breeze},
+    preparing::{NO_PINS, PreparingItem, Surroundings},
+};
+use crate::cloth::ClothParticles;
+
+/// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
+pub(super) fn sleeps_as_it_was(
+    cloth: &PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    breeze: &Option<Breeze>,
+    seconds: f32,
+) -> bool {
+    let Surroundings {
+        targets,
+        sources,
+        field,
+        ..
+    } = around;
+    let (state, built) = (&*cloth.state, &*cloth.built);
+    if !(state.rest.is_asleep() && state.is_valid && cloth.stats.is_asleep) {
+        return false;
+    }
+    let acceleration = cloth.frame.isometry().rotation.inverse() * inputs.gravity;
+    let known = (
+        inputs.settings,
+        inputs.search,
+        inputs.narrow_phase,
+        inputs.self_collision,
+        acceleration,
+    );
+    let known_contact = (
+        cloth.scratch.contact_settings.particle_radius,
+        cloth.scratch.contact_settings.friction,
+    );
+    let source = built.source();
+    let pins = cloth.pins.unwrap_or(&NO_PINS);
+    // What may wake it in this tick goes on with the step that it would have been prepared with.
+    let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
+    is_prepared
+        && state.known == Some(known)
+        && known_contact == (inputs.settings.particle_radius, inputs.material.friction)
+        && state.written == Some(cloth.particles.last_changed())
+        && state.attachments.is_empty()
+        && cloth
+            .attachments
+            .is_none_or(|attachments| attachments.as_slice().is_empty())
+        && cloth.teleport.is_none()
+        && !around.roots.jumps(cloth.entity)
+        && is_in_same_pose(cloth, around)
+        && cloth.fault.is_none()
+        && built.is_made_from(cloth.cloth.last_changed(), &inputs.material, pins)
+        && sources.find(cloth.entity, &cloth.cloth, source) == Ok(source)
+        && (state.air).is_still(breeze.as_ref(), cloth.pressure, field, || {
+            ball(built, &cloth.particles, state.stretch.bound, &cloth.frame)
+        })
+        && global_transform(&targets.transforms, cloth.entity)
+            .is_ok_and(|transform| cloth.frame.is_of(&transform))
+}
+
+/// Whether the pose that it follows is what it was in the last tick, or it follows none.
+fn is_in_same_pose(cloth: &PreparingItem, around: &Surroundings) -> bool {
+    let place = |joint| global_transform(&around.targets.transforms, joint).ok();
+    match (&cloth.skin, &cloth.built.skin) {
+        (None, None) => true,
+        (Some(skin), Some(known)) => {
+            skin.last_changed() == known.changed
+                && (around.skins).are_at(cloth.entity, place, &cloth.state.pose.joints)
+        }
+        _ => false,
+    }
+}
+
+/// What is around a cloth in the world: a middle, and a radius (m).
+pub(super) fn ball(
+    built: &ClothBuilt,
+    particles: &ClothParticles,
+    stretch: f32,
+    frame: &ClothFrame,
+) -> (Vec3, f32) {
+    let root = built.tree().root_sphere(particles, stretch);
+    (frame.to_world(root.center.into()), root.radius())
+}

@@ -1,0 +1,65 @@
+//! What a cloth is prepared from.
+
+use bevy::ecs::{
+    change_detection::Ref,
+    entity::Entity,
+    query::{QueryData, With, Without},
+    system::{Query, Res, SystemParam},
+};
+
+use super::super::{
+    ClothAir, ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothScratch,
+    ClothSearch, ClothState, ClothStats, ClothTeleport, attach::Targets,
+    components::BroadPhaseBounds, inertia::Roots, lod::ClothLod, skin::Skins, source::Sources,
+    wind::WindField,
+};
+use crate::{
+    cloth::{Cloth, ClothMaterial, ClothParticles, ClothSkin, Pins},
+    contact::{ClothSelfCollision, NarrowPhase},
+    hierarchy::SearchMethod,
+    solver::{ClothPressure, ClothSettings},
+};
+
+/// The pins of a cloth from which the game took its [`Pins`].
+pub(super) static NO_PINS: Pins = Pins::none();
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(in crate::plugin) struct Preparing {
+    pub entity: Entity,
+    pub cloth: Ref<'static, Cloth>,
+    pub material: Option<&'static ClothMaterial>,
+    pub pins: Option<&'static Pins>,
+    pub attachments: Option<&'static ClothAttachments>,
+    pub skin: Option<Ref<'static, ClothSkin>>,
+    pub settings: Option<&'static ClothSettings>,
+    pub method: Option<&'static SearchMethod>,
+    pub narrow_phase: Option<&'static NarrowPhase>,
+    pub self_collision: Option<&'static ClothSelfCollision>,
+    pub air: Option<&'static ClothAir>,
+    pub pressure: Option<&'static ClothPressure>,
+    pub lod: Option<&'static ClothLod>,
+    pub particles: &'static mut ClothParticles,
+    pub built: &'static mut ClothBuilt,
+    pub state: &'static mut ClothState,
+    pub scratch: &'static mut ClothScratch,
+    pub frame: &'static mut ClothFrame,
+    pub stats: &'static mut ClothStats,
+    pub bounds: &'static mut BroadPhaseBounds,
+    pub search: &'static mut ClothSearch,
+    pub contacts: &'static mut ClothContacts,
+    pub teleport: Option<&'static ClothTeleport>,
+    pub fault: Option<&'static ClothFault>,
+}
+
+/// What a cloth is prepared with, besides its own components.
+#[derive(SystemParam)]
+pub(in crate::plugin) struct Surroundings<'w, 's> {
+    pub targets: Targets<'w, 's>,
+    pub sources: Sources<'w, 's>,
+    pub skins: Skins<'w, 's>,
+    pub roots: Roots<'w, 's>,
+    pub field: Res<'w, WindField>,
+    /// What takes others along.
+    pub teleports: Query<'w, 's, Entity, (With<ClothTeleport>, Without<Cloth>)>,
+}

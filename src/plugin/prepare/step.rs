@@ -1,0 +1,153 @@
+//! What a cloth's tick begins with, once it is where it has to be.
+
+use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
+
+use super::{
+    super::{
+        broad_phase::{reach, update_bounds},
+        carry::carrier,
+        inputs::Inputs,
+        wind::Breeze,
+    },
+    asleep::ball,
+    preparing::{PreparingItem, Surroundings},
+};
+use crate::{
+    contact::ContactSettings,
+    solver::{Substepping, TickStep},
+};
+
+/// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
+const FOR_LAYERS: u32 = 16;
+
+/// Sees whether the cloth may sleep, and wakes it where something else acts on it than before.
+pub(super) fn see_whether_it_rests(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    breeze: Option<Breeze>,
+    acceleration: Vec3,
+    seconds: f32,
+) {
+    let (particles, state) = (&cloth.particles, &mut *cloth.state);
+    let (built, scratch) = (&*cloth.built, &*cloth.scratch);
+    let settings = inputs.settings;
+    let known = Some((
+        settings,
+        inputs.search,
+        inputs.narrow_phase,
+        inputs.self_collision,
+        acceleration,
+    ));
+    let (field, pressure) = (&*around.field, cloth.pressure);
+    let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
+    let is_still = state.air.is_still(breeze.as_ref(), pressure, field, ball);
+    state.air.renew(breeze, pressure.copied(), field, ball);
+    if state.known != known || !is_still || !scratch.pins.is_empty() || !settings.sleeps {
+        state.known = known;
+        state.rest.disturb();
+    } else if !state.rest.is_asleep() {
+        let scale = (built.surface().diagonal(), acceleration.length());
+        let lies_on_cloth = inputs.self_collision.is_some() && state.touches_cloth;
+        state.rest.observe(seconds, particles, scale, lies_on_cloth);
+    }
+    // The plugin's own writing, up to here.
+    state.written = Some(particles.last_changed());
+}
+
+/// Prepares what the solver does in the tick.
+pub(super) fn prepare_step(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    acceleration: Vec3,
+    (seconds, ticks): (f32, u32),
+) {
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+    let Inputs {
+        settings, material, ..
+    } = inputs;
+    built.solver.set_stretch_damping(material.stretch_damping);
+    let surface = built.surface().clone();
+    if !state.rest.is_asleep() {
+        let (surface, field) = (&*surface, &*around.field);
+        (state.air).set(&mut built.solver, surface, particles, &cloth.frame, field);
+    }
+    let along = surface.particles_along();
+    // A tick that stands for several has as many as one: that is what it saves.
+    let one = seconds / ticks as f32;
+    let needed = match settings.substepping {
+        // Nobody asks.
+        _ if state.rest.is_asleep() => Substepping::needed(along, one),
+        Substepping::Fixed(substeps) => substeps,
+        _ => (built.solver).needed(particles, along, one, settings.order),
+    };
+    // Layers may come nearer in a sub-step by a part of their thickness alone.
+    let needed = match inputs.self_collision {
+        Some(_) if state.touches_cloth => needed.max(FOR_LAYERS),
+        _ => needed,
+    };
+    if !state.rest.is_asleep() {
+        // The tick says so again.
+        state.touches_cloth = false;
+    }
+    scratch.step = Some(TickStep {
+        seconds,
+        substeps: state.control.substeps(settings.substepping, needed),
+        acceleration,
+        damping: material.damping,
+        damped_against: carrier(&scratch.pins, built.pinned, seconds),
+        order: settings.order,
+        material_stretch: built.material_stretch,
+    });
+    scratch.substepping = settings.substepping;
+    scratch.is_in_island = false;
+}
+
+/// Prepares how it is looked at for contact, and how far it may come.
+pub(super) fn prepare_contact(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    acceleration: Vec3,
+    seconds: f32,
+) {
+    let (particles, state) = (&cloth.particles, &mut *cloth.state);
+    let (built, scratch) = (&*cloth.built, &mut *cloth.scratch);
+    let Inputs {
+        settings, material, ..
+    } = inputs;
+    scratch.self_collision = inputs.self_collision;
+    if scratch.was_put {
+        state.carriers.clear();
+    }
+    if inputs.self_collision.is_none() {
+        scratch.mutual = None;
+    } else if let Some(mutual) = &mut scratch.mutual
+        && scratch.was_put
+    {
+        mutual.forget();
+    }
+    scratch.search = inputs.search;
+    scratch.contact_settings = ContactSettings {
+        particle_radius: settings.particle_radius,
+        friction: material.friction,
+        narrow_phase: inputs.narrow_phase,
+        ..ContactSettings::default()
+    };
+    let by_air = (state.air).acceleration(material, state.largest_speed, seconds);
+    let acceleration = acceleration.length() + by_air;
+    let pins = &scratch.pins;
+    scratch.reach =
+        reach(state, built.surface(), pins, acceleration, seconds) + scratch.constraints.travel();
+    state.lod.reach = scratch.reach;
+    update_bounds(
+        particles,
+        &cloth.frame,
+        built,
+        state,
+        scratch,
+        &mut cloth.search,
+        &mut cloth.bounds,
+    );
+}

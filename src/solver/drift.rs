@@ -1,0 +1,94 @@
+//! What damping is relative to, followed through a tick.
+
+use bevy::math::{DVec3, Vec3};
+
+use super::step::{DampingFrame, TickStep};
+use crate::cloth::{Block, DX, DY, DZ, LANES, W};
+
+/// As many blocks are summed in single precision: their sum is rounded by less than a hundred thousandth.
+const SUMMED: usize = 64;
+
+/// How far what damping is relative to moves in a sub-step.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Drift {
+    /// In the sub-step before the one to come (m).
+    way: Vec3,
+    /// What it gains in a sub-step by what pulls at all particles alike (m).
+    gain: Vec3,
+    /// Whether it is the centre of mass, and whether that was pushed since it was measured.
+    follows: bool,
+    is_stale: bool,
+}
+
+impl Drift {
+    /// In a tick that begins. What is not damped is not measured.
+    pub fn of(step: &TickStep) -> Self {
+        let dt = step.seconds / step.substeps.max(1) as f32;
+        match step.damped_against {
+            _ if step.damping == 0.0 => Self::default(),
+            DampingFrame::Still => Self::default(),
+            DampingFrame::Moving(velocity) => Self {
+                way: velocity * dt,
+                ..Self::default()
+            },
+            DampingFrame::CentreOfMass => Self {
+                gain: step.acceleration * dt * dt,
+                follows: true,
+                is_stale: true,
+                ..Self::default()
+            },
+        }
+    }
+
+    /// In the sub-step that begins, where `blocks` hold the displacements of the one before: by how much it has moved in that one,
+    /// and what it gains in each (m).
+    ///
+    /// A centre of mass is measured once a tick, and after each push from outside: forces within a cloth do not move it.
+    pub fn follow(&mut self, blocks: &[Block]) -> [Vec3; 2] {
+        if self.is_stale {
+            self.way = mean_displacement(blocks);
+            self.is_stale = false;
+        }
+        [self.way, self.gain]
+    }
+
+    /// A sub-step is done in which what pulls at all counted with this weight.
+    pub fn gain(&mut self, weight: f32) {
+        self.way += self.gain * weight;
+    }
+
+    /// Something from outside has pushed the cloth.
+    pub fn note_push(&mut self) {
+        self.is_stale = self.follows;
+    }
+}
+
+/// The displacement of the centre of mass of all that is free (m), zero if nothing is.
+fn mean_displacement(blocks: &[Block]) -> Vec3 {
+    let (mut mass, mut moment) = (0.0_f64, DVec3::ZERO);
+    for some in blocks.chunks(SUMMED) {
+        let mut sums = [[0.0_f32; LANES]; 4];
+        for block in some {
+            let view = block.view();
+            for l in 0..LANES {
+                let own = if view[W + l] > 0.0 {
+                    1.0 / view[W + l]
+                } else {
+                    0.0
+                };
+                sums[0][l] += own;
+                for (sum, at) in sums[1..].iter_mut().zip([DX, DY, DZ]) {
+                    sum[l] += own * view[at + l];
+                }
+            }
+        }
+        let [own, x, y, z] = sums.map(|lanes| lanes.into_iter().map(f64::from).sum::<f64>());
+        mass += own;
+        moment += DVec3::new(x, y, z);
+    }
+    if mass > 0.0 {
+        (moment / mass).as_vec3()
+    } else {
+        Vec3::ZERO
+    }
+}
