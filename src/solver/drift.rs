@@ -14,7 +14,12 @@ pub(super) struct Drift {
     /// In the sub-step before the one to come (m).
     way: Vec3,
     /// What it gains in a sub-step by what pulls at all particles alike (m).
-    gain: Vec3,
+    pull: Vec3,
+    /// The force of the air (N), and what one newton on a kilogram would have it gain (m).
+    force: Vec3,
+    unit: f32,
+    /// Mass of all that is free (kg).
+    mass: f32,
     /// Whether it is the centre of mass, and whether that was pushed since it was measured.
     follows: bool,
     is_stale: bool,
@@ -32,7 +37,8 @@ impl Drift {
                 ..Self::default()
             },
             DampingFrame::CentreOfMass => Self {
-                gain: step.acceleration * dt * dt,
+                pull: step.acceleration * dt * dt,
+                unit: dt * dt,
                 follows: true,
                 is_stale: true,
                 ..Self::default()
@@ -46,25 +52,38 @@ impl Drift {
     /// A centre of mass is measured once a tick, and after each push from outside: forces within a cloth do not move it.
     pub fn follow(&mut self, blocks: &[Block]) -> [Vec3; 2] {
         if self.is_stale {
-            self.way = mean_displacement(blocks);
+            (self.way, self.mass) = mean_displacement(blocks);
             self.is_stale = false;
         }
-        [self.way, self.gain]
+        [self.way, self.gained()]
+    }
+
+    /// The air pushes the cloth by this force (N) from now on.
+    pub fn blow(&mut self, force: Vec3) {
+        self.force = force;
     }
 
     /// A sub-step is done in which what pulls at all counted with this weight.
     pub fn gain(&mut self, weight: f32) {
-        self.way += self.gain * weight;
+        self.way += self.gained() * weight;
     }
 
     /// Something from outside has pushed the cloth.
     pub fn note_push(&mut self) {
         self.is_stale = self.follows;
     }
+
+    fn gained(&self) -> Vec3 {
+        if self.mass > 0.0 {
+            self.pull + self.force * (self.unit / self.mass)
+        } else {
+            self.pull
+        }
+    }
 }
 
-/// The displacement of the centre of mass of all that is free (m), zero if nothing is.
-fn mean_displacement(blocks: &[Block]) -> Vec3 {
+/// The displacement of the centre of mass of all that is free (m), zero if nothing is; and its mass (kg).
+fn mean_displacement(blocks: &[Block]) -> (Vec3, f32) {
     let (mut mass, mut moment) = (0.0_f64, DVec3::ZERO);
     for some in blocks.chunks(SUMMED) {
         let mut sums = [[0.0_f32; LANES]; 4];
@@ -87,8 +106,8 @@ fn mean_displacement(blocks: &[Block]) -> Vec3 {
         moment += DVec3::new(x, y, z);
     }
     if mass > 0.0 {
-        (moment / mass).as_vec3()
+        ((moment / mass).as_vec3(), mass as f32)
     } else {
-        Vec3::ZERO
+        (Vec3::ZERO, 0.0)
     }
 }

@@ -96,6 +96,8 @@ pub(super) struct Airflow {
     substep: f32,
     /// What the air gave the cloth in the tick (N s).
     impulse: DVec3,
+    /// The mean force of the air between the last two looks (N).
+    force: Vec3,
 }
 
 impl Airflow {
@@ -117,6 +119,7 @@ impl Airflow {
             since: 0,
             substep: 0.0,
             impulse: DVec3::ZERO,
+            force: Vec3::ZERO,
         }
     }
 
@@ -136,6 +139,11 @@ impl Airflow {
     /// What the air gave the cloth in the last tick (N s).
     pub fn impulse(&self) -> Vec3 {
         self.impulse.as_vec3()
+    }
+
+    /// The mean force of the air between the last two looks (N), in this tick or the one before.
+    pub fn force(&self) -> Vec3 {
+        self.force
     }
 
     /// Begins a tick of `seconds` in this many sub-steps.
@@ -169,11 +177,13 @@ impl Airflow {
         let seconds = self.since as f32 * self.substep;
         let rows = particles.blocks().chunks(strip);
         let known = self.felt.chunks(strip).zip(self.ways.chunks(strip));
+        let before = self.impulse;
         for (row, (felt, ways)) in rows.zip(known) {
             let mut sum = [[0.0; LANES]; 3];
             (kernels.air_given)(row, felt, ways, seconds, &mut sum);
             self.impulse += DVec3::from(sum.map(|lanes| lanes.into_iter().map(f64::from).sum()));
         }
+        self.force = (self.impulse - before).as_vec3() / seconds;
         self.since = 0;
     }
 

@@ -174,14 +174,15 @@ impl Solver {
         };
         let weight_dt2 = weight(kind) * dt * dt;
         let pull = step.acceleration * weight_dt2;
+        if let Some(air) = &mut self.air {
+            air.before_substep(tick.next, particles, &kernels);
+            tick.drift.blow(air.force());
+        }
         let drift = tick.drift.follow(particles.blocks());
         let prediction = Prediction::new(kind, kept, pull, drift);
         // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
         tick.drift
             .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });
-        if let Some(air) = &mut self.air {
-            air.before_substep(tick.next, particles, &kernels);
-        }
         let breath = Breath {
             weight: weight_dt2,
             inverse_substep: 1.0 / dt,
@@ -251,6 +252,7 @@ impl Solver {
             && tick.next < tick.substeps()
         {
             air.before_substep(tick.next, particles, &kernels);
+            tick.drift.blow(air.force());
         }
         let forces = self.forces.as_mut().expect("forces");
         let bending = self.bending.as_mut();
