@@ -1,17 +1,26 @@
-//! Where cameras are.
+//! Where cameras are, and what is hidden from them.
 
 #[cfg(not(feature = "mesh"))]
 use std::marker::PhantomData;
 
 #[cfg(feature = "mesh")]
-use bevy::{camera::Camera, ecs::system::Query, transform::components::GlobalTransform};
-use bevy::{ecs::system::SystemParam, math::Vec3};
+use bevy::{
+    camera::{Camera, visibility::InheritedVisibility},
+    ecs::system::Query,
+    transform::components::GlobalTransform,
+};
+use bevy::{
+    ecs::{entity::Entity, system::SystemParam},
+    math::Vec3,
+};
 
 /// The cameras of the app; none where nothing is drawn.
 #[derive(SystemParam)]
 pub(super) struct Cameras<'w, 's> {
     #[cfg(feature = "mesh")]
     all: Query<'w, 's, (&'static Camera, &'static GlobalTransform)>,
+    #[cfg(feature = "mesh")]
+    visibilities: Query<'w, 's, &'static InheritedVisibility>,
     #[cfg(not(feature = "mesh"))]
     none: PhantomData<(&'w (), &'s ())>,
 }
@@ -31,5 +40,16 @@ impl Cameras<'_, '_> {
             std::iter::empty::<Vec3>()
         };
         places.map(|place| place.distance(point)).reduce(f32::min)
+    }
+
+    /// Whether Bevy's visibility hid an entity in the last frame, its own or an ancestor's.
+    pub fn is_hidden(&self, entity: Entity) -> bool {
+        #[cfg(feature = "mesh")]
+        return self.visibilities.get(entity).is_ok_and(|seen| !seen.get());
+        #[cfg(not(feature = "mesh"))]
+        {
+            let _ = entity;
+            false
+        }
     }
 }

@@ -171,14 +171,18 @@ impl LevelledItem<'_, '_> {
         wanted.centre = self.frame.to_world(root.center.into());
         let state = &mut self.state.lod;
         if let Some(lod) = lod {
-            let distance = cameras.nearest(wanted.centre);
-            let distance = distance.map_or(0.0, |distance| (distance - root.radius()).max(0.0));
+            let nearest = cameras.nearest(wanted.centre);
+            let is_hidden = nearest.is_some() && cameras.is_hidden(self.entity);
+            let distance = nearest.map_or(0.0, |distance| (distance - root.radius()).max(0.0));
             state.passed = lod.passed(distance, state.passed);
             let by_distance = state
                 .passed
                 .checked_sub(1)
                 .map(|last| lod.distances[last].1);
             wanted.level = lod.level.or(by_distance).unwrap_or_default();
+            if is_hidden && lod.hidden.coarseness() > wanted.level.coarseness() {
+                wanted.level = lod.hidden;
+            }
         }
         let ticks = wanted.level.ticks().unwrap_or(1) as f32;
         // What the acceleration does grows with the square of the time.

@@ -54,7 +54,7 @@ impl ClothLodLevel {
     }
 }
 
-/// Level of detail of a cloth: by its distance to the nearest active camera, or by hand. On a cloth; [`GlobalClothLod`] is for
+/// Level of detail of a cloth: by its distance to the nearest active camera, while it is hidden, or by hand. On a cloth; [`GlobalClothLod`] is for
 /// all cloths that have none of their own.
 ///
 /// *Nothing jumps* when the level changes. Positions and velocities go on as they are; a cloth that freezes loses its velocity,
@@ -69,7 +69,8 @@ impl ClothLodLevel {
 /// anything that is put there. A cloth that sleeps costs next to nothing at any level.
 ///
 /// Distances are from the camera to the nearest point of a sphere around the cloth, and cameras are where the last frame had
-/// them. Without an active camera, as on a server, or without the feature `mesh` they count for nothing: all is `Full`.
+/// them. A cloth that is hidden is [`Off`](ClothLodLevel::Off) unless [`ClothLod::hidden`] says otherwise: without a `ClothLod` it moves on,
+/// unseen. Without an active camera, as on a server, or without the feature `mesh` neither counts: all is `Full`.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -92,6 +93,8 @@ pub struct ClothLod {
     pub level: Option<ClothLodLevel>,
     /// From which distance on (m) which level holds, ascending; `Full` before the first.
     pub distances: Vec<(f32, ClothLodLevel)>,
+    /// The level at least while Bevy's visibility hides the cloth, its own or an ancestor's; `Off` where levels go by distance, unless a game says otherwise.
+    pub hidden: ClothLodLevel,
     /// The part of a distance by which a cloth has to be nearer than that to leave its level again, from 0 to less than 1: so that
     /// it does not change to and fro.
     pub hysteresis: f32,
@@ -114,14 +117,16 @@ impl ClothLod {
         Self {
             level: None,
             distances: distances.into_iter().collect(),
+            hidden: ClothLodLevel::Off,
             hysteresis: 0.1,
         }
     }
 
-    /// One level, until the game says otherwise.
+    /// One level, hidden or not, until the game says otherwise.
     pub fn at(level: ClothLodLevel) -> Self {
         Self {
             level: Some(level),
+            hidden: level,
             ..Self::by_distance([])
         }
     }
@@ -151,7 +156,7 @@ impl ClothLod {
             before = *distance;
         }
         let levels = self.distances.iter().map(|(_, level)| *level);
-        for level in levels.chain(self.level) {
+        for level in levels.chain(self.level).chain([self.hidden]) {
             if let ClothLodLevel::Every(ticks) = level {
                 let is_rate = |ticks: f32| (1.0..=MOST_TICKS as f32).contains(&ticks);
                 ClothError::check(
@@ -225,12 +230,17 @@ mod tests {
             hysteresis: 1.0,
             ..ClothLod::default()
         };
+        let bad_hidden = ClothLod {
+            hidden: Every(0),
+            ..ClothLod::default()
+        };
         for bad in [
             by(&[(-1.0, Frozen)]),
             by(&[(f32::NAN, Frozen)]),
             by(&[(2.0, Frozen), (1.0, Frozen)]),
             by(&[(2.0, Every(0))]),
             ClothLod::at(Every(17)),
+            bad_hidden,
             bad_hysteresis,
         ] {
             let outcome = bad.validate();

@@ -83,3 +83,54 @@ fn what_is_no_cloth_any_more_draws_what_it_drew_before() {
     );
     assert!(app.world().get::<Mesh3d>(without).is_none());
 }
+
+/// With a level of detail, what is hidden costs nothing, be it its own doing or an ancestor's, and goes on where it was when it is seen
+/// again. By hand it is as the game says; where no camera is, nobody can see whether.
+#[test]
+fn a_hidden_cloth_with_a_level_of_detail_costs_nothing() {
+    for has_camera in [true, false] {
+        let mut app = app_that_draws(FixedUpdate);
+        if has_camera {
+            app.world_mut()
+                .spawn((Camera::default(), Transform::from_xyz(0.0, 0.0, 5.0)));
+        }
+        let world = app.world_mut();
+        let near = ClothLod::by_distance([(100.0, ClothLodLevel::Frozen)]);
+        let sheet = (Cloth::new(5, 5, 0.1), near.clone(), Visibility::default());
+        let own = world.spawn(sheet).id();
+        let above = world
+            .spawn((Transform::default(), Visibility::default()))
+            .id();
+        let sheet = (Cloth::new(5, 5, 0.1), near.clone(), ChildOf(above));
+        let below = world.spawn((sheet, Visibility::default())).id();
+        let by_hand = (Cloth::new(5, 5, 0.1), ClothLod::at(ClothLodLevel::Full));
+        let by_hand = world.spawn((by_hand, Visibility::Hidden)).id();
+        tick(&mut app, 10);
+        for cloth in [own, below] {
+            assert!(stats(&app, cloth).substeps > 0);
+        }
+        for entity in [own, above] {
+            change::<Visibility>(&mut app, entity, |visibility| {
+                *visibility = Visibility::Hidden
+            });
+        }
+        tick(&mut app, 3);
+        let before = [own, below].map(|cloth| particles(&app, cloth).clone());
+        tick(&mut app, 10);
+        for (cloth, before) in [own, below].into_iter().zip(&before) {
+            assert_eq!(stats(&app, cloth).substeps == 0, has_camera);
+            assert_eq!(particles(&app, cloth) == before, has_camera);
+        }
+        assert!(stats(&app, by_hand).substeps > 0);
+        for entity in [own, above] {
+            change::<Visibility>(&mut app, entity, |visibility| {
+                *visibility = Visibility::Visible
+            });
+        }
+        tick(&mut app, 3);
+        for cloth in [own, below] {
+            assert_eq!(stats(&app, cloth).level, ClothLodLevel::Full);
+            assert!(stats(&app, cloth).substeps > 0);
+        }
+    }
+}
