@@ -26,10 +26,11 @@ pub enum ClothLodLevel {
     /// [`ClothLimitExceeded`](super::ClothLimitExceeded). It is drawn as many ticks late, evenly; its
     /// [`ClothParticles`](crate::cloth::ClothParticles) are those of the last tick in which it was moved.
     Every(u32),
-    /// It keeps its shape, as seen from its entity, or from its first attachment's target where it has one, and passes through
-    /// colliders. Costs no more than a look at where that is.
+    /// It keeps its shape, as seen from its entity, from its first attachment's target or from the bones of its
+    /// [`ClothSkin`](crate::cloth::ClothSkin) where it has one, and passes through colliders. Costs no more than a look at where that is,
+    /// and the skinning of the bones' pose.
     Frozen,
-    /// As `Frozen`, and its mesh is not written: hide it, by `Visibility` or Bevy's `VisibilityRange`.
+    /// As `Frozen`, and neither its bones are followed nor is its mesh written: hide it, by `Visibility` or Bevy's `VisibilityRange`.
     Off,
 }
 

@@ -20,18 +20,18 @@ use self::{
 };
 use super::{
     ClothAttachments, ClothFault, ClothFrame, ClothGravity, ClothTeleport,
-    attach::{Targets, follow_targets},
+    attach::follow_targets,
     broad_phase::clear_stats,
     build::{Build, Wanted, build},
     carry::{carry, new_from_old},
     frame::global_transform,
     freeze::{stand, thaw},
     inputs::Inputs,
-    lod::{ClothLod, GlobalClothLod},
+    lod::{ClothLod, ClothLodLevel, GlobalClothLod},
     lod_state::Turn,
     naming::Part,
     shared::SharedParts,
-    skin::{move_with_pose, place_pose},
+    skin::{move_with_pose, place_pose, stand_in_pose},
     wind::Breeze,
 };
 use crate::cloth::{ClothError, ClothParticles};
@@ -73,7 +73,7 @@ pub(super) fn prepare_cloths(
         let outcome = inputs.and_then(|inputs| {
             if cloth.state.lod.turn == Turn::Stand {
                 pass(&mut cloth);
-                return stand_still(&mut cloth, &around.targets);
+                return stand_still(&mut cloth, &around);
             }
             let breeze = around.field.of_cloth(cloth.air)?;
             if sleeps_as_it_was(&cloth, &inputs, &around, &breeze, seconds) {
@@ -118,13 +118,22 @@ fn pass(cloth: &mut PreparingItem) {
 }
 
 /// Has the cloth keep its shape, and go with what carries it.
-fn stand_still(cloth: &mut PreparingItem, targets: &Targets) -> Result<(), ClothError> {
+fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), ClothError> {
     if cloth.state.written != Some(cloth.particles.last_changed()) {
         check_particles(&mut cloth.particles)?;
     }
     cloth.contacts.clear();
-    let (frame, state) = (&mut cloth.frame, &mut *cloth.state);
-    stand(cloth.entity, targets, frame, &mut cloth.particles, state)
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let targets = &around.targets;
+    stand(cloth.entity, targets, &mut cloth.frame, particles, state)?;
+    if cloth.built.skin.is_some() && state.lod.level != ClothLodLevel::Off {
+        let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+        let place = |joint| global_transform(&targets.transforms, joint).ok();
+        (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
+        let (sources, frame) = (&around.sources, &*cloth.frame);
+        stand_in_pose(sources, frame, particles, built, state, scratch)?;
+    }
+    Ok(())
 }
 
 fn prepare(
@@ -137,8 +146,9 @@ fn prepare(
 ) -> Result<(), ClothError> {
     let before = *cloth.frame;
     let (frame, build) = build_cloth(cloth, inputs, around, parts)?;
+    let has_stood = cloth.state.lod.frozen.is_some();
     let was_written = take_over(cloth, inputs, around, [&before, &frame], seconds)?;
-    go_along(cloth, around, [&before, &frame], build, seconds)?;
+    go_along(cloth, around, [&before, &frame], build, seconds, has_stood)?;
     let acceleration = cloth.frame.isometry().rotation.inverse() * inputs.gravity;
     let (built, state) = (&mut *cloth.built, &mut *cloth.state);
     if was_written || cloth.scratch.teleports {
@@ -245,6 +255,7 @@ fn go_along(
     [before, frame]: [&ClothFrame; 2],
     build: Build,
     seconds: f32,
+    has_stood: bool,
 ) -> Result<(), ClothError> {
     let Surroundings { targets, roots, .. } = around;
     let attachments = cloth
@@ -276,7 +287,8 @@ fn go_along(
         && was_built
     {
         let way = scratch.pose.farthest_from(&state.pose, new_from_old);
-        scratch.teleports |= way > skin.teleport_distance;
+        // What stood still is put to where its skeleton has gone meanwhile.
+        scratch.teleports |= has_stood || way > skin.teleport_distance;
     }
     if scratch.teleports {
         scratch.carried = None;
@@ -287,15 +299,7 @@ fn go_along(
         *cloth.frame = *frame;
     }
     if moves || !was_built || scratch.teleports {
-        move_with_pose(
-            [before, frame],
-            new_from_old,
-            was_built,
-            particles,
-            built,
-            state,
-            scratch,
-        );
+        move_with_pose(new_from_old, was_built, particles, built, state, scratch);
         follow_targets(
             attachments,
             &scratch.targets,

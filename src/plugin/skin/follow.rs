@@ -31,6 +31,20 @@ pub(crate) fn place_pose(
     scratch: &mut ClothScratch,
 ) -> Result<(), ClothError> {
     renew_limits(skin, particles, built, state)?;
+    place_joints(sources, frame, built, scratch)?;
+    if begins && built.skin.is_some() {
+        begin_in_pose(&scratch.pose, particles, built);
+    }
+    Ok(())
+}
+
+/// Places the pose in `scratch` whose joints have been read there, of a cloth that follows one.
+fn place_joints(
+    sources: &Sources,
+    frame: &ClothFrame,
+    built: &mut ClothBuilt,
+    scratch: &mut ClothScratch,
+) -> Result<(), ClothError> {
     let Some(limits) = &built.skin else {
         return Ok(());
     };
@@ -40,9 +54,31 @@ pub(crate) fn place_pose(
         true => None,
         false => (built.shared).skinning(|source, surface| sources.skinning(source, surface))?,
     };
-    pose.place(built.surface(), skinning, frame, with_normals)?;
-    if begins {
-        begin_in_pose(pose, particles, built);
+    pose.place(built.surface(), skinning, frame, with_normals)
+}
+
+/// Has a cloth that stands still, in this frame, go with the joints that have been read into `scratch`: each particle
+/// keeps its place as seen from its place in the pose.
+///
+/// # Errors
+/// What is wrong with the mesh's joints.
+pub(crate) fn stand_in_pose(
+    sources: &Sources,
+    frame: &ClothFrame,
+    particles: &mut Mut<ClothParticles>,
+    built: &mut ClothBuilt,
+    state: &mut ClothState,
+    scratch: &mut ClothScratch,
+) -> Result<(), ClothError> {
+    let is_new = scratch.pose.joints != state.pose.joints || state.pose.frame != *frame;
+    if state.pose.places.is_empty() || !is_new {
+        return Ok(());
+    }
+    place_joints(sources, frame, built, scratch)?;
+    std::mem::swap(&mut scratch.pose, &mut state.pose);
+    if let Some(turn) = state.pose.turn_since(&scratch.pose) {
+        teleport_to_pose([&scratch.pose, &state.pose], turn, particles);
+        state.written = Some(particles.last_changed());
     }
     Ok(())
 }
@@ -110,7 +146,6 @@ fn begin_in_pose(pose: &Pose, particles: &mut Mut<ClothParticles>, built: &Cloth
 /// Takes over a pose that has been placed in `scratch`, as a tick begins in which the cloth's frame becomes another: by
 /// `new_from_old`, if the cloth was there before and does not jump.
 pub(crate) fn move_with_pose(
-    [before, frame]: [&ClothFrame; 2],
     new_from_old: Isometry3d,
     was_built: bool,
     particles: &mut Mut<ClothParticles>,
@@ -124,7 +159,7 @@ pub(crate) fn move_with_pose(
     let was_there = was_built && !state.pose.places.is_empty();
     std::mem::swap(&mut scratch.pose, &mut state.pose);
     let (from, to) = (&mut scratch.pose, &state.pose);
-    let turn = to.turn_since(from, [frame, before]);
+    let turn = to.turn_since(from);
     if was_there
         && scratch.teleports
         && let Some(turn) = turn

@@ -7,7 +7,7 @@ mod joints;
 mod no_joints;
 mod pose;
 
-pub(super) use follow::{move_with_pose, place_pose};
+pub(super) use follow::{move_with_pose, place_pose, stand_in_pose};
 #[cfg(feature = "mesh")]
 pub(super) use joints::Skins;
 #[cfg(not(feature = "mesh"))]

@@ -19,6 +19,8 @@ pub(crate) struct Pose {
     pub places: Vec<Vec3>,
     /// Where each faces; none where nobody asks.
     pub normals: Vec<Vec3>,
+    /// That frame.
+    pub frame: ClothFrame,
 }
 
 /// Numbers of a [`ClothSkin`], particle by particle.
@@ -112,6 +114,7 @@ impl Pose {
         with_normals: bool,
     ) -> Result<(), ClothError> {
         self.normals.clear();
+        self.frame = *frame;
         let Some(skinning) = skinning.filter(|_| !self.joints.is_empty()) else {
             self.places.clear();
             self.places.extend_from_slice(surface.rest_positions());
@@ -151,6 +154,7 @@ impl Pose {
         self.joints.clone_from(&other.joints);
         self.places.clone_from(&other.places);
         self.normals.clone_from(&other.normals);
+        self.frame = other.frame;
     }
 
     /// Sees it from another frame.
@@ -170,12 +174,12 @@ impl Pose {
         squares.fold(0.0, f32::max).sqrt()
     }
 
-    /// How the first joint is turned against where `other` has it, each in a frame of its own.
-    pub fn turn_since(&self, other: &Self, [new, old]: [&ClothFrame; 2]) -> Option<Quat> {
+    /// How the first joint is turned against where `other` has it, each in its own frame.
+    pub fn turn_since(&self, other: &Self) -> Option<Quat> {
         let now = rigid(self.joints.first()?).rotation;
         let was = rigid(other.joints.first()?).rotation;
-        let turn =
-            new.isometry().rotation.inverse() * now * was.inverse() * old.isometry().rotation;
+        let [new, old] = [self, other].map(|pose| pose.frame.isometry().rotation);
+        let turn = new.inverse() * now * was.inverse() * old;
         Some(turn.normalize()).filter(|turn| turn.is_finite())
     }
 }

@@ -382,3 +382,45 @@ fn limits_feed_in_no_energy() {
         }
     }
 }
+
+/// Frozen, each particle keeps its place as seen from the bones, however they and the root go: its distance from the pose, turned as the
+/// first bone is. Switched off it stays, and comes along when it goes on. Nothing jumps then: as seen from the bones, which swing wildly,
+/// it goes on by no more in that tick than in its fastest tick before.
+#[test]
+fn frozen_it_goes_with_the_bones() {
+    for level in [ClothLodLevel::Frozen, ClothLodLevel::Off] {
+        let (mut app, rig) = animated(ClothSkin::painted());
+        let beside = |app: &App| -> Vec<Vec3> {
+            let bone: &GlobalTransform = app.world().get(rig.bones[0]).expect("a bone");
+            let back = bone.rotation().inverse();
+            let pairs = simulated(app, rig.cloth)
+                .into_iter()
+                .zip(skinned(app, &rig));
+            pairs.map(|(place, pose)| back * (place - pose)).collect()
+        };
+        let farthest = |a: &[Vec3], b: &[Vec3]| {
+            let apart = a.iter().zip(b).map(|(a, b)| a.distance(*b));
+            apart.fold(0.0, f32::max)
+        };
+        let (mut before, mut fastest) = (beside(&app), 0.0_f32);
+        go(&mut app, &rig, 1..80, |app| {
+            let now = beside(app);
+            fastest = fastest.max(farthest(&before, &now));
+            before = now;
+        });
+        let lod = ClothLod::at(level);
+        app.world_mut().entity_mut(rig.cloth).insert(lod);
+        let is_off = level == ClothLodLevel::Off;
+        go(&mut app, &rig, 80..120, |app| {
+            let off = farthest(&before, &beside(app));
+            assert!(is_off || off < 10.0 * ROUNDING, "{off}");
+            assert_eq!(stats(app, rig.cloth).substeps, 0);
+        });
+        assert!(!is_off || farthest(&before, &beside(&app)) > 2.0 * fastest);
+        app.world_mut().entity_mut(rig.cloth).remove::<ClothLod>();
+        go(&mut app, &rig, 120..121, |_| {});
+        let off = farthest(&before, &beside(&app));
+        assert!(off < fastest, "{level:?}: {off} {fastest}");
+        assert_eq!(fault(&app, rig.cloth), None);
+    }
+}
