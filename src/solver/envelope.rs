@@ -22,7 +22,7 @@ pub enum ClothLimit {
     /// The cloth is farther from its frame's origin, its own size not counted, than single precision resolves well: 1,000 m
     /// with 20 sub-steps in 1/60 s, half of it with twice as many, and 40,000 spacings.
     Distance,
-    /// The cloth is damped so much that how fast it falls depends on the sub-steps, by more than a hundredth, of first order a tenth: above 0.979
+    /// The cloth is damped so much that how fast motion dies away depends on the sub-steps, by more than a hundredth, of first order a tenth: above 0.979
     /// with 20 sub-steps in 1/60 s.
     Damping,
     /// A ball or capsule thinner than half a spacing comes to the cloth by more than 6 of its radii in a sub-step: it may
