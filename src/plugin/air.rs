@@ -17,6 +17,8 @@ pub(super) struct KnownAir {
     breeze: Option<Breeze>,
     pressure: Option<ClothPressure>,
     zones: Vec<PlacedZone>,
+    /// The force of the air as the last tick ended, in the cloth's frame (N).
+    pub force: Vec3,
 }
 
 impl KnownAir {
@@ -80,7 +82,8 @@ impl KnownAir {
                 pressure,
                 ..Air::NONE
             };
-            return solver.set_air(surface, pressure.map(|_| nothing));
+            solver.set_air(surface, pressure.map(|_| nothing));
+            return solver.set_air_force(self.force);
         };
         let air = Air {
             density: breeze.density,
@@ -90,6 +93,7 @@ impl KnownAir {
             pressure: self.pressure,
         };
         solver.set_air(surface, Some(air));
+        solver.set_air_force(self.force);
         if breeze.is_turbulent() || !self.zones.is_empty() {
             solver.set_local_wind(particles, |place| {
                 let place = frame.to_world(place);

@@ -92,6 +92,7 @@ impl IntegratingItem<'_, '_> {
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
         self.stats.air_impulse = rotation * self.built.solver.air_impulse();
+        self.state.air.force = self.built.solver.air_force();
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 

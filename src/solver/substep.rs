@@ -162,6 +162,18 @@ impl Solver {
         self.air.as_ref().map_or(Vec3::ZERO, |air| air.impulse())
     }
 
+    /// The mean force of the air as the last tick ended (N), in its frame: the next one expects it to go on.
+    pub(crate) fn air_force(&self) -> Vec3 {
+        self.air.as_ref().map_or(Vec3::ZERO, |air| air.force())
+    }
+
+    /// What that force was.
+    pub(crate) fn set_air_force(&mut self, force: Vec3) {
+        if let Some(air) = &mut self.air {
+            air.set_force(force);
+        }
+    }
+
     /// With damping along springs from now on: [`ClothMaterial::stretch_damping`](crate::cloth::ClothMaterial::stretch_damping)
     /// (s), 0 for none.
     pub fn set_stretch_damping(&mut self, retardation: f32) {

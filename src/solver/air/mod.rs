@@ -146,6 +146,11 @@ impl Airflow {
         self.force
     }
 
+    /// What that force was (N) as a tick begins.
+    pub fn set_force(&mut self, force: Vec3) {
+        self.force = force;
+    }
+
     /// Begins a tick of `seconds` in this many sub-steps.
     pub fn begin(&mut self, seconds: f32, substeps: u32) {
         // What is full of air is as wide as its pressure, its springs and their stretch let it be, in each sub-step.
