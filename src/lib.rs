@@ -61,9 +61,10 @@ pub mod prelude {
     pub use crate::plugin::{
         ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones,
         ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothInertia,
-        ClothLimitExceeded, ClothLod, ClothLodLevel, ClothPush, ClothStats, ClothSystems,
-        ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
-        ClothWindShape, ClothWindZone, DrapePlugins, GlobalClothLod,
+        ClothLimitExceeded, ClothLod, ClothLodLevel, ClothPush, ClothSnapshot, ClothStats,
+        ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
+        ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
+        SnapshotError,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

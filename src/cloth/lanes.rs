@@ -37,8 +37,32 @@ pub(crate) type View = [f32; END];
 
 /// Eight particles: 256 bytes, four cache lines. The last eight numbers are room for a view to be shifted.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
-pub(crate) struct Block([f32; 8 * LANES]);
+pub(crate) struct Block(
+    #[cfg_attr(feature = "serialize", serde(with = "by_lanes"))] [f32; 8 * LANES],
+);
+
+/// A block as eight times eight numbers: serde has no longer arrays than 32.
+#[cfg(feature = "serialize")]
+mod by_lanes {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{LANES, Lanes};
+
+    pub fn serialize<S: Serializer>(block: &[f32; 8 * LANES], to: S) -> Result<S::Ok, S::Error> {
+        let mut lanes: [Lanes; 8] = Default::default();
+        lanes.as_flattened_mut().copy_from_slice(block);
+        lanes.serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[f32; 8 * LANES], D::Error> {
+        let lanes = <[Lanes; 8]>::deserialize(from)?;
+        let mut block = [0.0; 8 * LANES];
+        block.copy_from_slice(lanes.as_flattened());
+        Ok(block)
+    }
+}
 
 impl Block {
     /// No particles: at the origin, and nothing moves them.
@@ -98,6 +122,7 @@ impl Block {
 
 /// Which block and lane each particle of a grid is in.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Layout {
     pub columns: u32,
     pub rows: u32,
@@ -107,6 +132,7 @@ pub(crate) struct Layout {
 
 /// A particle's block and lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Slot {
     pub block: usize,
     pub lane: usize,

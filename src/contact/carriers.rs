@@ -25,6 +25,7 @@ const MAX_LOAD: f32 = 3.0e3;
 
 /// A particle that carries a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Carrier {
     slot: Slot,
     /// Out of the body where it lay on it last, of length 1.

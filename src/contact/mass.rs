@@ -4,6 +4,7 @@ use bevy::math::{Mat3, Quat, Vec3};
 
 /// How hard a collider is to move. In the frame in which the cloth moves, as the tick begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyMass {
     /// One over its mass (1/kg).
     pub inverse_mass: f32,

@@ -26,6 +26,7 @@ const EDGES_FROM: f32 = 2.0;
 
 /// What a cloth's colliders are tested against. A component of the cloth.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 pub enum NarrowPhase {
     /// Triangles for balls and capsules of a radius below [`PARTICLES_FROM`] spacings, and for those that move farther

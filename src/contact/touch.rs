@@ -6,6 +6,7 @@ use super::{MovingCollider, NarrowPhase, candidates::Ranges};
 
 /// A particle near a collider, and how near it came.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactPoint {
     /// Index of the particle; where the collider is tested against triangles, of one that stands for them.
     pub particle: u32,

@@ -22,6 +22,7 @@ const PARTICLES_A_COLLIDER: f32 = 600.0;
 ///
 /// [`Paper`]: BoundRule::Paper
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 pub enum SearchMethod {
     /// Whatever costs least, by the number of particles and of colliders near.

@@ -7,6 +7,7 @@ use crate::cloth::ClothError;
 
 /// How the bounding volumes of a tree's nodes come about.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 pub enum BoundRule {
     /// The paper's Figure 4: the root's radius is (longest side + 1)/2 spacings, each level below has half of

@@ -13,6 +13,7 @@ use crate::{
 
 /// What a cloth was last moved in, in the world.
 #[derive(Debug, Default, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct KnownAir {
     breeze: Option<Breeze>,
     pressure: Option<ClothPressure>,

@@ -119,6 +119,7 @@ pub struct ClothTeleport;
 
 /// A particle that follows an entity.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Attached {
     pub particle: u32,
     /// Which attachment it belongs to.

@@ -68,10 +68,13 @@ pub(super) fn build(
     {
         return Err(error.clone());
     }
+    let resumes = state.resumes;
     let new = build_new(wanted, sources, parts, particles, built, state);
     built.refused = new.as_ref().err().map(|error| (tried, error.clone()));
     let build = new?;
-    state.rest.disturb();
+    if !resumes {
+        state.rest.disturb();
+    }
     Ok(build)
 }
 
@@ -122,21 +125,25 @@ fn build_new(
     pins.validate(surface)?;
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
     // not.
-    let mut build = Build::New;
-    let mut new = if let Some(resampled) = resampled(wanted, &shared, particles, built)? {
-        build = Build::Resampled;
-        resampled
+    let (build, new) = if state.resumes {
+        // As a snapshot says, with what is pinned and attached.
+        check_count(particles, surface)?;
+        (Build::Kept, None)
+    } else if let Some(resampled) = resampled(wanted, &shared, particles, built)? {
+        (Build::Resampled, Some(resampled))
     } else if built.from.is_some() || particles.is_empty() {
-        at_rest(wanted, surface)?
+        (Build::New, Some(at_rest(wanted, surface)?))
     } else {
         check_count(particles, surface)?;
-        (**particles).clone()
+        (Build::New, Some((**particles).clone()))
     };
-    pins.for_each(surface, |index| new.pin(index));
+    if let Some(mut new) = new {
+        pins.for_each(surface, |index| new.pin(index));
+        state.detach();
+        **particles = new;
+    }
     built.solver = shared.solver.clone();
     built.forget_tethers();
-    state.detach();
-    **particles = new;
     built.shared = shared;
     built.from = Some(BuiltFrom {
         unevenness: cloth.unevenness,

@@ -41,6 +41,14 @@ pub(super) struct ColliderMotion {
     built: Option<BuiltShape>,
 }
 
+/// What a collider's next way depends on, besides where it is then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct ColliderMemory {
+    last: Option<Isometry3d>,
+    cloths: u32,
+}
+
 /// A shape, and the collider and scale that it is of.
 #[derive(Debug)]
 struct BuiltShape {
@@ -230,6 +238,19 @@ impl ColliderMotion {
         last.translation += Vec3A::from(gone);
         last.rotation = (turned * last.rotation).normalize();
         (gone, turned)
+    }
+
+    /// What its next way depends on.
+    pub fn memory(&self) -> ColliderMemory {
+        ColliderMemory {
+            last: self.last,
+            cloths: self.cloths,
+        }
+    }
+
+    /// Has its next way begin as that of another time.
+    pub fn recall(&mut self, ColliderMemory { last, cloths }: ColliderMemory) {
+        (self.last, self.cloths) = (last, cloths);
     }
 
     /// Wherever it is when it is looked at next, it has not come from anywhere.

@@ -21,6 +21,7 @@ use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};
 
 /// A collider that a cloth touches.
 #[derive(Reflect, MapEntities, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothContact {
     /// The collider's entity.
     #[entities]
@@ -47,6 +48,7 @@ pub struct ClothContact {
 
 /// The colliders that a cloth touched in the last tick in which it moved: while it sleeps, or no time passes, they stay.
 #[derive(Component, Reflect, MapEntities, Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, MapEntities, Default, Debug, Clone)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothContacts {

@@ -10,6 +10,7 @@ const WORSE: f32 = 10.0;
 
 /// How far a cloth is beyond a limit.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Excess {
     /// For how many ticks in a row.
     ticks: u32,

@@ -65,6 +65,7 @@ impl Places<'_, '_> {
 /// The frame that a cloth's particles are given in: its entity's global translation and rotation as of the
 /// last tick. The scale is already in the particles, so this frame measures metres.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothFrame {
     isometry: Isometry3d,

@@ -108,6 +108,18 @@ pub(super) struct RootMotion {
     error: Option<ClothError>,
 }
 
+impl RootMotion {
+    /// Where it was as the last tick ended.
+    pub fn last(&self) -> Option<Isometry3d> {
+        self.last
+    }
+
+    /// Where it was, as of another time.
+    pub fn recall(&mut self, last: Option<Isometry3d>) {
+        self.last = last;
+    }
+}
+
 /// What carries a cloth along as a tick begins: as a body that goes from one place to another in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Carried {

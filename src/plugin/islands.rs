@@ -30,7 +30,8 @@ pub(super) struct Islands {
 }
 
 /// Cloths that may touch each other. If all sleep, one may be woken in the tick.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Island {
     /// Ascending.
     pub cloths: Vec<Entity>,

@@ -144,6 +144,16 @@ pub(super) fn choose_levels(
 }
 
 impl LevelledItem<'_, '_> {
+    /// Middle and radius of a sphere around it, in its frame (m); `None` for one that is not built, nor resumed from a snapshot.
+    fn sphere(&self) -> Option<(Vec3, f32)> {
+        if self.state.is_valid && self.built.matches(self.particles) {
+            let stretch = self.state.stretch.bound;
+            let root = self.built.tree().root_sphere(self.particles, stretch);
+            return Some((root.center.into(), root.radius()));
+        }
+        self.state.lod.sphere.filter(|_| self.state.resumes)
+    }
+
     /// The level that it would have alone.
     fn wanted(&mut self, global: Option<&ClothLod>, cameras: &Cameras) -> Wanted {
         let layers = self.layers.copied().unwrap_or_default();
@@ -161,19 +171,15 @@ impl LevelledItem<'_, '_> {
         // What is wrong with a level of detail is said where the cloth is prepared.
         let lod = self.lod.or(global).filter(|lod| lod.validate().is_ok());
         // One that was not built yet, or can't be, is looked at in each tick.
-        if !(self.state.is_valid && self.built.matches(self.particles)) {
+        let Some((centre, radius)) = self.sphere() else {
             return wanted;
-        }
-        let root = self
-            .built
-            .tree()
-            .root_sphere(self.particles, self.state.stretch.bound);
-        wanted.centre = self.frame.to_world(root.center.into());
+        };
+        wanted.centre = self.frame.to_world(centre);
         let state = &mut self.state.lod;
         if let Some(lod) = lod {
             let nearest = cameras.nearest(wanted.centre);
             let is_hidden = nearest.is_some() && cameras.is_hidden(self.entity);
-            let distance = nearest.map_or(0.0, |distance| (distance - root.radius()).max(0.0));
+            let distance = nearest.map_or(0.0, |distance| (distance - radius).max(0.0));
             state.passed = lod.passed(distance, state.passed);
             let by_distance = state
                 .passed
@@ -189,7 +195,7 @@ impl LevelledItem<'_, '_> {
         let times = (ticks / state.moved_by() as f32).max(1.0);
         let around = self.settings.copied().unwrap_or_default().particle_radius;
         let thickness = self.self_collision.map_or(0.0, |of| of.thickness);
-        wanted.radius = root.radius() + 2.0 * state.reach * times * times + around.max(thickness);
+        wanted.radius = radius + 2.0 * state.reach * times * times + around.max(thickness);
         wanted.touches_cloth = self.self_collision.is_some();
         wanted.is_due = self.teleports || self.state.lod.is_due();
         wanted

@@ -16,6 +16,7 @@ const MOST_TICKS: u32 = 16;
 
 /// How much of the work of a full simulation a cloth gets.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothLodLevel {
     /// It is moved in each tick.

@@ -1,11 +1,12 @@
 //! At which level of detail a cloth is, and when it is moved.
 
-use bevy::math::Isometry3d;
+use bevy::math::{Isometry3d, Vec3};
 
 use super::lod::ClothLodLevel;
 
 /// What becomes of a cloth in a tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Turn {
     /// It is moved.
     #[default]
@@ -18,6 +19,7 @@ pub(super) enum Turn {
 
 /// Where a cloth was as it froze, and what carries it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Frozen {
     /// The cloth's frame as it froze, and what carried it then.
     pub frame: Isometry3d,
@@ -28,6 +30,7 @@ pub(super) struct Frozen {
 
 /// The level of detail that a cloth is at.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct LodState {
     pub level: ClothLodLevel,
     /// How many distances it has passed.
@@ -50,6 +53,8 @@ pub(super) struct LodState {
     pub frozen: Option<Frozen>,
     /// For how many ticks it is kept from a lower rate: something that moves is or was near.
     pub kept: u32,
+    /// Of a snapshot: middle and radius of a sphere around it, in its frame (m), as nothing is built yet where it is restored.
+    pub sphere: Option<(Vec3, f32)>,
 }
 
 impl LodState {

@@ -88,7 +88,9 @@ pub(super) fn prepare_cloths(
         if outcome.is_err() {
             cloth.scratch.forget_tick();
             cloth.bounds.leave_out();
-            cloth.state.rest.disturb();
+            if !cloth.state.resumes {
+                cloth.state.rest.disturb();
+            }
         }
         if cloth.teleport.is_some() && outcome.is_ok() {
             commands.entity(cloth.entity).try_remove::<ClothTeleport>();
@@ -172,6 +174,7 @@ fn prepare(
     prepare_step(cloth, inputs, around, acceleration, (seconds, ticks));
     prepare_contact(cloth, inputs, acceleration, seconds);
     clear_stats(&mut cloth.stats, cloth.state.rest.is_asleep());
+    cloth.state.resumes = false;
     Ok(())
 }
 

@@ -13,11 +13,11 @@ use bevy::{
 use super::{
     ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats, broad_phase::cover,
     clock::milliseconds_since, collider_tree::ColliderTree, colliders::ColliderMotion,
-    components::BroadPhaseBounds, threads::threads,
+    components::BroadPhaseBounds, resting::RestsOn, threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
-    contact::{ClothLayers, Detection, MovingCollider, NarrowPhase, Touch, meets_triangles},
+    contact::{ClothLayers, Detection, NarrowPhase, Touch, meets_triangles},
     hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
 };
 
@@ -215,12 +215,10 @@ impl SearchingItem<'_, '_> {
     fn sleeps_on(&mut self, root: &BoundingSphere, colliders: &Colliders) -> bool {
         let layers = self.layers();
         let rests_on = &self.state.rests_on;
-        let rests_still = |(entity, collider): &(Entity, MovingCollider)| {
-            let motion = colliders.get(*entity, layers);
-            motion
-                .and_then(|motion| motion.seen_from(self.frame, None))
-                .as_ref()
-                == Some(collider)
+        let rests_still = |known: &RestsOn| {
+            let motion = colliders.get(known.entity, layers);
+            let way = motion.and_then(|motion| motion.seen_from(self.frame, None));
+            way.is_some_and(|way| known.is(&way))
         };
         if !rests_on.iter().all(rests_still) {
             return false;
@@ -239,7 +237,7 @@ impl SearchingItem<'_, '_> {
         let sleep_detection = Detection::default();
         let mut has_bounds = false;
         for (entity, motion) in colliders.near(centre, radius, layers) {
-            if rests_on.iter().any(|(known, _)| *known == entity) {
+            if rests_on.iter().any(|known| known.entity == entity) {
                 continue;
             }
             let Some(collider) = motion.seen_from(self.frame, None) else {

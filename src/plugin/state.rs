@@ -1,16 +1,20 @@
 //! All that a cloth's next tick depends on, besides its public components.
 
 use bevy::{
-    ecs::{change_detection::Tick, component::Component, entity::Entity},
+    ecs::{
+        change_detection::Tick,
+        component::Component,
+        entity::{Entity, EntityMapper, MapEntities},
+    },
     math::{Isometry3d, Vec3},
 };
 
 use super::{
     ClothAttachment, air::KnownAir, attachments::Attached, excess::Excess, lod_state::LodState,
-    skin::Pose,
+    resting::RestsOn, skin::Pose,
 };
 use crate::{
-    contact::{Carrier, ClothSelfCollision, MovingCollider, NarrowPhase},
+    contact::{Carrier, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
 };
@@ -19,6 +23,7 @@ use crate::{
 /// [`ClothFrame`](super::ClothFrame). The next tick depends on this, on those, on what the game says in other components, from
 /// which [`ClothBuilt`](super::ClothBuilt) follows, and on how colliders move; on nothing else.
 #[derive(Component, Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothState {
     /// Whether the last preparation found nothing wrong: what is not valid is neither moved nor drawn.
     pub(super) is_valid: bool,
@@ -34,6 +39,7 @@ pub struct ClothState {
     /// Speed of the fastest particle as the tick begins (m/s).
     pub(super) largest_speed: f32,
     /// When the plugin last wrote the particles: whoever wrote them since was the game.
+    #[cfg_attr(feature = "serialize", serde(skip))]
     pub(super) written: Option<Tick>,
     /// What disturbs a cloth at rest when it changes, besides what it is built from.
     pub(super) known: Option<(
@@ -46,6 +52,7 @@ pub struct ClothState {
     /// Likewise the air.
     pub(super) air: KnownAir,
     /// What `attached` was made from, and the entities that it names.
+    #[cfg_attr(feature = "serialize", serde(skip))]
     pub(super) attachments: Vec<ClothAttachment>,
     pub(super) targets: Vec<Entity>,
     pub(super) attached: Vec<Attached>,
@@ -54,16 +61,58 @@ pub struct ClothState {
     /// The pose that it follows, as the last tick ended.
     pub(super) pose: Pose,
     /// The colliders that it touched as it fell asleep, each where it was then.
-    pub(super) rests_on: Vec<(Entity, MovingCollider)>,
+    pub(super) rests_on: Vec<RestsOn>,
     /// The particles that carried bodies as the last tick ended.
     pub(super) carriers: Vec<(Entity, Carrier)>,
     /// The largest gravity that it has known, as 9.81 or a doubling of that (m/s²): tethers are made for it.
     pub(super) largest_gravity: f32,
+    /// Whether it is to go on as a snapshot says, though nothing is built yet.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub(super) resumes: bool,
     /// How far it is beyond each limit.
     pub(super) excess: [Excess; ClothLimit::ALL.len()],
 }
 
 impl ClothState {
+    /// Becomes what `other` is, in the memory that it has.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let Self {
+            is_valid,
+            lod,
+            control,
+            ref rest,
+            touches_cloth,
+            stretch,
+            largest_speed,
+            written,
+            known,
+            ref air,
+            ref attachments,
+            ref targets,
+            ref attached,
+            first_target,
+            ref pose,
+            ref rests_on,
+            ref carriers,
+            largest_gravity,
+            resumes,
+            excess,
+        } = *other;
+        self.rest.copy_from(rest);
+        self.air.clone_from(air);
+        self.attachments.clone_from(attachments);
+        self.targets.clone_from(targets);
+        self.attached.clone_from(attached);
+        self.pose.copy_from(pose);
+        self.rests_on.clone_from(rests_on);
+        self.carriers.clone_from(carriers);
+        (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
+        (self.touches_cloth, self.stretch) = (touches_cloth, stretch);
+        (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
+        (self.written, self.known, self.first_target) = (written, known, first_target);
+        (self.resumes, self.excess) = (resumes, excess);
+    }
+
     /// Forgets what it was attached to, what it carried and what pulled at it: the particles are others.
     pub(super) fn detach(&mut self) {
         self.largest_gravity = 0.0;
@@ -72,5 +121,21 @@ impl ClothState {
         self.attachments.clear();
         self.first_target = None;
         self.pose = Pose::default();
+    }
+}
+
+impl MapEntities for ClothState {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        let targets = self.targets.iter_mut();
+        let carried = self.carriers.iter_mut().map(|(entity, _)| entity);
+        for entity in targets.chain(carried) {
+            *entity = mapper.get_mapped(*entity);
+        }
+        for attachment in &mut self.attachments {
+            attachment.map_entities(mapper);
+        }
+        for known in &mut self.rests_on {
+            known.map_entities(mapper);
+        }
     }
 }

@@ -13,7 +13,8 @@ use bevy::{
 
 use super::{
     ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState, ClothStats,
-    clock::milliseconds_since, colliders::ColliderMotion, inertia::Carried, threads::threads,
+    clock::milliseconds_since, colliders::ColliderMotion, inertia::Carried, resting::RestsOn,
+    threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
@@ -103,7 +104,7 @@ impl IntegratingItem<'_, '_> {
         } = &*self.scratch;
         let touches = detection.touches().iter();
         let known =
-            touches.filter_map(|touch| Some((near.get(touch.id)?.0, touch.collider.clone())));
+            touches.filter_map(|touch| Some(RestsOn::new(near.get(touch.id)?.0, &touch.collider)));
         self.state.rests_on.clear();
         self.state.rests_on.extend(known);
     }

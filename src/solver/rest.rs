@@ -30,6 +30,7 @@ const WITHOUT_GRAVITY: f32 = 2.5;
 /// diagonal, at most 5 mm, for as long as half a swing of a sheet as long as that takes (1.3 s for 2.3 m on Earth), from
 /// 0.5 to 20 s. Speeds do not count: what trembles in its place is at rest.
 #[derive(Debug, Default, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rest {
     /// Where the particles were when they were last seen to move; as they sleep, if they do.
     origin: ClothParticles,
@@ -75,6 +76,16 @@ impl Rest {
         if self.calm >= patience.clamp(PATIENCE[0], PATIENCE[1]) {
             self.is_asleep = true;
             self.origin.copy_from(particles);
+        }
+    }
+
+    /// Becomes what `other` is, in the memory that it has. Where particles that move were is nobody's concern until they are looked at
+    /// again.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        (self.wait, self.calm) = (other.wait, other.calm);
+        self.is_asleep = other.is_asleep;
+        if other.is_asleep || other.wait <= 0.0 {
+            self.origin.copy_from(&other.origin);
         }
     }
 

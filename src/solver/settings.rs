@@ -14,6 +14,7 @@ use crate::cloth::ClothError;
 
 /// How a cloth is simulated. May change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSettings {
     /// How exactly: as many sub-steps as the cloth needs, a number of them, or as many as hold a tolerance.

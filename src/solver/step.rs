@@ -43,6 +43,7 @@ pub enum DampingFrame {
 
 /// How the error of a motion falls with the length of a sub-step Δt.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum TimeOrder {
     /// In proportion to Δt: the paper's Verlet, equation (2), which with constraints is implicit Euler. Takes energy out of a

@@ -39,6 +39,7 @@ const FOR_LOAD: f32 = 12.0;
 /// How exactly a cloth is simulated. Cost grows in proportion to the sub-steps, and the error of the motion shrinks with their
 /// square; stretch that is passed on from thread to thread shrinks faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum Substepping {
     /// As many as the cloth needs by its particles, [`Substepping::needed`], or, where it is soft, for its springs to push by their
     /// forces, [`Solver::needed`](super::Solver::needed); more where it is taut as a membrane, until ripples across its threads are
@@ -80,6 +81,7 @@ impl Substepping {
 
 /// Chooses the sub-steps of each tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct Control {
     /// For the coming tick. 0 before the first.
     substeps: f32,
@@ -98,6 +100,7 @@ pub struct Control {
 
 /// Sub-steps that something in the ticks before asked for.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Demand {
     substeps: f32,
     /// Ticks in a row that asked for much less.

@@ -35,6 +35,7 @@ mod scratch;
 mod search;
 mod self_collision;
 mod shapes;
+mod snapshot;
 mod solids;
 mod spin;
 mod startup;

@@ -40,6 +40,7 @@ const AFTER_A_JUMP: u32 = 3;
 /// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write between
 /// ticks; emptying it (`*particles = default()`) builds the cloth again at rest.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {
     layout: Layout,
@@ -49,6 +50,7 @@ pub struct ClothParticles {
     past: Past,
     /// What they carry in the coming sub-step; nothing between ticks.
     #[reflect(ignore)]
+    #[cfg_attr(feature = "serialize", serde(skip))]
     loads: Vec<Load>,
 }
 

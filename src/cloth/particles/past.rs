@@ -7,6 +7,7 @@ use crate::cloth::{Block, LANES, Lanes};
 /// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the one before, then of the one
 /// before that.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
 pub(crate) struct Earlier(pub [Lanes; 6]);
 
@@ -26,6 +27,7 @@ impl Earlier {
 
 /// Displacements in earlier sub-steps.
 #[derive(Debug, Default, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Past {
     /// Block by block; none where all is of first order.
     pub blocks: Vec<Earlier>,
@@ -41,6 +43,7 @@ pub(crate) struct Past {
 
 /// Ticks in which springs that were left stretched pull back.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Watch {
     /// How many are still to come.
     ticks: u32,

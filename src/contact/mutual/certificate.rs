@@ -26,6 +26,7 @@ const MET: f32 = 1.0e-7;
 
 /// Particles that move as one.
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Zones {
     parent: Vec<u32>,
     sums: Vec<Sum>,
@@ -33,6 +34,7 @@ pub(super) struct Zones {
 
 /// Of a zone.
 #[derive(Debug, Default, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Sum {
     count: u32,
     mass: f32,

@@ -6,6 +6,7 @@ use super::{participant::Participant, settings::ClothSelfCollision};
 
 /// What pairs were searched for, besides where particles are.
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Circumstances {
     of: Vec<(ClothSelfCollision, bool, Option<Isometry3d>)>,
     meets: Vec<bool>,

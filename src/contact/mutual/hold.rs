@@ -20,6 +20,7 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X};
 
 /// The mean of the last pushes of each particle of some cloths, each in its own frame, block by block (m a sub-step).
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Hold {
     cloths: Vec<Vec<[Lanes; 3]>>,
 }

@@ -8,6 +8,7 @@ use crate::cloth::Slot;
 /// The particles that some pair names, whichever cloth they are of, in the common frame: what is done in each sub-step reads
 /// nothing else.
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Members {
     of: Vec<Member>,
     /// How they move in the sub-step.
@@ -27,6 +28,7 @@ pub(super) struct Members {
 const LATEST: f32 = 0.3;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Member {
     cloth: u32,
     slot: Slot,
@@ -34,6 +36,7 @@ struct Member {
 
 /// A particle in a sub-step.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct State {
     /// Where it is (m).
     pub place: Vec3A,

@@ -63,9 +63,12 @@ const RESTING_SPEED: f32 = 0.25;
 
 /// Contact of cloths with themselves and with each other, from tick to tick. May be dropped at any time.
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MutualContact {
     circumstances: Circumstances,
+    #[cfg_attr(feature = "serialize", serde(skip))]
     search: Search,
+    #[cfg_attr(feature = "serialize", serde(skip))]
     found: Vec<Found>,
     pairs: Vec<Pair>,
     members: Members,

@@ -20,6 +20,7 @@ const SLACK: f32 = 0.25;
 
 /// Pairs that are near each other, until particles have come nearer to each other by a little.
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NearPairs {
     listed: Vec<u32>,
     found: Vec<u32>,

@@ -7,6 +7,7 @@ use crate::cloth::{DX, LANES, Lanes, Slot, X, Y, Z};
 
 /// Where all particles of some cloths were, each in its own frame, block by block (m). What is no particle is nowhere (NaN).
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Origin {
     cloths: Vec<Vec<[Lanes; 3]>>,
 }

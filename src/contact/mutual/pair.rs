@@ -7,6 +7,7 @@ use crate::contact::triangle::{at, nearest_of_segments, nearest_to_point};
 
 /// A vertex and a face, or two edges: of one cloth or of two.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pair {
     /// The vertex and the face's corners, or the two ends of each edge: places among the [`Members`](super::members::Members).
     pub members: [u32; 4],
@@ -29,6 +30,7 @@ pub(super) struct Pair {
 
 /// The nearest points of two features.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Nearest {
     /// Parts of the four particles in the vector from the second feature's point to the first's.
     pub weights: [f32; 4],
@@ -73,6 +75,7 @@ impl Nearest {
 
 /// Two features that are near each other, with all that keeping them apart takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NearPair {
     /// As the [`Pair`]'s.
     pub members: [u32; 4],

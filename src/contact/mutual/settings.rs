@@ -27,6 +27,7 @@ const MAX_OF_SPACING: f32 = 0.5;
 /// };
 /// ```
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSelfCollision {
     /// How far the middles of two layers are kept apart (m): more than 0, and at most half of the shortest spacing at rest. Thick cloth

@@ -19,6 +19,7 @@ pub use obb::Obb;
 
 /// A kind of bounding volume.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 pub enum BoundingVolume {
     /// A sphere.

@@ -126,7 +126,9 @@ fn renew_limits(
     if skin.is_none() {
         state.pose = Pose::default();
     }
-    state.rest.disturb();
+    if !state.resumes {
+        state.rest.disturb();
+    }
     Ok(())
 }
 

@@ -12,6 +12,7 @@ use crate::cloth::{ClothError, ClothSkin, FARTHEST, Skinning, Surface};
 
 /// Where a skeleton has the particles of a cloth, in the cloth's frame.
 #[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pose {
     /// What takes the mesh to the world, joint by joint; none where there is no skeleton.
     pub joints: Vec<Affine3A>,

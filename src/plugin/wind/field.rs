@@ -19,7 +19,8 @@ pub(in crate::plugin) struct WindField {
     pub zones: Vec<PlacedZone>,
     /// The noise, and what it was made from.
     noise: Option<(i32, FastNoiseLite)>,
-    /// The way that the air has come (m).
+    /// For how long it has blown (s), and the way that it has come (m).
+    seconds: f64,
     way: DVec3,
     /// Of the world in the tick.
     world: Option<Result<World, ClothError>>,
@@ -38,6 +39,7 @@ struct World {
 
 /// What the air is for a cloth in the tick, zones aside, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::plugin) struct Breeze {
     pub density: f32,
     pub drag: f32,
@@ -60,14 +62,25 @@ impl Breeze {
 impl WindField {
     /// Moves the world's wind on.
     pub fn advance(&mut self, wind: Option<&ClothWind>, time: &Time) {
+        self.seconds += time.delta_secs_f64();
         self.world = wind.map(|wind| wind.validate().map(|()| self.blow(wind, time)));
+    }
+
+    /// For how long it has blown (s), and how far (m).
+    pub fn memory(&self) -> (f64, DVec3) {
+        (self.seconds, self.way)
+    }
+
+    /// Blows on as of another time.
+    pub fn recall(&mut self, (seconds, way): (f64, DVec3)) {
+        (self.seconds, self.way) = (seconds, way);
     }
 
     fn blow(&mut self, wind: &ClothWind, time: &Time) -> World {
         let mut velocity = wind.velocity;
         if wind.gusts > 0.0 {
+            let along = self.seconds / f64::from(wind.gust_period);
             let noise = self.noise(wind.seed);
-            let along = time.elapsed_secs_f64() / f64::from(wind.gust_period);
             velocity *= 1.0 + wind.gusts * noise.get_noise_2d(along, APART[1]);
         }
         self.way += velocity.as_dvec3() * time.delta_secs_f64();

@@ -14,6 +14,7 @@ use crate::{cloth::ClothError, plugin::frame::Places};
 ///
 /// It blows with all its strength in the middle and falls off softly towards the border, over `softness` of its size.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothWindZone {
     /// Where it blows.
@@ -26,6 +27,7 @@ pub struct ClothWindZone {
 
 /// A shape around an entity's origin, in its own lengths.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Debug, Clone, PartialEq)]
 pub enum ClothWindShape {
     /// A ball.
@@ -153,6 +155,7 @@ impl ClothWindShape {
 
 /// A zone, where it is in the tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::plugin) struct PlacedZone {
     pub entity: Entity,
     zone: ClothWindZone,

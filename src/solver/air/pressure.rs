@@ -12,6 +12,7 @@ use crate::cloth::{ClothError, Surface};
 ///
 /// May change at any time; nothing is built again.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Debug, Clone, PartialEq)]
 pub enum ClothPressure {
     /// That of the inside over that of the outside (Pa), as of what a fan or a pump holds; negative where it is sucked empty. From −10⁹

@@ -1,0 +1,188 @@
+//! One cloth.
+
+use bevy::ecs::{
+    change_detection::DetectChanges,
+    entity::{Entity, EntityMapper, MapEntities},
+    world::World,
+};
+
+use super::{
+    super::{
+        ClothAttachments, ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState,
+        ClothStats,
+    },
+    SnapshotError,
+};
+use crate::{
+    cloth::{Cloth, ClothParticles},
+    contact::MutualContact,
+};
+
+/// All that the next tick of a cloth depends on, besides what the game says in its own components (`Cloth`, `ClothMaterial`,
+/// `Transform` …) and how colliders move. [`ClothWorldSnapshot`](super::ClothWorldSnapshot) is of all cloths and colliders at once: only
+/// that goes on to the last bit where a cloth touches something.
+///
+/// It is taken and restored between two ticks, by an exclusive system or from outside. With the feature `serialize` serde writes and reads
+/// it; entities are written as they are, and [`MapEntities`] takes them to those of another world.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// /// Ten ticks back, for a game that rolls back.
+/// fn rewind(world: &mut World, cloth: Entity, kept: &[ClothSnapshot]) -> Result<(), SnapshotError> {
+///     kept[kept.len() - 10].restore(world, cloth)
+/// }
+/// ```
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub struct ClothSnapshot {
+    pub(super) version: u32,
+    particles: ClothParticles,
+    frame: ClothFrame,
+    state: ClothState,
+    contacts: ClothContacts,
+    /// Contact with itself alone.
+    mutual: Option<Box<MutualContact>>,
+    /// Whether the game has written the particles since the last tick.
+    is_written: bool,
+}
+
+impl Default for ClothSnapshot {
+    /// Of no particles: memory for [`take`](Self::take).
+    fn default() -> Self {
+        Self {
+            version: Self::VERSION,
+            particles: ClothParticles::default(),
+            frame: ClothFrame::default(),
+            state: ClothState::default(),
+            contacts: ClothContacts::default(),
+            mutual: None,
+            is_written: false,
+        }
+    }
+}
+
+impl ClothSnapshot {
+    /// What snapshots look like that this crate writes. It reads no others.
+    pub const VERSION: u32 = 1;
+
+    /// Of a cloth as it is.
+    ///
+    /// # Errors
+    /// [`SnapshotError::NoCloth`].
+    pub fn of(world: &World, cloth: Entity) -> Result<Self, SnapshotError> {
+        let mut snapshot = Self::default();
+        snapshot.take(world, cloth)?;
+        Ok(snapshot)
+    }
+
+    /// Becomes that of a cloth as it is, in the memory that it has.
+    ///
+    /// # Errors
+    /// [`SnapshotError::NoCloth`]; it stays what it was.
+    pub fn take(&mut self, world: &World, cloth: Entity) -> Result<(), SnapshotError> {
+        let parts = || {
+            Some((
+                world.get_entity(cloth).ok()?.get_ref::<ClothParticles>()?,
+                world.get::<ClothFrame>(cloth)?,
+                world.get::<ClothState>(cloth)?,
+                world.get::<ClothContacts>(cloth)?,
+                world.get::<ClothScratch>(cloth)?,
+            ))
+        };
+        let (particles, frame, state, contacts, scratch) =
+            parts().ok_or(SnapshotError::NoCloth { entity: cloth })?;
+        self.version = Self::VERSION;
+        self.particles.copy_from(&particles);
+        self.frame = *frame;
+        self.state.copy_from(state);
+        let built = world.get::<ClothBuilt>(cloth);
+        self.state.lod.sphere = built
+            .filter(|built| built.matches(&particles))
+            .map(|built| {
+                let root = built.tree().root_sphere(&particles, state.stretch.bound);
+                (root.center.into(), root.radius())
+            });
+        self.is_written = state.written != Some(particles.last_changed());
+        self.contacts.clone_from(contacts);
+        self.mutual.clone_from(&scratch.mutual);
+        Ok(())
+    }
+
+    /// Whether [`restore`](Self::restore) would.
+    pub(super) fn check(&self, world: &World, cloth: Entity) -> Result<(), SnapshotError> {
+        if self.version != Self::VERSION {
+            return Err(SnapshotError::Version {
+                found: self.version,
+                expected: Self::VERSION,
+            });
+        }
+        let is_known =
+            world.get::<Cloth>(cloth).is_some() && world.get::<ClothState>(cloth).is_some();
+        if is_known {
+            Ok(())
+        } else {
+            Err(SnapshotError::NoCloth { entity: cloth })
+        }
+    }
+
+    /// Has a cloth go on from here. It may be one that was never moved, of the same `Cloth`, material and pins, as in an app that
+    /// has just begun.
+    ///
+    /// # Errors
+    /// [`SnapshotError`]; nothing is changed.
+    pub fn restore(&self, world: &mut World, cloth: Entity) -> Result<(), SnapshotError> {
+        self.check(world, cloth)?;
+        let mut entity = world.entity_mut(cloth);
+        let wanted = entity.get::<ClothAttachments>().cloned();
+        if let Some(mut particles) = entity.get_mut::<ClothParticles>() {
+            particles.copy_from(&self.particles);
+        }
+        let written = entity
+            .get_ref::<ClothParticles>()
+            .map(|of| of.last_changed());
+        if let Some(mut frame) = entity.get_mut::<ClothFrame>() {
+            *frame = self.frame;
+        }
+        if let Some(mut contacts) = entity.get_mut::<ClothContacts>() {
+            contacts.clone_from(&self.contacts);
+        }
+        if let Some(mut state) = entity.get_mut::<ClothState>() {
+            state.copy_from(&self.state);
+            state.written = written.filter(|_| !self.is_written);
+            // What was attached is not written in files: it is what the game says.
+            if state.attachments.is_empty() && !state.targets.is_empty() {
+                let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
+                state.attachments.extend_from_slice(wanted);
+            }
+            state.resumes = true;
+        }
+        if let Some(mut stats) = entity.get_mut::<ClothStats>() {
+            stats.is_asleep = self.state.rest.is_asleep();
+        }
+        if let Some(mut scratch) = entity.get_mut::<ClothScratch>() {
+            scratch.forget_tick();
+            scratch.mutual.clone_from(&self.mutual);
+        }
+        if let Some(mut built) = entity.get_mut::<ClothBuilt>() {
+            built.masses = self.particles.free_masses();
+            if !built.solver.tethers().matches(&self.particles) {
+                built.forget_tethers();
+            }
+        }
+        Ok(())
+    }
+
+    /// The particles as they were.
+    pub fn particles(&self) -> &ClothParticles {
+        &self.particles
+    }
+}
+
+impl MapEntities for ClothSnapshot {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        self.state.map_entities(mapper);
+        self.contacts.map_entities(mapper);
+    }
+}

@@ -1,0 +1,32 @@
+//! Why a snapshot can't be taken or restored.
+
+use bevy::ecs::entity::Entity;
+use thiserror::Error;
+
+/// Why a snapshot was not taken or restored. Nothing was changed then.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum SnapshotError {
+    /// There is no such cloth.
+    #[error("{entity} is no cloth that the plugin knows: it has no `Cloth`, or does not exist")]
+    NoCloth {
+        /// What is no cloth.
+        entity: Entity,
+    },
+    /// There is no such collider, root or carrier.
+    #[error("{entity} was in the snapshot, and does not exist or has lost its `{component}`")]
+    Gone {
+        /// What has gone.
+        entity: Entity,
+        /// What it had.
+        component: &'static str,
+    },
+    /// The snapshot was written by another version of the crate.
+    #[error("the snapshot is of version {found}, and this is version {expected}")]
+    Version {
+        /// Of the snapshot.
+        found: u32,
+        /// Of this crate.
+        expected: u32,
+    },
+}
