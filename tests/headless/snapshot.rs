@@ -202,23 +202,23 @@ fn forget_messages(app: &mut App) {
     messages::<ClothTouchStopped>(app);
 }
 
-/// Saved at some ticks, each continued for 600: in the same app, put back there 600 ticks later, and in one that has just begun, from a file.
+/// Saved at some ticks and continued, for up to 600: in the same app, put back there afterwards, and in one that has just begun, from a
+/// file.
 #[test]
 fn what_is_restored_goes_on_to_the_last_bit() {
-    const TICKS: usize = 600;
-    for start in [1, 40, 96, 330] {
+    for (start, ticks) in [(1, 600), (40, 100), (96, 100), (330, 200)] {
         let (mut app, cloths) = everything();
         tick(&mut app, start);
         let saved = ClothWorldSnapshot::of(app.world_mut());
         let clock = *app.world().resource::<Clock>();
         forget_messages(&mut app);
-        let seen: Vec<Seen> = (0..TICKS).map(|_| next(&mut app, &cloths)).collect();
+        let seen: Vec<Seen> = (0..ticks).map(|_| next(&mut app, &cloths)).collect();
         if start == 1 {
             // It is worth the name.
             let slept = seen
                 .iter()
                 .any(|seen| seen.cloths[1].2 && !seen.cloths[1].1.is_empty());
-            let woke = !seen[TICKS - 1].cloths[1].2;
+            let woke = !seen[ticks - 1].cloths[1].2;
             assert!(slept && woke, "asleep on a ball {slept}, woken {woke}");
             assert!(seen.iter().any(|seen| !seen.ended.is_empty()));
         }
@@ -233,5 +233,102 @@ fn what_is_restored_goes_on_to_the_last_bit() {
         read.restore(fresh.world_mut()).expect("the same entities");
         fresh.insert_resource(clock);
         compare(&seen, &mut fresh, &cloths, &format!("anew from {start}"));
+    }
+}
+
+/// Each tick is done eleven times: rolled back by ten, and done again. What comes of it is what comes without.
+#[test]
+fn ten_ticks_may_be_rolled_back_in_each_tick() {
+    let (mut straight, cloths) = everything();
+    let (mut rolled, _) = everything();
+    tick(&mut straight, 20);
+    tick(&mut rolled, 20);
+    let mut kept: Vec<(ClothWorldSnapshot, Clock)> = Vec::new();
+    for number in 0..60 {
+        let mut snapshot = match kept.len() {
+            10 => kept.remove(0).0,
+            _ => ClothWorldSnapshot::default(),
+        };
+        snapshot.take(rolled.world_mut());
+        kept.push((snapshot, *rolled.world().resource::<Clock>()));
+        tick(&mut rolled, 1);
+        // Something that came late from elsewhere has all of them done again.
+        let (oldest, clock) = kept.first().expect("a tick").clone();
+        oldest.restore(rolled.world_mut()).expect("the same world");
+        rolled.insert_resource(clock);
+        tick(&mut rolled, kept.len());
+        tick(&mut straight, 1);
+        for (index, cloth) in cloths.iter().enumerate() {
+            let (expected, found) = (particles(&straight, *cloth), particles(&rolled, *cloth));
+            assert!(expected == found, "cloth {index} in tick {number}");
+        }
+    }
+}
+
+/// One cloth alone, put back without a word on anything else, has its shape, its velocities and its sleep.
+#[test]
+fn one_cloth_may_be_put_back() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::new(9, 9, 0.1)).id();
+    tick(&mut app, 30);
+    let saved = ClothSnapshot::of(app.world(), cloth).expect("a cloth");
+    assert_eq!(saved.particles(), particles(&app, cloth));
+    tick(&mut app, 30);
+    let after = particles(&app, cloth).clone();
+    saved.restore(app.world_mut(), cloth).expect("the cloth");
+    tick(&mut app, 30);
+    assert_eq!(&after, particles(&app, cloth));
+    // Of other entities in another world.
+    let mut other = crate::support::app();
+    other.world_mut().spawn_empty();
+    let twin = other.world_mut().spawn(Cloth::new(9, 9, 0.1)).id();
+    saved.restore(other.world_mut(), twin).expect("a cloth");
+    tick(&mut other, 30);
+    assert_eq!(&after, particles(&other, twin));
+}
+
+/// What can't be restored is said, and nothing is changed.
+#[test]
+fn what_is_wrong_with_a_snapshot_is_said() {
+    let (mut app, cloths) = everything();
+    tick(&mut app, 20);
+    let saved = ClothWorldSnapshot::of(app.world_mut());
+    let text = ron::to_string(&saved).expect("it can be written");
+    tick(&mut app, 5);
+    let before: Vec<_> = (cloths.iter().map(|cloth| particles(&app, *cloth).clone())).collect();
+    let nobody = app.world_mut().spawn_empty().id();
+    let error = ClothSnapshot::of(app.world(), nobody).expect_err("no cloth");
+    assert_eq!(error, SnapshotError::NoCloth { entity: nobody });
+    let (_, one) = saved.cloths().next().expect("a cloth");
+    let error = one.restore(app.world_mut(), nobody).expect_err("no cloth");
+    assert_eq!(error, SnapshotError::NoCloth { entity: nobody });
+    let newer = text.replacen("version:1", "version:2", 1);
+    let newer: ClothWorldSnapshot = ron::from_str(&newer).expect("it can be read");
+    let error = newer.restore(app.world_mut()).expect_err("a newer one");
+    assert_eq!(
+        error,
+        SnapshotError::Version {
+            found: 2,
+            expected: 1
+        }
+    );
+    let collider = (app
+        .world_mut()
+        .query_filtered::<Entity, With<ClothCollider>>())
+    .iter(app.world())
+    .next()
+    .expect("a collider");
+    app.world_mut().despawn(collider);
+    let error = saved.restore(app.world_mut()).expect_err("one has gone");
+    let component = "ClothCollider";
+    assert_eq!(
+        error,
+        SnapshotError::Gone {
+            entity: collider,
+            component
+        }
+    );
+    for (cloth, before) in cloths.iter().zip(before) {
+        assert!(*particles(&app, *cloth) == before);
     }
 }
