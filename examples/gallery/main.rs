@@ -40,6 +40,10 @@ const ENTRIES: &[Entry] = &[
         pictures: &[("table.png", "a tablecloth, to be pulled away")],
     },
     Entry {
+        name: "cape",
+        pictures: &[("cape.png", "a hero in a cape")],
+    },
+    Entry {
         name: "dress",
         pictures: &[("dress.png", "a skirt that twirls")],
     },

@@ -40,6 +40,10 @@ const PATIENCE: u64 = 20;
 /// that Bevy's virtual time takes at once.
 const TICKS_AN_UPDATE: u64 = 16;
 
+/// In an app in which frames move what cloth hangs from, as animations do: each tick has a frame of its own.
+#[derive(Resource, Default)]
+pub struct TickByTick;
+
 /// An app and how far it has come.
 pub struct Run {
     pub app: App,
@@ -84,7 +88,7 @@ impl Run {
         run
     }
 
-    /// Lets time stand still until all meshes are there.
+    /// Lets time stand still until all meshes are there, and the scenes of files.
     fn wait_for_assets(&mut self) {
         self.app
             .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
@@ -95,7 +99,9 @@ impl Run {
             let handles: Vec<Handle<Mesh>> =
                 meshes.iter(world).map(|mesh| mesh.0.clone()).collect();
             let meshes = world.resource::<Assets<Mesh>>();
-            if handles.iter().all(|handle| meshes.contains(handle)) {
+            let has_meshes = handles.iter().all(|handle| meshes.contains(handle));
+            let mut scenes = world.query_filtered::<Has<Children>, With<WorldAssetRoot>>();
+            if has_meshes && scenes.iter(world).all(|is_there| is_there) {
                 return;
             }
             thread::sleep(Duration::from_millis(10));
@@ -111,7 +117,10 @@ impl Run {
     pub fn until(&mut self, ticks: u64) {
         let start = Instant::now();
         while self.done < ticks {
-            let together = (ticks - self.done).min(TICKS_AN_UPDATE) as u32;
+            let together = match self.app.world().contains_resource::<TickByTick>() {
+                true => 1,
+                false => (ticks - self.done).min(TICKS_AN_UPDATE) as u32,
+            };
             self.app
                 .insert_resource(TimeUpdateStrategy::FixedTimesteps(together));
             self.app.update();

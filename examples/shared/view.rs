@@ -7,6 +7,7 @@ use std::{
 
 use bevy::{
     app::PluginGroupBuilder,
+    gltf::GltfPlugin,
     log::LogPlugin,
     prelude::*,
     render::{
@@ -17,6 +18,7 @@ use bevy::{
     window::ExitCondition,
     winit::WinitPlugin,
 };
+use bevy_drape::prelude::*;
 
 /// Says in a child process's environment which view it is to try out.
 const TO_TRY: &str = "BEVY_DRAPE_TRY_VIEW";
@@ -40,7 +42,11 @@ impl View {
             level: bevy::log::Level::WARN,
             ..default()
         };
-        let plugins = DefaultPlugins.set(log);
+        // What artists paint on characters.
+        let gltf = GltfPlugin::default()
+            .add_custom_vertex_attribute("MAX_DISTANCE", ClothSkin::MAX_DISTANCE)
+            .add_custom_vertex_attribute("BACKSTOP", ClothSkin::BACKSTOP);
+        let plugins = DefaultPlugins.set(log).set(gltf);
         if self == Self::Window {
             let window = Window {
                 title: format!("bevy_drape: {title}"),

@@ -103,6 +103,8 @@ pub use render_mesh::{ClothRenderMesh, ClothRenderMeshPlugin};
 pub use scratch::ClothScratch;
 pub use sets::ClothSystems;
 pub use simulation::ClothPlugin;
+#[cfg(feature = "mesh")]
+pub use skin::ClothSkeleton;
 pub use snapshot::{ClothSnapshot, ClothWorldSnapshot, SnapshotError};
 pub use state::ClothState;
 pub use stats::ClothStats;

@@ -22,7 +22,8 @@ pub use paint::{ClothPaint, RestFunction};
 /// smoothly over the sub-steps. Without a `SkinnedMesh` the pose is the cloth at rest, where its entity is.
 ///
 /// Particles that are pinned, by [`Pins`](crate::cloth::Pins) or by a max distance of 0, are in the pose exactly, and are drawn
-/// where the joints are drawn. A cloth begins in the pose. The renderer does not skin it again: its mesh is a copy without joints.
+/// where the joints are drawn. A cloth begins in the pose. The renderer does not skin it again: its mesh is a copy without joints, and
+/// a `ClothSkeleton` stands in place of its `SkinnedMesh`.
 ///
 /// # Painting
 /// With feature `mesh`, [`painted`](Self::painted) takes the max distance and, where there is one, the backstop from two vertex

@@ -10,11 +10,11 @@ use bevy::{
         observer::On,
         system::{Commands, Query, ResMut},
     },
-    mesh::{Mesh, Mesh3d},
+    mesh::{Mesh, Mesh3d, skinning::SkinnedMesh},
 };
 
 use super::{
-    super::ClothBuilt,
+    super::{ClothBuilt, skin::ClothSkeleton},
     component::ClothMesh,
     write::{Tangents, copy_of, mesh_of},
 };
@@ -28,17 +28,24 @@ pub(super) fn add_meshes(
         &ClothBuilt,
         Option<&Mesh3d>,
         Option<&ClothMesh>,
+        Option<&SkinnedMesh>,
     )>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, cloth, built, mesh, drawn) in &cloths {
+    for (entity, cloth, built, mesh, drawn, skin) in &cloths {
         let surface = built.surface();
         let is_right = |drawn: &ClothMesh| {
             Arc::ptr_eq(&drawn.surface, surface) && meshes.contains(&drawn.handle)
         };
         if surface.is_empty() {
             continue;
+        }
+        if let Some(skin) = skin {
+            // What is drawn is where the skeleton has it already.
+            let mut cloth = commands.entity(entity);
+            cloth.try_insert(ClothSkeleton::of(skin));
+            cloth.try_remove::<SkinnedMesh>();
         }
         if let Some(drawn) = drawn.filter(|drawn| is_right(drawn)) {
             // The game has put back what the cloth was made from.
@@ -77,16 +84,20 @@ pub(super) fn add_meshes(
 /// the plugin's mesh stays.
 pub(super) fn remove_mesh(
     removed: On<Remove, Cloth>,
-    meshes: Query<(&ClothMesh, Option<&Mesh3d>)>,
+    meshes: Query<(&ClothMesh, Option<&Mesh3d>, Option<&ClothSkeleton>)>,
     mut commands: Commands,
 ) {
-    if let Ok((own, drawn)) = meshes.get(removed.entity) {
+    if let Ok((own, drawn, skeleton)) = meshes.get(removed.entity) {
         let mut entity = commands.entity(removed.entity);
         if drawn.is_some_and(|drawn| drawn.0 == own.handle) {
             match &own.replaced {
                 Some(replaced) => entity.try_insert(Mesh3d(replaced.clone())),
                 None => entity.try_remove::<Mesh3d>(),
             };
+        }
+        if let Some(skeleton) = skeleton {
+            entity.try_insert(skeleton.to_skin());
+            entity.try_remove::<ClothSkeleton>();
         }
         entity.try_remove::<ClothMesh>();
     }

@@ -31,8 +31,11 @@ use bevy::{
 };
 
 use super::{
-    ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothSystems, frame::rigid,
-    lod::ClothLodLevel, lod_state::Turn, skin::Skins,
+    ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothSystems,
+    frame::rigid,
+    lod::ClothLodLevel,
+    lod_state::Turn,
+    skin::{ClothSkeleton, Skins},
 };
 use crate::cloth::ClothParticles;
 use adding::{add_meshes, remove_mesh};
@@ -90,6 +93,7 @@ impl Plugin for ClothMeshPlugin {
             update_meshes(cloths, at, time, meshes, interpolated);
         };
         app.register_type::<ClothMesh>()
+            .register_type::<ClothSkeleton>()
             .add_observer(remove_mesh)
             .add_systems(
                 self.schedule,

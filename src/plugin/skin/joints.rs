@@ -1,9 +1,10 @@
 //! Where the joints of a skinned mesh are.
 
 use bevy::{
-    asset::{AssetServer, Assets, LoadState},
+    asset::{AssetServer, Assets, Handle, LoadState},
     ecs::{
         entity::Entity,
+        query::AnyOf,
         system::{Query, Res, SystemParam},
     },
     math::{Affine3A, Mat4},
@@ -11,17 +12,25 @@ use bevy::{
     transform::components::GlobalTransform,
 };
 
+use super::skeleton::ClothSkeleton;
 use crate::cloth::ClothError;
 
 /// The skins of all entities.
 #[derive(SystemParam)]
 pub(crate) struct Skins<'w, 's> {
-    skins: Query<'w, 's, &'static SkinnedMesh>,
+    skins: Query<'w, 's, AnyOf<(&'static SkinnedMesh, &'static ClothSkeleton)>>,
     bind_poses: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
     server: Option<Res<'w, AssetServer>>,
 }
 
 impl Skins<'_, '_> {
+    /// The bind poses and joints of an entity. What the game has given it last comes first.
+    fn of(&self, entity: Entity) -> Option<(&Handle<SkinnedMeshInverseBindposes>, &[Entity])> {
+        let (skin, skeleton) = self.skins.get(entity).ok()?;
+        let of_skin = skin.map(|skin| (&skin.inverse_bindposes, &*skin.joints));
+        of_skin.or(skeleton.map(|skeleton| (&skeleton.inverse_bindposes, &*skeleton.joints)))
+    }
+
     /// The matrices that take an entity's mesh, as it is bound, to the world: each joint's global transform, as `place` knows it,
     /// times its inverse bind pose. None of an entity that is not skinned.
     ///
@@ -35,28 +44,28 @@ impl Skins<'_, '_> {
         matrices: &mut Vec<Affine3A>,
     ) -> Result<(), ClothError> {
         matrices.clear();
-        let Ok(skin) = self.skins.get(entity) else {
+        let Some((bound, joints)) = self.of(entity) else {
             return Ok(());
         };
         let bind_poses = self.bind_poses.as_ref();
-        let Some(inverse) = bind_poses.and_then(|all| all.get(&skin.inverse_bindposes)) else {
+        let Some(inverse) = bind_poses.and_then(|all| all.get(bound)) else {
             let server = self.server.as_ref();
-            let state = server.and_then(|server| server.get_load_state(&skin.inverse_bindposes));
+            let state = server.and_then(|server| server.get_load_state(bound));
             return Err(match state {
                 Some(LoadState::Loading) => ClothError::MeshLoading,
                 _ => ClothError::SkinJoints {
-                    needed: skin.joints.len(),
+                    needed: joints.len(),
                     joints: 0,
                 },
             });
         };
-        if skin.joints.is_empty() || inverse.len() < skin.joints.len() {
+        if joints.is_empty() || inverse.len() < joints.len() {
             return Err(ClothError::SkinJoints {
-                needed: skin.joints.len(),
+                needed: joints.len(),
                 joints: inverse.len(),
             });
         }
-        for (joint, (&entity, inverse)) in skin.joints.iter().zip(inverse.iter()).enumerate() {
+        for (joint, (&entity, inverse)) in joints.iter().zip(inverse.iter()).enumerate() {
             let matrix = place(entity).map(|place| place.affine() * Affine3A::from_mat4(*inverse));
             let matrix = matrix.filter(Affine3A::is_finite);
             matrices.push(matrix.ok_or(ClothError::Joint { joint, entity })?);
@@ -71,19 +80,19 @@ impl Skins<'_, '_> {
         place: impl Fn(Entity) -> Option<GlobalTransform>,
         known: &[Affine3A],
     ) -> bool {
-        let Ok(skin) = self.skins.get(entity) else {
+        let Some((bound, joints)) = self.of(entity) else {
             return known.is_empty();
         };
         let bind_poses = self.bind_poses.as_ref();
-        let Some(inverse) = bind_poses.and_then(|all| all.get(&skin.inverse_bindposes)) else {
+        let Some(inverse) = bind_poses.and_then(|all| all.get(bound)) else {
             return false;
         };
         let is_at = |((joint, inverse), known): ((&Entity, &Mat4), &Affine3A)| {
             place(*joint)
                 .is_some_and(|place| place.affine() * Affine3A::from_mat4(*inverse) == *known)
         };
-        skin.joints.len() == known.len()
+        joints.len() == known.len()
             && inverse.len() >= known.len()
-            && skin.joints.iter().zip(inverse.iter()).zip(known).all(is_at)
+            && joints.iter().zip(inverse.iter()).zip(known).all(is_at)
     }
 }

@@ -213,9 +213,13 @@ fn has<C: bevy::ecs::component::Component>(
 /// The joints that a skinned mesh hangs by.
 fn joints(world: &World, entity: Entity) -> Vec<Entity> {
     #[cfg(feature = "mesh")]
-    let joints = world.get::<bevy::mesh::skinning::SkinnedMesh>(entity);
-    #[cfg(feature = "mesh")]
-    let joints = joints.map(|skin| skin.joints.clone()).unwrap_or_default();
+    let joints = {
+        let skin = world.get::<bevy::mesh::skinning::SkinnedMesh>(entity);
+        let skeleton = world.get::<crate::plugin::ClothSkeleton>(entity);
+        let joints = skin.map(|skin| &skin.joints);
+        let joints = joints.or(skeleton.map(|skeleton| &skeleton.joints));
+        joints.cloned().unwrap_or_default()
+    };
     #[cfg(not(feature = "mesh"))]
     let joints = Vec::new();
     joints

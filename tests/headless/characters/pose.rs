@@ -2,6 +2,7 @@
 
 use bevy::{
     camera::{primitives::Aabb, visibility::DynamicSkinnedMeshBounds},
+    mesh::skinning::SkinnedMesh,
     prelude::*,
 };
 use bevy_drape::prelude::*;
@@ -202,6 +203,8 @@ fn what_is_drawn_is_not_skinned_again() {
         let drawn = meshes(app).get(&handle).expect("a mesh");
         assert!(!drawn.contains_attribute(Mesh::ATTRIBUTE_JOINT_INDEX));
         assert!(!drawn.contains_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT));
+        // By this alone the renderer takes the entity for skinned.
+        assert!(app.world().get::<SkinnedMesh>(rig.cloth).is_none());
         let place = *app
             .world()
             .get::<GlobalTransform>(rig.cloth)
@@ -250,6 +253,11 @@ fn what_is_drawn_is_not_skinned_again() {
     for (drawn, particle) in drawn.iter().zip(before) {
         assert!(drawn.distance(particle) < ROUNDING, "{drawn} {particle}");
     }
+    // What is no cloth any more is the renderer's again.
+    app.world_mut().entity_mut(rig.cloth).remove::<Cloth>();
+    tick(&mut app, 1);
+    let skin = app.world().get::<SkinnedMesh>(rig.cloth);
+    assert_eq!(skin.map(|skin| &*skin.joints), Some(&rig.bones[..]));
 }
 
 /// Bones that are moved after the last tick of a frame are drawn there: what is held goes along at once.
