@@ -1,7 +1,10 @@
 //! The plugin that simulates: system sets, schedule, gravity.
 
 #[cfg(feature = "mesh")]
-use bevy::{app::First, asset::AssetEvent, ecs::message::Messages, mesh::Mesh};
+use bevy::{
+    app::First, asset::AssetEvent, camera::visibility::VisibilitySystems, ecs::message::Messages,
+    mesh::Mesh,
+};
 use bevy::{
     app::{App, FixedUpdate, Last, Plugin},
     ecs::{
@@ -135,6 +138,10 @@ impl Plugin for ClothPlugin {
             .add_systems(Last, note_removals);
         #[cfg(feature = "mesh")]
         app.init_resource::<SharedMeshes>();
+        // Where the schedule is that of transforms, too, cameras and what is hidden are of this frame or of the last.
+        let levels = choose_levels.ambiguous_with(TransformSystems::Propagate);
+        #[cfg(feature = "mesh")]
+        let levels = levels.ambiguous_with(VisibilitySystems::VisibilityPropagate);
         app.configure_sets(
             self.schedule,
             (
@@ -154,8 +161,7 @@ impl Plugin for ClothPlugin {
                     follow_roots,
                     prepare_colliders,
                     prepare_wind,
-                    // Where the schedule is that of transforms, too, cameras are where this frame or the last has them.
-                    choose_levels.ambiguous_with(TransformSystems::Propagate),
+                    levels,
                     prepare_cloths,
                     find_islands,
                 )
