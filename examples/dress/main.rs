@@ -32,6 +32,8 @@ mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
+#[path = "../shared/turned.rs"]
+mod turned;
 
 use std::process::ExitCode;
 

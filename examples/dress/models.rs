@@ -1,12 +1,10 @@
-//! The meshes that are made here: a skirt, and what is turned on a lathe.
+//! The mesh that is made here.
 
 use std::f32::consts::TAU;
 
-use bevy::{
-    asset::RenderAssetUsages,
-    mesh::{Indices, PrimitiveTopology},
-    prelude::*,
-};
+use bevy::prelude::*;
+
+use crate::turned::turned;
 
 /// Particles around the skirt for one from its waist to its hem.
 const AROUND: u32 = 5;
@@ -17,42 +15,5 @@ pub fn skirt(waist: f32, hem: f32, rings: u32) -> Mesh {
     let profile: Vec<[f32; 2]> = (0..=rings)
         .map(|ring| [waist.lerp(hem, ring as f32 / rings as f32), 0.0])
         .collect();
-    turned(&profile, AROUND * rings)
-}
-
-/// A surface of revolution through circles of these radii (m) at these heights (m), with `around` vertices on each. Its texture's
-/// u runs from the first circle to the last, v around.
-pub fn turned(profile: &[[f32; 2]], around: u32) -> Mesh {
-    let rings = profile.len() as u32 - 1;
-    let (mut positions, mut uvs, mut indices) = (Vec::new(), Vec::new(), Vec::new());
-    for (ring, [radius, height]) in profile.iter().enumerate() {
-        for step in 0..=around {
-            // The same to the last bit on both sides of the seam.
-            let angle = TAU * (step % around) as f32 / around as f32;
-            positions.push([radius * angle.cos(), *height, radius * angle.sin()]);
-            uvs.push([ring as f32 / rings as f32, step as f32 / around as f32]);
-        }
-    }
-    let width = around + 1;
-    for ring in 0..rings {
-        for step in 0..around {
-            let a = ring * width + step;
-            let (b, c, d) = (a + 1, a + width, a + width + 1);
-            // Diagonals in turns, so that no direction is favoured.
-            if (ring + step) % 2 == 0 {
-                indices.extend([a, b, c, c, b, d]);
-            } else {
-                indices.extend([a, b, d, a, d, c]);
-            }
-        }
-    }
-    let mesh = Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::default(),
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-    .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-    .with_inserted_indices(Indices::U32(indices))
-    .with_computed_smooth_normals();
-    mesh.clone().with_generated_tangents().unwrap_or(mesh)
+    turned(&profile, AROUND * rings, TAU)
 }

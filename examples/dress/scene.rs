@@ -1,15 +1,18 @@
 //! The figure on its stand, and its skirt.
 
+use std::f32::consts::TAU;
+
 use bevy::{math::Affine2, prelude::*};
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
 
 use crate::{
-    models::{skirt, turned},
+    models::skirt,
     shared::{
         stage::{Grid, Shot, StagePlugin},
         woven::{Weave, woven},
     },
+    turned::turned,
 };
 
 /// Particles from the waist to the hem.
@@ -95,7 +98,7 @@ fn spawn_figure(
     });
     let waist = Transform::from_xyz(0.0, WAIST, 0.0);
     let body = (
-        Mesh3d(meshes.add(turned(&BODY, 64))),
+        Mesh3d(meshes.add(turned(&BODY, 64, TAU))),
         MeshMaterial3d(materials.add(linen)),
     );
     // What the skirt touches: hips, and what would be legs.
@@ -179,9 +182,9 @@ fn spawn_stand(
             place,
         ));
     };
-    part(turned(&foot, 64), 0.0);
+    part(turned(&foot, 64, TAU), 0.0);
     part(Cylinder::new(0.02, 0.75).mesh().build(), 0.4);
-    part(turned(&cap, 64), WAIST + 0.54);
+    part(turned(&cap, 64, TAU), WAIST + 0.54);
 }
 
 /// Twirls for some time, and stands for as long.

@@ -48,6 +48,10 @@ const ENTRIES: &[Entry] = &[
         pictures: &[("dress.png", "a skirt that twirls")],
     },
     Entry {
+        name: "tent",
+        pictures: &[("tent.png", "a pavilion in the wind")],
+    },
+    Entry {
         name: "castle",
         pictures: &[("castle.png", "sixty flags")],
     },
@@ -66,7 +70,7 @@ const ENTRIES: &[Entry] = &[
     Entry {
         name: "meshes",
         pictures: &[
-            ("tent.png", "a tent from a glTF file"),
+            ("ridge_tent.png", "a tent from a glTF file"),
             ("poncho.png", "a mesh with a hole"),
             ("pennant.png", "a pennant of triangles"),
         ],

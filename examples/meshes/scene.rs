@@ -49,7 +49,7 @@ pub const SHOTS: [(&str, Shot); 3] = [
         },
     ),
     (
-        "tent.png",
+        "ridge_tent.png",
         Shot {
             from: Vec3::new(6.7, 1.7, 2.3),
             focus: Vec3::new(3.1, 0.5, -0.1),
@@ -129,7 +129,7 @@ fn spawn_pennant(
     ));
 }
 
-/// To and fro around the pole, and up and down: there is no wind yet.
+/// To and fro around the pole, and up and down.
 fn sway(mut yards: Query<&mut Transform, With<Sways>>, time: Res<Time>) {
     let seconds = time.elapsed_secs();
     for mut yard in &mut yards {
