@@ -39,7 +39,7 @@ use bevy_drape::prelude::*;
 
 use crate::{
     plain::Moment,
-    scene::{Pump, ScenePlugin},
+    scene::{Pump, ROOM, ScenePlugin},
     shared::{start::Example, window},
 };
 
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
         particles: scene::PARTICLES,
         window: |grid| {
             let keys = [
-                ("Up, Down", "more, less pressure"),
+                ("Up, Down", "more, less gas"),
                 ("Left, Right", "less, more wind"),
             ];
             let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
@@ -77,9 +77,9 @@ fn press_keys(
     mut pump: ResMut<Pump>,
     mut wind: ResMut<ClothWind>,
 ) {
-    for (key, change) in [(KeyCode::ArrowUp, 5.0), (KeyCode::ArrowDown, -5.0)] {
+    for (key, change) in [(KeyCode::ArrowUp, 0.03), (KeyCode::ArrowDown, -0.03)] {
         if keys.just_pressed(key) {
-            pump.0 = (pump.0 + change).clamp(0.0, 80.0);
+            pump.0 = (pump.0 / ROOM + change).clamp(0.03, 1.2) * ROOM;
         }
     }
     for (key, factor) in [(KeyCode::ArrowRight, 1.25), (KeyCode::ArrowLeft, 0.8)] {

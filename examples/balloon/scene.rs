@@ -15,9 +15,13 @@ use crate::{
 pub const PARTICLES: u32 = 16;
 /// Radius of the discs that a balloon is made of (m).
 const RADIUS: f32 = 0.28;
-/// What they are blown up to at first, of the inside over the outside (Pa), and how fast (Pa/s).
-const PRESSURE: f32 = 32.0;
-const BLOWING: f32 = 20.0;
+/// What goes into one (m³): 1.2185 radius³, W. H. Paulsen 1994.
+pub const ROOM: f32 = 1.2185 * RADIUS * RADIUS * RADIUS;
+/// Gas that they are blown up with at first (m³), and how fast (m³/s). The air around them presses by `OUTSIDE` Pa: less than that of the
+/// sea, so that it is felt how they get harder.
+const GAS: f32 = 1.06 * ROOM;
+const BLOWING: f32 = 0.4 * ROOM;
+const OUTSIDE: f32 = 500.0;
 
 /// When the picture is drawn (s).
 pub const DRAWN_AT: f64 = 4.0;
@@ -41,24 +45,31 @@ impl Plugin for ScenePlugin {
         app.init_resource::<Grid>()
             .insert_resource(ClothWind::gusty(Vec3::new(0.5, 0.0, -0.2)))
             .add_plugins((stage, DrapePlugins::default()))
-            .insert_resource(Pump(PRESSURE))
+            .insert_resource(Pump(GAS))
             .add_systems(Startup, spawn_balloons)
             .add_systems(FixedUpdate, blow_up.before(ClothSystems::Prepare));
     }
 }
 
-/// The pressure that all are brought to (Pa).
+/// The gas that all are brought to (m³).
 #[derive(Resource)]
 pub struct Pump(pub f32);
+
+fn gas(volume: f32) -> ClothPressure {
+    ClothPressure::Gas {
+        volume,
+        outside: OUTSIDE,
+    }
+}
 
 /// Slowly: what is blown up at a stroke bursts.
 fn blow_up(mut balloons: Query<&mut ClothPressure>, pump: Res<Pump>, time: Res<Time>) {
     let step = BLOWING * time.delta_secs();
     for mut pressure in &mut balloons {
-        if let ClothPressure::Gauge(now) = *pressure
-            && now != pump.0
+        if let ClothPressure::Gas { volume, .. } = *pressure
+            && volume != pump.0
         {
-            *pressure = ClothPressure::Gauge(now + (pump.0 - now).clamp(-step, step));
+            *pressure = gas(volume + (pump.0 - volume).clamp(-step, step));
         }
     }
 }
@@ -118,7 +129,7 @@ fn spawn_balloons(
             Cloth::mesh(),
             Mesh3d(balloon.clone()),
             Pins::new([tip]),
-            ClothPressure::Gauge(0.0),
+            gas(0.02 * ROOM),
             ClothMaterial {
                 areal_density: 0.06,
                 damping: 0.03,

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     cloth::{ClothMaterial, ClothParticles, Surface},
-    solver::{Air, ClothPressure, Solver},
+    solver::{Air, AirMemory, ClothPressure, Solver},
 };
 
 /// What a cloth was last moved in, in the world.
@@ -18,8 +18,8 @@ pub(super) struct KnownAir {
     breeze: Option<Breeze>,
     pressure: Option<ClothPressure>,
     zones: Vec<PlacedZone>,
-    /// The force of the air as the last tick ended, in the cloth's frame (N).
-    pub force: Vec3,
+    /// What the last tick was left with.
+    pub memory: AirMemory,
 }
 
 impl KnownAir {
@@ -84,7 +84,7 @@ impl KnownAir {
                 ..Air::NONE
             };
             solver.set_air(surface, pressure.map(|_| nothing));
-            return solver.set_air_force(self.force);
+            return solver.set_air_memory(self.memory);
         };
         let air = Air {
             density: breeze.density,
@@ -94,7 +94,7 @@ impl KnownAir {
             pressure: self.pressure,
         };
         solver.set_air(surface, Some(air));
-        solver.set_air_force(self.force);
+        solver.set_air_memory(self.memory);
         if breeze.is_turbulent() || !self.zones.is_empty() {
             solver.set_local_wind(particles, |place| {
                 let place = frame.to_world(place);

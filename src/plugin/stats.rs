@@ -47,6 +47,11 @@ pub struct ClothStats {
     pub stretch: Stretch,
     /// The impulse (N s, in the world) that the air gave the cloth in the tick, by drag, lift and pressure; 0 for one that sleeps.
     pub air_impulse: Vec3,
+    /// What a cloth with a [`ClothPressure`](crate::solver::ClothPressure) encloses (m³), and the pressure in it over that of the outside (Pa):
+    /// of the last tick in which it was awake.
+    pub enclosed_volume: f32,
+    /// See [`enclosed_volume`](Self::enclosed_volume).
+    pub gauge_pressure: f32,
     /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps, is frozen, or waits
     /// for a tick in which it is moved.
     pub substeps: u32,

@@ -93,7 +93,8 @@ impl IntegratingItem<'_, '_> {
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
         self.stats.air_impulse = rotation * self.built.solver.air_impulse();
-        self.state.air.force = self.built.solver.air_force();
+        (self.stats.enclosed_volume, self.stats.gauge_pressure) = self.built.solver.enclosed();
+        self.state.air.memory = self.built.solver.air_memory();
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 

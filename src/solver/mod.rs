@@ -82,6 +82,7 @@ mod tether;
 mod threads;
 mod twist;
 
+pub(crate) use air::AirMemory;
 pub use air::{Air, ClothPressure};
 pub use bending::Bending;
 pub use envelope::ClothLimit;

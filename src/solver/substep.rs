@@ -10,9 +10,15 @@ use std::sync::Arc;
 use bevy::math::Vec3;
 
 use super::{
-    Air, Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep, air::Airflow,
-    bands::with_threads_awake, forces::Forces, list::ListSweep, pipeline::GridSweep, sweep::Sweep,
-    tether::Anchors, threads::ThreadSweep,
+    Air, Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep,
+    air::{AirMemory, Airflow},
+    bands::with_threads_awake,
+    forces::Forces,
+    list::ListSweep,
+    pipeline::GridSweep,
+    sweep::Sweep,
+    tether::Anchors,
+    threads::ThreadSweep,
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
 
@@ -162,15 +168,23 @@ impl Solver {
         self.air.as_ref().map_or(Vec3::ZERO, |air| air.impulse())
     }
 
-    /// The mean force of the air as the last tick ended (N), in its frame: the next one expects it to go on.
-    pub(crate) fn air_force(&self) -> Vec3 {
-        self.air.as_ref().map_or(Vec3::ZERO, |air| air.force())
+    /// What a closed mesh encloses (m³), and the pressure in it over that of the outside (Pa), as the last sub-step found them; 0
+    /// without [`Air::pressure`].
+    pub fn enclosed(&self) -> (f32, f32) {
+        self.air.as_ref().map_or((0.0, 0.0), |air| air.enclosed())
     }
 
-    /// What that force was.
-    pub(crate) fn set_air_force(&mut self, force: Vec3) {
+    /// What the next tick's air goes on from.
+    pub(crate) fn air_memory(&self) -> AirMemory {
+        self.air
+            .as_ref()
+            .map_or_else(AirMemory::default, |air| air.memory())
+    }
+
+    /// What the last tick's air was left with.
+    pub(crate) fn set_air_memory(&mut self, memory: AirMemory) {
         if let Some(air) = &mut self.air {
-            air.set_force(force);
+            air.set_memory(memory);
         }
     }
 

@@ -261,14 +261,44 @@ fn a_run_replays_by_its_seed() {
 /// A grid has a border, and so does a mesh with a hole: no pressure holds there.
 #[test]
 fn pressure_needs_a_closed_mesh() {
-    let mut app = app();
-    let cloth = curtain(&mut app, default());
-    let pressure = ClothPressure::Gauge(10.0);
-    app.world_mut().entity_mut(cloth).insert(pressure);
-    tick(&mut app, 1);
-    let fault = app.world().get::<ClothFault>(cloth).expect("a fault");
-    assert_eq!(fault.error, ClothError::NotClosed);
-    app.world_mut().entity_mut(cloth).remove::<ClothPressure>();
-    tick(&mut app, 1);
+    for pressure in [ClothPressure::Gauge(10.0), ClothPressure::gas(0.1)] {
+        let mut app = app();
+        let cloth = curtain(&mut app, default());
+        app.world_mut().entity_mut(cloth).insert(pressure);
+        tick(&mut app, 1);
+        let fault = app.world().get::<ClothFault>(cloth).expect("a fault");
+        assert_eq!(fault.error, ClothError::NotClosed);
+        app.world_mut().entity_mut(cloth).remove::<ClothPressure>();
+        tick(&mut app, 1);
+        assert!(app.world().get::<ClothFault>(cloth).is_none());
+    }
+}
+
+/// No gas, less than none and what is no number is a fault that names it; a good amount mends it.
+#[test]
+fn gas_has_an_amount() {
+    let mut app = app_that_draws(FixedUpdate);
+    let ball = Sphere::new(0.2).mesh().ico(3).expect("few");
+    let ball = app.world_mut().resource_mut::<Assets<Mesh>>().add(ball);
+    let cloth = (Cloth::mesh(), Mesh3d(ball), Pins::none());
+    let cloth = app.world_mut().spawn(cloth).id();
+    let gas = |volume, outside| ClothPressure::Gas { volume, outside };
+    for (bad, name) in [
+        (gas(0.0, 1.0e5), "volume of the gas"),
+        (gas(-1.0, 1.0e5), "volume of the gas"),
+        (gas(f32::NAN, 1.0e5), "volume of the gas"),
+        (gas(0.03, 0.0), "pressure outside"),
+        (gas(0.03, f32::INFINITY), "pressure outside"),
+        (ClothPressure::Gauge(f32::NAN), "gauge pressure"),
+    ] {
+        app.world_mut().entity_mut(cloth).insert(bad);
+        tick(&mut app, 1);
+        let fault = app.world().get::<ClothFault>(cloth).expect("a fault");
+        assert!(fault.error.to_string().contains(name), "{}", fault.error);
+    }
+    app.world_mut().entity_mut(cloth).insert(gas(0.03, 1.0e5));
+    tick(&mut app, 8);
     assert!(app.world().get::<ClothFault>(cloth).is_none());
+    let stats = app.world().get::<ClothStats>(cloth).expect("figures");
+    assert!((stats.enclosed_volume - 0.03).abs() < 1.0e-3, "{stats:?}");
 }

@@ -9,7 +9,7 @@ use bevy_drape::{
 use crate::sheet::threads;
 
 /// Two discs of this radius (m), sewn together around: rings of 6, 12, 18 … vertices.
-fn discs(radius: f32, rings: u32) -> TriangleMesh {
+pub fn discs(radius: f32, rings: u32) -> TriangleMesh {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
     let at = |ring: u32, index: u32| {
@@ -61,7 +61,7 @@ fn discs(radius: f32, rings: u32) -> TriangleMesh {
 }
 
 /// Volume (m³) inside of the triangles.
-fn volume(surface: &Surface, particles: &ClothParticles) -> f64 {
+pub fn volume(surface: &Surface, particles: &ClothParticles) -> f64 {
     let at = |corner: u32| {
         let place = particles.position(corner as usize).expect("it exists");
         place.as_dvec3()

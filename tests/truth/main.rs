@@ -16,6 +16,7 @@ mod drops;
 mod energy;
 #[path = "../../examples/shared/exact.rs"]
 mod exact;
+mod gas;
 mod mesh;
 #[path = "../../examples/shared/modes.rs"]
 mod modes;

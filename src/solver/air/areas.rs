@@ -1,7 +1,9 @@
 //! The face that a particle stands for: its normal, as long as its area.
 
+use bevy::math::{Vec3, Vec3A};
+
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout, Slot, Surface, View, X},
+    cloth::{Block, ClothParticles, LANES, Lanes, Slot, Surface, View, X},
     solver::{barrier::one_block_at_a_time, pentadiagonal::Trio},
 };
 
@@ -75,56 +77,88 @@ fn behind(last: &Trio, own: &View) -> Trio {
     left
 }
 
-/// Which particles the corners of a mesh's triangles are.
+/// The triangles of a mesh.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Triangles(Vec<[Corner; 3]>);
+pub(super) struct Triangles {
+    corners: Vec<[u32; 3]>,
+    /// 1, or −1 where faces are turned inwards at rest.
+    outwards: f64,
+    /// Of particles, in order: places from the first one (m), and six times the areas (m²).
+    places: Vec<Vec3A>,
+    areas: Vec<Vec3A>,
+}
 
-/// A block and a lane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Corner {
-    block: u32,
-    lane: u32,
+/// What triangles enclose.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Enclosed {
+    /// Volume (m³), positive as long as it is not turned inside out.
+    pub volume: f64,
+    /// 1, or −1 where faces are turned inwards.
+    pub outwards: f64,
+    /// Of all faces (m²).
+    pub area: f64,
 }
 
 impl Triangles {
     /// Those of a surface.
     pub fn new(surface: &Surface) -> Self {
-        let layout = Layout::of(surface);
-        let corner = |particle: u32| {
-            let Slot { block, lane } = layout.slot_of(particle as usize);
-            Corner {
-                block: block as u32,
-                lane: lane as u32,
-            }
+        let places = surface.rest_positions();
+        let mut triangles = Self {
+            corners: surface.triangles().to_vec(),
+            outwards: 1.0,
+            places: vec![Vec3A::ZERO; places.len()],
+            areas: vec![Vec3A::ZERO; places.len()],
         };
-        let all = surface.triangles().iter();
-        Self(all.map(|corners| corners.map(corner)).collect())
+        triangles.place(places.iter().copied());
+        triangles.outwards = if triangles.enclose().volume < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        triangles
     }
 
-    /// The areas of all particles: a third of each of their triangles (m²). Returns the volume that these enclose (m³), if they
-    /// enclose one.
-    pub fn areas(&self, blocks: &[Block], areas: &mut [Trio]) -> f32 {
-        areas.fill([[0.0; LANES]; 3]);
-        let Some(first) = blocks.first() else {
-            return 0.0;
-        };
-        // Near it all, so that little is rounded away.
-        let origin = first.position(0);
-        let mut volume = 0.0_f64;
-        for corners in &self.0 {
-            let [a, b, c] =
-                corners.map(|at| blocks[at.block as usize].position(at.lane as usize) - origin);
-            let double = (b - a).cross(c - a);
-            volume += f64::from(a.dot(double));
-            let share = (double / 6.0).to_array();
-            for at in corners {
-                let area = &mut areas[at.block as usize];
-                for axis in 0..3 {
-                    area[axis][at.lane as usize] += share[axis];
-                }
+    /// The areas of all particles: a third of each of their triangles (m²). Returns what these enclose, if they enclose anything.
+    pub fn areas(&mut self, particles: &ClothParticles, areas: &mut [Trio]) -> Enclosed {
+        self.place(particles.positions());
+        let enclosed = self.enclose();
+        for (area, slot) in self.areas.iter().zip(particles.layout().slots()) {
+            let area = (*area / 6.0).to_array();
+            for axis in 0..3 {
+                areas[slot.block][axis][slot.lane] = area[axis];
             }
         }
-        (volume / 6.0) as f32
+        enclosed
+    }
+
+    /// Near the first of them, so that little is rounded away.
+    fn place(&mut self, mut places: impl Iterator<Item = Vec3>) {
+        let Some(origin) = places.next() else {
+            return;
+        };
+        for (known, place) in self.places[1..].iter_mut().zip(places) {
+            *known = (place - origin).into();
+        }
+    }
+
+    fn enclose(&mut self) -> Enclosed {
+        self.areas.fill(Vec3A::ZERO);
+        let (mut volume, mut area) = (0.0_f64, 0.0_f64);
+        for corners in &self.corners {
+            let [a, b, c] = corners.map(|corner| self.places[corner as usize]);
+            let double = (b - a).cross(c - a);
+            for corner in corners {
+                self.areas[*corner as usize] += double;
+            }
+            let [a, double] = [a, double].map(Vec3::from);
+            volume += f64::from(a.dot(double));
+            area += f64::from(double.length());
+        }
+        Enclosed {
+            volume: self.outwards * volume / 6.0,
+            outwards: self.outwards,
+            area: 0.5 * area,
+        }
     }
 }
 

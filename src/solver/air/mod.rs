@@ -28,6 +28,7 @@
 //! (`cargo bench --profile dev --bench solver -- air`).
 
 mod areas;
+mod gas;
 mod law;
 mod pressure;
 #[cfg(test)]
@@ -37,13 +38,17 @@ mod wind;
 use bevy::math::{DVec3, Vec3};
 
 pub use self::pressure::ClothPressure;
-use self::{areas::Triangles, wind::LocalWind};
+use self::{
+    areas::{Enclosed, Triangles},
+    gas::{Amount, Gas},
+    wind::LocalWind,
+};
 pub(crate) use self::{
     areas::{Rows, air_areas},
     law::{Felt, Law, acceleration, air_feel, air_given, air_push},
 };
 use super::{kernel::Kernels, pentadiagonal::Trio};
-use crate::cloth::{ClothParticles, LANES, Lanes, Layout, Surface};
+use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, Surface};
 
 /// The faces are looked at again after this time (s) at the latest: twice in a tick of 1/64 s. A flag's waves take ten times as long.
 const LONGEST: f32 = 0.01;
@@ -92,12 +97,25 @@ pub(super) struct Airflow {
     winds: Vec<Trio>,
     /// Sub-steps between two looks, and since the last.
     stride: u32,
+    /// Sub-steps between two looks at the wind.
+    wind_stride: u32,
     since: u32,
     substep: f32,
     /// What the air gave the cloth in the tick (N s).
     impulse: DVec3,
-    /// The mean force of the air between the last two looks (N).
-    force: Vec3,
+    /// What the next tick goes on from.
+    memory: AirMemory,
+    /// As the faces were looked at.
+    enclosed: Enclosed,
+}
+
+/// What an airflow goes on from in the next tick.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct AirMemory {
+    /// The mean force of the air between the last two looks (N), in the cloth's frame.
+    pub force: Vec3,
+    gas: Gas,
 }
 
 impl Airflow {
@@ -116,10 +134,12 @@ impl Airflow {
             areas: vec![[[0.0; LANES]; 3]; strip],
             winds: vec![[[0.0; LANES]; 3]; strip],
             stride: 1,
+            wind_stride: 1,
             since: 0,
             substep: 0.0,
             impulse: DVec3::ZERO,
-            force: Vec3::ZERO,
+            memory: AirMemory::default(),
+            enclosed: Enclosed::default(),
         }
     }
 
@@ -141,24 +161,48 @@ impl Airflow {
         self.impulse.as_vec3()
     }
 
-    /// The mean force of the air between the last two looks (N), in this tick or the one before.
-    pub fn force(&self) -> Vec3 {
-        self.force
+    pub fn memory(&self) -> AirMemory {
+        self.memory
     }
 
-    /// What that force was (N) as a tick begins.
-    pub fn set_force(&mut self, force: Vec3) {
-        self.force = force;
+    pub fn set_memory(&mut self, memory: AirMemory) {
+        self.memory = memory;
+    }
+
+    /// The volume (m³) that a mesh under pressure encloses, as faces were looked at last, and the pressure in it over that of the outside
+    /// (Pa).
+    pub fn enclosed(&self) -> (f32, f32) {
+        let pressure = match self.air.pressure {
+            None => return (0.0, 0.0),
+            Some(ClothPressure::Gauge(pressure)) => pressure,
+            Some(ClothPressure::Gas { .. }) => self.memory.gas.pressure as f32,
+        };
+        (self.enclosed.volume.abs() as f32, pressure)
+    }
+
+    /// After the displacements of a sub-step are foreseen, with this weight (s²): adds what gas adds.
+    pub fn press(&mut self, blocks: &mut [Block], weight: f32) {
+        let Some(ClothPressure::Gas { volume, outside }) = self.air.pressure else {
+            return;
+        };
+        let amount = Amount {
+            volume: volume.into(),
+            outside: outside.into(),
+        };
+        let (weight, seconds) = (weight.into(), self.substep.into());
+        let (gas, areas) = (&mut self.memory.gas, &self.areas);
+        self.impulse += gas.press(amount, self.enclosed, blocks, areas, weight, seconds);
     }
 
     /// Begins a tick of `seconds` in this many sub-steps.
     pub fn begin(&mut self, seconds: f32, substeps: u32) {
         // What is full of air is as wide as its pressure, its springs and their stretch let it be, in each sub-step.
-        let looks = match self.air.pressure {
-            None => ((seconds / LONGEST).ceil() as u32).clamp(1, substeps),
-            Some(_) => substeps,
+        let looks = ((seconds / LONGEST).ceil() as u32).clamp(1, substeps);
+        self.wind_stride = substeps.div_ceil(looks);
+        self.stride = match self.air.pressure {
+            None => self.wind_stride,
+            Some(_) => 1,
         };
-        self.stride = substeps.div_ceil(looks);
         self.substep = seconds / substeps as f32;
         self.since = 0;
         self.impulse = DVec3::ZERO;
@@ -168,7 +212,7 @@ impl Airflow {
     pub fn before_substep(&mut self, index: u32, particles: &ClothParticles, kernels: &Kernels) {
         if index.is_multiple_of(self.stride) {
             self.settle(particles, kernels);
-            self.look(particles, kernels);
+            self.look(particles, kernels, index.is_multiple_of(self.wind_stride));
         }
         self.since += 1;
     }
@@ -188,7 +232,7 @@ impl Airflow {
             (kernels.air_given)(row, felt, ways, seconds, &mut sum);
             self.impulse += DVec3::from(sum.map(|lanes| lanes.into_iter().map(f64::from).sum()));
         }
-        self.force = (self.impulse - before).as_vec3() / seconds;
+        self.memory.force = (self.impulse - before).as_vec3() / seconds;
         self.since = 0;
     }
 
@@ -197,7 +241,8 @@ impl Airflow {
         &self.felt
     }
 
-    fn look(&mut self, particles: &ClothParticles, kernels: &Kernels) {
+    /// Of a mesh, a wind that is not the same everywhere is known from the last look unless it is `asked`.
+    fn look(&mut self, particles: &ClothParticles, kernels: &Kernels, wind_is_asked: bool) {
         let Air {
             density,
             drag,
@@ -228,11 +273,13 @@ impl Airflow {
             winds.fill(wind.to_array().map(|of| [of; LANES]));
         }
         if let Some(triangles) = triangles {
-            let volume = triangles.areas(blocks, areas);
+            let enclosed = triangles.areas(particles, areas);
             if let Some(ClothPressure::Gauge(pressure)) = pressure {
-                law.pressure = pressure * volume.signum();
+                let outwards = enclosed.outwards * enclosed.volume.signum();
+                law.pressure = pressure * outwards as f32;
             }
-            if *is_local {
+            self.enclosed = enclosed;
+            if *is_local && wind_is_asked {
                 local.of_mesh(particles, winds);
             }
             (kernels.air_feel)(blocks, areas, winds, &law, felt, ways);

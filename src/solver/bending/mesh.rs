@@ -28,16 +28,13 @@ use crate::cloth::{Block, DX, DY, DZ, Layout, Surface, W, X, Y, Z};
 const TOLERANCE: f32 = 1.0e-4;
 /// Iterations at most: what is left after them is stiff and small, and the next sub-step goes on with it.
 const MAX_ITERATIONS: usize = 40;
-/// A particle during a solve.
+/// A particle during a solve. What its neighbours read of it lies apart, close together.
 #[derive(Debug, Default, Clone, Copy)]
 struct Row {
-    place: Vec4,
-    moved: Vec4,
     /// What is to be added to `moved`, and what is left of the right side.
     added: Vec4,
     left: Vec4,
-    /// Conjugate direction, and what the matrix makes of it.
-    direction: Vec4,
+    /// What the matrix makes of the conjugate direction.
     image: Vec4,
     /// kg, or 0 of a pinned particle.
     mass: f32,
@@ -59,6 +56,10 @@ pub(super) struct MeshBending {
     /// s (s²).
     weight: f32,
     rows: Vec<Row>,
+    /// Places and displacements (m).
+    places: Vec<[Vec4; 2]>,
+    /// Conjugate directions.
+    directions: Vec<Vec4>,
 }
 
 impl MeshBending {
@@ -110,6 +111,8 @@ impl MeshBending {
             rest: rest.into(),
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
+            directions: vec![Vec4::ZERO; places.len()],
+            places: vec![[Vec4::ZERO; 2]; places.len()],
         }
     }
 
@@ -128,11 +131,14 @@ impl MeshBending {
     }
 
     pub fn solve(&mut self, blocks: &mut [Block]) {
-        for (row, slot) in self.rows.iter_mut().zip(self.layout.slots()) {
+        let rows = self.rows.iter_mut().zip(&mut self.places);
+        for ((row, place), slot) in rows.zip(self.layout.slots()) {
             let view = blocks[slot.block].view();
             let of = |from: usize| view[from + slot.lane];
-            row.place = Vec4::new(of(X), of(Y), of(Z), 0.0);
-            row.moved = Vec4::new(of(DX), of(DY), of(DZ), 0.0);
+            *place = [
+                Vec4::new(of(X), of(Y), of(Z), 0.0),
+                Vec4::new(of(DX), of(DY), of(DZ), 0.0),
+            ];
             row.added = Vec4::ZERO;
         }
         self.set_right_side();
@@ -150,18 +156,18 @@ impl MeshBending {
     /// `left` becomes −s K p, less what the rest curvatures want.
     fn set_right_side(&mut self) {
         for at in 0..self.rows.len() {
-            let own = self.rows[at];
+            let [place, moved] = self.places[at];
             let mut sum = Vec4::ZERO;
             for &(other, number) in &self.entries[of(&self.first, at)] {
-                let other = &self.rows[other as usize];
-                sum += number * ((other.place - own.place) + (other.moved - own.moved));
+                let [there, moved_there] = self.places[other as usize];
+                sum += number * ((there - place) + (moved_there - moved));
             }
             self.rows[at].left = -sum;
         }
         for face in &*self.rest {
             let at = |corner: usize| {
-                let row = &self.rows[face.particles[corner] as usize];
-                (row.place + row.moved).truncate()
+                let [place, moved] = self.places[face.particles[corner] as usize];
+                (place + moved).truncate()
             };
             let Some(frame) = frame(at(0), at(1), at(2)) else {
                 continue;
@@ -185,9 +191,9 @@ impl MeshBending {
     /// Solves for `added`, preconditioned by the diagonal. Returns whether there was anything to do.
     fn conjugate_gradients(&mut self) -> bool {
         let mut norm = 0.0;
-        for row in &mut self.rows {
-            row.direction = row.left * row.inverse;
-            norm += row.direction.dot(row.left);
+        for (row, direction) in self.rows.iter().zip(&mut self.directions) {
+            *direction = row.left * row.inverse;
+            norm += direction.dot(row.left);
         }
         // Of nothing, or of next to nothing, nothing comes.
         let is_something = |norm: f32| norm > 1.0e-34;
@@ -198,20 +204,19 @@ impl MeshBending {
         for _ in 0..MAX_ITERATIONS {
             let mut energy = 0.0;
             for at in 0..self.rows.len() {
-                let own = &self.rows[at];
-                let mut sum = self.diagonal[at] * own.direction;
+                let (row, own) = (&mut self.rows[at], self.directions[at]);
+                let mut sum = self.diagonal[at] * own;
                 for &(other, number) in &self.entries[of(&self.first, at)] {
-                    sum += number * self.rows[other as usize].direction;
+                    sum += number * self.directions[other as usize];
                 }
-                let image = own.mass * own.direction + self.weight * sum;
-                energy += own.direction.dot(image);
-                self.rows[at].image = image;
+                row.image = row.mass * own + self.weight * sum;
+                energy += own.dot(row.image);
             }
             let step = norm / energy;
             let before = norm;
             norm = 0.0;
-            for row in &mut self.rows {
-                row.added += step * row.direction;
+            for (row, direction) in self.rows.iter_mut().zip(&self.directions) {
+                row.added += step * *direction;
                 // Nothing pulls at a pinned particle: its inverse is 0.
                 row.left -= step * row.image;
                 norm += row.inverse * row.left.dot(row.left);
@@ -220,8 +225,8 @@ impl MeshBending {
                 break;
             }
             let kept = norm / before;
-            for row in &mut self.rows {
-                row.direction = row.left * row.inverse + kept * row.direction;
+            for (row, direction) in self.rows.iter().zip(&mut self.directions) {
+                *direction = row.left * row.inverse + kept * *direction;
             }
         }
         true

@@ -176,7 +176,7 @@ impl Solver {
         let pull = step.acceleration * weight_dt2;
         if let Some(air) = &mut self.air {
             air.before_substep(tick.next, particles, &kernels);
-            tick.drift.blow(air.force());
+            tick.drift.blow(air.memory().force);
         }
         let drift = tick.drift.follow(particles.blocks());
         let prediction = Prediction::new(kind, kept, pull, drift);
@@ -212,6 +212,9 @@ impl Solver {
                     predict(0, blocks, past);
                 }
             }
+        }
+        if let Some(air) = &mut self.air {
+            air.press(blocks, weight_dt2);
         }
         if let Some(bending) = &mut self.bending {
             bending.prepare(blocks, weight_dt2);
@@ -252,7 +255,7 @@ impl Solver {
             && tick.next < tick.substeps()
         {
             air.before_substep(tick.next, particles, &kernels);
-            tick.drift.blow(air.force());
+            tick.drift.blow(air.memory().force);
         }
         let forces = self.forces.as_mut().expect("forces");
         let bending = self.bending.as_mut();
