@@ -288,7 +288,7 @@ fn no_wind_is_too_strong() {
     }
 }
 
-/// A flag of 1.4 × 0.9 m in 8 m/s: from wave to wave at the middle of its free edge (s), in the mean over twenty seconds.
+/// A flag of 1.4 × 0.9 m in 8 m/s: from wave to wave at the middle of its free edge (s), in the mean over two hundred seconds.
 fn wave_period(substeps: u32) -> f64 {
     let material = ClothMaterial::COTTON;
     let surface = Cloth::new(24, 16, 0.06).grid(Vec3::ONE);
@@ -320,7 +320,7 @@ fn wave_period(substeps: u32) -> f64 {
         ..TickStep::default()
     };
     let (mut is_left, mut waves, mut widest) = (false, 0, 0.0_f32);
-    for tick in 0..64 * 23 {
+    for tick in 0..64 * 203 {
         solver.advance(&mut particles, step, &[], |_, _| false);
         let z = particles.position((8, 23)).expect("it exists").z;
         if tick >= 64 * 3 {
@@ -330,15 +330,19 @@ fn wave_period(substeps: u32) -> f64 {
             widest = widest.max(z.abs());
         }
     }
-    println!("a flag in 8 m/s, {substeps} sub-steps: {waves} waves in 20 s, {widest} m wide");
-    20.0 / f64::from(waves)
+    println!("a flag in 8 m/s, {substeps} sub-steps: {waves} waves in 200 s, {widest} m wide");
+    200.0 / f64::from(waves)
 }
 
-/// From 40 sub-steps on to a tenth, what chance does to some 90 waves being half of that; 20, in which the cloth's own ripples lose
-/// energy, to a fifth.
+/// From 25 sub-steps on to a twelfth, of which chance does a third to some 1,000 waves; 20, in which the cloth's own ripples lose
+/// energy, to a sixth. Fewer make faster waves still, as a table of such runs says: 15 by 18 %, 10 by 34 %.
 #[test]
 fn a_flag_waves_alike_in_any_number_of_sub_steps() {
-    let [few, some, many] = [20, 40, 80].map(wave_period);
-    assert!((some / many - 1.0).abs() < 0.1, "{some} {many}");
-    assert!((few / many - 1.0).abs() < 0.2, "{few} {many}");
+    let [fewest, few, some, many] = std::thread::scope(|scope| {
+        let runs = [20, 25, 40, 80].map(|substeps| scope.spawn(move || wave_period(substeps)));
+        runs.map(|run| run.join().expect("it ends"))
+    });
+    assert!((some / many - 1.0).abs() < 1.0 / 12.0, "{some} {many}");
+    assert!((few / many - 1.0).abs() < 1.0 / 12.0, "{few} {many}");
+    assert!((fewest / many - 1.0).abs() < 1.0 / 6.0, "{fewest} {many}");
 }
