@@ -111,7 +111,7 @@ fn a_hidden_cloth_with_a_level_of_detail_costs_nothing() {
         }
         for entity in [own, above] {
             change::<Visibility>(&mut app, entity, |visibility| {
-                *visibility = Visibility::Hidden
+                *visibility = Visibility::Hidden;
             });
         }
         tick(&mut app, 3);
@@ -124,7 +124,7 @@ fn a_hidden_cloth_with_a_level_of_detail_costs_nothing() {
         assert!(stats(&app, by_hand).substeps > 0);
         for entity in [own, above] {
             change::<Visibility>(&mut app, entity, |visibility| {
-                *visibility = Visibility::Visible
+                *visibility = Visibility::Visible;
             });
         }
         tick(&mut app, 3);

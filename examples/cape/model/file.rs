@@ -43,7 +43,7 @@ impl File {
         let bound = |better: fn(f32, f32) -> f32| -> Vec<f32> {
             (0..N)
                 .map(|at| values.iter().map(|value| value[at]).reduce(better))
-                .map(|bound| bound.unwrap_or_default())
+                .map(Option::unwrap_or_default)
                 .collect()
         };
         self.accessors[accessor]["min"] = json!(bound(f32::min));

@@ -68,7 +68,7 @@ enum Kernel {
         damping: f64,
     },
     Ours {
-        solver: Solver,
+        solver: Box<Solver>,
         particles: Box<ClothParticles>,
         step: TickStep,
     },
@@ -96,7 +96,7 @@ impl Moving {
                 }
             }
             Way::Ours { substeps, tethers } => Kernel::Ours {
-                solver: scene.solver(tethers),
+                solver: Box::new(scene.solver(tethers)),
                 particles: Box::new(scene.particles.clone()),
                 step: TickStep {
                     seconds: seconds as f32,
