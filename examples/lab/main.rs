@@ -30,6 +30,7 @@ mod needs;
 mod pareto;
 #[path = "../../benches/hierarchy/parry.rs"]
 mod parry;
+mod peers;
 #[path = "../shared/physics.rs"]
 mod physics;
 mod record;
@@ -105,6 +106,8 @@ enum Name {
     Pareto,
     /// How it is hung: stretch against time for six ways of pinning
     Hung,
+    /// Real solvers, same scenes, as the package `peers` has measured them
+    Peers,
     /// With which power of the sub-step errors fall
     Convergence,
     /// Periods of sheets and membranes, and a strip's sag, against closed forms
@@ -119,7 +122,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 16] = [
+const EXPERIMENTS: [(Name, Conduct); 17] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -132,6 +135,7 @@ const EXPERIMENTS: [(Name, Conduct); 16] = [
     (Name::Layers, conduct::<layers::Layers>),
     (Name::Pareto, conduct::<pareto::Pareto>),
     (Name::Hung, conduct::<hung::Hung>),
+    (Name::Peers, conduct::<peers::Peers>),
     (Name::Convergence, conduct::<convergence::Convergence>),
     (Name::Waves, conduct::<waves::Waves>),
     (Name::Bending, conduct::<bending::Bending>),

@@ -121,12 +121,11 @@ impl ClothWorldSnapshot {
         for entity in own {
             let state = world.get::<ClothState>(entity);
             let carriers = state.map_or(&[][..], |state| &state.targets);
-            for entity in carriers
-                .iter()
-                .copied()
-                .chain([entity])
-                .chain(joints(world, entity))
-            {
+            #[cfg(feature = "mesh")]
+            let joints = joints(world, entity);
+            #[cfg(not(feature = "mesh"))]
+            let joints: [Entity; 0] = [];
+            for entity in carriers.iter().copied().chain([entity]).chain(joints) {
                 let mut next = Some(entity);
                 while let Some(entity) = next.filter(|entity| known.insert(*entity)) {
                     if let Some(&place) = world.get::<Transform>(entity) {
@@ -211,18 +210,13 @@ fn has<C: bevy::ecs::component::Component>(
 }
 
 /// The joints that a skinned mesh hangs by.
+#[cfg(feature = "mesh")]
 fn joints(world: &World, entity: Entity) -> Vec<Entity> {
-    #[cfg(feature = "mesh")]
-    let joints = {
-        let skin = world.get::<bevy::mesh::skinning::SkinnedMesh>(entity);
-        let skeleton = world.get::<crate::plugin::ClothSkeleton>(entity);
-        let joints = skin.map(|skin| &skin.joints);
-        let joints = joints.or(skeleton.map(|skeleton| &skeleton.joints));
-        joints.cloned().unwrap_or_default()
-    };
-    #[cfg(not(feature = "mesh"))]
-    let joints = Vec::new();
-    joints
+    let skin = world.get::<bevy::mesh::skinning::SkinnedMesh>(entity);
+    let skeleton = world.get::<crate::plugin::ClothSkeleton>(entity);
+    let joints = skin.map(|skin| &skin.joints);
+    let joints = joints.or(skeleton.map(|skeleton| &skeleton.joints));
+    joints.cloned().unwrap_or_default()
 }
 
 impl MapEntities for ClothWorldSnapshot {

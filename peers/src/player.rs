@@ -1,0 +1,189 @@
+//! Solvers with their settings, and how each plays a scene.
+
+use bevy_drape::contact::NarrowPhase;
+use cpu_time::ProcessTime;
+
+use crate::{
+    explicit::Explicit,
+    jolt::{self, Jolt},
+    ours::Ours,
+    outcome::{Places, Play},
+    python::Python,
+    row::{EXPLICIT, OURS, SOLVERS},
+    scene::{COMPARED, FRAMES, LAST, Scene},
+};
+
+/// A solver in the middle of a scene.
+pub trait Frames {
+    /// Goes on by a frame.
+    fn step(&mut self);
+
+    /// Where all particles are.
+    fn places(&mut self) -> Places;
+}
+
+/// Plays a scene to its end. Only steps are timed.
+fn play(mut frames: impl Frames) -> Play {
+    let mut seconds = 0.0;
+    let (mut compared, mut last) = (Vec::new(), Vec::new());
+    for frame in 1..=FRAMES {
+        let clock = ProcessTime::now();
+        frames.step();
+        seconds += clock.elapsed().as_secs_f64();
+        if frame == COMPARED {
+            compared = frames.places();
+        }
+        if frame + LAST > FRAMES {
+            last.push(frames.places());
+        }
+    }
+    Play {
+        ms: 1.0e3 * seconds / f64::from(FRAMES),
+        compared,
+        last,
+    }
+}
+
+/// A solver with its settings.
+pub struct Player {
+    pub solver: &'static str,
+    pub setting: String,
+    way: Way,
+}
+
+enum Way {
+    Ours(u32, NarrowPhase),
+    Jolt(jolt::Setting),
+    Explicit(u32),
+    /// By its name in the script.
+    Python(&'static str),
+}
+
+impl Player {
+    /// All that play a scene: those of this program, and those of the script.
+    pub fn all(scene: &Scene, is_quick: bool) -> Vec<Self> {
+        let mut all = Vec::new();
+        let ours: &[u32] = match (scene.ball.is_some(), is_quick) {
+            (_, true) => &[20],
+            (true, false) => &[10, 20, 40],
+            (false, false) => &[10, 20, 30, 40, 80, 160],
+        };
+        all.extend(ours.iter().map(|&count| Self {
+            solver: OURS,
+            setting: format!("{count} sub-steps"),
+            way: Way::Ours(count, NarrowPhase::Auto),
+        }));
+        if scene.ball.is_some() {
+            all.push(Self {
+                solver: OURS,
+                setting: "20 sub-steps, triangles".into(),
+                way: Way::Ours(20, NarrowPhase::Triangles),
+            });
+        }
+        let best = |iterations| jolt::Setting {
+            iterations,
+            is_shuffled: true,
+            late_pins: true,
+            tethers: false,
+        };
+        let documented = |iterations| jolt::Setting {
+            is_shuffled: false,
+            late_pins: false,
+            ..best(iterations)
+        };
+        let tethered = |iterations| jolt::Setting {
+            late_pins: false,
+            tethers: true,
+            ..best(iterations)
+        };
+        let jolt = |name: &str, setting: jolt::Setting| Self {
+            solver: SOLVERS[1],
+            setting: format!("{} iterations{name}", setting.iterations),
+            way: Way::Jolt(setting),
+        };
+        let counts: &[u32] = match (scene.ball.is_some(), is_quick) {
+            (_, true) => &[20],
+            (true, false) => &[10, 20, 40],
+            (false, false) => &[20, 30, 40, 80, 100],
+        };
+        all.extend(counts.iter().map(|&count| jolt("", best(count))));
+        all.push(jolt(", as documented", documented(20)));
+        if !scene.told(0).pinned.is_empty() && scene.compliance == 0.0 {
+            all.push(jolt(", tethers", tethered(20)));
+        }
+        if scene.compliance > 0.0 {
+            all.push(Self {
+                solver: EXPLICIT,
+                setting: "70 steps".into(),
+                way: Way::Explicit(70),
+            });
+        }
+        all.extend(Self::of_python(scene, is_quick));
+        all
+    }
+
+    /// Those of the script, as many steps and iterations as its table says.
+    fn of_python(scene: &Scene, is_quick: bool) -> Vec<Self> {
+        let mut all: Vec<(&str, &str, &str)> = Vec::new();
+        let [_, _, pypbd, mujoco, vbd, xpbd, style3d, _] = SOLVERS;
+        if scene.ball.is_none() {
+            all.extend(
+                [
+                    "20 sub-steps",
+                    "30 sub-steps",
+                    "40 sub-steps",
+                    "80 sub-steps",
+                ]
+                .map(|setting| (pypbd, "pypbd", setting)),
+            );
+        }
+        if scene.compliance == 0.0 {
+            all.extend(
+                ["1 step of 30 MPa", "1 step of 300 MPa"]
+                    .map(|setting| (mujoco, "mujoco", setting)),
+            );
+            all.push((style3d, "style3d", "2 steps of 10 × 10"));
+        }
+        all.push((vbd, "vbd", "20 steps of 2"));
+        all.push((xpbd, "xpbd", "40 steps of 1"));
+        if is_quick {
+            all.dedup_by_key(|each| each.1);
+        }
+        let player = |(solver, name, setting): (&'static str, _, &str)| Self {
+            solver,
+            setting: setting.into(),
+            way: Way::Python(name),
+        };
+        all.into_iter().map(player).collect()
+    }
+
+    /// Whether it has the scene's springs, and not a material like them.
+    pub fn has_same_springs(&self) -> bool {
+        match self.way {
+            Way::Ours(..) | Way::Jolt(_) | Way::Explicit(_) => true,
+            Way::Python(name) => name == "pypbd" || name == "xpbd",
+        }
+    }
+
+    pub fn is_python(&self) -> bool {
+        matches!(self.way, Way::Python(_))
+    }
+
+    /// Plays a scene from one of its starts.
+    ///
+    /// # Errors
+    /// What went wrong in the script.
+    pub fn play(&self, scene: &Scene, python: Option<&Python>, start: u32) -> Result<Play, String> {
+        match &self.way {
+            Way::Ours(substeps, narrow_phase) => {
+                Ok(play(Ours::new(scene, *substeps, *narrow_phase, start)))
+            }
+            Way::Jolt(setting) => Ok(play(Jolt::new(scene, *setting, start))),
+            Way::Explicit(steps) => Ok(play(Explicit::new(scene, *steps, start))),
+            Way::Python(name) => match python {
+                Some(python) => python.play(scene, name, &self.setting, start),
+                None => Err("no interpreter was given by --python".into()),
+            },
+        }
+    }
+}
