@@ -34,6 +34,13 @@ pub(crate) struct Carrier {
     left: u8,
 }
 
+impl Carrier {
+    /// Whether it can be one of so many blocks.
+    pub(crate) fn is_in(&self, blocks: usize) -> bool {
+        self.slot.block < blocks && self.slot.lane < LANES
+    }
+}
+
 /// The particles that carry a body, in the order of the cloth.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Carriers {

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     cloth::{ClothMaterial, ClothParticles, Surface},
-    solver::{Air, AirMemory, ClothPressure, Solver},
+    solver::{Air, AirMemory, ClothPressure, FILLING, Solver},
 };
 
 /// What a cloth was last moved in, in the world.
@@ -77,7 +77,8 @@ impl KnownAir {
         field: &WindField,
     ) {
         let to_cloth = frame.isometry().rotation.inverse();
-        let Some(breeze) = self.breeze else {
+        // What has no density does nothing.
+        let Some(breeze) = self.breeze.filter(|breeze| breeze.density > 0.0) else {
             let pressure = self.pressure;
             let nothing = Air {
                 pressure,
@@ -104,16 +105,22 @@ impl KnownAir {
         }
     }
 
-    /// How fast the air may make a cloth that is as fast as `speed` (m/s) faster, at most (m/s²): in one tick of `seconds` not beyond
-    /// what it goes itself.
+    /// How fast the air may make a cloth that is as fast as `speed` (m/s) faster, at most (m/s²): wind in one tick of `seconds` not beyond
+    /// what it goes itself, and gas not beyond the speed at which it fills.
     pub fn acceleration(&self, material: &ClothMaterial, speed: f32, seconds: f32) -> f32 {
+        let inside = match self.pressure {
+            None => 0.0,
+            Some(ClothPressure::Gauge(pressure)) => pressure.abs() / material.areal_density,
+            Some(ClothPressure::Gas { .. }) => FILLING / seconds.max(f32::MIN_POSITIVE),
+        };
         let Some(breeze) = &self.breeze else {
-            return 0.0;
+            return inside;
         };
         let zones = self.zones.iter().map(PlacedZone::fastest);
         let wind = breeze.velocity.length() + 2.0 * breeze.stray + zones.sum::<f32>();
         let relative = wind + speed;
         let force = 0.5 * breeze.density * (breeze.drag + breeze.lift) * relative * relative;
-        (force / material.areal_density).min(relative / seconds.max(f32::MIN_POSITIVE))
+        let most = relative / seconds.max(f32::MIN_POSITIVE);
+        inside + (force / material.areal_density).min(most)
     }
 }

@@ -114,11 +114,17 @@ pub(super) fn follow_targets(
     state: &mut ClothState,
     motions: &mut Vec<PinMotion>,
 ) {
-    if wanted.is_empty() && state.attachments.is_empty() {
+    // What a snapshot says may be attached to more than the game says.
+    let is_free = state.attachments.is_empty() && state.attached.is_empty();
+    if wanted.is_empty() && is_free {
         return;
     }
-    if state.attachments != wanted {
+    if state.attachments != wanted || wanted.is_empty() {
         attach(wanted, places, frame, particles, built, state);
+        // What was released is not carried along.
+        let is_held =
+            |motion: &PinMotion| particles.inverse_mass(motion.particle as usize) == Some(0.0);
+        motions.retain(is_held);
     }
     if let Some(first) = places.first() {
         let pose = rigid(first);

@@ -10,7 +10,7 @@ use bevy::{
         lifecycle::Remove,
         name::Name,
         observer::On,
-        query::Allow,
+        query::{Allow, Changed, Or},
         reflect::ReflectComponent,
         system::{Commands, Query},
     },
@@ -91,7 +91,11 @@ impl ClothBones {
 
 /// The colliders that were made of a [`ClothBones`].
 #[derive(Component, Debug, Default)]
-pub(super) struct BoneColliders(Vec<Entity>);
+pub(super) struct BoneColliders {
+    all: Vec<Entity>,
+    /// Whether names were missing when they were looked for.
+    waits: bool,
+}
 
 /// Makes colliders of bones that have been found, and of those that are to be found again.
 pub(super) fn make_bone_colliders(
@@ -103,27 +107,31 @@ pub(super) fn make_bone_colliders(
     )>,
     living: Query<(), Allow<Disabled>>,
     named: Query<(Option<&Name>, Option<&Children>), Allow<Disabled>>,
+    renamed: Query<(), (Or<(Changed<Name>, Changed<Children>)>, Allow<Disabled>)>,
     places: Places,
     mut commands: Commands,
 ) {
     for (entity, bones, mut made, fault) in &mut all {
-        let are_there = made.0.len() == bones.0.len()
-            && made.0.iter().all(|collider| living.contains(*collider));
-        if are_there && !bones.is_changed() {
+        let are_there = made.all.len() == bones.0.len()
+            && made.all.iter().all(|collider| living.contains(*collider));
+        // What was not there can have come only as something was named or got children.
+        let is_known = are_there || made.waits && renamed.is_empty();
+        if is_known && !bones.is_changed() {
             continue;
         }
         let colliders = names_below(entity, &named).map(|names| {
             let each = bones.0.iter().map(|bone| collider(bone, &names, &places));
             each.collect::<Result<Vec<_>, _>>()
         });
+        made.waits = matches!(colliders, None | Some(Err(ClothError::NoSuchBone { .. })));
         let outcome = match colliders {
             // Its scene is on its way.
             None => Ok(()),
             Some(colliders) => colliders.map(|colliders| {
-                for old in made.0.drain(..) {
+                for old in made.all.drain(..) {
                     commands.entity(old).try_despawn();
                 }
-                made.0.extend(
+                made.all.extend(
                     colliders
                         .into_iter()
                         .map(|bundle| commands.spawn(bundle).id()),
@@ -141,7 +149,7 @@ pub(super) fn remove_bone_colliders(
     mut commands: Commands,
 ) {
     if let Ok(mut made) = made.get_mut(removed.entity) {
-        for collider in made.0.drain(..) {
+        for collider in made.all.drain(..) {
             commands.entity(collider).try_despawn();
         }
     }

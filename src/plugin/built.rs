@@ -45,9 +45,9 @@ pub struct ClothBuilt {
     /// How far its particles may be from the pose that it follows, if it follows one.
     #[reflect(ignore)]
     pub(super) skin: Option<Box<SkinLimits>>,
-    /// How many particles are pinned, and a number that is new whenever others are.
+    /// The particles that are pinned, in their order, and a number that is new whenever others are.
     #[reflect(ignore)]
-    pub(super) pinned: usize,
+    pub(super) pinned: Vec<u32>,
     #[reflect(ignore)]
     pub(super) pins_version: u32,
 }
@@ -149,6 +149,14 @@ impl ClothBuilt {
         }
     }
 
+    /// Takes over what particles weigh that somebody else wrote, and which of them are pinned.
+    pub(super) fn weigh(&mut self, particles: &ClothParticles) {
+        self.masses = particles.free_masses();
+        if !pinned(particles).eq(self.pinned.iter().copied()) {
+            self.forget_tethers();
+        }
+    }
+
     /// Has tethers be made again: other particles are pinned, or the material gives in another way.
     pub(super) fn forget_tethers(&mut self) {
         self.tethered = None;
@@ -165,12 +173,13 @@ impl ClothBuilt {
         largest_gravity: &mut f32,
     ) -> bool {
         if self.tethered.is_none() {
-            self.pinned = particles.inverse_masses().filter(|w| *w == 0.0).count();
+            self.pinned.clear();
+            self.pinned.extend(pinned(particles));
             self.masses = particles.free_masses();
             self.pins_version = self.pins_version.wrapping_add(1);
         }
         let surface = &self.shared.surface;
-        let gives = |gravity: f32| material_stretch(surface, material, self.pinned, gravity);
+        let gives = |gravity: f32| material_stretch(surface, material, self.pinned.len(), gravity);
         // Gravity that comes and goes finds all as it was; what it stretched before is no fault after.
         *largest_gravity = largest_gravity.max(Tethers::made_for(gravity));
         self.material_stretch = gives(gravity);
@@ -188,6 +197,13 @@ impl ClothBuilt {
         self.solver.set_tethers(tethers);
         true
     }
+}
+
+/// The particles that are pinned, in their order.
+fn pinned(particles: &ClothParticles) -> impl Iterator<Item = u32> + '_ {
+    let masses = particles.inverse_masses().enumerate();
+    let pinned = masses.filter(|(_, inverse_mass)| *inverse_mass == 0.0);
+    pinned.map(|(index, _)| index as u32)
 }
 
 #[cfg(test)]

@@ -9,28 +9,31 @@ use bevy::{
 };
 
 use super::{
-    ClothFrame, ClothState,
+    ClothAttachment, ClothFrame, ClothState,
     attach::Targets,
     frame::{global_transform, rigid},
     lod_state::Frozen,
 };
 use crate::cloth::{ClothError, ClothParticles};
 
-/// Where that is what carries a cloth whose entity is at `frame`: its first attachment's target, where it has one that exists, else the
-/// entity.
-fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Isometry3d {
-    let target = state.targets.first();
-    let target = target.and_then(|target| global_transform(&targets.transforms, *target).ok());
-    target.map_or(frame.isometry(), |place| rigid(&place.affine()))
+/// Where that is what carries a cloth whose entity is at `frame`: its first attachment's target, where it has one, else the entity;
+/// `None` if that target has gone.
+fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<Isometry3d> {
+    let Some(target) = state.targets.first() else {
+        return Some(frame.isometry());
+    };
+    let place = global_transform(&targets.transforms, *target).ok()?;
+    Some(rigid(&place.affine()))
 }
 
 /// Has a cloth stand still, and its frame go with what carries it, so that its particles keep their places in that; they lose their
 /// velocities as it begins to.
 ///
 /// # Errors
-/// [`ClothError::Transform`].
+/// [`ClothError::Transform`], and [`ClothError::NoTarget`] for a first `attachments`' target that has gone.
 pub(super) fn stand(
     entity: Entity,
+    attachments: &[ClothAttachment],
     targets: &Targets,
     frame: &mut Mut<ClothFrame>,
     particles: &mut Mut<ClothParticles>,
@@ -38,7 +41,16 @@ pub(super) fn stand(
 ) -> Result<(), ClothError> {
     let transform = global_transform(&targets.transforms, entity)?;
     let (now, _) = ClothFrame::of(&transform)?;
-    let carried_by = carrier(targets, state, now);
+    let Some(carried_by) = carrier(targets, state, now) else {
+        return match (attachments.first(), state.targets.first()) {
+            (Some(ClothAttachment { pin, .. }), Some(&target)) => Err(ClothError::NoTarget {
+                pin: pin.clone(),
+                target,
+            }),
+            // What was taken off meanwhile falls once it moves again.
+            _ => Ok(()),
+        };
+    };
     let was = frame.isometry();
     let frozen = state.lod.frozen.unwrap_or_else(|| {
         particles.set_body_motion(Isometry3d::IDENTITY, 0.0);
@@ -78,11 +90,9 @@ pub(super) fn thaw(
         return false;
     };
     let was = frame.isometry();
-    let moved = carrier(targets, state, now) * frozen.last.inverse();
-    let by = if jumps {
-        Isometry3d::IDENTITY
-    } else {
-        was.inverse() * moved * was
+    let by = match carrier(targets, state, now) {
+        Some(now) if !jumps => was.inverse() * now * frozen.last.inverse() * was,
+        _ => Isometry3d::IDENTITY,
     };
     particles.set_body_motion(by, seconds);
     // Where it stood, and not where it was as it froze.

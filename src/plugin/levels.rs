@@ -63,8 +63,6 @@ struct Wanted {
 pub(super) struct Work {
     wanted: Vec<Wanted>,
     groups: Islands,
-    /// Whether a cloth was at another level than the full one.
-    is_used: bool,
 }
 
 type Colliders<'w, 's> = Query<'w, 's, (&'static ColliderMotion, Option<&'static ClothLayers>)>;
@@ -81,17 +79,14 @@ pub(super) fn choose_levels(
     mut work: Local<Work>,
 ) {
     let is_asked_for = !own.is_empty() || global.is_some();
-    if !is_asked_for && !work.is_used {
+    // What was at another level comes back to the full one.
+    if !is_asked_for && cloths.iter().all(|cloth| cloth.state.lod.is_full()) {
         return;
     }
     tree.refit();
     let seconds = time.delta_secs();
     let global = global.as_ref().map(|global| &global.0);
-    let Work {
-        wanted,
-        groups,
-        is_used,
-    } = &mut *work;
+    let Work { wanted, groups } = &mut *work;
     wanted.clear();
     for mut cloth in &mut cloths {
         let mut own = cloth.wanted(global, &cameras);
@@ -127,7 +122,6 @@ pub(super) fn choose_levels(
     if wanted.iter().any(is_coarse) {
         group(wanted, groups);
     }
-    *is_used = false;
     for place in 0..wanted.len() {
         let own = wanted[place];
         let of_group = wanted[own.group];
@@ -139,7 +133,6 @@ pub(super) fn choose_levels(
         let lod = &mut cloth.state.lod;
         let turn = (of_group.phase, of_group.is_due, rests);
         lod.begin(of_group.level, turn, seconds);
-        *is_used |= !lod.is_full();
     }
 }
 

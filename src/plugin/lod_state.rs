@@ -93,6 +93,7 @@ impl LodState {
         };
         // While no time passes, it goes on as it is.
         if seconds == 0.0 {
+            self.level = was;
             return;
         }
         let has_stood = self.turn == Turn::Stand;

@@ -127,7 +127,17 @@ fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), C
     cloth.contacts.clear();
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let targets = &around.targets;
-    stand(cloth.entity, targets, &mut cloth.frame, particles, state)?;
+    let attachments = cloth
+        .attachments
+        .map_or(&[][..], ClothAttachments::as_slice);
+    stand(
+        cloth.entity,
+        attachments,
+        targets,
+        &mut cloth.frame,
+        particles,
+        state,
+    )?;
     if cloth.built.skin.is_some() && state.lod.level != ClothLodLevel::Off {
         let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
         let place = |joint| global_transform(&targets.transforms, joint).ok();
@@ -155,11 +165,8 @@ fn prepare(
     let (built, state) = (&mut *cloth.built, &mut *cloth.state);
     if was_written || cloth.scratch.teleports {
         state.stretch = built.solver.measure(&cloth.particles);
-        built.masses = cloth.particles.free_masses();
+        built.weigh(&cloth.particles);
         cloth.stats.stretch = state.stretch;
-        if !built.solver.tethers().matches(&cloth.particles) {
-            built.forget_tethers();
-        }
         state.rest.disturb();
     }
     built.tether(

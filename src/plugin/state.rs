@@ -14,6 +14,7 @@ use super::{
     resting::RestsOn, skin::Pose,
 };
 use crate::{
+    cloth::ClothParticles,
     contact::{Carrier, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
@@ -111,6 +112,24 @@ impl ClothState {
         (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
         (self.written, self.known, self.first_target) = (written, known, first_target);
         (self.resumes, self.excess) = (resumes, excess);
+    }
+
+    /// Whether all that it says of particles can be of these, in what somebody has read from a file.
+    pub(super) fn is_sound(&self, particles: &ClothParticles) -> bool {
+        let len = particles.len();
+        let is_of_all = |count: usize| count == 0 || count == len;
+        let is_attached = |attached: &Attached| {
+            (attached.particle as usize) < len && attached.attachment < self.targets.len()
+        };
+        let blocks = particles.blocks().len();
+        self.rest.is_sound()
+            && is_of_all(self.pose.places.len())
+            && is_of_all(self.pose.normals.len())
+            && self.attached.iter().all(is_attached)
+            && self
+                .carriers
+                .iter()
+                .all(|(_, carrier)| carrier.is_in(blocks))
     }
 
     /// Forgets what it was attached to, what it carried and what pulled at it: the particles are others.

@@ -160,13 +160,20 @@ impl IntegratingItem<'_, '_> {
                 break;
             };
             step.substeps = more;
-            self.particles.copy_from(&self.scratch.backup);
-            self.scratch.detection.restart();
+            self.restart();
             if let Some(mutual) = &mut self.scratch.mutual {
                 mutual.forget();
             }
         }
         self.scratch.limit_inputs = Some(self.limit_inputs(step));
+    }
+
+    /// Goes back to where the tick began.
+    pub(super) fn restart(&mut self) {
+        self.particles.copy_from(&self.scratch.backup);
+        self.scratch.detection.restart();
+        let air = self.state.air.memory;
+        self.built.solver.set_air_memory(air);
     }
 
     /// What the tick's last run of sub-steps asked of the cloth.

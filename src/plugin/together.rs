@@ -83,11 +83,7 @@ pub(super) fn integrate_together(
         };
         substeps = more;
         for member in members.iter_mut().filter(|member| member.step.is_some()) {
-            member
-                .cloth
-                .particles
-                .copy_from(&member.cloth.scratch.backup);
-            member.cloth.scratch.detection.restart();
+            member.cloth.restart();
         }
         island.contact.forget();
     }

@@ -82,8 +82,8 @@ mod tether;
 mod threads;
 mod twist;
 
-pub(crate) use air::AirMemory;
 pub use air::{Air, ClothPressure};
+pub(crate) use air::{AirMemory, FILLING};
 pub use bending::Bending;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;

@@ -42,6 +42,11 @@ pub struct Rest {
 }
 
 impl Rest {
+    /// Whether what somebody has read from a file can be.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.origin.is_sound()
+    }
+
     /// Takes what a tick of this many seconds ended with, of a cloth that measures `diagonal` (m) at rest, under an
     /// `acceleration` (m/s²), which lies on cloth or not.
     pub fn observe(

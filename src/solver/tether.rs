@@ -223,14 +223,6 @@ impl Tethers {
         self.layers.is_empty()
     }
 
-    /// Whether the same particles are pinned as when the tethers were made.
-    pub(crate) fn matches(&self, particles: &ClothParticles) -> bool {
-        let slots = particles.layout().slots();
-        let pinned =
-            slots.filter(|slot| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0);
-        pinned.eq(self.pins.iter().copied())
-    }
-
     /// How far the farthest particle is beyond its tether, as a part of it.
     #[cfg(test)]
     pub(super) fn largest_excess(&self, particles: &ClothParticles) -> f32 {

@@ -200,3 +200,38 @@ fn a_platform_carries_what_lies_on_it() {
     let carried = at(&app) - before;
     assert!((carried - 1.0).abs() < 0.01, "{carried} m");
 }
+
+/// Pins that the game frees by hand hold nothing any more: what falls is damped against itself, with tethers and without.
+#[test]
+fn what_is_freed_by_hand_falls_freely() {
+    for tethers in [false, true] {
+        let mut app = app();
+        let material = ClothMaterial {
+            damping: 0.02,
+            ..default()
+        };
+        let settings = ClothSettings {
+            tethers,
+            ..default()
+        };
+        let bundle = (Cloth::new(9, 9, 0.1), material, settings);
+        let cloth = app.world_mut().spawn(bundle).id();
+        tick(&mut app, 4);
+        change::<ClothParticles>(&mut app, cloth, |particles| {
+            let free = particles.inverse_mass(40).expect("a particle");
+            for index in 0..particles.len() {
+                if particles.inverse_mass(index) == Some(0.0) {
+                    particles.set_inverse_mass(index, free).expect("a mass");
+                }
+            }
+        });
+        tick(&mut app, 1);
+        let from = velocity_of_centre(&app, cloth);
+        tick(&mut app, 32);
+        let fallen = velocity_of_centre(&app, cloth) - from;
+        let truth = -32.0 * TICK * GRAVITY;
+        // Rounding: see above.
+        let error = (fallen.y / truth - 1.0).abs();
+        assert!(error < 1.0e-3, "{fallen} {truth}, {tethers}");
+    }
+}

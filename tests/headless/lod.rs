@@ -471,3 +471,72 @@ fn runs_are_alike() {
     };
     assert_eq!(run(), run());
 }
+
+/// What stands still stays where it is when what carries it goes, with a fault; what is taken off first stays without one, and falls
+/// once it moves.
+#[test]
+fn what_stands_still_stays_where_its_target_goes() {
+    for is_taken_off in [false, true] {
+        let mut app = app();
+        let pole = app
+            .world_mut()
+            .spawn(Transform::from_xyz(3.0, 2.0, 1.0))
+            .id();
+        let attached = ClothAttachments::new([(Pin::Row(0), pole)]);
+        let cloth = (Cloth::new(9, 9, 0.1), Pins::none(), attached);
+        let cloth = app.world_mut().spawn(cloth).id();
+        tick(&mut app, 4);
+        set(&mut app, cloth, Frozen);
+        tick(&mut app, 4);
+        change::<Transform>(&mut app, pole, |place| place.translation.x += 5.0);
+        tick(&mut app, 1);
+        let was = in_world(&app, cloth);
+        if is_taken_off {
+            app.world_mut()
+                .entity_mut(cloth)
+                .remove::<ClothAttachments>();
+        }
+        app.world_mut().despawn(pole);
+        tick(&mut app, 4);
+        assert_eq!(in_world(&app, cloth), was);
+        let fault = app.world().get::<ClothFault>(cloth);
+        let is_named = fault.is_some_and(|fault| fault.error.to_string().contains("Row(0)"));
+        assert_eq!(is_named, !is_taken_off, "{fault:?}");
+        app.world_mut()
+            .entity_mut(cloth)
+            .remove::<ClothAttachments>();
+        set(&mut app, cloth, Full);
+        tick(&mut app, 4);
+        assert!(app.world().get::<ClothFault>(cloth).is_none());
+        let fallen = farthest(&in_world(&app, cloth), &was);
+        // By ½ g t² in four ticks, of which the first may begin a sub-step late.
+        let free = 0.5 * GRAVITY * (4.0 * TICK).powi(2);
+        let is_free = (fallen / free - 1.0).abs() < 0.3;
+        assert!(is_free, "{fallen} {free}, {is_taken_off}");
+    }
+}
+
+/// A level that changes while no time passes counts from the next tick on.
+#[test]
+fn a_level_may_change_while_time_stands_still() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(sheet(8)).id();
+    tick(&mut app, 3);
+    app.world_mut().resource_mut::<Time<Virtual>>().pause();
+    set(&mut app, cloth, Every(4));
+    app.update();
+    // Of a schedule that runs without time.
+    let clock = *app.world().resource::<Time>();
+    app.insert_resource(Time::<()>::default());
+    app.world_mut().run_schedule(FixedUpdate);
+    app.insert_resource(clock);
+    app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+    let mut moves = Vec::new();
+    for _ in 0..9 {
+        app.update();
+        moves.push(stats(&app, cloth).substeps > 0);
+    }
+    let count = moves.iter().filter(|moves| **moves).count();
+    assert!((2..=4).contains(&count), "{moves:?}");
+    assert_eq!(stats(&app, cloth).level, Every(4));
+}

@@ -302,3 +302,64 @@ fn gas_has_an_amount() {
     let stats = app.world().get::<ClothStats>(cloth).expect("figures");
     assert!((stats.enclosed_volume - 0.03).abs() < 1.0e-3, "{stats:?}");
 }
+
+/// The least eddies, the fastest wind and the longest time are no fault and make nothing that is not finite.
+#[test]
+fn the_wildest_turbulence_is_finite() {
+    for (velocity, turbulence, length) in [
+        (Vec3::X * 5.0, 0.5, 1.0e-6),
+        (Vec3::splat(1.0e6), 1.0e6, 1.0e-6),
+        (Vec3::new(-1.0e6, 3.0, 0.0), 0.2, 1.0e12),
+    ] {
+        let mut app = app();
+        let wind = ClothWind {
+            turbulence,
+            turbulence_length: length,
+            gusts: turbulence,
+            gust_period: length,
+            ..ClothWind::new(velocity)
+        };
+        app.insert_resource(wind);
+        let far = Transform::from_xyz(4.0e5, -3.0, 1.0e5);
+        let cloth = app.world_mut().spawn((Cloth::new(9, 9, 0.1), far)).id();
+        for _ in 0..40 {
+            tick(&mut app, 1);
+            let fault = app.world().get::<ClothFault>(cloth);
+            assert!(fault.is_none(), "{wind:?}: {fault:?}");
+            let speed = particles(&app, cloth).largest_speed();
+            assert!(speed < 1.0e7, "{wind:?}: {speed} m/s");
+        }
+    }
+}
+
+/// A tolerance that does a tick again lets gas begin it as it began the first time: the same as with that many sub-steps at once.
+#[test]
+fn what_is_done_again_begins_with_the_same_gas() {
+    let run = |substepping: Substepping| {
+        let mut app = app_that_draws(FixedUpdate);
+        let ball = Sphere::new(0.2).mesh().ico(3).expect("few");
+        let ball = app.world_mut().resource_mut::<Assets<Mesh>>().add(ball);
+        let cloth = (
+            Cloth::mesh(),
+            Mesh3d(ball),
+            Pins::none(),
+            ClothPressure::gas(0.04),
+        );
+        let settings = ClothSettings {
+            substepping: Substepping::Fixed(8),
+            ..default()
+        };
+        let cloth = app.world_mut().spawn((cloth, settings)).id();
+        tick(&mut app, 8);
+        change::<ClothSettings>(&mut app, cloth, |known| known.substepping = substepping);
+        tick(&mut app, 1);
+        (particles(&app, cloth).clone(), stats(&app, cloth).substeps)
+    };
+    let (again, all) = run(Substepping::Adaptive {
+        stretch: 1.0e-6,
+        max_substeps: 64,
+    });
+    let (once, last) = run(Substepping::Fixed(32));
+    assert_eq!((all, last), (8 + 16 + 32, 32));
+    assert!(again == once, "others than in one go");
+}

@@ -169,7 +169,7 @@ impl Drawn<'_> {
             carriers.weights.own.clear();
             carriers.weights.made_for = None;
             is_corrected = true;
-        } else if self.built.pinned > 0 {
+        } else if !self.built.pinned.is_empty() {
             for index in 0..=self.state.attachments.len() {
                 if let Some(correction) = self.correction(carriers, index) {
                     if !is_corrected {

@@ -97,7 +97,7 @@ pub(super) fn prepare_step(
         substeps: state.control.substeps(settings.substepping, needed),
         acceleration,
         damping: material.damping,
-        damped_against: carrier(&scratch.pins, built.pinned, seconds),
+        damped_against: carrier(&scratch.pins, built.pinned.len(), seconds),
         order: settings.order,
         material_stretch: built.material_stretch,
     });

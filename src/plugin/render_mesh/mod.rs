@@ -74,6 +74,16 @@ struct RenderMeshState {
     driven: Driven,
 }
 
+/// What could not be bound, and why: looked at again once something is another.
+#[derive(Component, Debug)]
+struct RefusedMesh {
+    source: AssetId<Mesh>,
+    surface: Arc<Surface>,
+    /// Where the mesh and the cloth are.
+    places: [GlobalTransform; 2],
+    error: ClothError,
+}
+
 /// Draws each [`ClothRenderMesh`] where its cloth takes it, once a rendered frame. Does nothing in an app without meshes. It is
 /// for a [`ClothMeshPlugin`](super::ClothMeshPlugin).
 #[derive(Debug, Default, Clone, Copy)]
@@ -105,6 +115,7 @@ struct Binding {
     mesh: Option<&'static Mesh3d>,
     place: Option<&'static GlobalTransform>,
     state: Option<&'static RenderMeshState>,
+    refused: Option<&'static RefusedMesh>,
     fault: Option<&'static ClothFault>,
 }
 
@@ -159,6 +170,7 @@ fn bind(
                     each.bind(
                         &driving,
                         surface,
+                        &changed,
                         &mut meshes,
                         server.as_deref(),
                         &mut commands,
@@ -184,6 +196,7 @@ impl BindingItem<'_, '_> {
         &self,
         driving: &DrivingItem,
         surface: Arc<Surface>,
+        changed: &[AssetId<Mesh>],
         meshes: &mut Assets<Mesh>,
         server: Option<&AssetServer>,
         commands: &mut Commands,
@@ -206,7 +219,29 @@ impl BindingItem<'_, '_> {
         };
         let place = self.place.copied().unwrap_or_default();
         let cloth = driving.place.copied().unwrap_or_default();
-        let (copy, driven) = Driven::new(asset, &surface, &place, &cloth)?;
+        let places = [place, cloth];
+        // What was refused would be again: a mesh takes milliseconds to bind.
+        if let Some(refused) = self.refused
+            && refused.source == source.id()
+            && Arc::ptr_eq(&refused.surface, &surface)
+            && refused.places == places
+            && !changed.contains(&source.id())
+        {
+            return Err(refused.error.clone());
+        }
+        let mut entity = commands.entity(self.entity);
+        let (copy, driven) = match Driven::new(asset, &surface, &place, &cloth) {
+            Ok(new) => new,
+            Err(error) => {
+                entity.try_insert(RefusedMesh {
+                    source: source.id(),
+                    surface,
+                    places,
+                    error: error.clone(),
+                });
+                return Err(error);
+            }
+        };
         let handle = meshes.add(copy);
         let state = RenderMeshState {
             cloth: self.wanted.cloth,
@@ -215,9 +250,8 @@ impl BindingItem<'_, '_> {
             surface,
             driven,
         };
-        commands
-            .entity(self.entity)
-            .try_insert((Mesh3d(handle), state));
+        entity.try_insert((Mesh3d(handle), state));
+        entity.try_remove::<RefusedMesh>();
         Ok(())
     }
 }
@@ -270,6 +304,7 @@ fn remove_render_mesh(
         }
         entity.try_remove::<RenderMeshState>();
     }
+    commands.entity(removed.entity).try_remove::<RefusedMesh>();
     let known = faults.get(removed.entity).ok();
     let part = Part::RenderMesh;
     ClothFault::report(&mut commands, removed.entity, known, part, Ok(()));

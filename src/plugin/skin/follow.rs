@@ -175,6 +175,10 @@ pub(crate) fn move_with_pose(
         from.copy_from(to);
     } else {
         from.transform(new_from_old);
+        // A backstop that has just come: nobody asked for normals before.
+        if from.normals.len() != to.normals.len() {
+            from.normals.clone_from(&to.normals);
+        }
     }
     let (constraints, motions) = (&mut scratch.constraints, &mut scratch.pins);
     follow_pose([from, to], jumps, particles, built, constraints, motions);

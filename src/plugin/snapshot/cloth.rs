@@ -118,6 +118,9 @@ impl ClothSnapshot {
                 expected: Self::VERSION,
             });
         }
+        if !(self.particles.is_sound() && self.state.is_sound(&self.particles)) {
+            return Err(SnapshotError::Damaged { entity: cloth });
+        }
         let is_known =
             world.get::<Cloth>(cloth).is_some() && world.get::<ClothState>(cloth).is_some();
         if is_known {
@@ -136,7 +139,12 @@ impl ClothSnapshot {
         self.check(world, cloth)?;
         let mut entity = world.entity_mut(cloth);
         let wanted = entity.get::<ClothAttachments>().cloned();
+        let last_written = entity.get::<ClothState>().and_then(|state| state.written);
+        let mut weighs_the_same = false;
         if let Some(mut particles) = entity.get_mut::<ClothParticles>() {
+            // What the game has written was not weighed yet.
+            let is_weighed = last_written == Some(particles.last_changed());
+            weighs_the_same = is_weighed && particles.weigh_as(&self.particles);
             particles.copy_from(&self.particles);
         }
         let written = entity
@@ -152,8 +160,8 @@ impl ClothSnapshot {
             state.copy_from(&self.state);
             state.written = written.filter(|_| !self.is_written);
             // What was attached is not written in files: it is what the game says.
-            if state.attachments.is_empty() && !state.targets.is_empty() {
-                let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
+            let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
+            if state.attachments.is_empty() && state.targets.len() == wanted.len() {
                 state.attachments.extend_from_slice(wanted);
             }
             state.resumes = true;
@@ -165,11 +173,8 @@ impl ClothSnapshot {
             scratch.forget_tick();
             scratch.mutual.clone_from(&self.mutual);
         }
-        if let Some(mut built) = entity.get_mut::<ClothBuilt>() {
-            built.masses = self.particles.free_masses();
-            if !built.solver.tethers().matches(&self.particles) {
-                built.forget_tethers();
-            }
+        if !weighs_the_same && let Some(mut built) = entity.get_mut::<ClothBuilt>() {
+            built.weigh(&self.particles);
         }
         Ok(())
     }

@@ -21,6 +21,12 @@ pub enum SnapshotError {
         /// What it had.
         component: &'static str,
     },
+    /// What a file says of a cloth can't be, as its lists are of different lengths.
+    #[error("the snapshot of {entity} is damaged: its lists do not fit each other")]
+    Damaged {
+        /// The cloth.
+        entity: Entity,
+    },
     /// The snapshot was written by another version of the crate.
     #[error("the snapshot is of version {found}, and this is version {expected}")]
     Version {

@@ -17,7 +17,7 @@ use super::{
         colliders::{ColliderMemory, ColliderMotion},
         inertia::RootMotion,
         islands::{Island, Islands},
-        wind::WindField,
+        wind::{ClothWindZone, WindField},
     },
     ClothSnapshot, SnapshotError,
 };
@@ -82,13 +82,19 @@ impl ClothWorldSnapshot {
     /// Becomes that of a world as it is, in the memory that it has.
     pub fn take(&mut self, world: &mut World) {
         let mut cloths = world.query_filtered::<Entity, (With<Cloth>, With<ClothState>)>();
-        let mut spare = std::mem::take(&mut self.cloths);
+        let mut taken = 0;
         for cloth in cloths.iter(world) {
-            let mut snapshot = spare.pop().map(|(_, spare)| spare).unwrap_or_default();
+            // Mostly the same one's as before, of as many particles.
+            if taken == self.cloths.len() {
+                self.cloths.push((cloth, ClothSnapshot::default()));
+            }
+            let (entity, snapshot) = &mut self.cloths[taken];
             if snapshot.take(world, cloth).is_ok() {
-                self.cloths.push((cloth, snapshot));
+                *entity = cloth;
+                taken += 1;
             }
         }
+        self.cloths.truncate(taken);
         let mut colliders = world.query::<(Entity, &ColliderMotion)>();
         let colliders = colliders.iter(world);
         self.colliders.clear();
@@ -107,16 +113,19 @@ impl ClothWorldSnapshot {
         );
         let field = world.get_resource::<WindField>();
         self.wind = field.map_or_else(Default::default, WindField::memory);
-        self.take_transforms(world);
+        let mut zones = world.query_filtered::<Entity, With<ClothWindZone>>();
+        let zones: Vec<Entity> = zones.iter(world).collect();
+        self.take_transforms(world, &zones);
     }
 
-    /// Takes where all of them are, what carries them, and what is above them.
-    fn take_transforms(&mut self, world: &World) {
+    /// Takes where all of them and these zones of wind are, what carries them, and what is above them.
+    fn take_transforms(&mut self, world: &World, zones: &[Entity]) {
         let mut known = EntityHashSet::default();
         self.transforms.clear();
         let own = (self.cloths.iter().map(|(entity, _)| *entity))
             .chain(self.colliders.iter().map(|(entity, _)| *entity))
-            .chain(self.roots.iter().map(|(entity, _)| *entity));
+            .chain(self.roots.iter().map(|(entity, _)| *entity))
+            .chain(zones.iter().copied());
         let own: Vec<Entity> = own.collect();
         for entity in own {
             let state = world.get::<ClothState>(entity);

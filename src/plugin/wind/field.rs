@@ -13,6 +13,12 @@ use crate::cloth::ClothError;
 /// Far apart in the noise, so that what it says along the axes has nothing to do with each other.
 const APART: [f64; 3] = [0.0, 1013.7, 2027.3];
 
+/// The noise begins again after so much of it, as its cells are counted in 32 bits: with eddies of 1 m in 10 m/s after 20 months.
+const NOISE: f64 = (1_u32 << 29) as f64;
+
+/// The fastest that air is, gusts and eddies included (m/s).
+const FASTEST: f32 = 1.0e6;
+
 /// The world's wind in the tick, and its zones.
 #[derive(Resource, Default)]
 pub(in crate::plugin) struct WindField {
@@ -79,12 +85,13 @@ impl WindField {
     fn blow(&mut self, wind: &ClothWind, time: &Time) -> World {
         let mut velocity = wind.velocity;
         if wind.gusts > 0.0 {
-            let along = self.seconds / f64::from(wind.gust_period);
+            let along = (self.seconds / f64::from(wind.gust_period)).rem_euclid(NOISE);
             let noise = self.noise(wind.seed);
             velocity *= 1.0 + wind.gusts * noise.get_noise_2d(along, APART[1]);
+            velocity = velocity.clamp_length_max(FASTEST);
         }
         self.way += velocity.as_dvec3() * time.delta_secs_f64();
-        let stray = wind.turbulence * velocity.length();
+        let stray = (wind.turbulence * velocity.length()).min(FASTEST);
         if stray > 0.0 {
             self.noise(wind.seed);
         }
@@ -157,6 +164,7 @@ impl WindField {
             return Vec3::ZERO;
         }
         let at = (place.as_dvec3() - self.way) / f64::from(world.length);
+        let at = at.rem_euclid(DVec3::splat(NOISE));
         let of = |apart: f64| noise.get_noise_3d(at.x + apart, at.y, at.z);
         breeze.stray * Vec3::from(APART.map(of))
     }

@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// How fast gas moves a face outwards at most (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
-const FILLING: f64 = 10.0;
+pub(crate) const FILLING: f32 = 10.0;
 
 /// An amount of gas, and what it is in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,7 +69,8 @@ impl Gas {
         }
         let give = give * weight;
         // Nothing that it could move, or what is not finite and a fault.
-        if !(give > 0.0 && give.is_finite() && swept.is_finite()) {
+        let known = enclosed.volume + self.expected + self.push;
+        if !(give > 0.0 && (give + swept + known).is_finite()) {
             *self = Self::default();
             return DVec3::ZERO;
         }
@@ -80,7 +81,7 @@ impl Gas {
             (self.expected - enclosed.volume).clamp(-most, most)
         };
         let without = enclosed.volume + enclosed.outwards * swept;
-        let widest = enclosed.volume + enclosed.area * FILLING * seconds;
+        let widest = enclosed.volume + enclosed.area * f64::from(FILLING) * seconds;
         self.pressure = amount.pressure(without - taken, give, widest);
         self.push = self.pressure * give;
         self.expected = without + self.push;

@@ -37,6 +37,7 @@ mod wind;
 
 use bevy::math::{DVec3, Vec3};
 
+pub(crate) use self::gas::FILLING;
 pub use self::pressure::ClothPressure;
 use self::{
     areas::{Enclosed, Triangles},

@@ -163,7 +163,8 @@ impl Lattice {
         let (mut from, mut part) = ([0; 3], [0.0; 3]);
         for axis in 0..3 {
             from[axis] = (along[axis] as usize).min(self.cells[axis] - 1);
-            part[axis] = along[axis] - from[axis] as f32;
+            // What has moved out of the lattice since has the wind of its border.
+            part[axis] = (along[axis] - from[axis] as f32).clamp(0.0, 1.0);
         }
         let index = (from[0] * (y + 1) + from[1]) * (z + 1) + from[2];
         let edge = |at: usize| knots[at].lerp(knots[at + 1], part[2]);

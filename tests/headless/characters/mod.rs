@@ -6,5 +6,5 @@ mod errors;
 mod file;
 mod inertia;
 mod pose;
-mod rig;
+pub mod rig;
 mod teleports;

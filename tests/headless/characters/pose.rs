@@ -173,6 +173,39 @@ fn nothing_gets_behind_the_backstop() {
     assert!(on_it > 500, "{on_it}");
 }
 
+/// A backstop that comes while the cloth moves, goes and comes again holds from the tick in which it comes; put back to before
+/// that, the cloth does the same again.
+#[test]
+fn a_backstop_comes_and_goes() {
+    let within = || ClothSkin::within(ClothPaint::at_rest(|place| place.z));
+    let (mut app, rig) = animated(within());
+    let run = |app: &mut App| {
+        let mut behind = 0.0_f32;
+        for round in 0..3 {
+            let skin = within().with_backstop(0.02, 0.4);
+            app.world_mut().entity_mut(rig.cloth).insert(skin);
+            go(app, &rig, 20 * round..20 * round + 10, |app| {
+                assert_eq!(fault(app, rig.cloth), None);
+                let places = simulated(app, rig.cloth).into_iter();
+                let off = places
+                    .zip(skinned(app, &rig))
+                    .map(|(at, pose)| at.distance(pose));
+                behind = off.fold(behind, f32::max);
+            });
+            app.world_mut().entity_mut(rig.cloth).insert(within());
+            go(app, &rig, 20 * round + 10..20 * round + 20, |app| {
+                assert_eq!(fault(app, rig.cloth), None);
+            });
+        }
+        assert!(behind <= 0.8 + ROUNDING, "{behind} m");
+        particles(app, rig.cloth).clone()
+    };
+    let saved = ClothWorldSnapshot::of(app.world_mut());
+    let once = run(&mut app);
+    saved.restore(app.world_mut()).expect("the same world");
+    assert!(once == run(&mut app), "others than the first time");
+}
+
 /// Pins follow the pose, whatever the max distance says.
 #[test]
 fn pins_follow_the_pose() {

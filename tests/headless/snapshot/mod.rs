@@ -1,153 +1,13 @@
 //! Snapshots: what is put back goes on to the last bit, in the same app and in a new one.
 
+mod scene;
+mod threads;
+
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
-use crate::{
-    meshes::sheets::{sheet, sheet_asset},
-    support::*,
-};
-
-/// The game's clock: which tick comes next.
-#[derive(Resource, Default, Clone, Copy)]
-struct Clock(u32);
-
-/// What the game moves: by where it is in each tick.
-#[derive(Component, Clone, Copy)]
-struct Moves(fn(f32) -> Transform);
-
-const SECONDS: f32 = TICK;
-
-fn animate(
-    mut moving: Query<(Entity, &Moves, &mut Transform)>,
-    mut clock: ResMut<Clock>,
-    mut commands: Commands,
-    mut materials: Query<(&Name, &mut ClothMaterial)>,
-) {
-    let seconds = clock.0 as f32 * SECONDS;
-    for (entity, moves, mut place) in &mut moving {
-        let to = (moves.0)(seconds);
-        // A way of metres in a tick is a teleport.
-        if to.translation.distance(place.translation) > 1.0 && clock.0 > 0 {
-            commands.entity(entity).insert(ClothTeleport);
-        }
-        place.set_if_neq(to);
-    }
-    for (name, mut material) in &mut materials {
-        if name.as_str() == "animated" {
-            material.friction = 0.2 + 0.1 * (clock.0 % 5) as f32;
-        }
-    }
-    clock.0 += 1;
-}
-
-/// Where what passes once is, at a speed along z.
-fn once(at: Vec3, velocity: Vec3, seconds: f32) -> Transform {
-    Transform::from_translation(at + velocity * seconds.clamp(0.5, 3.0))
-}
-
-/// An app with cloths of every kind: swinging, asleep on a ball and woken, attached, holding a tolerance, teleported, in layers, on a
-/// body, in gusts, below a root that carries it, at a lower rate. The same entities each time.
-fn everything() -> (App, Vec<Entity>) {
-    let mut app = app_that_draws(FixedUpdate);
-    app.init_resource::<Clock>()
-        .add_systems(FixedUpdate, animate.before(ClothSystems::Prepare))
-        .insert_resource(ClothWind {
-            gusts: 0.5,
-            turbulence: 0.3,
-            ..ClothWind::new(Vec3::new(0.4, 0.0, 0.8))
-        });
-    let mesh = app
-        .world_mut()
-        .resource_mut::<Assets<Mesh>>()
-        .add(sheet_asset(9, 8));
-    let (positions, triangles) = sheet(8, 8);
-    let at = Transform::from_xyz;
-    let still = ClothAir {
-        velocity: Some(Vec3::ZERO),
-        drag: 0.0,
-        lift: 0.0,
-    };
-    let edge = || Pins::new([Pin::at_rest(|place| place.z < 0.01)]);
-    let world = app.world_mut();
-    let mut cloths = Vec::new();
-    let ball = |radius| ClothCollider::ball(radius);
-    // Passed by a ball.
-    let passed = (Cloth::default(), Name::new("animated"));
-    cloths.push(world.spawn((passed, at(0.0, 0.0, 0.0))).id());
-    let passing = Moves(|t| once(Vec3::new(0.75, -1.0, -3.0), Vec3::Z * 2.2, t));
-    world.spawn((ball(0.4), at(0.0, 0.0, 0.0), passing));
-    // Falls asleep on a ball, which goes away later.
-    let corners = Pins::new([
-        Pin::Corner(Corner::TopLeft),
-        Pin::Corner(Corner::BottomRight),
-    ]);
-    let damped = ClothMaterial {
-        damping: 0.05,
-        ..default()
-    };
-    let sleeper = (Cloth::new(9, 9, 0.1).lying().centred(), corners, damped);
-    cloths.push(world.spawn((sleeper, still, at(10.0, 0.0, 0.0))).id());
-    let woken = Moves(|t| Transform::from_xyz(10.0 + 0.3 * (t - 8.0).max(0.0), -0.35, 0.0));
-    world.spawn((ball(0.3), at(10.0, -0.35, 0.0), woken));
-    // Attached, to a pole that is found by its name and to an entity.
-    let swings = Moves(|t| Transform::from_xyz(20.0 + 0.2 * (2.0 * t).sin(), 0.3 * t.sin(), 0.0));
-    let pole = (at(20.0, 0.0, 0.0), swings, Name::new("pole"));
-    let pole = world.spawn(pole).id();
-    let pin = Pin::at_rest(|place| place.x < 0.01);
-    let by_name = ClothAttachments::new([(pin, "pole")]);
-    let attached = (Cloth::mesh(), Mesh3d(mesh), by_name, at(20.0, 0.0, 0.0));
-    cloths.push(world.spawn(attached).id());
-    let by_entity = ClothAttachments::new([(Pin::Column(0), pole)]);
-    let attached = (Cloth::new(7, 7, 0.1), Pins::none(), by_entity);
-    cloths.push(world.spawn((attached, at(21.0, 0.0, 0.0))).id());
-    // Holds a tolerance, on a ball; changes its sub-steps as the ball moves.
-    let triangles = Cloth::triangles(positions, triangles);
-    let exact = (triangles, edge(), ClothSettings::tolerance(0.02));
-    cloths.push(world.spawn((exact, at(30.0, 0.0, 0.0))).id());
-    let stirs = Moves(|t| Transform::from_xyz(30.3, -0.4 + 0.1 * (3.0 * t).sin(), 0.3));
-    world.spawn((ball(0.15), at(30.3, -0.4, 0.3), stirs));
-    // Teleported each second and a half.
-    let jumps = Moves(|t| Transform::from_xyz(40.0 + 5.0 * (t / 1.5).floor(), 0.1 * t.sin(), 0.0));
-    let jumping = (Cloth::new(7, 9, 0.1), jumps, at(40.0, 0.0, 0.0));
-    cloths.push(world.spawn(jumping).id());
-    // Layers that fall on each other and on a box.
-    for height in [0.3, 0.36, 0.45] {
-        let layer = (
-            Cloth::new(10, 10, 0.06).lying().centred(),
-            Pins::none(),
-            ClothSelfCollision::default(),
-        );
-        cloths.push(world.spawn((layer, still, at(80.0, height, 0.0))).id());
-    }
-    world.spawn((ClothCollider::cuboid(0.2, 0.1, 0.2), at(80.0, 0.1, 0.0)));
-    // Folds onto itself.
-    let folding = (Cloth::new(12, 12, 0.05), ClothSelfCollision::default());
-    cloths.push(world.spawn((folding, at(90.0, 0.0, 0.0))).id());
-    // Carries a body that the game presses into it.
-    let border = |row: u32, column: u32| row.is_multiple_of(9) || column.is_multiple_of(9);
-    let trampoline = (
-        Cloth::new(10, 10, 0.1).lying().centred(),
-        Pins::filter(border),
-    );
-    cloths.push(world.spawn((trampoline, still, at(100.0, 0.0, 0.0))).id());
-    let presses = Moves(|t| Transform::from_xyz(100.0, 0.15 - 0.02 * (4.0 * t).sin(), 0.0));
-    let body = (ball(0.15), ClothBody::new(0.5, Vec3::splat(0.004)), presses);
-    world.spawn((body, at(100.0, 0.15, 0.0)));
-    // Falls freely in the gusts.
-    let free = (Cloth::new(9, 9, 0.1).lying(), Pins::none());
-    cloths.push(world.spawn((free, at(110.0, 0.0, 0.0))).id());
-    // Below a root that carries it by a part.
-    let runs = Moves(|t| Transform::from_xyz(120.0 + 2.0 * t.sin(), 0.2 * t.cos(), 0.0));
-    let root = (at(120.0, 0.0, 0.0), runs, ClothInertia::share(0.3));
-    let root = world.spawn(root).id();
-    let cape = (Cloth::new(8, 8, 0.1), ChildOf(root), at(0.0, 1.0, 0.0));
-    cloths.push(world.spawn(cape).id());
-    // At a lower rate.
-    let lod = (Cloth::new(8, 8, 0.1), ClothLod::at(ClothLodLevel::Every(3)));
-    cloths.push(world.spawn((lod, at(130.0, 0.0, 0.0))).id());
-    (app, cloths)
-}
+use self::scene::{Clock, everything};
+use crate::support::*;
 
 /// All that is seen of a tick: particles and contacts of each cloth, bit by bit, and which touches began and ended.
 #[derive(PartialEq, Clone)]
@@ -312,6 +172,11 @@ fn what_is_wrong_with_a_snapshot_is_said() {
             expected: 1
         }
     );
+    let none = text.replacen("particle:", "particle:9", 1);
+    assert!(none != text, "one is attached");
+    let none: ClothWorldSnapshot = ron::from_str(&none).expect("it can be read");
+    let error = none.restore(app.world_mut()).expect_err("no such particle");
+    assert!(matches!(error, SnapshotError::Damaged { entity } if cloths.contains(&entity)));
     let collider = (app
         .world_mut()
         .query_filtered::<Entity, With<ClothCollider>>())
@@ -331,4 +196,63 @@ fn what_is_wrong_with_a_snapshot_is_said() {
     for (cloth, before) in cloths.iter().zip(before) {
         assert!(*particles(&app, *cloth) == before);
     }
+}
+
+/// What is attached to more than the game says by now is held by what it says, and by nothing else.
+#[test]
+fn a_file_may_know_of_other_attachments() {
+    let pole = |app: &mut App, x| app.world_mut().spawn(Transform::from_xyz(x, 0.0, 0.0)).id();
+    let run = |corners: &[Corner], saved: Option<&str>| {
+        let mut app = app();
+        let poles = [pole(&mut app, 0.0), pole(&mut app, 0.8)];
+        let all = corners.iter().zip(poles);
+        let all = all.map(|(corner, pole)| (Pin::Corner(*corner), pole));
+        let attached = (Pins::none(), ClothAttachments::new(all));
+        let cloth = app
+            .world_mut()
+            .spawn((Cloth::new(9, 9, 0.1), attached))
+            .id();
+        if let Some(saved) = saved {
+            let saved: ClothSnapshot = ron::from_str(saved).expect("it can be read");
+            saved.restore(app.world_mut(), cloth).expect("the cloth");
+        }
+        tick(&mut app, 20);
+        let pinned = particles(&app, cloth)
+            .inverse_masses()
+            .filter(|w| *w == 0.0)
+            .count();
+        let saved = ClothSnapshot::of(app.world(), cloth).expect("a cloth");
+        assert!(app.world().get::<ClothFault>(cloth).is_none());
+        (pinned, ron::to_string(&saved).expect("it can be written"))
+    };
+    let corners = [Corner::TopLeft, Corner::TopRight];
+    let (pinned, saved) = run(&corners, None);
+    assert_eq!(pinned, 2);
+    for now in [&corners[..], &corners[1..], &[]] {
+        let (pinned, _) = run(now, Some(&saved));
+        assert_eq!(pinned, now.len());
+    }
+}
+
+/// What was at a lower level goes on at the full one where nobody asks for levels.
+#[test]
+fn what_stood_still_moves_in_an_app_without_levels() {
+    let mut frozen = app();
+    let lod = ClothLod::at(ClothLodLevel::Frozen);
+    let free = || (Cloth::new(9, 9, 0.1), Pins::none());
+    let cloth = frozen.world_mut().spawn((free(), lod)).id();
+    tick(&mut frozen, 8);
+    let saved = ClothSnapshot::of(frozen.world(), cloth).expect("a cloth");
+    let mut app = app();
+    let cloth = app.world_mut().spawn(free()).id();
+    saved.restore(app.world_mut(), cloth).expect("the cloth");
+    tick(&mut app, 3);
+    assert_eq!(stats(&app, cloth).level, ClothLodLevel::Full);
+    let fault = app.world().get::<ClothFault>(cloth);
+    let speed = particles(&app, cloth).largest_speed();
+    assert!(
+        speed > 0.1,
+        "{speed} m/s, {fault:?}, {:?}",
+        stats(&app, cloth)
+    );
 }
