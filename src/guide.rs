@@ -6,7 +6,8 @@
 //! 4. [Wind](wind): the air of the world, of a place, and of one cloth; pressure.
 //! 5. [Tuning](tuning): what stretches, what swings, what costs.
 //! 6. [When it fails](when_it_fails): faults, limits, and what to do about each.
-//! 7. [Migrating from `bevy_silk`](migrating_from_bevy_silk): its names, and ours.
+//! 7. [Saving](saving): snapshots, rollback, worlds whose origin jumps.
+//! 8. [Migrating from `bevy_silk`](migrating_from_bevy_silk): its names, and ours.
 
 #[doc = include_str!("guide/first_cloth.md")]
 pub mod first_cloth {}
@@ -25,6 +26,9 @@ pub mod tuning {}
 
 #[doc = include_str!("guide/when_it_fails.md")]
 pub mod when_it_fails {}
+
+#[doc = include_str!("guide/saving.md")]
+pub mod saving {}
 
 #[doc = include_str!("guide/migrating_from_bevy_silk.md")]
 pub mod migrating_from_bevy_silk {}

@@ -64,7 +64,7 @@ pub mod prelude {
         ClothLimitExceeded, ClothLod, ClothLodLevel, ClothPush, ClothSnapshot, ClothStats,
         ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
         ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
-        SnapshotError,
+        SnapshotError, shift_cloths,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

@@ -1,9 +1,10 @@
 //! The air of a cloth in a tick.
 
-use bevy::math::Vec3;
+use bevy::{ecs::entity::Entity, math::Vec3};
 
 use super::{
     ClothFrame,
+    frame::Shift,
     wind::{Breeze, PlacedZone, WindField},
 };
 use crate::{
@@ -65,6 +66,13 @@ impl KnownAir {
         }
         self.breeze = breeze.filter(|breeze| breeze.is_everywhere || !self.zones.is_empty());
         self.pressure = pressure;
+    }
+
+    /// Has been shifted with the world's origin; `placed` says where a zone is now.
+    pub fn shift(&mut self, shift: Shift, placed: impl Fn(Entity) -> Option<PlacedZone>) {
+        for zone in &mut self.zones {
+            *zone = zone.shifted(shift, placed(zone.entity));
+        }
     }
 
     /// Has a cloth be moved in it.

@@ -8,7 +8,7 @@ use bevy::{
 use super::{
     ClothBody, ClothFrame,
     collider_tree::Bounds,
-    frame::Places,
+    frame::{Places, Shift},
     inertia::Carried,
     source::{ColliderMeshes, Source},
 };
@@ -251,6 +251,11 @@ impl ColliderMotion {
     /// Has its next way begin as that of another time.
     pub fn recall(&mut self, ColliderMemory { last, cloths }: ColliderMemory) {
         (self.last, self.cloths) = (last, cloths);
+    }
+
+    /// Has been shifted with the world's origin, its entity being at `now`.
+    pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>) {
+        self.last = self.last.map(|last| shift.rigid(last, now));
     }
 
     /// Wherever it is when it is looked at next, it has not come from anywhere.

@@ -6,6 +6,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
+use super::frame::Shift;
 use crate::hierarchy::{NodeBounds, TopDownQuery};
 
 /// The bounding volumes of the last tick in which something was near, and what the search through them found. Reflected
@@ -49,6 +50,12 @@ pub(super) struct BroadPhaseBounds {
 }
 
 impl BroadPhaseBounds {
+    /// Has been shifted with the world's origin.
+    pub fn shift(&mut self, shift: Shift) {
+        self.centre += shift.0;
+        self.radius += shift.rounding(self.centre.into());
+    }
+
     /// Leaves the cloth out of the tick.
     pub fn leave_out(&mut self) {
         self.takes_part = false;

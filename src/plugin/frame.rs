@@ -10,7 +10,7 @@ use bevy::{
         reflect::ReflectComponent,
         system::{Query, SystemParam},
     },
-    math::{Affine3A, Isometry3d, Vec3},
+    math::{Affine3A, Isometry3d, Vec3, Vec3A},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::{
         components::{GlobalTransform, Transform},
@@ -107,6 +107,15 @@ impl ClothFrame {
         self.affine == transform.affine()
     }
 
+    /// The same after a jump of the world's origin, of an entity that is at `now`.
+    pub(super) fn shifted(self, shift: Shift, now: Option<&GlobalTransform>) -> Self {
+        let now = now.and_then(|now| Self::of(now).ok()).map(|(now, _)| now);
+        Self {
+            isometry: shift.rigid(self.isometry, now.map(|now| now.isometry)),
+            affine: shift.affine(self.affine, now.map(|now| now.affine)),
+        }
+    }
+
     /// From the particles' frame to the world.
     pub fn isometry(&self) -> Isometry3d {
         self.isometry
@@ -132,6 +141,50 @@ impl ClothFrame {
     #[cfg(feature = "mesh")]
     pub(super) fn to_entity(self) -> Affine3A {
         self.affine.inverse() * Affine3A::from(self.isometry)
+    }
+}
+
+/// A jump of the world's origin: what the game has added to all places (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shift(pub Vec3);
+
+impl Shift {
+    /// Where something is that was here before. If that is `now`, but for what numbers so large are rounded by, it is `now`: what has only
+    /// been shifted stands still.
+    pub fn rigid(self, was: Isometry3d, now: Option<Isometry3d>) -> Isometry3d {
+        let shifted = Isometry3d {
+            translation: was.translation + Vec3A::from(self.0),
+            ..was
+        };
+        let is_there = |now: &Isometry3d| {
+            now.rotation == was.rotation
+                && self.is_rounded(was.translation, now.translation, shifted.translation)
+        };
+        now.filter(is_there).unwrap_or(shifted)
+    }
+
+    /// The same of one that is scaled.
+    pub fn affine(self, was: Affine3A, now: Option<Affine3A>) -> Affine3A {
+        let shifted = Affine3A {
+            translation: was.translation + Vec3A::from(self.0),
+            ..was
+        };
+        let is_there = |now: &Affine3A| {
+            now.matrix3 == was.matrix3
+                && self.is_rounded(was.translation, now.translation, shifted.translation)
+        };
+        now.filter(is_there).unwrap_or(shifted)
+    }
+
+    /// By how much numbers that are about as far from the origin as `place` may be rounded (m), before or after it: what is below
+    /// something else is placed by some sums and products, each of which rounds.
+    pub fn rounding(self, place: Vec3A) -> f32 {
+        let size = place.abs().max_element() + self.0.abs().max_element();
+        16.0 * f32::EPSILON * size
+    }
+
+    fn is_rounded(self, was: Vec3A, now: Vec3A, shifted: Vec3A) -> bool {
+        (now - shifted).abs().max_element() <= self.rounding(was)
     }
 }
 

@@ -18,7 +18,7 @@ use bevy::{
 
 use super::{
     ClothFrame, ClothTeleport,
-    frame::{Places, relative, rigid},
+    frame::{Places, Shift, relative, rigid},
 };
 use crate::cloth::ClothError;
 
@@ -112,6 +112,11 @@ impl RootMotion {
     /// Where it was as the last tick ended.
     pub fn last(&self) -> Option<Isometry3d> {
         self.last
+    }
+
+    /// Has been shifted with the world's origin, its entity being at `now`.
+    pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>) {
+        self.last = self.last.map(|last| shift.rigid(last, now));
     }
 
     /// Where it was, as of another time.

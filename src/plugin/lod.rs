@@ -24,7 +24,7 @@ pub enum ClothLodLevel {
     Full,
     /// It is moved in each second, third … tick, from 1 to 16, by the time of as many ticks, with as many sub-steps as one tick has
     /// otherwise: a half, a third … of the cost. It stretches more, as its sub-steps are longer, which is no
-    /// [`ClothLimitExceeded`](super::ClothLimitExceeded). It is drawn as many ticks late, evenly; its
+    /// [`ClothLimitExceeded`](super::ClothLimitExceeded). What is drawn lags behind by as many ticks, and moves smoothly; its
     /// [`ClothParticles`](crate::cloth::ClothParticles) are those of the last tick in which it was moved.
     Every(u32),
     /// It keeps its shape, as seen from its entity, from its first attachment's target or from the bones of its
@@ -95,7 +95,8 @@ pub struct ClothLod {
     pub level: Option<ClothLodLevel>,
     /// From which distance on (m) which level holds, ascending; `Full` before the first.
     pub distances: Vec<(f32, ClothLodLevel)>,
-    /// The level at least while Bevy's visibility hides the cloth, its own or an ancestor's; `Off` where levels go by distance, unless a game says otherwise.
+    /// While Bevy's visibility hides the cloth, its own or an ancestor's, its level is this one or a coarser one. `Off` unless a game says
+    /// otherwise.
     pub hidden: ClothLodLevel,
     /// The part of a distance by which a cloth has to be nearer than that to leave its level again, from 0 to less than 1: so that
     /// it does not change to and fro.

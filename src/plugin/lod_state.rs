@@ -2,7 +2,7 @@
 
 use bevy::math::{Isometry3d, Vec3};
 
-use super::lod::ClothLodLevel;
+use super::{frame::Shift, lod::ClothLodLevel};
 
 /// What becomes of a cloth in a tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +55,17 @@ pub(super) struct LodState {
     pub kept: u32,
     /// Of a snapshot: middle and radius of a sphere around it, in its frame (m), as nothing is built yet where it is restored.
     pub sphere: Option<(Vec3, f32)>,
+}
+
+impl Frozen {
+    /// After a jump of the world's origin, what carries it being at `now`.
+    pub fn shifted(self, shift: Shift, now: Option<Isometry3d>) -> Self {
+        Self {
+            frame: shift.rigid(self.frame, None),
+            carrier: shift.rigid(self.carrier, now),
+            last: shift.rigid(self.last, now),
+        }
+    }
 }
 
 impl LodState {

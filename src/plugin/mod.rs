@@ -38,6 +38,7 @@ mod lod_state;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod naming;
+mod origin;
 #[cfg(feature = "egui")]
 mod panel;
 mod prepare;
@@ -89,6 +90,7 @@ pub use inertia::ClothInertia;
 pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
+pub use origin::shift_cloths;
 #[cfg(feature = "egui")]
 #[doc(hidden)]
 pub use panel::ClothColliderSpeed;

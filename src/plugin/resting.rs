@@ -19,6 +19,8 @@ pub(super) struct RestsOn {
     to: Vec3,
     turn: Vec3,
     body: Option<BodyMass>,
+    /// By how much where it is may have been rounded since (m).
+    slack: f32,
 }
 
 impl RestsOn {
@@ -37,14 +39,24 @@ impl RestsOn {
             to,
             turn,
             body,
+            slack: 0.0,
         }
+    }
+
+    /// What is far from the world's origin, or was, is there to a rounding (m) alone.
+    pub fn add_slack(&mut self, rounding: f32) {
+        self.slack = self.slack.max(rounding);
     }
 
     /// Whether the collider is what it was, and where it was.
     pub fn is(&self, collider: &MovingCollider) -> bool {
-        let is_there = (self.from, self.to, self.turn, self.body)
-            == (collider.from, collider.to, collider.turn, collider.body);
-        is_there
+        let is_alike = (self.from.rotation, self.turn, self.body)
+            == (collider.from.rotation, collider.turn, collider.body);
+        let is_near = |was: Vec3, now: Vec3| (now - was).abs().max_element() <= self.slack;
+        let from = [self.from.translation, collider.from.translation].map(Vec3::from);
+        is_alike
+            && is_near(from[0], from[1])
+            && is_near(self.to, collider.to)
             && self
                 .shape
                 .as_ref()

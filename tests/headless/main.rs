@@ -20,6 +20,7 @@ mod mesh;
 mod meshes;
 mod motion;
 mod near;
+mod origin;
 mod parents;
 mod pole;
 mod push_back;

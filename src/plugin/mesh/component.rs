@@ -4,13 +4,21 @@ use std::sync::Arc;
 
 use bevy::{
     asset::{AssetId, Handle},
-    ecs::{change_detection::Tick, component::Component, reflect::ReflectComponent},
+    ecs::{
+        change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent,
+    },
     math::{Affine3A, Vec3},
     mesh::Mesh,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{blend::Blend, placing::Carriers, skin::DrawnPose, write::Tangents};
+use super::{
+    super::{ClothFrame, frame::Shift},
+    blend::Blend,
+    placing::Carriers,
+    skin::DrawnPose,
+    write::Tangents,
+};
 use crate::cloth::Surface;
 
 /// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents; it replaces one that the entity
@@ -94,6 +102,17 @@ impl ClothMesh {
     /// In this frame the cloth drives another mesh: where it is drawn has to be known, be it hidden.
     pub(in crate::plugin) fn drive(&mut self) {
         self.drives = true;
+    }
+
+    /// Has been shifted with the world's origin, from one frame to another; `target` says where one is now.
+    pub(in crate::plugin) fn shift(
+        &mut self,
+        shift: Shift,
+        frames: [ClothFrame; 2],
+        target: impl Fn(Entity) -> Option<Affine3A>,
+    ) {
+        self.carriers.shift(shift, frames, target);
+        self.pose.shift(shift, frames);
     }
 
     /// Whether it is drawn as this surface.

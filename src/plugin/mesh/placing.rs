@@ -12,7 +12,9 @@ use bevy::{
 };
 
 use super::super::{
-    ClothBuilt, ClothFrame, ClothScratch, ClothState, attachments::Attached, frame::rigid,
+    ClothBuilt, ClothFrame, ClothScratch, ClothState,
+    attachments::Attached,
+    frame::{Shift, rigid},
 };
 use crate::cloth::ClothParticles;
 
@@ -61,6 +63,24 @@ impl Carriers {
     pub fn stand(&mut self, frame: ClothFrame) {
         self.now.frame = frame;
         self.now.targets.clear();
+    }
+
+    /// Has been shifted with the world's origin. What stood still stands still; `target` says where one is now.
+    pub fn shift(
+        &mut self,
+        shift: Shift,
+        [before, after]: [ClothFrame; 2],
+        target: impl Fn(Entity) -> Option<Affine3A>,
+    ) {
+        for places in [&mut self.before, &mut self.now] {
+            places.frame = match places.frame == before {
+                true => after,
+                false => places.frame.shifted(shift, None),
+            };
+            for (entity, place) in &mut places.targets {
+                *place = shift.affine(*place, target(*entity));
+            }
+        }
     }
 
     /// Whether a target is drawn elsewhere than where the last tick had it.

@@ -11,6 +11,7 @@ use bevy::{
 
 use super::super::{
     ClothFrame, ClothScratch, ClothState,
+    frame::Shift,
     shared::Shared,
     skin::{Pose, Skins},
 };
@@ -44,6 +45,14 @@ impl DrawnPose {
                 .iter_mut()
                 .for_each(|place| *place = undone * *place);
         }
+    }
+
+    /// Has been shifted with the world's origin, from one frame to another.
+    pub fn shift(&mut self, shift: Shift, [before, after]: [ClothFrame; 2]) {
+        self.frame = match self.frame == before {
+            true => after,
+            false => self.frame.shifted(shift, None),
+        };
     }
 
     /// Reads where the joints are drawn. Returns whether they have moved since they were drawn last.

@@ -7,7 +7,10 @@ use bevy::{
     math::{Affine3A, Isometry3d, Quat, Vec3},
 };
 
-use super::super::{ClothFrame, frame::rigid};
+use super::super::{
+    ClothFrame,
+    frame::{Shift, rigid},
+};
 use crate::cloth::{ClothError, ClothSkin, FARTHEST, Skinning, Surface};
 
 /// Where a skeleton has the particles of a cloth, in the cloth's frame.
@@ -148,6 +151,18 @@ impl Pose {
             *normal = turn * *normal;
         }
         Ok(())
+    }
+
+    /// Has been shifted with the world's origin, and what takes the mesh to its joints is `now`.
+    pub fn shift(&mut self, shift: Shift, frames: [ClothFrame; 2], now: &[Affine3A]) {
+        for (index, joint) in self.joints.iter_mut().enumerate() {
+            *joint = shift.affine(*joint, now.get(index).copied());
+        }
+        let [before, after] = frames;
+        self.frame = match self.frame == before {
+            true => after,
+            false => self.frame.shifted(shift, None),
+        };
     }
 
     /// Becomes what `other` is, in the memory that it has.

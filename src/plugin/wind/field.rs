@@ -8,7 +8,7 @@ use bevy::{
 use fastnoise_lite::{FastNoiseLite, NoiseType};
 
 use super::{ClothAir, ClothWind, DENSITY, zone::PlacedZone};
-use crate::cloth::ClothError;
+use crate::{cloth::ClothError, plugin::frame::Shift};
 
 /// Far apart in the noise, so that what it says along the axes has nothing to do with each other.
 const APART: [f64; 3] = [0.0, 1013.7, 2027.3];
@@ -75,6 +75,11 @@ impl WindField {
     /// For how long it has blown (s), and how far (m).
     pub fn memory(&self) -> (f64, DVec3) {
         (self.seconds, self.way)
+    }
+
+    /// Goes with the world's origin, as eddies do.
+    pub fn shift(&mut self, Shift(by): Shift) {
+        self.way += by.as_dvec3();
     }
 
     /// Blows on as of another time.

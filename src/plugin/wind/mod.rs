@@ -43,7 +43,7 @@ const DENSITY: f32 = 1.2;
 pub struct ClothWind {
     /// Where the air goes (m/s), at most 10⁶ along each axis.
     pub velocity: Vec3,
-    /// Density (kg/m³), from 0 to 10⁶.
+    /// Density (kg/m³), from 0 to 10⁶. Air of none does nothing, and costs nothing.
     pub density: f32,
     /// By what part of itself the speed rises and falls at most, zero or more: 0.3 is a gusty day.
     pub gusts: f32,
@@ -52,7 +52,8 @@ pub struct ClothWind {
     /// By what part of the speed the air strays from it at each place, along each axis, at most; zero or more: 0.2 over a field, 0.5
     /// among houses.
     pub turbulence: f32,
-    /// How large its eddies are, about (m), positive. Those smaller than an eighth of a cloth are not felt as what they are.
+    /// How large its eddies are, about (m), positive. Those smaller than an eighth of a grid, or a quarter of a mesh, are not felt as what
+    /// they are.
     pub turbulence_length: f32,
     /// Another one is another wind.
     pub seed: i32,

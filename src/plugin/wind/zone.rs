@@ -7,7 +7,10 @@ use bevy::{
 };
 
 use super::check_velocity;
-use crate::{cloth::ClothError, plugin::frame::Places};
+use crate::{
+    cloth::ClothError,
+    plugin::frame::{Places, Shift},
+};
 
 /// A wind in one place, as of a fan: added to that of the world. It is where its entity's `GlobalTransform` is, scaled and turned with
 /// it, and may move as it likes, in systems before `ClothSystems::Prepare`. Inside of it there is air even if the world has none.
@@ -192,6 +195,20 @@ impl PlacedZone {
             centre: affine.transform_point3(centre),
             radius: radius * scale.abs().max_element(),
         })
+    }
+
+    /// After a jump of the world's origin. If that is what is placed `now`, but for rounding, it is that.
+    pub fn shifted(self, shift: Shift, now: Option<Self>) -> Self {
+        let place = self.from_world.inverse();
+        let moved = shift.affine(place, now.map(|now| now.from_world.inverse()));
+        match now {
+            Some(now) if now.from_world.inverse() == moved => now,
+            _ => Self {
+                from_world: moved.inverse(),
+                centre: self.centre + shift.0,
+                ..self
+            },
+        }
     }
 
     /// Whether it may blow in a ball (m).

@@ -23,7 +23,7 @@ pub enum ClothPressure {
     Gauge(f32),
     /// An amount of gas, which no more comes into and none leaves: as much as fills `volume` (m³, up to 10⁹) at the pressure `outside` of
     /// what surrounds the cloth (Pa, up to 10⁹). Where the cloth encloses V, its pressure over that is outside · (volume/V − 1), Boyle's law.
-    /// In a mesh that can't be as wide it is taut, in one that is wider it is slack, and a body that sits down on it is carried. However flat
+    /// A mesh that is too small for its gas is taut, one that is larger is slack, and a body that sits down on it is carried. However flat
     /// it is pressed, faces are blown out by no more than 10 m/s.
     Gas {
         /// Volume at the pressure outside (m³).

@@ -1,6 +1,6 @@
 //! Snapshots: what is put back goes on to the last bit, in the same app and in a new one.
 
-mod scene;
+pub mod scene;
 mod threads;
 
 use bevy::prelude::*;

@@ -13,6 +13,10 @@ use crate::{
 #[derive(Resource, Default, Clone, Copy)]
 pub struct Clock(pub u32);
 
+/// How far the world's origin has jumped so far (m).
+#[derive(Resource, Default, Clone, Copy)]
+pub struct Origin(pub Vec3);
+
 /// What the game moves: by where it is in each tick.
 #[derive(Component, Clone, Copy)]
 struct Moves(fn(f32) -> Transform);
@@ -24,15 +28,19 @@ struct Drifts(Vec3);
 const SECONDS: f32 = TICK;
 
 fn animate(
-    mut moving: Query<(Entity, &Moves, &mut Transform)>,
+    mut moving: Query<(Entity, &Moves, &mut Transform, Has<ChildOf>)>,
     mut drifting: Query<(&Drifts, &mut Transform), Without<Moves>>,
+    origin: Res<Origin>,
     mut clock: ResMut<Clock>,
     mut commands: Commands,
     mut materials: Query<(&Name, &mut ClothMaterial)>,
 ) {
     let seconds = clock.0 as f32 * SECONDS;
-    for (entity, moves, mut place) in &mut moving {
-        let to = (moves.0)(seconds);
+    for (entity, moves, mut place, is_below) in &mut moving {
+        let mut to = (moves.0)(seconds);
+        if !is_below {
+            to.translation += origin.0;
+        }
         // A way of metres in a tick is a teleport.
         if to.translation.distance(place.translation) > 1.0 && clock.0 > 0 {
             commands.entity(entity).insert(ClothTeleport);
@@ -60,6 +68,7 @@ fn once(at: Vec3, velocity: Vec3, seconds: f32) -> Transform {
 pub fn everything() -> (App, Vec<Entity>) {
     let mut app = app_that_draws(FixedUpdate);
     app.init_resource::<Clock>()
+        .init_resource::<Origin>()
         .add_systems(FixedUpdate, animate.before(ClothSystems::Prepare))
         .insert_resource(ClothWind {
             gusts: 0.5,

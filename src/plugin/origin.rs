@@ -1,0 +1,129 @@
+//! Worlds whose origin jumps.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        query::QueryData,
+        system::{In, Query, ResMut, RunSystemOnce},
+        world::World,
+    },
+    math::{Affine3A, Vec3, Vec3A},
+    transform::components::GlobalTransform,
+};
+
+#[cfg(feature = "mesh")]
+use super::ClothMesh;
+use super::{
+    ClothFrame, ClothState, ClothWindZone,
+    colliders::ColliderMotion,
+    components::BroadPhaseBounds,
+    frame::{Places, Shift, rigid},
+    inertia::RootMotion,
+    skin::Skins,
+    wind::{PlacedZone, WindField},
+};
+use crate::cloth::ClothError;
+
+/// Has all cloths and colliders go along with a jump of the world's origin, as games make it that are larger than a float measures: call it
+/// between two ticks, once `by` (m) has been added to the `Transform`s of all that has no parent. Nothing gets a speed, a shape or a turn
+/// from it; what sleeps sleeps on, gusts and eddies are where they were in the world.
+///
+/// Only the numbers that the plugin remembers of the world change, and none of a particle: those are given in their cloth's frame. Where
+/// something is less than the rounding of such numbers away from where the jump takes it, it counts as there.
+///
+/// # Errors
+/// [`ClothError::Quantity`] for a jump that is not finite; nothing is changed.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// /// Keeps the camera within a kilometre of the origin.
+/// fn recentre(
+///     camera: Single<Entity, With<Camera3d>>,
+///     mut roots: Query<(Entity, &mut Transform), Without<ChildOf>>,
+///     mut commands: Commands,
+/// ) {
+///     let Ok((_, camera)) = roots.get(*camera) else { return };
+///     let by = -camera.translation.round();
+///     if by.length() > 1000.0 {
+///         roots.iter_mut().for_each(|(_, mut place)| place.translation += by);
+///         commands.queue(move |world: &mut World| shift_cloths(world, by));
+///     }
+/// }
+/// ```
+pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), ClothError> {
+    for way in by.to_array() {
+        let quantity = "jump of the world's origin (m)";
+        ClothError::check(way, f32::is_finite, quantity, "finite")?;
+    }
+    // A world without the plugin has nothing that remembers.
+    if world.contains_resource::<WindField>() {
+        let shifted = world.run_system_once_with(shift, Shift(by));
+        debug_assert!(shifted.is_ok(), "all that it asks for is there");
+    }
+    Ok(())
+}
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct Shifted {
+    entity: Entity,
+    frame: &'static mut ClothFrame,
+    state: &'static mut ClothState,
+    bounds: &'static mut BroadPhaseBounds,
+    #[cfg(feature = "mesh")]
+    mesh: Option<&'static mut ClothMesh>,
+}
+
+fn shift(
+    In(shift): In<Shift>,
+    mut cloths: Query<Shifted>,
+    mut colliders: Query<(Entity, &mut ColliderMotion)>,
+    mut roots: Query<(Entity, &mut RootMotion)>,
+    zones: Query<&ClothWindZone>,
+    mut field: ResMut<WindField>,
+    places: Places,
+    skins: Skins,
+) {
+    let place = |entity: Entity| places.of(entity).ok();
+    let pose = |entity: Entity| place(entity).map(|place| rigid(&place.affine()));
+    let zone = |entity: Entity| PlacedZone::new(entity, zones.get(entity).ok()?, &places).ok();
+    for (entity, mut motion) in &mut colliders {
+        motion.shift(shift, pose(entity));
+    }
+    for (entity, mut motion) in &mut roots {
+        motion.shift(shift, pose(entity));
+    }
+    field.shift(shift);
+    let mut joints: Vec<Affine3A> = Vec::new();
+    for mut cloth in &mut cloths {
+        let own = place(cloth.entity);
+        let before = *cloth.frame;
+        let after = before.shifted(shift, own.as_ref());
+        *cloth.frame = after;
+        cloth.bounds.shift(shift);
+        if skins.read(cloth.entity, place, &mut joints).is_err() {
+            joints.clear();
+        }
+        let carrier = match cloth.state.targets.first() {
+            Some(target) => pose(*target),
+            None => own.map(|own: GlobalTransform| rigid(&own.affine())),
+        };
+        let state = &mut *cloth.state;
+        state.pose.shift(shift, [before, after], &joints);
+        state.first_target = state.first_target.map(|was| shift.rigid(was, carrier));
+        state.lod.frozen = state.lod.frozen.map(|was| was.shifted(shift, carrier));
+        state.air.shift(shift, zone);
+        let rounding = 2.0 * shift.rounding(Vec3A::from(before.isometry().translation));
+        state
+            .rests_on
+            .iter_mut()
+            .for_each(|on| on.add_slack(rounding));
+        #[cfg(feature = "mesh")]
+        if let Some(mesh) = &mut cloth.mesh {
+            let target = |entity| place(entity).map(|place| place.affine());
+            mesh.shift(shift, [before, after], target);
+        }
+    }
+}
