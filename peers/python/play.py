@@ -110,6 +110,22 @@ class Mujoco:
         return self.data.flexvert_xpos.copy()
 
 
+def colours(count, springs):
+    """Particles in groups, of which no two in one share a spring."""
+    neighbours = [set() for _ in range(count)]
+    for a, b in springs:
+        neighbours[a].add(b)
+        neighbours[b].add(a)
+    colour_of = [-1] * count
+    for particle in range(count):
+        taken = {colour_of[other] for other in neighbours[particle]}
+        colour_of[particle] = next(colour for colour in range(count) if colour not in taken)
+    return [
+        numpy.array([index for index in range(count) if colour_of[index] == colour], dtype=numpy.int32)
+        for colour in range(max(colour_of) + 1)
+    ]
+
+
 class Newton:
     """Newton, on the CPU: VBD and XPBD with springs, Style3D with a membrane. Numbers: steps, and iterations in each."""
 
@@ -160,6 +176,9 @@ class Newton:
                     builder.add_spring(a, b, stiffness, 0.0, 0.0)
         if kind == "vbd":
             builder.color()
+            # It colours particles by their triangles, and knows of no springs.
+            if not builder.tri_indices:
+                builder.particle_color_groups = colours(len(places), scene["springs"])
         model = builder.finalize()
         model.soft_contact_ke = 1.0e4
         model.soft_contact_kd = 0.0

@@ -145,7 +145,7 @@ impl Player {
             all.push((style3d, "style3d", "2 steps of 10 × 10"));
         }
         all.push((vbd, "vbd", "20 steps of 2"));
-        all.push((xpbd, "xpbd", "40 steps of 1"));
+        all.push((xpbd, "xpbd", "80 steps of 1"));
         if is_quick {
             all.dedup_by_key(|each| each.1);
         }

@@ -10,6 +10,7 @@ mod faults;
 mod frame;
 mod gizmos;
 mod heavy;
+mod held;
 mod hidden;
 mod hostile;
 mod layers;
