@@ -5,6 +5,7 @@ mod id;
 mod load;
 mod loads;
 mod past;
+mod restored;
 #[cfg(test)]
 mod tests;
 mod upkeep;
