@@ -151,7 +151,7 @@ fn row(
         let all = outcomes.iter().all(|outcome| value(outcome).is_some());
         all.then(|| median(&|outcome| value(outcome).unwrap_or(f64::NAN)))
     };
-    let is_comparable = player.has_same_springs();
+    let is_comparable = player.has_same_springs(scene);
     Row {
         scene: scene.name.into(),
         solver: player.solver.into(),

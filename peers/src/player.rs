@@ -158,9 +158,11 @@ impl Player {
     }
 
     /// Whether it has the scene's springs, and not a material like them.
-    pub fn has_same_springs(&self) -> bool {
+    pub fn has_same_springs(&self, scene: &Scene) -> bool {
         match self.way {
             Way::Ours(..) | Way::Jolt(_) | Way::Explicit(_) => true,
+            // Of rigid threads VBD makes triangles.
+            Way::Python("vbd") => scene.compliance > 0.0,
             Way::Python(name) => name == "pypbd" || name == "xpbd",
         }
     }

@@ -71,6 +71,11 @@ impl ClothContacts {
         self.now.iter().find(|contact| contact.collider == collider)
     }
 
+    /// Whether they may be contacts of so many particles, in what somebody has read from a file.
+    pub(super) fn is_sound(&self, particles: usize) -> bool {
+        (self.points.iter()).all(|point| (point.particle as usize) < particles)
+    }
+
     /// The particles near a collider that touches, each with its signed depth.
     pub fn points(&self, contact: &ClothContact) -> &[ContactPoint] {
         let [first, end] = contact.points;

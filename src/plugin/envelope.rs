@@ -27,7 +27,7 @@ pub struct ClothLimitExceeded {
     pub cloth: Entity,
     /// Which limit.
     pub limit: ClothLimit,
-    /// The quantity: a stretch, a ratio of masses, a distance (m), a damping, or a way in radii.
+    /// The quantity: a stretch, a ratio of masses, a distance (m), a damping, a way in radii, or a number of sub-steps.
     pub quantity: f32,
     /// Up to where it is good.
     pub good_up_to: f32,

@@ -27,8 +27,11 @@ impl Excess {
         };
         self.ticks = self.ticks.saturating_add(1);
         // What passes through does so at once, and a tolerance is held in each tick or not at all.
-        let lasts = self.ticks >= TICKS
-            || matches!(limit, ClothLimit::SmallFastCollider | ClothLimit::Tolerance);
+        let is_at_once = matches!(
+            limit,
+            ClothLimit::SmallFastCollider | ClothLimit::Tolerance | ClothLimit::Layers
+        );
+        let lasts = self.ticks >= TICKS || is_at_once;
         let is_reported = self.reported == 0.0 || quantity >= WORSE * self.reported;
         if lasts && is_reported {
             self.reported = quantity;

@@ -4,7 +4,7 @@ use bevy::{
     ecs::{
         component::Component,
         entity::{Entity, MapEntities},
-        query::Changed,
+        query::{Changed, Without},
         reflect::{ReflectComponent, ReflectMapEntities},
         system::{Commands, Query},
     },
@@ -12,8 +12,11 @@ use bevy::{
     reflect::Reflect,
 };
 
-use super::naming::{Named, NamedItem, Part};
-use crate::cloth::ClothError;
+use super::{
+    ClothState,
+    naming::{Named, NamedItem, Part},
+};
+use crate::cloth::{ClothError, ClothParticles};
 
 /// On a cloth or collider that is left out of the simulation: why. Taken away as soon as the fault is mended.
 #[derive(Component, Reflect, MapEntities, Debug, Clone, PartialEq)]
@@ -50,6 +53,19 @@ impl ClothFault {
 
     fn is_like(&self, other: &Self) -> bool {
         self.part == other.part && self.error.is_same_fault(&other.error)
+    }
+}
+
+/// Marks cloths whose particles the tick has lost.
+pub(super) fn report_lost(
+    cloths: Query<(Entity, &ClothState, &ClothParticles), Without<ClothFault>>,
+    mut commands: Commands,
+) {
+    for (entity, state, particles) in &cloths {
+        if !state.is_valid {
+            let outcome = particles.validate();
+            ClothFault::report(&mut commands, entity, None, Part::Cloth, outcome);
+        }
     }
 }
 

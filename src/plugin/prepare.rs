@@ -244,8 +244,8 @@ fn take_over(
     // Who saves or restores particles may mark them as changed without a change.
     let was_written = has_stood
         || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
-    // A cloth that sleeps and that nobody wrote is what it was when it was looked at last.
-    if was_written || !state.rest.is_asleep() {
+    // What nobody wrote is what it was when it was looked at last.
+    if was_written || !state.is_valid {
         state.largest_speed = check_particles(particles)?;
     }
     let surface = cloth.built.surface();

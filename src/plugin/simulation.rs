@@ -39,7 +39,7 @@ use super::{
     components::BroadPhaseBounds,
     contacts::{send_stopped_messages, send_touch_messages},
     envelope::report_limits,
-    fault::log_faults,
+    fault::{log_faults, report_lost},
     follow::{forget_collider, prepare_colliders},
     inertia::{Jumped, follow_roots},
     integrate::integrate,
@@ -178,7 +178,7 @@ impl Plugin for ClothPlugin {
                     .chain()
                     .in_set(ClothSystems::Integrate),
                 make_bone_colliders.in_set(ClothSystems::WriteBack),
-                (send_touch_messages, report_limits, log_faults)
+                (report_lost, send_touch_messages, report_limits, log_faults)
                     .chain()
                     .in_set(ClothSystems::WriteBack),
             ),

@@ -84,6 +84,10 @@ impl IntegratingItem<'_, '_> {
     /// Takes over what came of a tick whose sub-steps took this long (ms).
     pub(super) fn finish(&mut self, milliseconds: f64) {
         self.stats.integrate_ms = milliseconds;
+        // What is lost here is a fault before anyone sees it.
+        let survey = self.particles.survey();
+        self.state.is_valid &= survey.is_valid;
+        self.state.largest_speed = survey.largest_speed;
         self.state.written = Some(self.particles.last_changed());
         self.remember_contacts();
         self.push_bodies();
@@ -197,7 +201,9 @@ impl IntegratingItem<'_, '_> {
             };
             LimitInputs::travel_in_radii(collider.shape.radius()?, travel / count, spacing.longest)
         });
+        let mutual = self.scratch.mutual.as_ref();
         LimitInputs {
+            lost: mutual.map_or(0, |mutual| mutual.lost()),
             collider_travel: travels.fold(0.0, f32::max),
             stretch: self.state.stretch.structural,
             substepping: self.scratch.substepping,

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     contact::{ClothLayers, MutualContact, Participant},
-    solver::{StartedTick, Stretch, SubStep, Substepping, TickStep},
+    solver::{LimitInputs, StartedTick, Stretch, SubStep, Substepping, TickStep},
 };
 
 /// A cloth of an island, in its tick.
@@ -90,7 +90,9 @@ pub(super) fn integrate_together(
     let milliseconds = milliseconds_since(start) / members.len().max(1) as f64;
     for Member { cloth, step, .. } in &mut members {
         if let Some(step) = step {
-            cloth.scratch.limit_inputs = Some(cloth.limit_inputs(TickStep { substeps, ..*step }));
+            let own = cloth.limit_inputs(TickStep { substeps, ..*step });
+            let lost = island.contact.lost();
+            cloth.scratch.limit_inputs = Some(LimitInputs { lost, ..own });
             cloth.finish(milliseconds);
             cloth.state.touches_cloth = island.contact.has_touched();
             cloth.stats.layer_pairs = island.contact.pairs();

@@ -28,6 +28,9 @@ pub enum ClothLimit {
     /// A ball or capsule thinner than half a spacing comes to the cloth by more than 6 of its radii in a sub-step: it may
     /// get through.
     SmallFastCollider,
+    /// Layers move so fast, are so thick or so crowded that what may touch is too much to look for: nothing keeps them apart meanwhile.
+    /// For each particle a search looks at 4,096 nodes and pairs of features at most, and all of a tick at 16,384.
+    Layers,
 }
 
 /// Largest length / rest length − 1 beyond what the material gives.
@@ -48,13 +51,14 @@ const SMALL: f32 = 0.5;
 
 impl ClothLimit {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Stretch,
         Self::Tolerance,
         Self::MassRatio,
         Self::Distance,
         Self::Damping,
         Self::SmallFastCollider,
+        Self::Layers,
     ];
 
     /// What brings the cloth back.
@@ -74,6 +78,9 @@ impl ClothLimit {
             }
             Self::Damping => "less damping (`ClothMaterial::damping`) or more sub-steps",
             Self::SmallFastCollider => "a thicker or slower collider, or a finer cloth",
+            Self::Layers => {
+                "slower cloth or more sub-steps; a thickness (`ClothSelfCollision`) that is no larger than the spacing"
+            }
         }
     }
 }
@@ -103,6 +110,7 @@ impl ClothLimit {
             Self::Distance => "metres ",
             Self::Damping => "D ",
             Self::SmallFastCollider => "radii a sub-step ",
+            Self::Layers => "sub-steps without ",
         };
         format!("{what}{found} (limit {good})")
     }
@@ -118,6 +126,7 @@ impl fmt::Display for ClothLimit {
             Self::Distance => "too far from its frame's origin",
             Self::Damping => "damped too much",
             Self::SmallFastCollider => "met by too small and fast a collider",
+            Self::Layers => "too fast, too thick or too crowded for its layers to be kept apart",
         })
     }
 }
@@ -147,6 +156,8 @@ pub(crate) struct LimitInputs {
     pub spacing: f32,
     /// The longest travel of a small collider in a sub-step, in its radii.
     pub collider_travel: f32,
+    /// Sub-steps of the tick in which its layers were not kept apart.
+    pub lost: u32,
 }
 
 impl LimitInputs {
@@ -179,6 +190,7 @@ impl LimitInputs {
                 [self.damping, max]
             }
             ClothLimit::SmallFastCollider => [self.collider_travel, MAX_TRAVEL],
+            ClothLimit::Layers => [self.lost as f32, 0.0],
             ClothLimit::Stretch | ClothLimit::Tolerance | ClothLimit::MassRatio => return None,
         };
         (quantity[0] > quantity[1]).then_some(quantity)
@@ -202,6 +214,7 @@ mod tests {
         distance: MAX_DISTANCE,
         spacing: 0.03,
         collider_travel: MAX_TRAVEL,
+        lost: 0,
     };
 
     fn beyond(limit_inputs: LimitInputs) -> Vec<ClothLimit> {
@@ -255,6 +268,7 @@ mod tests {
                 },
                 ClothLimit::SmallFastCollider,
             ),
+            (LimitInputs { lost: 1, ..WITHIN }, ClothLimit::Layers),
         ];
         for (limit_inputs, limit) in exceeded {
             assert_eq!(beyond(limit_inputs), [limit]);

@@ -130,6 +130,23 @@ fn a_small_fast_collider() {
     );
 }
 
+/// Layers of 30 m, of a cloth that is 2 m large, are no layers: that is said, and the tick ends.
+#[test]
+fn layers_too_thick_to_look_for() {
+    let mut app = app();
+    let layers = ClothSelfCollision {
+        thickness: 30.0,
+        ..default()
+    };
+    let cloth = app.world_mut().spawn((Cloth::new(64, 64, 0.03), layers)).id();
+    tick(&mut app, 3);
+    let reported = messages::<ClothLimitExceeded>(&mut app);
+    assert!(
+        matches!(reported[..], [reported] if reported.limit == ClothLimit::Layers && reported.cloth == cloth),
+        "{reported:?}"
+    );
+}
+
 /// A blow that stretches a cloth for an instant is no reason to report anything.
 #[test]
 fn an_instant_is_not_reported() {

@@ -8,6 +8,7 @@ mod drawing;
 mod envelope;
 mod faults;
 mod frame;
+mod fuzz;
 mod gizmos;
 mod heavy;
 mod held;

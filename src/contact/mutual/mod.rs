@@ -37,7 +37,7 @@ use self::{
     origin::Origin,
     pair::Pair,
     response::push,
-    search::{Found, Search},
+    search::Search,
 };
 
 pub use intersections::intersections;
@@ -52,6 +52,9 @@ const ROUNDS: u32 = 4;
 /// may have come, as fast as lately, this part of the way that is free.
 const LONGEST_WAIT: u32 = 16;
 const PART_OF_WAY: f32 = 0.5;
+
+/// For each particle all searches of a tick look at so many nodes and pairs of features at most: four whole ones.
+const MOST_LOOKS_IN_TICK: usize = 4 * search::MOST_LOOKS;
 
 /// As long as particles come nearer to each other by less than this part of the thickness, those that are pushed are held by the
 /// mean of their last pushes in this many sub-steps at most.
@@ -68,8 +71,6 @@ pub(crate) struct MutualContact {
     circumstances: Circumstances,
     #[cfg_attr(feature = "serialize", serde(skip))]
     search: Search,
-    #[cfg_attr(feature = "serialize", serde(skip))]
-    found: Vec<Found>,
     pairs: Vec<Pair>,
     members: Members,
     /// Which member each particle of each cloth is, if any.
@@ -101,6 +102,12 @@ pub(crate) struct MutualContact {
     passed: Origin,
     searches: u32,
     has_touched: bool,
+    /// What searches may look at in the rest of the tick.
+    looks: usize,
+    /// Whether the last search found no end: nothing is kept apart until another does.
+    is_lost: bool,
+    /// In how many sub-steps of the tick that was so.
+    lost: u32,
 }
 
 /// Where particles that become members were last known to be apart.
@@ -122,8 +129,12 @@ impl MutualContact {
     pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
         self.searches = 0;
         self.has_touched = false;
+        self.lost = 0;
+        let particles = cloths.iter().map(|cloth| cloth.particles.len());
+        self.looks = MOST_LOOKS_IN_TICK * particles.sum::<usize>();
         let is_same = self.circumstances.renew(cloths, &meets);
-        let is_known = is_same && self.is_searched && self.origin.is_of(cloths);
+        let is_known =
+            is_same && self.is_searched && !self.is_lost && self.origin.is_of(cloths);
         if is_known {
             self.nearer = self.origin.approach(cloths);
             self.members.begin(cloths);
@@ -164,6 +175,11 @@ impl MutualContact {
         self.has_touched
     }
 
+    /// In how many sub-steps of the tick nothing was kept apart: what is so fast, so thick or so crowded takes too long to search.
+    pub fn lost(&self) -> u32 {
+        self.lost
+    }
+
     /// Pairs of features that may come near each other, as found last.
     pub fn pairs(&self) -> usize {
         self.pairs.len()
@@ -189,7 +205,7 @@ impl MutualContact {
         self.pushed += self.pushed_pace;
         // NaN is looked at.
         let is_less = self.nearer + self.pushed < PART_OF_WAY * self.margin;
-        if self.pairs.is_empty() && !is_less {
+        if self.pairs.is_empty() && !is_less && !self.is_lost {
             self.wait = 0;
         }
     }
@@ -207,6 +223,7 @@ impl MutualContact {
         let mut held = 0.0;
         if self.waited <= self.wait {
             if self.pairs.is_empty() {
+                self.lost += u32::from(self.is_lost);
                 return 0.0;
             }
             let approach;
@@ -218,7 +235,9 @@ impl MutualContact {
         (self.pushed_pace, self.pushed) = (0.0, 0.0);
         let before = self.nearer;
         self.nearer = self.origin.approach(cloths);
-        if self.nearer > self.margin {
+        if self.is_lost {
+            self.search(cloths, &meets, 0.0, Starts::Here);
+        } else if self.nearer > self.margin {
             // Some may have met on the way to here.
             if self.pairs.is_empty() {
                 match self.waited {
@@ -227,6 +246,10 @@ impl MutualContact {
                 }
             }
             self.search(cloths, &meets, self.nearer - self.margin, Starts::Passed);
+        }
+        if self.is_lost {
+            self.lost += 1;
+            return 0.0;
         }
         if self.pairs.is_empty() {
             let pace = (self.nearer - before).max(0.0) / self.waited as f32;

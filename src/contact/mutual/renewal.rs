@@ -1,7 +1,7 @@
 //! Pairs of features, found again.
 
 use super::{
-    MutualContact, Starts,
+    LONGEST_WAIT, MutualContact, Starts,
     motion::{relative_motion, room_in_flat},
     pair::{NOBODY, Nearest, Pair, VERTEX_AND_FACE},
     participant::Participant,
@@ -25,6 +25,7 @@ impl MutualContact {
     ) {
         self.searches += 1;
         self.is_searched = true;
+        self.is_lost = false;
         self.wait = 0;
         self.near.forget();
         let spacing = cloths
@@ -48,8 +49,14 @@ impl MutualContact {
             self.member_of.clear();
             return;
         }
-        self.search
-            .find(cloths, meets, self.margin + missed, &mut self.found);
+        let (search, looks) = (&mut self.search, &mut self.looks);
+        let is_found = search.find(cloths, &meets, self.margin + missed, looks)
+            // What has been passed meanwhile is not to be had: what is near now may be.
+            || missed > 0.0 && search.find(cloths, &meets, self.margin, looks);
+        self.is_lost = !is_found;
+        if self.is_lost {
+            (self.wait, self.waited) = (LONGEST_WAIT, 0);
+        }
         std::mem::swap(&mut self.members, &mut self.members_before);
         std::mem::swap(&mut self.member_of, &mut self.member_of_before);
         self.members.clear();
@@ -57,13 +64,13 @@ impl MutualContact {
         self.member_of.resize_with(cloths.len(), Vec::new);
         for (of, cloth) in self.member_of.iter_mut().zip(cloths) {
             of.clear();
-            if !self.found.is_empty() {
+            if !self.search.found.is_empty() {
                 of.resize(cloth.particles.len(), NOBODY);
             }
         }
         let mut last_of = std::mem::take(&mut self.last_of);
         last_of.clear();
-        for found in &self.found {
+        for found in &self.search.found {
             let mut members = [0; 4];
             for (index, &particle) in found.particles.iter().enumerate() {
                 let cloth = found.cloths[usize::from(index >= found.split)] as usize;

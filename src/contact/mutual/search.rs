@@ -16,6 +16,14 @@ const EDGES: f32 = 0.5;
 /// A part of its distance at rest, which no pair of one cloth is kept farther apart than.
 const OF_REST: f32 = 0.5;
 
+/// For each particle a search looks at so many nodes and pairs of features, and finds so many pairs, at most. Sheets that run into
+/// each other at 20 m/s need a tenth of that, and the worst at 60 m/s a half (`cargo run --example lab -- self`).
+pub(super) const MOST_LOOKS: usize = 4_096;
+pub(super) const MOST_PAIRS: usize = 2_048;
+
+/// So many pairs at most whatever there is of particles: 200 MB of them.
+pub(super) const MOST_OF_ALL: usize = 1 << 20;
+
 /// Two features that may come near each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
@@ -40,6 +48,31 @@ struct Searched {
 #[derive(Debug, Default, Clone)]
 pub(super) struct Search {
     cloths: Vec<Searched>,
+    pub found: Vec<Found>,
+}
+
+/// What is found, and how much more may be.
+struct Finds<'a> {
+    found: &'a mut Vec<Found>,
+    looks: usize,
+    pairs: usize,
+    is_over: bool,
+}
+
+impl Finds<'_> {
+    /// Whether so many more may be looked at.
+    fn may_look(&mut self, at: usize) -> bool {
+        self.is_over |= at > self.looks;
+        self.looks = self.looks.saturating_sub(at);
+        !self.is_over
+    }
+
+    fn add(&mut self, found: Found) {
+        self.is_over |= self.found.len() >= self.pairs;
+        if !self.is_over {
+            self.found.push(found);
+        }
+    }
 }
 
 /// Two cloths, or one twice, as they are searched.
@@ -54,15 +87,24 @@ struct Between<'a> {
 
 impl Search {
     /// Finds all pairs of features that are nearer to each other than their thickness and a `margin` (m). Their order depends on
-    /// the trees alone.
+    /// the trees alone. With so many `looks` left and no more; says whether that was enough.
     pub fn find(
         &mut self,
         participants: &[Participant],
         meets: impl Fn(usize, usize) -> bool,
         margin: f32,
-        found: &mut Vec<Found>,
-    ) {
-        found.clear();
+        looks: &mut usize,
+    ) -> bool {
+        self.found.clear();
+        let each = participants.iter().map(|cloth| cloth.particles.len());
+        let particles = each.sum::<usize>();
+        let most = (MOST_LOOKS * particles).min(*looks);
+        let mut finds = Finds {
+            found: &mut self.found,
+            looks: most,
+            pairs: (MOST_PAIRS * particles).min(MOST_OF_ALL),
+            is_over: false,
+        };
         self.cloths
             .resize_with(participants.len(), Searched::default);
         for (searched, cloth) in self.cloths.iter_mut().zip(participants) {
@@ -92,9 +134,15 @@ impl Search {
                     thickness: (a.settings.thickness + b.settings.thickness) / 2.0,
                     margin,
                 };
-                between.descend(0, 0, found);
+                between.descend(0, 0, &mut finds);
             }
         }
+        let is_over = finds.is_over;
+        *looks -= most - finds.looks;
+        if is_over {
+            self.found.clear();
+        }
+        !is_over
     }
 }
 
@@ -104,8 +152,8 @@ impl Between<'_> {
     }
 
     /// Looks at two nodes of the same level, and what is below them.
-    fn descend(&self, a: u32, b: u32, found: &mut Vec<Found>) {
-        if self.is_far(a, b) {
+    fn descend(&self, a: u32, b: u32, found: &mut Finds) {
+        if !found.may_look(1) || self.is_far(a, b) {
             return;
         }
         let sheets = self.sheets;
@@ -156,8 +204,14 @@ impl Between<'_> {
     }
 
     /// Compares the features that two particles stand for.
-    fn compare(&self, a: u32, b: u32, found: &mut Vec<Found>) {
+    fn compare(&self, a: u32, b: u32, found: &mut Finds) {
         let [first, second] = self.cloths;
+        let [one, other] = self.sheets;
+        let faces = one.faces_of(a).len() + other.faces_of(b).len();
+        let edges = one.edges_of(a).len() * other.edges_of(b).len();
+        if !found.may_look(faces + edges) {
+            return;
+        }
         self.vertex_with_faces([first, second], [0, 1], a, b, found);
         if !(self.is_one_cloth() && a == b) {
             self.vertex_with_faces([second, first], [1, 0], b, a, found);
@@ -184,7 +238,7 @@ impl Between<'_> {
         [own, other]: [usize; 2],
         vertex: u32,
         of: u32,
-        found: &mut Vec<Found>,
+        found: &mut Finds,
     ) {
         let reach = self.thickness + self.margin;
         let place = self.place(own, vertex);
@@ -208,7 +262,7 @@ impl Between<'_> {
                     [a, b, c].map(|corner| rest[corner as usize]),
                 )
             });
-            found.push(Found {
+            found.add(Found {
                 cloths: cloths.map(|cloth| cloth as u32),
                 particles: [vertex, a, b, c],
                 split: VERTEX_AND_FACE,
@@ -217,7 +271,7 @@ impl Between<'_> {
         }
     }
 
-    fn edges_with_edges(&self, a: u32, b: u32, found: &mut Vec<Found>) {
+    fn edges_with_edges(&self, a: u32, b: u32, found: &mut Finds) {
         let is_same = self.is_one_cloth() && a == b;
         let wanted = EDGES * self.thickness;
         let reach = wanted + self.margin;
@@ -244,7 +298,7 @@ impl Between<'_> {
                     let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
                     edge_to_edge(at_rest(first), at_rest(second))
                 });
-                found.push(Found {
+                found.add(Found {
                     cloths: self.cloths.map(|cloth| cloth as u32),
                     particles: [first[0], first[1], second[0], second[1]],
                     split: TWO_EDGES,

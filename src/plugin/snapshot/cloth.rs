@@ -118,7 +118,10 @@ impl ClothSnapshot {
                 expected: Self::VERSION,
             });
         }
-        if !(self.particles.is_sound() && self.state.is_sound(&self.particles)) {
+        let is_sound = self.particles.is_sound()
+            && self.state.is_sound(&self.particles)
+            && self.contacts.is_sound(self.particles.len());
+        if !is_sound {
             return Err(SnapshotError::Damaged { entity: cloth });
         }
         let is_known =

@@ -172,11 +172,18 @@ fn what_is_wrong_with_a_snapshot_is_said() {
             expected: 1
         }
     );
-    let none = text.replacen("particle:", "particle:9", 1);
-    assert!(none != text, "one is attached");
-    let none: ClothWorldSnapshot = ron::from_str(&none).expect("it can be read");
-    let error = none.restore(app.world_mut()).expect_err("no such particle");
-    assert!(matches!(error, SnapshotError::Damaged { entity } if cloths.contains(&entity)));
+    // A particle that there is not: of what is attached, and of what touches.
+    let attached = text.match_indices("attached:[(particle:");
+    let touching = text.match_indices("points:[(particle:");
+    let named: Vec<_> = attached.chain(touching).collect();
+    assert!(named.len() > 3);
+    for (at, found) in named {
+        let (known, rest) = text.split_at(at + found.len());
+        let none = format!("{known}9999{rest}");
+        let none: ClothWorldSnapshot = ron::from_str(&none).expect("it can be read");
+        let error = none.restore(app.world_mut()).expect_err("no such particle");
+        assert!(matches!(error, SnapshotError::Damaged { entity } if cloths.contains(&entity)));
+    }
     let collider = (app
         .world_mut()
         .query_filtered::<Entity, With<ClothCollider>>())

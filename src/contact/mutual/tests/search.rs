@@ -4,10 +4,11 @@ use std::collections::HashSet;
 
 use bevy::math::{DVec3, Vec3, Vec3A};
 
-use super::{Sheeted, participants, settings};
+use super::{Scene, Sheeted, participants, settings};
 use crate::contact::mutual::{
+    LONGEST_WAIT, MOST_LOOKS_IN_TICK,
     bounds::Tangents,
-    search::{Found, Search},
+    search::{Found, MOST_OF_ALL, Search},
 };
 
 /// What a square of 1 m is bent into: flat, rolled up more and more, folded, wavy, crumpled.
@@ -104,13 +105,10 @@ fn no_pair_is_lost() {
             .positions()
             .map(Vec3::as_dvec3)
             .collect();
-        let mut found = Vec::new();
-        Search::default().find(
-            &participants(&mut cloths, settings(thickness)),
-            |_, _| true,
-            margin,
-            &mut found,
-        );
+        let mut search = Search::default();
+        let participants = participants(&mut cloths, settings(thickness));
+        assert!(search.find(&participants, |_, _| true, margin, &mut usize::MAX.clone()));
+        let found = &search.found;
         let pair = |found: &Found| {
             let (first, second) = found.particles.split_at(found.split);
             named(first, second)
@@ -204,4 +202,54 @@ fn what_is_hardly_bent_keeps_its_points_apart() {
         }
     }
     assert!(has_bound > 5, "{has_bound}");
+}
+
+/// However many features are near each other, a tick looks at so many of them at most: of a sheet that is crammed into a tenth of a
+/// spacing or thrown asunder, and of one so thick that everything is near. It is said that layers were not kept apart, and what comes
+/// back into shape is kept apart again.
+#[test]
+fn no_tick_looks_at_more_than_its_bound() {
+    let scattered = |size: f32| {
+        move |at: Vec3| {
+            let turn = |k: f32| (k * at.x + 1.7 * k * at.z).sin();
+            size * Vec3::new(turn(1.0e3), turn(2.3e3), turn(3.1e3))
+        }
+    };
+    let side = 32;
+    let particles = (side * side) as usize;
+    for (name, size, thickness) in [
+        ("crammed", 0.003, 0.01),
+        ("asunder", 1.0e6, 0.01),
+        ("thick", 1.0, 30.0),
+    ] {
+        let mut scene = Scene::new(vec![Sheeted::new(side, 1.0, scattered(size))], thickness);
+        for _ in 0..3 {
+            let cloth = &mut scene.cloths[0];
+            for index in 0..particles {
+                // In each tick others are where none had been.
+                let at = cloth.particles.position(index).expect("it exists");
+                let at = at + Vec3::splat(0.37);
+                let at = Vec3::new(at.y, at.z, at.x);
+                cloth.particles.set_position(index, at).expect("finite");
+            }
+            scene.tick(|_, _, _| {});
+            let contact = &scene.contact;
+            let looks = MOST_LOOKS_IN_TICK * particles - contact.looks;
+            assert!(looks <= MOST_LOOKS_IN_TICK * particles);
+            assert!(contact.pairs() <= MOST_OF_ALL && contact.search.found.len() <= MOST_OF_ALL);
+            let substeps = scene.step.substeps;
+            println!("{name}: {} searches, {looks} looks, {} pairs, lost {}", contact.searches, contact.pairs(), contact.lost());
+            assert!(contact.lost() <= substeps);
+            if contact.lost() == substeps {
+                assert!(contact.searches() <= 1 + substeps / LONGEST_WAIT, "{name}");
+            }
+        }
+        assert!(name == "asunder" || scene.contact.lost() > 0, "{name}");
+        let again = Sheeted::new(side, 1.0, |at| at);
+        scene.cloths[0].particles.copy_from(&again.particles);
+        scene.contact.forget();
+        scene.settings = settings(0.01);
+        scene.tick(|_, _, _| {});
+        assert_eq!(scene.contact.lost(), 0, "{name}");
+    }
 }

@@ -1,0 +1,217 @@
+//! What is done to a world.
+
+use bevy::{ecs::entity_disabling::Disabled, prelude::*, reflect::PartialReflect};
+use bevy_drape::prelude::*;
+
+use super::{
+    mutate::{OTHERS, components, makers, mutate},
+    random::Random,
+};
+use crate::meshes::sheets::{sheet, sheet_asset};
+
+/// Entities that are done something to, at most.
+const MOST: usize = 14;
+
+/// What the driver knows of the world.
+#[derive(Resource, Default)]
+pub struct Pool {
+    /// Cloths, colliders, zones and what carries them.
+    pub all: Vec<Entity>,
+    /// What others are children of, and is nobody's child.
+    pub roots: Vec<Entity>,
+    /// Whether to save the world before the next tick, or to put it back.
+    pub request: Option<bool>,
+    /// How many acts there were.
+    pub acts: usize,
+}
+
+/// Does one thing at random.
+pub fn act(world: &mut World) {
+    world.resource_scope(|world, mut random: Mut<Random>| {
+        world.resource_scope(|world, mut pool: Mut<Pool>| {
+            pool.all.retain(|entity| world.get_entity(*entity).is_ok());
+            pool.acts += 1;
+            one(world, &mut pool, &mut random);
+            for &entity in &pool.all {
+                keep_to_layers(world, entity);
+            }
+        });
+    });
+}
+
+/// Without layers of its own it would meet what nobody is to touch.
+fn keep_to_layers(world: &mut World, entity: Entity) {
+    let others = ClothLayers::new(OTHERS, OTHERS);
+    if let Ok(mut entity) = world.get_entity_mut(entity) {
+        let layers = entity.get::<ClothLayers>();
+        if layers.is_none_or(|layers| layers.interacts_with(ClothLayers::new(!OTHERS, !OTHERS))) {
+            entity.insert(others);
+        }
+    }
+}
+
+fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
+    let Some(&entity) = random.pick(&pool.all) else {
+        return spawn(world, pool, random);
+    };
+    let which = random.below(24);
+    if std::env::var("ZZ").is_ok() { eprintln!("ZZ act {which} on {entity} {:?}", components(world, entity).len()); }
+    match which {
+        0..=1 if pool.all.len() < MOST => spawn(world, pool, random),
+        0..=1 => {
+            world.despawn(entity);
+        }
+        2..=8 => write(world, entity, random),
+        9..=11 => {
+            let makers = makers(world);
+            if let Some((component, default)) = random.pick(&makers) {
+                let mut value = default.default();
+                for _ in 0..random.below(3) {
+                    mutate(value.as_partial_reflect_mut(), random);
+                }
+                insert(world, entity, component, value.as_partial_reflect());
+            }
+        }
+        12 => {
+            let known = components(world, entity);
+            if let Some(component) = random.pick(&known) {
+                component.remove(&mut world.entity_mut(entity));
+            }
+        }
+        13 => match random.pick(&pool.roots) {
+            Some(&root) if !random.one_in(3) => {
+                world.entity_mut(entity).insert(ChildOf(root));
+            }
+            _ => {
+                world.entity_mut(entity).remove::<ChildOf>();
+            }
+        },
+        14 => match random.one_in(2) {
+            true => drop(world.entity_mut(entity).insert(Disabled)),
+            false => {
+                for &entity in &pool.all {
+                    world.entity_mut(entity).remove::<Disabled>();
+                }
+            }
+        },
+        15 => drop(world.entity_mut(entity).insert(ClothTeleport)),
+        16..=17 => place_particle(world, entity, random),
+        18 => replace_mesh(world, entity, random),
+        19 => pool.request = Some(random.one_in(2)),
+        20 => {
+            let places = random.pick(&pool.roots).copied();
+            if let Some(mut place) = places.and_then(|root| world.get_mut::<Transform>(root)) {
+                place.translation = random.place();
+                place.rotation = Quat::from_rotation_y(random.number());
+            }
+        }
+        _ => {
+            let to = random.place();
+            if let Some(mut place) = world.get_mut::<Transform>(entity) {
+                place.translation = to;
+            }
+        }
+    }
+}
+
+/// Writes into a component that is there.
+fn write(world: &mut World, entity: Entity, random: &mut Random) {
+    let known = components(world, entity);
+    if let Some(component) = random.pick(&known)
+        && let Some(mut value) = component.reflect_mut(world.entity_mut(entity))
+    {
+        mutate(value.as_partial_reflect_mut(), random);
+    }
+}
+
+fn insert(
+    world: &mut World,
+    entity: Entity,
+    component: &ReflectComponent,
+    value: &dyn PartialReflect,
+) {
+    let registry = world.resource::<AppTypeRegistry>().clone();
+    let registry = registry.read();
+    component.insert(&mut world.entity_mut(entity), value, &registry);
+}
+
+fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
+    let place = Transform::from_translation(random.place());
+    let (positions, triangles) = sheet(4, 5);
+    let [columns, rows] = [2 + random.below(8) as u32, 2 + random.below(8) as u32];
+    let grid = || Cloth::new(columns, rows, 0.1);
+    let ball = |radius| ClothCollider::ball(radius);
+    let entity = match random.below(12) {
+        0..=2 => world.spawn((grid(), place)).id(),
+        3 => world
+            .spawn((grid(), Pins::none(), ClothSelfCollision::default(), place))
+            .id(),
+        4 => world
+            .spawn((Cloth::triangles(positions, triangles), place))
+            .id(),
+        5 => {
+            let target = random
+                .pick(&pool.all)
+                .copied()
+                .unwrap_or(Entity::PLACEHOLDER);
+            let attached = ClothAttachments::new([(Pin::Row(0), target)]);
+            world.spawn((grid(), Pins::none(), attached, place)).id()
+        }
+        6 => {
+            let mesh = match random.one_in(2) {
+                true => sheet_asset(5, 4),
+                false => Sphere::new(0.2).mesh().ico(2).expect("few"),
+            };
+            let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+            let gas = ClothPressure::gas(0.03);
+            world
+                .spawn((Cloth::mesh(), Mesh3d(mesh), Pins::none(), gas, place))
+                .id()
+        }
+        7 => world.spawn((ball(random.number()), place)).id(),
+        8 => world
+            .spawn((ball(0.3), ClothBody::ball(0.5, 0.3), place))
+            .id(),
+        9 => world
+            .spawn((ClothCollider::cuboid(0.2, 0.1, random.number()), place))
+            .id(),
+        10 => world.spawn((ClothCollider::plane(), place)).id(),
+        _ => world.spawn((ClothWindZone::default(), place)).id(),
+    };
+    pool.all.push(entity);
+}
+
+/// Writes particles as a game does, by their own functions.
+fn place_particle(world: &mut World, entity: Entity, random: &mut Random) {
+    let Some(mut particles) = world.get_mut::<ClothParticles>(entity) else {
+        return;
+    };
+    let index = random.below(particles.len());
+    let outcome = match random.below(5) {
+        0 => particles.set_position(index, random.vector()),
+        1 => particles.set_velocity(index, random.vector()),
+        2 => particles.set_inverse_mass(index, random.number()),
+        3 => particles.set_position(index, random.place()),
+        _ => {
+            *particles = ClothParticles::default();
+            Ok(())
+        }
+    };
+    // What can't be written is told to who writes it.
+    drop(outcome);
+}
+
+fn replace_mesh(world: &mut World, entity: Entity, random: &mut Random) {
+    let Some(handle) = world.get::<Mesh3d>(entity).map(|mesh| mesh.0.clone()) else {
+        return;
+    };
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    match random.below(3) {
+        0 => drop(meshes.remove(&handle)),
+        1 => drop(meshes.insert(&handle, sheet_asset(4, 4))),
+        _ => {
+            let other = meshes.add(sheet_asset(6, 3));
+            world.entity_mut(entity).insert(Mesh3d(other));
+        }
+    }
+}

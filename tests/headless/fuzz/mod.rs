@@ -1,0 +1,249 @@
+//! Garbage for every component, at any time: nothing panics or hangs, what has no fault is finite, and what nobody touches is as it is without.
+//!
+//! Seconds long. `BEVY_DRAPE_FUZZ=500 cargo test --test headless fuzz` does five hundred runs of 400 ticks, and prints what it has counted;
+//! `BEVY_DRAPE_SEED=7` begins with another seed.
+
+mod acts;
+mod mutate;
+mod random;
+
+use std::{f32::consts::FRAC_PI_2, time::Instant};
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use self::{
+    acts::{Pool, act},
+    mutate::OTHERS,
+    random::Random,
+};
+use crate::support::*;
+
+/// Runs by default, and ticks of each.
+const RUNS: u64 = 12;
+const TICKS: usize = 400;
+
+/// Farther than this nothing without a fault may be from its frame (m), as `ClothParticles::validate` has it.
+const FARTHEST: f32 = 1.0e18;
+
+fn told(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// Where the control cloth is: far from all acts.
+const CONTROL: Vec3 = Vec3::new(0.0, 3000.0, 0.0);
+
+/// An app with a cloth, and a ball that swings below it, to be compared.
+fn app_with_control() -> (App, Entity) {
+    let mut app = app_that_draws(FixedUpdate);
+    let place = Transform::from_translation(CONTROL);
+    // Half-spaces and what is huge reach it too.
+    let layers = ClothLayers::new(!OTHERS, !OTHERS);
+    let cloth = (Cloth::new(8, 8, 0.1).lying(), layers, place);
+    let cloth = app.world_mut().spawn(cloth).id();
+    let ball = Transform::from_translation(CONTROL + Vec3::new(0.35, -0.3, 0.35));
+    app.world_mut()
+        .spawn((ClothCollider::ball(0.2), layers, ball));
+    (app, cloth)
+}
+
+/// The time, gravity and air of a tick, the same in both apps.
+fn set_world(app: &mut App, random: &mut Random) {
+    match random.below(60) {
+        0 => {
+            let seconds = [
+                1.0e-6,
+                1.0e-3,
+                1.0 / 240.0,
+                1.0 / 64.0,
+                1.0 / 10.0,
+                1.0,
+                10.0,
+            ];
+            let seconds = seconds[random.below(seconds.len())];
+            let mut time = app.world_mut().resource_mut::<Time<Fixed>>();
+            time.set_timestep_seconds(seconds);
+        }
+        1 => app.world_mut().resource_mut::<Time<Virtual>>().pause(),
+        2..=6 => app.world_mut().resource_mut::<Time<Virtual>>().unpause(),
+        7 => drop(app.insert_resource(ClothGravity(random.vector()))),
+        8..=9 => drop(
+            app.init_resource::<ClothGravity>()
+                .insert_resource(ClothGravity::default()),
+        ),
+        10 => {
+            let wind = ClothWind {
+                velocity: random.vector(),
+                gusts: random.number(),
+                turbulence: random.number(),
+                turbulence_length: random.number(),
+                ..default()
+            };
+            app.insert_resource(wind);
+        }
+        11..=12 => drop(app.world_mut().remove_resource::<ClothWind>()),
+        _ => {}
+    }
+}
+
+/// What is not finite, of a cloth that has no fault.
+fn wrong(app: &mut App) -> Option<String> {
+    let mut cloths = app.world_mut().query_filtered::<(
+        Entity,
+        &ClothParticles,
+        &ClothContacts,
+        &ClothStats,
+    ), Without<ClothFault>>();
+    for (entity, particles, contacts, stats) in cloths.iter(app.world()) {
+        for (index, place) in particles.positions().enumerate() {
+            let speed = particles.velocity(index).expect("it exists");
+            if !(place.length() < FARTHEST && speed.is_finite()) {
+                return Some(format!(
+                    "{entity}: particle {index} at {place}, {speed} m/s"
+                ));
+            }
+        }
+        for contact in contacts.iter() {
+            let figures = [contact.deepest_penetration, contact.area, contact.volume];
+            let given = [contact.impulse, contact.angular_impulse];
+            if !(figures.iter().all(|f| f.is_finite()) && given.iter().all(|f| f.is_finite())) {
+                return Some(format!("{entity}: {contact:?}"));
+            }
+        }
+        let is_finite = stats.air_impulse.is_finite() && stats.gauge_pressure.is_finite();
+        if !is_finite {
+            return Some(format!("{entity}: {stats:?}"));
+        }
+    }
+    None
+}
+
+/// Whether a zone of wind may be so large by now that it reaches the control cloth.
+fn may_blow(app: &mut App) -> bool {
+    let mut zones = app
+        .world_mut()
+        .query::<(&ClothWindZone, Option<&GlobalTransform>)>();
+    zones.iter(app.world()).any(|(zone, place)| {
+        let length = match zone.shape {
+            ClothWindShape::Ball { radius } => radius,
+            ClothWindShape::Cuboid { half_size } => half_size.length(),
+            ClothWindShape::Cone { length, angle } => length / (FRAC_PI_2 - angle),
+        };
+        let place = place.copied().unwrap_or_default();
+        let reach = 4.0 * length * place.scale().abs().max_element() + place.translation().length();
+        let is_near = reach < CONTROL.length() / 4.0;
+        !is_near
+    })
+}
+
+#[derive(Default)]
+struct Counts {
+    acts: usize,
+    cloth_ticks: usize,
+    faults: usize,
+    bits: usize,
+    substeps: u64,
+    slowest: f64,
+}
+
+/// Acts between two of the systems of a tick.
+fn between(world: &mut World) {
+    if world.resource_mut::<Random>().one_in(6) {
+        act(world);
+    }
+}
+
+fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
+    let (mut app, control) = app_with_control();
+    let (mut alone, same) = app_with_control();
+    let roots =
+        [0.0, 0.4, -0.4].map(|x| app.world_mut().spawn(Transform::from_xyz(x, 0.0, 0.0)).id());
+    app.insert_resource(Random(seed));
+    app.insert_resource(Pool {
+        roots: roots.to_vec(),
+        ..default()
+    });
+    if acts_between {
+        use ClothSystems::{Integrate, Prepare, Query, Rebuild, WriteBack};
+        app.add_systems(
+            FixedUpdate,
+            (
+                between.after(Prepare).before(Rebuild),
+                between.after(Rebuild).before(Query),
+                between.after(Query).before(Integrate),
+                between.after(Integrate).before(WriteBack),
+            ),
+        );
+    }
+    let mut saved: Option<[ClothWorldSnapshot; 2]> = None;
+    let mut is_in_wind = false;
+    let mut of_world = Random(seed ^ 0xABCD);
+    for number in 0..TICKS {
+        for _ in 0..app.world_mut().resource_mut::<Random>().below(4) {
+            act(app.world_mut());
+        }
+        let before = of_world.clone();
+        set_world(&mut app, &mut of_world);
+        set_world(&mut alone, &mut before.clone());
+        if let Some(saves) = app.world_mut().resource_mut::<Pool>().request.take() {
+            if saves {
+                saved =
+                    Some([&mut app, &mut alone].map(|app| ClothWorldSnapshot::of(app.world_mut())));
+            } else if let Some([own, other]) = &saved
+                // What has gone meanwhile is an error.
+                && own.restore(app.world_mut()).is_ok()
+            {
+                other.restore(alone.world_mut()).expect("nothing has gone");
+            }
+        }
+        if std::env::var("ZZ").is_ok() { eprintln!("ZZ tick {number} {:?} {:?} {:?}", app.world().resource::<Time<Fixed>>().timestep(), app.world().get_resource::<ClothGravity>(), app.world().get_resource::<ClothWind>()); }
+        let start = Instant::now();
+        app.update();
+        counts.slowest = counts.slowest.max(start.elapsed().as_secs_f64());
+        alone.update();
+        let context = format!("seed {seed}, tick {number}, acts between systems: {acts_between}");
+        if std::env::var("ZZ").is_ok() { let e=start.elapsed().as_secs_f64(); if e>0.2 { eprintln!("ZZ slow {e} s"); let mut q=app.world_mut().query::<(Entity,&ClothStats,&ClothSettings)>(); for (x,s,t) in q.iter(app.world()) { eprintln!("   {x} {s:?} {t:?}"); } } }
+        if let Some(wrong) = wrong(&mut app) {
+            panic!("{context}: {wrong}");
+        }
+        let world = app.world_mut();
+        counts.cloth_ticks += world.query::<&Cloth>().iter(world).count();
+        counts.faults += world.query::<&ClothFault>().iter(world).count();
+        let mut all = world.query::<&ClothStats>();
+        let all = all.iter(world);
+        counts.substeps += all.map(|stats| u64::from(stats.substeps)).sum::<u64>();
+        is_in_wind |= may_blow(&mut app);
+        if is_in_wind {
+            continue;
+        }
+        let (own, truth) = (particles(&app, control), particles(&alone, same));
+        if own != truth { let m=own.positions().zip(truth.positions()).map(|(a,b)|a.distance(b)).fold(0.0f32,f32::max); eprintln!("ZZ differs by {m} {:?} {:?}\n {:?}\n {:?} {:?} {:?}", stats(&app,control), stats(&alone,same), app.world().get::<ClothContacts>(control).map(|c|c.iter().map(|c|c.collider).collect::<Vec<_>>()), alone.world().get::<ClothContacts>(same).map(|c|c.iter().map(|c|c.collider).collect::<Vec<_>>()), app.world().get::<ClothFault>(control), app.world().get_resource::<ClothGravity>()); }
+        assert!(own == truth, "{context}: the control cloth is another");
+        counts.bits += own.len() * 7 * 32;
+    }
+    counts.acts += app.world().resource::<Pool>().acts;
+}
+
+#[test]
+fn garbage_harms_nobody_else() {
+    let (runs, seed) = (told("BEVY_DRAPE_FUZZ"), told("BEVY_DRAPE_SEED"));
+    let mut counts = Counts::default();
+    let first = seed.unwrap_or(0);
+    for seed in first..first + runs.unwrap_or(RUNS) {
+        run(seed, seed % 2 == 1, &mut counts);
+        if runs.is_some() {
+            let Counts {
+                acts,
+                cloth_ticks,
+                faults,
+                bits,
+                substeps,
+                slowest,
+            } = &counts;
+            println!(
+                "{} runs: {acts} acts, {cloth_ticks} cloth-ticks, {faults} of them with a fault, {substeps} sub-steps, {bits} bits compared, the slowest tick {slowest:.2} s",
+                seed + 1 - first
+            );
+        }
+    }
+}
