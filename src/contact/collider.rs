@@ -89,8 +89,8 @@ pub enum ClothCollider {
     Mesh(MeshCollider),
     /// Several shapes, each where it is in the entity's frame (m).
     Compound(Vec<(Isometry3d, Self)>),
-    /// Points, triangles or heights, given in code: not stored in a scene file.
-    Shared(SharedCollider),
+    /// Points, triangles or heights, given in code: a scene file does not hold them, and what is read from it is a fault.
+    Shared(#[reflect(ignore)] SharedCollider),
 }
 
 /// What is made of a mesh.

@@ -48,7 +48,7 @@ pub struct ClothBones(Vec<ClothBone>);
 
 /// A ball around a bone's head, or a capsule from there to another bone's.
 #[derive(Reflect, Debug, Clone, PartialEq)]
-#[reflect(Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothBone {
     /// The `Name` of the bone that it is a child of.
     pub bone: String,
@@ -56,6 +56,13 @@ pub struct ClothBone {
     pub end: Option<String>,
     /// Radius (m), whatever the bone's scale is as it is found.
     pub radius: f32,
+}
+
+impl Default for ClothBone {
+    /// A ball of 0.1 m around what has an empty `Name`: nothing, as long as nobody says what.
+    fn default() -> Self {
+        Self::ball("", 0.1)
+    }
 }
 
 impl ClothBone {
@@ -89,9 +96,31 @@ impl ClothBones {
     }
 }
 
-/// The colliders that were made of a [`ClothBones`].
-#[derive(Component, Debug, Default)]
-pub(super) struct BoneColliders(Vec<Entity>);
+/// The colliders that were made of a [`ClothBones`]. Reflected, so that the colliders in a scene are known for what they are.
+#[derive(Component, Reflect, Debug, Default, Clone)]
+#[reflect(Component, Default)]
+pub(super) struct BoneColliders(#[entities] Vec<Entity>);
+
+/// On such a collider: whose it is. One that a clone of the skeleton remembers, but that was not cloned along, is not its own.
+#[derive(Component, Reflect, Debug, Clone, Copy)]
+#[reflect(Component)]
+pub(super) struct BoneColliderOf(#[entities] Entity);
+
+impl BoneColliders {
+    /// Despawns those of a skeleton, and forgets all.
+    fn despawn(
+        &mut self,
+        skeleton: Entity,
+        owners: &Query<&BoneColliderOf, Allow<Disabled>>,
+        commands: &mut Commands,
+    ) {
+        for collider in self.0.drain(..) {
+            if owners.get(collider).is_ok_and(|of| of.0 == skeleton) {
+                commands.entity(collider).try_despawn();
+            }
+        }
+    }
+}
 
 /// Makes colliders of bones that have been found, and of those that are to be found again.
 pub(super) fn make_bone_colliders(
@@ -103,6 +132,7 @@ pub(super) fn make_bone_colliders(
     )>,
     living: Query<(), Allow<Disabled>>,
     named: Query<(Option<&Name>, Option<&Children>), Allow<Disabled>>,
+    owners: Query<&BoneColliderOf, Allow<Disabled>>,
     places: Places,
     mut commands: Commands,
 ) {
@@ -120,14 +150,11 @@ pub(super) fn make_bone_colliders(
             // Its scene is on its way.
             None => Ok(()),
             Some(colliders) => colliders.map(|colliders| {
-                for old in made.0.drain(..) {
-                    commands.entity(old).try_despawn();
-                }
-                made.0.extend(
-                    colliders
-                        .into_iter()
-                        .map(|bundle| commands.spawn(bundle).id()),
-                );
+                made.despawn(entity, &owners, &mut commands);
+                made.0.extend(colliders.into_iter().map(|bundle| {
+                    let collider = (bundle, BoneColliderOf(entity));
+                    commands.spawn(collider).id()
+                }));
             }),
         };
         ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
@@ -138,12 +165,11 @@ pub(super) fn make_bone_colliders(
 pub(super) fn remove_bone_colliders(
     removed: On<Remove, ClothBones>,
     mut made: Query<&mut BoneColliders, Allow<Disabled>>,
+    owners: Query<&BoneColliderOf, Allow<Disabled>>,
     mut commands: Commands,
 ) {
     if let Ok(mut made) = made.get_mut(removed.entity) {
-        for collider in made.0.drain(..) {
-            commands.entity(collider).try_despawn();
-        }
+        made.despawn(removed.entity, &owners, &mut commands);
     }
 }
 
