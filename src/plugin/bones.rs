@@ -96,28 +96,24 @@ impl ClothBones {
     }
 }
 
-/// The colliders that were made of a [`ClothBones`]. Reflected, so that the colliders in a scene are known for what they are.
-#[derive(Component, Reflect, Debug, Default, Clone)]
-#[reflect(Component, Default)]
-pub(super) struct BoneColliders(#[entities] Vec<Entity>);
+/// The colliders that were made of a [`ClothBones`].
+#[derive(Component, Debug, Default)]
+#[component(clone_behavior = Ignore)]
+pub(super) struct BoneColliders(Vec<Entity>);
 
-/// On such a collider: whose it is. One that a clone of the skeleton remembers, but that was not cloned along, is not its own.
+/// On such a collider: whose it is. Reflected and mapped, so that one in a scene, or one that was cloned along with its skeleton, is known
+/// for what it is, and gives way to a new one.
 #[derive(Component, Reflect, Debug, Clone, Copy)]
 #[reflect(Component)]
 pub(super) struct BoneColliderOf(#[entities] Entity);
 
-impl BoneColliders {
-    /// Despawns those of a skeleton, and forgets all.
-    fn despawn(
-        &mut self,
-        skeleton: Entity,
-        owners: &Query<&BoneColliderOf, Allow<Disabled>>,
-        commands: &mut Commands,
-    ) {
-        for collider in self.0.drain(..) {
-            if owners.get(collider).is_ok_and(|of| of.0 == skeleton) {
-                commands.entity(collider).try_despawn();
-            }
+type Owners<'w, 's> = Query<'w, 's, (Entity, &'static BoneColliderOf), Allow<Disabled>>;
+
+/// Despawns the colliders of a skeleton.
+fn despawn_colliders(skeleton: Entity, owners: &Owners, commands: &mut Commands) {
+    for (collider, of) in owners {
+        if of.0 == skeleton {
+            commands.entity(collider).try_despawn();
         }
     }
 }
@@ -132,7 +128,7 @@ pub(super) fn make_bone_colliders(
     )>,
     living: Query<(), Allow<Disabled>>,
     named: Query<(Option<&Name>, Option<&Children>), Allow<Disabled>>,
-    owners: Query<&BoneColliderOf, Allow<Disabled>>,
+    owners: Owners,
     places: Places,
     mut commands: Commands,
 ) {
@@ -150,7 +146,8 @@ pub(super) fn make_bone_colliders(
             // Its scene is on its way.
             None => Ok(()),
             Some(colliders) => colliders.map(|colliders| {
-                made.despawn(entity, &owners, &mut commands);
+                despawn_colliders(entity, &owners, &mut commands);
+                made.0.clear();
                 made.0.extend(colliders.into_iter().map(|bundle| {
                     let collider = (bundle, BoneColliderOf(entity));
                     commands.spawn(collider).id()
@@ -165,12 +162,13 @@ pub(super) fn make_bone_colliders(
 pub(super) fn remove_bone_colliders(
     removed: On<Remove, ClothBones>,
     mut made: Query<&mut BoneColliders, Allow<Disabled>>,
-    owners: Query<&BoneColliderOf, Allow<Disabled>>,
+    owners: Owners,
     mut commands: Commands,
 ) {
     if let Ok(mut made) = made.get_mut(removed.entity) {
-        made.despawn(removed.entity, &owners, &mut commands);
+        made.0.clear();
     }
+    despawn_colliders(removed.entity, &owners, &mut commands);
 }
 
 /// The entities below one, and itself, by their names; of several of a name the first. `None` as long as nothing below has one.

@@ -9,10 +9,7 @@ use bevy::{
     reflect::{FromReflect, GetTypeRegistration, PartialReflect, ReflectMut, ReflectRef, TypePath},
 };
 
-use super::{
-    ClothAttachments, ClothBones, ClothLod, GlobalClothLod,
-    bones::{BoneColliderOf, BoneColliders},
-};
+use super::{ClothAttachments, ClothBones, ClothLod, GlobalClothLod, bones::BoneColliderOf};
 use crate::{
     cloth::{Cloth, ClothSkin, Pins},
     contact::ClothCollider,
@@ -28,7 +25,6 @@ pub(super) fn register_lists(app: &mut App) {
     register::<ClothSkin>(app);
     register::<ClothLod>(app);
     register::<GlobalClothLod>(app);
-    register::<BoneColliders>(app);
     app.register_type::<BoneColliderOf>();
 }
 

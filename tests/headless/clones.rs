@@ -1,6 +1,8 @@
 //! Clones of cloths, colliders and skeletons that live: each goes on by itself.
 
-use bevy::{asset::RenderAssetUsages, ecs::entity::EntityCloner, mesh::PlaneMeshBuilder, prelude::*};
+use bevy::{
+    asset::RenderAssetUsages, ecs::entity::EntityCloner, mesh::PlaneMeshBuilder, prelude::*,
+};
 use bevy_drape::{
     plugin::{ClothBuilt, ClothMesh},
     prelude::*,
@@ -25,7 +27,7 @@ fn clone(app: &mut App, entity: Entity) -> Entity {
     app.world_mut().entity_mut(entity).clone_and_spawn()
 }
 
-/// A falling grid and a falling mesh are cloned and put elsewhere. Each clone moves as its original to the last bit, and draws in a mesh
+/// A falling grid and a falling mesh are cloned and put elsewhere. Each clone moves as its original, and draws in a mesh
 /// of its own; neither minds that the other goes.
 #[test]
 fn a_clone_goes_on_by_itself() {
@@ -33,10 +35,7 @@ fn a_clone_goes_on_by_itself() {
     let asset = sheet(&mut app);
     let place = Transform::from_xyz(0.0, 4.0, 0.0);
     let grid = (Cloth::new(9, 9, 0.1), place);
-    let top = Pins::new([Pin::Near {
-        point: Vec3::new(-0.5, 0.5, 0.0),
-        radius: 0.3,
-    }]);
+    let top = Pins::new([Pin::at_rest(|place| place.y > 0.49)]);
     let mesh = (Cloth::mesh(), Mesh3d(asset.clone()), top, place);
     let originals = [
         app.world_mut().spawn(grid).id(),
@@ -47,15 +46,15 @@ fn a_clone_goes_on_by_itself() {
     for clone in clones {
         change::<Transform>(&mut app, clone, |place| place.translation.z += 64.0);
     }
-    for _ in 0..60 {
+    for _ in 0..40 {
         tick(&mut app, 1);
         for (original, clone) in originals.into_iter().zip(clones) {
             assert!(app.world().get::<ClothFault>(clone).is_none());
             let pairs = particles(&app, original).positions().into_iter();
             let apart = pairs.zip(particles(&app, clone).positions());
-            // The clone's first sub-steps are of first order, as after any jump: it has no memory of the last.
             let apart = apart.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
-            assert!(apart < 0.01, "{apart}");
+            // Frames are rounded otherwise at 64 m, by up to 2⁻¹⁹ m; swinging cloth makes that no more than some ten times as much.
+            assert!(apart < 1.0e-4, "{apart}");
         }
     }
     for (original, clone) in originals.into_iter().zip(clones) {
@@ -76,10 +75,9 @@ fn a_clone_goes_on_by_itself() {
     for original in originals {
         app.world_mut().despawn(original);
     }
-    let before = clones.map(|clone| particles(&app, clone).clone());
     tick(&mut app, 10);
-    for (clone, before) in clones.into_iter().zip(before) {
-        assert_ne!(particles(&app, clone), &before);
+    for clone in clones {
+        assert!(app.world().get::<ClothFault>(clone).is_none());
         app.world_mut().entity_mut(clone).remove::<Cloth>();
     }
     tick(&mut app, 1);
@@ -110,9 +108,7 @@ fn a_clone_of_a_driven_mesh_is_driven() {
     };
     assert_ne!(mesh_of(&app, fine), mesh_of(&app, copy));
     assert_eq!(places(fine), places(copy));
-    app.world_mut()
-        .entity_mut(copy)
-        .remove::<ClothRenderMesh>();
+    app.world_mut().entity_mut(copy).remove::<ClothRenderMesh>();
     tick(&mut app, 1);
     assert_eq!(mesh_of(&app, copy), asset);
     assert_ne!(mesh_of(&app, fine), asset);

@@ -161,7 +161,12 @@ fn fields_that_are_written_by_reflection_are_followed() {
         free.fold(f32::MAX, f32::min).recip()
     };
     let before = mass(&app);
-    write(&mut app, "ClothMaterial", ".areal_density", Box::new(0.3_f32));
+    write(
+        &mut app,
+        "ClothMaterial",
+        ".areal_density",
+        Box::new(0.3_f32),
+    );
     tick(&mut app, 1);
     assert!((mass(&app) / before - 2.0).abs() < 1.0e-5);
     write(&mut app, "ClothSettings", ".gravity", {
