@@ -59,6 +59,7 @@ pub struct Cloth {
 /// What a [`Cloth`] is made from.
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothShape {
     /// A grid of particles.
     Grid(GridShape),

@@ -96,6 +96,7 @@ pub enum ClothCollider {
 /// What is made of a mesh.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
+#[non_exhaustive]
 pub enum MeshCollider {
     /// Its triangles: a closed mesh has an outer side only, an open one two.
     #[default]

@@ -51,6 +51,7 @@ pub struct ClothAttachment {
 /// What pins follow.
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothTarget {
     /// An entity.
     Entity(Entity),

@@ -50,7 +50,7 @@ fn a_clone_goes_on_by_itself() {
         tick(&mut app, 1);
         for (original, clone) in originals.into_iter().zip(clones) {
             assert!(app.world().get::<ClothFault>(clone).is_none());
-            let pairs = particles(&app, original).positions().into_iter();
+            let pairs = particles(&app, original).positions();
             let apart = pairs.zip(particles(&app, clone).positions());
             let apart = apart.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
             // Frames are rounded otherwise at 64 m, by up to 2⁻¹⁹ m; swinging cloth makes that no more than some ten times as much.

@@ -25,6 +25,7 @@ pub enum Corner {
 /// Particles to pin.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Pin {
     /// The particle with this index.
     Index(usize),

@@ -29,6 +29,7 @@ pub struct ClothWindZone {
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothWindShape {
     /// A ball.
     Ball {

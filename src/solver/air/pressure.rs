@@ -17,6 +17,7 @@ const ATMOSPHERE: f32 = 101_325.0;
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothPressure {
     /// That of the inside over that of the outside (Pa), as of what a fan or a pump holds; negative where it is sucked empty. From −10⁹
     /// to 10⁹.
