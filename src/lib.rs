@@ -34,6 +34,7 @@
 //! How to use it is told in the [`guide`], chapter by chapter.
 //!
 //! Lengths are metres, masses kilograms, times seconds throughout.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod cloth;
 pub mod contact;

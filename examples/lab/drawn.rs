@@ -105,7 +105,7 @@ impl Drawn {
     pub fn show(&mut self, volume: BoundingVolume, levels: Option<RangeInclusive<usize>>) {
         let mut cloth = self.app.world_mut().entity_mut(self.cloth);
         let show = ShowClothGizmos {
-            levels,
+            levels: levels.map(|levels| [*levels.start(), *levels.end()]),
             ..ShowClothGizmos::nothing()
         };
         cloth.insert((SearchMethod::Tree(volume, BoundRule::Refit), show));

@@ -169,9 +169,9 @@ fn press_gizmo_keys(
         let leaves = built.tree().levels().len().saturating_sub(1);
         if keys.just_pressed(KeyCode::KeyL) {
             // All levels, then none.
-            show.levels = match show.levels.as_ref().map(|levels| *levels.start()) {
-                None => Some(0..=0),
-                Some(level) if level < leaves => Some(level + 1..=level + 1),
+            show.levels = match show.levels.map(|[first, _]| first) {
+                None => Some([0; 2]),
+                Some(level) if level < leaves => Some([level + 1; 2]),
                 Some(_) => None,
             };
         }

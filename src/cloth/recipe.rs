@@ -58,7 +58,8 @@ pub struct Cloth {
 
 /// What a [`Cloth`] is made from.
 #[derive(Reflect, Debug, Clone, PartialEq)]
-#[reflect(Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothShape {
     /// A grid of particles.
     Grid(GridShape),
@@ -77,6 +78,13 @@ pub enum ClothShape {
         /// Vertices no farther apart than this are one particle (m), before the transform's scale.
         weld: f32,
     },
+}
+
+impl Default for ClothShape {
+    /// 16 × 16 particles, 0.1 m apart.
+    fn default() -> Self {
+        Cloth::default().shape
+    }
 }
 
 impl Default for Cloth {

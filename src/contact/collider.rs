@@ -89,13 +89,14 @@ pub enum ClothCollider {
     Mesh(MeshCollider),
     /// Several shapes, each where it is in the entity's frame (m).
     Compound(Vec<(Isometry3d, Self)>),
-    /// Points, triangles or heights, given in code: not stored in a scene file.
-    Shared(SharedCollider),
+    /// Points, triangles or heights, given in code: a scene file does not hold them, and what is read from it is a fault.
+    Shared(#[reflect(ignore)] SharedCollider),
 }
 
 /// What is made of a mesh.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
+#[non_exhaustive]
 pub enum MeshCollider {
     /// Its triangles: a closed mesh has an outer side only, an open one two.
     #[default]

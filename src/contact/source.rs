@@ -32,6 +32,8 @@ struct Made {
 
 #[derive(Debug)]
 enum Source {
+    /// Of a file, which can't hold any of these.
+    Nothing,
     Hull(Vec<Vec3>),
     Triangles(Vec<Vec3>, Vec<[u32; 3]>),
     HeightField {
@@ -46,6 +48,13 @@ enum Source {
 impl PartialEq for SharedCollider {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Default for SharedCollider {
+    /// What is left of any in a scene file: a fault.
+    fn default() -> Self {
+        Self::new(Source::Nothing)
     }
 }
 
@@ -115,6 +124,11 @@ impl Source {
     fn build(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         let mut parts = Parts::default();
         match self {
+            Self::Nothing => {
+                return Err(ClothError::NoSuchShape {
+                    shape: "points or triangles that code has given, which no file holds".into(),
+                });
+            }
             Self::Hull(points) => {
                 let points: Vec<Vec3> = points.iter().map(|&point| point * scale).collect();
                 parts.add_hull_of(&points)?;

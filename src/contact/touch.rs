@@ -7,6 +7,7 @@ use super::{MovingCollider, NarrowPhase, candidates::Ranges};
 /// A particle near a collider, and how near it came.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct ContactPoint {
     /// Index of the particle; where the collider is tested against triangles, of one that stands for them.
     pub particle: u32,
@@ -17,6 +18,7 @@ pub struct ContactPoint {
 
 /// A collider that may touch the cloth in this tick.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Touch {
     /// Which of the caller's colliders.
     pub id: usize,

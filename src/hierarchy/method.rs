@@ -24,6 +24,7 @@ const PARTICLES_A_COLLIDER: f32 = 600.0;
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
+#[non_exhaustive]
 pub enum SearchMethod {
     /// Whatever costs least, by the number of particles and of colliders near.
     #[default]
@@ -105,6 +106,7 @@ impl fmt::Display for SearchMethod {
 /// Why a cloth was searched as it was.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
+#[non_exhaustive]
 pub enum SearchReason {
     /// No collider was near: nothing was searched.
     #[default]

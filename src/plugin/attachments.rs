@@ -38,8 +38,8 @@ use crate::cloth::Pin;
 pub struct ClothAttachments(#[entities] Vec<ClothAttachment>);
 
 /// A pin and the entity that it follows.
-#[derive(Reflect, MapEntities, Debug, Clone, PartialEq)]
-#[reflect(Debug, Clone, PartialEq)]
+#[derive(Reflect, MapEntities, Debug, Default, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothAttachment {
     /// The particles.
     pub pin: Pin,
@@ -50,13 +50,21 @@ pub struct ClothAttachment {
 
 /// What pins follow.
 #[derive(Reflect, Debug, Clone, PartialEq)]
-#[reflect(Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothTarget {
     /// An entity.
     Entity(Entity),
     /// The entity of this `Name`, as a scene or a modelling program gave it; of several the one that was
     /// spawned first. While there is none the cloth stands still, with a fault.
     Named(String),
+}
+
+impl Default for ClothTarget {
+    /// What has an empty `Name`: nothing, as long as nobody says what.
+    fn default() -> Self {
+        Self::Named(String::new())
+    }
 }
 
 impl MapEntities for ClothTarget {

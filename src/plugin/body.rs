@@ -19,7 +19,7 @@ use crate::{cloth::ClothError, contact::BodyMass};
 ///
 /// A cloth that pushes a body does not sleep.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
-#[reflect(Component, Debug, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(ClothPush)]
 pub struct ClothBody {
     /// Mass (kg), positive.
@@ -45,6 +45,13 @@ pub struct ClothPush {
     pub velocity: Vec3,
     /// Of its angular velocity (rad/s).
     pub angular_velocity: Vec3,
+}
+
+impl Default for ClothBody {
+    /// A solid ball of 1 kg and of the default collider's radius, 1 m.
+    fn default() -> Self {
+        Self::ball(1.0, 1.0)
+    }
 }
 
 impl ClothBody {

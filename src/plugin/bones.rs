@@ -48,7 +48,7 @@ pub struct ClothBones(Vec<ClothBone>);
 
 /// A ball around a bone's head, or a capsule from there to another bone's.
 #[derive(Reflect, Debug, Clone, PartialEq)]
-#[reflect(Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothBone {
     /// The `Name` of the bone that it is a child of.
     pub bone: String,
@@ -56,6 +56,13 @@ pub struct ClothBone {
     pub end: Option<String>,
     /// Radius (m), whatever the bone's scale is as it is found.
     pub radius: f32,
+}
+
+impl Default for ClothBone {
+    /// A ball of 0.1 m around what has an empty `Name`: nothing, as long as nobody says what.
+    fn default() -> Self {
+        Self::ball("", 0.1)
+    }
 }
 
 impl ClothBone {
@@ -91,10 +98,28 @@ impl ClothBones {
 
 /// The colliders that were made of a [`ClothBones`].
 #[derive(Component, Debug, Default)]
+#[component(clone_behavior = Ignore)]
 pub(super) struct BoneColliders {
     all: Vec<Entity>,
     /// Whether names were missing when they were looked for.
     waits: bool,
+}
+
+/// On such a collider: whose it is. Reflected and mapped, so that one in a scene, or one that was cloned along with its skeleton, is known
+/// for what it is, and gives way to a new one.
+#[derive(Component, Reflect, Debug, Clone, Copy)]
+#[reflect(Component)]
+pub(super) struct BoneColliderOf(#[entities] Entity);
+
+type Owners<'w, 's> = Query<'w, 's, (Entity, &'static BoneColliderOf), Allow<Disabled>>;
+
+/// Despawns the colliders of a skeleton.
+fn despawn_colliders(skeleton: Entity, owners: &Owners, commands: &mut Commands) {
+    for (collider, of) in owners {
+        if of.0 == skeleton {
+            commands.entity(collider).try_despawn();
+        }
+    }
 }
 
 /// Makes colliders of bones that have been found, and of those that are to be found again.
@@ -108,6 +133,7 @@ pub(super) fn make_bone_colliders(
     living: Query<(), Allow<Disabled>>,
     named: Query<(Option<&Name>, Option<&Children>), Allow<Disabled>>,
     renamed: Query<(), (Or<(Changed<Name>, Changed<Children>)>, Allow<Disabled>)>,
+    owners: Owners,
     places: Places,
     mut commands: Commands,
 ) {
@@ -128,14 +154,12 @@ pub(super) fn make_bone_colliders(
             // Its scene is on its way.
             None => Ok(()),
             Some(colliders) => colliders.map(|colliders| {
-                for old in made.all.drain(..) {
-                    commands.entity(old).try_despawn();
-                }
-                made.all.extend(
-                    colliders
-                        .into_iter()
-                        .map(|bundle| commands.spawn(bundle).id()),
-                );
+                despawn_colliders(entity, &owners, &mut commands);
+                made.all.clear();
+                made.all.extend(colliders.into_iter().map(|bundle| {
+                    let collider = (bundle, BoneColliderOf(entity));
+                    commands.spawn(collider).id()
+                }));
             }),
         };
         ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
@@ -146,13 +170,13 @@ pub(super) fn make_bone_colliders(
 pub(super) fn remove_bone_colliders(
     removed: On<Remove, ClothBones>,
     mut made: Query<&mut BoneColliders, Allow<Disabled>>,
+    owners: Owners,
     mut commands: Commands,
 ) {
     if let Ok(mut made) = made.get_mut(removed.entity) {
-        for collider in made.all.drain(..) {
-            commands.entity(collider).try_despawn();
-        }
+        made.all.clear();
     }
+    despawn_colliders(removed.entity, &owners, &mut commands);
 }
 
 /// The entities below one, and itself, by their names; of several of a name the first. `None` as long as nothing below has one.

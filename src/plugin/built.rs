@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{change_detection::Tick, component::Component, reflect::ReflectComponent},
+    ecs::{change_detection::Tick, component::Component},
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
@@ -16,9 +16,10 @@ use crate::{
 };
 
 /// What a cloth's surface, springs, tree and solver are. Made from its other components, and made again where they change.
-/// Empty until the first tick. Reflected as nothing.
+/// Empty until the first tick. Neither scenes nor clones have it.
 #[derive(Component, Reflect, Debug, Default)]
-#[reflect(Component, Default, Debug)]
+#[reflect(Default, Debug)]
+#[component(clone_behavior = Ignore)]
 pub struct ClothBuilt {
     /// What cloths made alike have in common.
     #[reflect(ignore)]

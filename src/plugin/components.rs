@@ -1,7 +1,7 @@
 //! What a search leaves behind, and where a cloth may be touched.
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
+    ecs::component::Component,
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
@@ -9,10 +9,11 @@ use bevy::{
 use super::frame::Shift;
 use crate::hierarchy::{NodeBounds, TopDownQuery};
 
-/// The bounding volumes of the last tick in which something was near, and what the search through them found. Reflected
-/// as nothing, as it is of one tick.
+/// The bounding volumes of the last tick in which something was near, and what the search through them found. Neither
+/// scenes nor clones have it, as it is of one tick.
 #[derive(Component, Reflect, Debug, Default)]
-#[reflect(Component, Default, Debug)]
+#[reflect(Default, Debug)]
+#[component(clone_behavior = Ignore)]
 pub struct ClothSearch {
     #[reflect(ignore)]
     pub(super) bounds: NodeBounds,

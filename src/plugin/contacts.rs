@@ -135,6 +135,7 @@ fn finite(value: Vec3) -> Vec3 {
 
 /// A cloth and a collider have begun to touch.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ClothTouchStarted {
     /// The cloth's entity.
     pub cloth: Entity,
@@ -148,6 +149,7 @@ pub struct ClothTouchStarted {
 
 /// A cloth and a collider no longer touch, or one of them is gone: the entities may no longer exist.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ClothTouchStopped {
     /// The cloth's entity.
     pub cloth: Entity,

@@ -22,6 +22,7 @@ const GATHERED: u32 = 32;
 /// A cloth has left the envelope in which it is simulated well, for more than an instant. It is logged as well, with the
 /// remedy: once for each limit, and again when it is ten times worse.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ClothLimitExceeded {
     /// The cloth.
     pub cloth: Entity,

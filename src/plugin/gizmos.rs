@@ -84,8 +84,8 @@ impl Default for ClothGizmos {
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ShowClothGizmos {
     /// Levels of the tree whose volumes are drawn, 0 for the root; those deeper than the tree are its leaves'.
-    /// `None` for no volumes. They are those that the cloth's [`SearchMethod`] asks for, by default spheres.
-    pub levels: Option<RangeInclusive<usize>>,
+    /// The first and the last; `None` for no volumes. They are those that the cloth's [`SearchMethod`] asks for, by default spheres.
+    pub levels: Option<[usize; 2]>,
     /// Whether the springs are drawn.
     pub springs: bool,
     /// The part of the cloth that is drawn, in the UV coordinates of its mesh: on a grid from (0, 0), where particle 0 is, to
@@ -110,7 +110,7 @@ impl ShowClothGizmos {
     /// The volumes of several levels.
     pub fn levels(levels: RangeInclusive<usize>) -> Self {
         Self {
-            levels: Some(levels),
+            levels: Some([*levels.start(), *levels.end()]),
             ..Self::nothing()
         }
     }
@@ -202,7 +202,7 @@ fn draw_cloths(
             && cloth.built.matches(cloth.particles)
             && cloth.visible.is_none_or(|visible| visible.get())
         {
-            if let Some(levels) = &show.levels {
+            if let Some(levels) = show.levels {
                 drawing.search(&cloth);
                 drawing.draw(&cloth, show, levels, look, &mut gizmos);
             }
@@ -254,7 +254,7 @@ impl Drawing {
         &self,
         cloth: &DrawnItem,
         show: &ShowClothGizmos,
-        levels: &RangeInclusive<usize>,
+        [first, last]: [usize; 2],
         look: &ClothGizmos,
         gizmos: &mut Gizmos<ClothGizmos>,
     ) {
@@ -264,7 +264,7 @@ impl Drawing {
         };
         let radius = cloth.scratch.contact_settings.particle_radius;
         let smallest = look.smallest * surface.spacing().typical;
-        for level in *levels.start().min(&leaves)..=*levels.end().min(&leaves) {
+        for level in first.min(leaves)..=last.min(leaves) {
             let radius = if level == leaves {
                 radius.max(smallest)
             } else {

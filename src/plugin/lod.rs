@@ -18,6 +18,7 @@ const MOST_TICKS: u32 = 16;
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothLodLevel {
     /// It is moved in each tick.
     #[default]

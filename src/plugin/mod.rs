@@ -47,6 +47,7 @@ mod push;
 mod rapier;
 #[cfg(feature = "rapier")]
 mod rapier_body;
+mod reflected;
 #[cfg(feature = "mesh")]
 mod render_mesh;
 mod resample;

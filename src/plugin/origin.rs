@@ -7,7 +7,7 @@ use bevy::{
         system::{In, Query, ResMut, RunSystemOnce},
         world::World,
     },
-    math::{Affine3A, Vec3, Vec3A},
+    math::{Affine3A, Vec3},
     transform::components::GlobalTransform,
 };
 
@@ -115,7 +115,7 @@ fn shift(
         state.first_target = state.first_target.map(|was| shift.rigid(was, carrier));
         state.lod.frozen = state.lod.frozen.map(|was| was.shifted(shift, carrier));
         state.air.shift(shift, zone);
-        let rounding = 2.0 * shift.rounding(Vec3A::from(before.isometry().translation));
+        let rounding = 2.0 * shift.rounding(before.isometry().translation);
         state
             .rests_on
             .iter_mut()

@@ -23,6 +23,7 @@ use super::{inertia::Carried, skin::Pose};
 /// (`*scratch = ClothScratch::default()`) without any change of what follows, but for the last bits of layers that touch each other:
 /// where they are nearest is found anew.
 #[derive(Component, Debug, Default)]
+#[component(clone_behavior = Ignore)]
 pub struct ClothScratch {
     /// `None` for a cloth that was not prepared: nothing else of the tick happens to it then.
     pub(super) step: Option<TickStep>,

@@ -28,10 +28,9 @@ use bevy::{
 #[cfg(feature = "mesh")]
 use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
-    ClothAir, ClothAttachments, ClothBody, ClothBones, ClothBuilt, ClothContacts, ClothFault,
-    ClothFrame, ClothGravity, ClothInertia, ClothLimitExceeded, ClothPush, ClothScratch,
-    ClothSearch, ClothState, ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted,
-    ClothTouchStopped, ClothWind, ClothWindZone,
+    ClothAir, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
+    ClothInertia, ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats,
+    ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindZone,
     awaited::{Deprived, note_enabled, note_removals},
     bones::{make_bone_colliders, remove_bone_colliders},
     collider_tree::ColliderTree,
@@ -45,16 +44,16 @@ use super::{
     integrate::integrate,
     islands::{Islands, find_islands},
     levels::choose_levels,
-    lod::{ClothLod, GlobalClothLod},
     naming::Part,
     prepare::prepare_cloths,
     push::push_bodies,
+    reflected::register_lists,
     search::{query_collisions, rebuild_hierarchies},
     shared::SharedParts,
     wind::{WindField, prepare_wind},
 };
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, ClothSkin, Pins},
+    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence},
     contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothPressure, ClothSettings},
@@ -83,25 +82,19 @@ impl ClothPlugin {
 
 impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<Cloth>()
-            .register_type::<ClothMaterial>()
+        app.register_type::<ClothMaterial>()
             .register_type::<ClothParticles>()
-            .register_type::<Pins>()
             .register_type::<ClothSettings>()
             .register_type::<SearchMethod>()
             .register_type::<NarrowPhase>()
             .register_type::<ClothSelfCollision>()
-            .register_type::<ClothCollider>()
             .register_type::<ClothLayers>()
             .register_type::<ClothBody>()
             .register_type::<ClothPush>()
             .register_type::<ClothContacts>()
             .register_type::<ClothFrame>()
             .register_type::<ClothStats>()
-            .register_type::<ClothAttachments>()
             .register_type::<ClothTeleport>()
-            .register_type::<ClothSkin>()
-            .register_type::<ClothBones>()
             .register_type::<ClothInertia>()
             .register_type::<ClothBuilt>()
             .register_type::<ClothSearch>()
@@ -110,9 +103,8 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothWind>()
             .register_type::<ClothWindZone>()
             .register_type::<ClothAir>()
-            .register_type::<ClothPressure>()
-            .register_type::<ClothLod>()
-            .register_type::<GlobalClothLod>();
+            .register_type::<ClothPressure>();
+        register_lists(app);
         add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
         add_parts_to_earlier::<ClothCollider, ColliderMotion>(app.world_mut());
         app.init_resource::<ClothGravity>()

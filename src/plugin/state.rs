@@ -25,6 +25,7 @@ use crate::{
 /// which [`ClothBuilt`](super::ClothBuilt) follows, and on how colliders move; on nothing else.
 #[derive(Component, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[component(map_entities)]
 pub struct ClothState {
     /// Whether the last preparation found nothing wrong: what is not valid is neither moved nor drawn.
     pub(super) is_valid: bool,

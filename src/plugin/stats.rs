@@ -15,6 +15,7 @@ use crate::{
 /// Figures of a cloth's last tick.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ClothStats {
     /// Time of all sub-steps, the stretch measured in the last of them (ms): the solver's call.
     pub integrate_ms: f64,

@@ -229,6 +229,7 @@ fn measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Lo
 
 /// Which instructions a sub-step may use. The results are the same to the last bit.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SimdLevel {
     /// The widest that the machine has: on x86-64 AVX2, found out as the program runs.
     #[default]

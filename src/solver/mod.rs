@@ -89,12 +89,13 @@ pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]
 pub use kernel::SimdLevel;
-pub use motion::MotionConstraints;
+pub(crate) use motion::MotionConstraints;
 pub use rest::Rest;
 pub use settings::ClothSettings;
 pub use step::{DampingFrame, PinMotion, SubStep, TickStep, TimeOrder};
 pub use stretch::Stretch;
-pub use substep::{Solver, StartedTick};
+pub use substep::Solver;
+pub(crate) use substep::StartedTick;
 pub use substepping::{Control, Substepping};
 pub use tether::Tethers;
 pub(crate) use tether::material_stretch;

@@ -19,7 +19,7 @@ use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout};
 
 /// Max distances and backstops of the particles of a cloth in a tick. Empty, it costs nothing.
 #[derive(Debug, Default, Clone)]
-pub struct MotionConstraints {
+pub(crate) struct MotionConstraints {
     layout: Layout,
     balls: Vec<Balls>,
     /// None, or as many.

@@ -7,6 +7,7 @@ use crate::cloth::{ClothParticles, SpringKind, Springs};
 /// How far a cloth is stretched, as length / rest length − 1 of its most stretched spring, at least 0.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Stretch {
     /// Over the structural springs: the figure that a person sees.
     pub structural: f32,

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
 
-pub use started::StartedTick;
+pub(crate) use started::StartedTick;
 
 /// Sub-steps of first order after one that ended with a push.
 const AFTER_CONTACT: u32 = 3;

@@ -138,7 +138,10 @@ fn layers_too_thick_to_look_for() {
         thickness: 30.0,
         ..default()
     };
-    let cloth = app.world_mut().spawn((Cloth::new(64, 64, 0.03), layers)).id();
+    let cloth = app
+        .world_mut()
+        .spawn((Cloth::new(64, 64, 0.03), layers))
+        .id();
     tick(&mut app, 3);
     let reported = messages::<ClothLimitExceeded>(&mut app);
     assert!(

@@ -3,6 +3,8 @@
 mod attach;
 mod cape;
 mod characters;
+mod clones;
+mod components;
 mod damping;
 mod drawing;
 mod envelope;
@@ -33,6 +35,7 @@ mod render_mesh;
 mod resolution;
 mod rest;
 mod scene_files;
+mod scenes;
 mod schedule;
 mod scratch;
 mod search;

@@ -173,7 +173,7 @@ fn chart(rows: &[Row]) -> Chart {
     let said = |ratio: Option<f64>| match ratio {
         Some(ratio) if ratio >= 10.0 => format!("{ratio:.0} ×"),
         Some(ratio) => format!("{ratio:.1} ×"),
-        None => "none is".into(),
+        None => "none".into(),
     };
     let title = format!(
         "Real solvers, same scenes. Time of the fastest other one that is as good as ours in 20 sub-steps: stretch {}, rigid motion {}, soft motion {}, contact {}",

@@ -2,12 +2,17 @@
 
 use std::{fmt, sync::Arc};
 
-use bevy::{math::Vec3, reflect::Reflect};
+use bevy::{
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
 
 /// A corner of the cloth at rest, seen from where it faces: +z, of a lying cloth +y.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub enum Corner {
     /// (0, 0).
+    #[default]
     TopLeft,
     /// (0, columns − 1).
     TopRight,
@@ -18,8 +23,9 @@ pub enum Corner {
 }
 
 /// Particles to pin.
-#[derive(Reflect, Debug, Clone, PartialEq)]
-#[reflect(Debug, Clone, PartialEq)]
+#[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Pin {
     /// The particle with this index.
     Index(usize),
@@ -34,6 +40,7 @@ pub enum Pin {
     /// Every particle whose (row, column) it holds for. Code can't be saved: in a scene file it pins nothing.
     Where(#[reflect(ignore)] PinPredicate),
     /// The top row of a grid, and nothing of a mesh: what is pinned unless said otherwise.
+    #[default]
     Top,
     /// The particle of this vertex of the mesh, as its asset or the game numbers them: it outlasts welding.
     Vertex(usize),

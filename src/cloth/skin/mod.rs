@@ -78,12 +78,22 @@ pub struct ClothSkin {
 ///  (     ←→ distance
 /// ```
 #[derive(Reflect, Debug, Clone, PartialEq)]
-#[reflect(Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothBackstop {
     /// How far behind the pose it begins (m); likewise infinity for particles that have none.
     pub distance: ClothPaint,
     /// Radius of the ball (m), positive: about as large as what is behind the cloth.
     pub radius: f32,
+}
+
+impl Default for ClothBackstop {
+    /// A ball of half a metre, which begins at the pose.
+    fn default() -> Self {
+        Self {
+            distance: ClothPaint::Uniform(0.0),
+            radius: 0.5,
+        }
+    }
 }
 
 impl Default for ClothSkin {

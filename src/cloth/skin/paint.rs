@@ -22,6 +22,7 @@ use crate::cloth::{ClothError, Surface, VertexAttribute};
 /// ```
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothPaint {
     /// The same for all.
     Uniform(f32),

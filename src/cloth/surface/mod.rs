@@ -75,6 +75,7 @@ pub struct Surface {
 
 /// Lengths of stretch springs at rest (m).
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Spacing {
     /// Of the shortest.
     pub shortest: f32,

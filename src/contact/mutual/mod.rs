@@ -28,16 +28,8 @@ mod sheet;
 mod tests;
 
 use self::{
-    certificate::Zones,
-    circumstances::Circumstances,
-    hold::Hold,
-    members::Members,
-    motion::thinnest,
-    near::NearPairs,
-    origin::Origin,
-    pair::Pair,
-    response::push,
-    search::Search,
+    certificate::Zones, circumstances::Circumstances, hold::Hold, members::Members,
+    motion::thinnest, near::NearPairs, origin::Origin, pair::Pair, response::push, search::Search,
 };
 
 pub use intersections::intersections;
@@ -133,8 +125,7 @@ impl MutualContact {
         let particles = cloths.iter().map(|cloth| cloth.particles.len());
         self.looks = MOST_LOOKS_IN_TICK * particles.sum::<usize>();
         let is_same = self.circumstances.renew(cloths, &meets);
-        let is_known =
-            is_same && self.is_searched && !self.is_lost && self.origin.is_of(cloths);
+        let is_known = is_same && self.is_searched && !self.is_lost && self.origin.is_of(cloths);
         if is_known {
             self.nearer = self.origin.approach(cloths);
             self.members.begin(cloths);

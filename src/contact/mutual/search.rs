@@ -18,8 +18,8 @@ const OF_REST: f32 = 0.5;
 
 /// For each particle a search looks at so many nodes and pairs of features, and finds so many pairs, at most. Sheets that run into
 /// each other at 20 m/s need a tenth of that, and the worst at 60 m/s a half (`cargo run --example lab -- self`).
-pub(super) const MOST_LOOKS: usize = 4_096;
-pub(super) const MOST_PAIRS: usize = 2_048;
+pub(super) const MOST_LOOKS: usize = 1_024;
+pub(super) const MOST_PAIRS: usize = 256;
 
 /// So many pairs at most whatever there is of particles: 200 MB of them.
 pub(super) const MOST_OF_ALL: usize = 1 << 20;

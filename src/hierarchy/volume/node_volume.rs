@@ -13,6 +13,7 @@ use super::{Volume, kdop::KDop, obb::Obb};
 /// The bounding volume of a node, around the whole of its particles.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(opaque)]
+#[non_exhaustive]
 pub enum NodeVolume {
     /// A sphere.
     Sphere(BoundingSphere),

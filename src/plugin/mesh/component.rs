@@ -5,7 +5,10 @@ use std::sync::Arc;
 use bevy::{
     asset::{AssetId, Handle},
     ecs::{
-        change_detection::Tick, component::Component, entity::Entity, reflect::ReflectComponent,
+        change_detection::Tick,
+        component::Component,
+        entity::{ComponentCloneCtx, Entity, SourceComponent},
+        reflect::ReflectComponent,
     },
     math::{Affine3A, Vec3},
     mesh::Mesh,
@@ -31,17 +34,16 @@ use crate::cloth::Surface;
 /// The mesh of a cloth that Bevy's visibility hides, its own or an ancestor's, is not written; the cloth moves on all the same, unless its
 /// [`ClothLod`](crate::plugin::ClothLod) says otherwise.
 ///
-/// Reflected as nothing: it is made again.
+/// In scenes and clones it is no more than which assets it replaced: all else is made again.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Component, Default, Debug)]
+#[component(clone_behavior = Custom(clone_replaced))]
 pub struct ClothMesh {
     #[reflect(ignore)]
     pub(super) handle: Handle<Mesh>,
     /// The asset that the cloth was made from.
-    #[reflect(ignore)]
     pub(super) source: Option<Handle<Mesh>>,
     /// What the entity drew before.
-    #[reflect(ignore)]
     pub(super) replaced: Option<Handle<Mesh>>,
     /// What it is a mesh of.
     #[reflect(ignore)]
@@ -86,6 +88,18 @@ pub struct ClothMesh {
     /// New whenever it is drawn elsewhere.
     #[reflect(ignore)]
     pub(super) version: u32,
+}
+
+/// A clone has the `Mesh3d` of its original as yet, which it is known by, and is given one of its own.
+fn clone_replaced(original: &SourceComponent, clone: &mut ComponentCloneCtx) {
+    if let Some(original) = original.read::<ClothMesh>() {
+        clone.write_target_component(ClothMesh {
+            handle: original.handle.clone(),
+            source: original.source.clone(),
+            replaced: original.replaced.clone(),
+            ..ClothMesh::default()
+        });
+    }
 }
 
 impl ClothMesh {

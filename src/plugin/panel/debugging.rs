@@ -139,15 +139,12 @@ fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands)
         .cloned()
         .unwrap_or_else(ShowClothGizmos::nothing);
     let was = shown.clone();
-    let level = was
-        .levels
-        .as_ref()
-        .map(|levels| (*levels.start()).min(deepest));
+    let level = was.levels.map(|[first, _]| first.min(deepest));
     let now = level.map_or_else(|| "none".to_string(), |level| format!("level {level}"));
     let levels = (0..=deepest).map(|level| {
         let (visited, touching) = cloth.search.query().level(tree, level);
         let figures = format!("{visited} visited, {touching} touching");
-        (format!("level {level}"), figures, Some(level..=level))
+        (format!("level {level}"), figures, Some([level; 2]))
     });
     choose(
         ui,

@@ -10,17 +10,18 @@ use bevy::{
     camera::visibility::InheritedVisibility,
     ecs::{
         component::Component,
-        entity::{Entity, MapEntities},
+        entity::{ComponentCloneCtx, Entity, MapEntities, SourceComponent},
         lifecycle::Remove,
         message::MessageReader,
         observer::On,
         query::{QueryData, With, Without},
-        reflect::{ReflectComponent, ReflectMapEntities},
+        reflect::{ReflectComponent, ReflectFromWorld, ReflectMapEntities},
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
         system::{Commands, Local, Query, Res, ResMut},
+        world::{FromWorld, World},
     },
     mesh::{Mesh, Mesh3d},
-    reflect::Reflect,
+    reflect::{Reflect, std_traits::ReflectDefault},
     transform::components::GlobalTransform,
 };
 
@@ -54,22 +55,39 @@ use drawn::Driven;
 /// }
 /// ```
 #[derive(Component, Reflect, MapEntities, Debug, Clone, Copy, PartialEq, Eq)]
-#[reflect(Component, MapEntities, Debug, Clone, PartialEq)]
+#[reflect(Component, FromWorld, MapEntities, Debug, Clone, PartialEq)]
 pub struct ClothRenderMesh {
     /// The cloth that drives the mesh.
     #[entities]
     pub cloth: Entity,
 }
 
-/// What is drawn for a [`ClothRenderMesh`].
-#[derive(Component, Debug)]
+impl FromWorld for ClothRenderMesh {
+    /// Of no cloth as yet, for editors: a fault.
+    fn from_world(_: &mut World) -> Self {
+        let cloth = Entity::PLACEHOLDER;
+        Self { cloth }
+    }
+}
+
+/// What is drawn for a [`ClothRenderMesh`]. In scenes and clones it is no more than which asset was replaced: all else is made again.
+#[derive(Component, Reflect, Debug, Default)]
+#[reflect(Component, Default)]
+#[component(clone_behavior = Custom(clone_replaced))]
 struct RenderMeshState {
-    cloth: Entity,
     /// What the entity drew before.
     source: Handle<Mesh>,
     /// What is drawn.
+    #[reflect(ignore)]
     handle: Handle<Mesh>,
-    /// What the mesh is bound to.
+    #[reflect(ignore)]
+    bound: Option<Bound>,
+}
+
+/// What a mesh is bound to.
+#[derive(Debug)]
+struct Bound {
+    cloth: Entity,
     surface: Arc<Surface>,
     driven: Driven,
 }
@@ -84,6 +102,17 @@ struct RefusedMesh {
     error: ClothError,
 }
 
+/// A clone has the `Mesh3d` of its original as yet, which it is known by, and is given one of its own.
+fn clone_replaced(original: &SourceComponent, clone: &mut ComponentCloneCtx) {
+    if let Some(original) = original.read::<RenderMeshState>() {
+        clone.write_target_component(RenderMeshState {
+            source: original.source.clone(),
+            handle: original.handle.clone(),
+            bound: None,
+        });
+    }
+}
+
 /// Draws each [`ClothRenderMesh`] where its cloth takes it, once a rendered frame. Does nothing in an app without meshes. It is
 /// for a [`ClothMeshPlugin`](super::ClothMeshPlugin).
 #[derive(Debug, Default, Clone, Copy)]
@@ -92,6 +121,7 @@ pub struct ClothRenderMeshPlugin;
 impl Plugin for ClothRenderMeshPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothRenderMesh>()
+            .register_type::<RenderMeshState>()
             .add_observer(remove_render_mesh)
             .add_systems(
                 PostUpdate,
@@ -158,8 +188,8 @@ fn bind(
                 }
                 driving.mesh.drive();
                 let is_bound = each.state.is_some_and(|state| {
-                    state.cloth == cloth
-                        && Arc::ptr_eq(&state.surface, &surface)
+                    let bound = state.bound.as_ref();
+                    bound.is_some_and(|to| to.cloth == cloth && Arc::ptr_eq(&to.surface, &surface))
                         && each.mesh.is_some_and(|mesh| mesh.0 == state.handle)
                         && meshes.contains(&state.handle)
                         && !changed.contains(&state.source.id())
@@ -244,11 +274,13 @@ impl BindingItem<'_, '_> {
         };
         let handle = meshes.add(copy);
         let state = RenderMeshState {
-            cloth: self.wanted.cloth,
             source,
             handle: handle.clone(),
-            surface,
-            driven,
+            bound: Some(Bound {
+                cloth: self.wanted.cloth,
+                surface,
+                driven,
+            }),
         };
         entity.try_insert((Mesh3d(handle), state));
         entity.try_remove::<RefusedMesh>();
@@ -268,20 +300,23 @@ fn update(
 ) {
     for (mut state, place, visibility) in &mut driven {
         let is_hidden = visibility.is_some_and(|visibility| !visibility.get());
-        let Ok((cloth, at)) = driving.get(state.cloth) else {
+        let RenderMeshState { handle, bound, .. } = &mut *state;
+        let Some(Bound {
+            cloth,
+            surface,
+            driven,
+        }) = bound
+        else {
             continue;
         };
-        if is_hidden || !cloth.is_of(&state.surface) {
+        let Ok((cloth, at)) = driving.get(*cloth) else {
+            continue;
+        };
+        if is_hidden || !cloth.is_of(surface) {
             continue;
         }
         let place = place.copied().unwrap_or_default();
         let at = at.copied().unwrap_or_default();
-        let RenderMeshState {
-            handle,
-            surface,
-            driven,
-            ..
-        } = &mut *state;
         if driven.follow(surface, cloth, &place, &at)
             && let Some(mut mesh) = meshes.get_mut(&*handle)
         {

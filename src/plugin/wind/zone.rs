@@ -31,7 +31,8 @@ pub struct ClothWindZone {
 /// A shape around an entity's origin, in its own lengths.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[reflect(Debug, Clone, PartialEq)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothWindShape {
     /// A ball.
     Ball {
@@ -52,11 +53,18 @@ pub enum ClothWindShape {
     },
 }
 
+impl Default for ClothWindShape {
+    /// A ball of 1 m.
+    fn default() -> Self {
+        Self::Ball { radius: 1.0 }
+    }
+}
+
 impl Default for ClothWindZone {
     /// A ball of 1 m, in which 5 m/s blow forward, falling off over half of it.
     fn default() -> Self {
         Self {
-            shape: ClothWindShape::Ball { radius: 1.0 },
+            shape: ClothWindShape::default(),
             velocity: Vec3::NEG_Z * 5.0,
             softness: 0.5,
         }

@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    reflect::Reflect,
+    reflect::{Reflect, std_traits::ReflectDefault},
 };
 
 use crate::cloth::{ClothError, Surface};
@@ -16,7 +16,8 @@ const ATMOSPHERE: f32 = 101_325.0;
 /// May change at any time; nothing is built again.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[reflect(Component, Debug, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ClothPressure {
     /// That of the inside over that of the outside (Pa), as of what a fan or a pump holds; negative where it is sucked empty. From −10⁹
     /// to 10⁹.
@@ -31,6 +32,13 @@ pub enum ClothPressure {
         /// Pressure outside (Pa).
         outside: f32,
     },
+}
+
+impl Default for ClothPressure {
+    /// None: as much inside as outside.
+    fn default() -> Self {
+        Self::Gauge(0.0)
+    }
 }
 
 impl ClothPressure {

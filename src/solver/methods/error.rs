@@ -6,6 +6,7 @@ use faer::sparse::FaerError;
 
 /// Why a spring network or a stepper cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MethodError {
     /// Positions and inverse masses differ in number.
     #[error("{positions} positions but {inverse_masses} inverse masses")]

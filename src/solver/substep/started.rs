@@ -18,7 +18,7 @@ use crate::{
 
 /// A tick that has begun and not ended.
 #[derive(Debug)]
-pub struct StartedTick {
+pub(crate) struct StartedTick {
     step: TickStep,
     /// The sub-step to come.
     next: u32,
@@ -39,7 +39,7 @@ pub struct StartedTick {
 
 impl StartedTick {
     /// Sub-steps in it.
-    pub fn substeps(&self) -> u32 {
+    pub(crate) fn substeps(&self) -> u32 {
         self.step.substeps.max(1)
     }
 
@@ -49,7 +49,7 @@ impl StartedTick {
     }
 
     /// To be called after a sub-step at whose end particles were pushed: their past says nothing of what follows.
-    pub fn note_push(&mut self, particles: &mut ClothParticles) {
+    pub(crate) fn note_push(&mut self, particles: &mut ClothParticles) {
         self.is_pushed = true;
         self.measured = None;
         self.drift.note_push();
@@ -64,7 +64,7 @@ impl Solver {
     ///
     /// # Panics
     /// If the particles are others than those that the solver was made for.
-    pub fn begin(
+    pub(crate) fn begin(
         &mut self,
         particles: &mut ClothParticles,
         step: TickStep,
@@ -139,7 +139,7 @@ impl Solver {
 
     /// Moves `particles` by the next sub-step; `None` where there is none left. Whoever then pushes any
     /// [says so](StartedTick::note_push).
-    pub fn substep(
+    pub(crate) fn substep(
         &mut self,
         particles: &mut ClothParticles,
         pins: &[PinMotion],
@@ -273,7 +273,7 @@ impl Solver {
     }
 
     /// Ends a tick of which all sub-steps are done, and measures the stretch.
-    pub fn end(
+    pub(crate) fn end(
         &mut self,
         particles: &mut ClothParticles,
         pins: &[PinMotion],

@@ -55,7 +55,12 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
         return spawn(world, pool, random);
     };
     let which = random.below(24);
-    if std::env::var("ZZ").is_ok() { eprintln!("ZZ act {which} on {entity} {:?}", components(world, entity).len()); }
+    if std::env::var("ZZ").is_ok() {
+        eprintln!(
+            "ZZ act {which} on {entity} {:?}",
+            components(world, entity).len()
+        );
+    }
     match which {
         0..=1 if pool.all.len() < MOST => spawn(world, pool, random),
         0..=1 => {

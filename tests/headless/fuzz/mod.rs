@@ -128,6 +128,7 @@ fn may_blow(app: &mut App) -> bool {
             ClothWindShape::Ball { radius } => radius,
             ClothWindShape::Cuboid { half_size } => half_size.length(),
             ClothWindShape::Cone { length, angle } => length / (FRAC_PI_2 - angle),
+            _ => f32::INFINITY,
         };
         let place = place.copied().unwrap_or_default();
         let reach = 4.0 * length * place.scale().abs().max_element() + place.translation().length();
@@ -196,13 +197,31 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
                 other.restore(alone.world_mut()).expect("nothing has gone");
             }
         }
-        if std::env::var("ZZ").is_ok() { eprintln!("ZZ tick {number} {:?} {:?} {:?}", app.world().resource::<Time<Fixed>>().timestep(), app.world().get_resource::<ClothGravity>(), app.world().get_resource::<ClothWind>()); }
+        if std::env::var("ZZ").is_ok() {
+            eprintln!(
+                "ZZ tick {number} {:?} {:?} {:?}",
+                app.world().resource::<Time<Fixed>>().timestep(),
+                app.world().get_resource::<ClothGravity>(),
+                app.world().get_resource::<ClothWind>()
+            );
+        }
         let start = Instant::now();
         app.update();
         counts.slowest = counts.slowest.max(start.elapsed().as_secs_f64());
         alone.update();
         let context = format!("seed {seed}, tick {number}, acts between systems: {acts_between}");
-        if std::env::var("ZZ").is_ok() { let e=start.elapsed().as_secs_f64(); if e>0.2 { eprintln!("ZZ slow {e} s"); let mut q=app.world_mut().query::<(Entity,&ClothStats,&ClothSettings)>(); for (x,s,t) in q.iter(app.world()) { eprintln!("   {x} {s:?} {t:?}"); } } }
+        if std::env::var("ZZ").is_ok() {
+            let e = start.elapsed().as_secs_f64();
+            if e > 0.2 {
+                eprintln!("ZZ slow {e} s");
+                let mut q = app
+                    .world_mut()
+                    .query::<(Entity, &ClothStats, &ClothSettings)>();
+                for (x, s, t) in q.iter(app.world()) {
+                    eprintln!("   {x} {s:?} {t:?}");
+                }
+            }
+        }
         if let Some(wrong) = wrong(&mut app) {
             panic!("{context}: {wrong}");
         }
@@ -217,7 +236,27 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
             continue;
         }
         let (own, truth) = (particles(&app, control), particles(&alone, same));
-        if own != truth { let m=own.positions().zip(truth.positions()).map(|(a,b)|a.distance(b)).fold(0.0f32,f32::max); eprintln!("ZZ differs by {m} {:?} {:?}\n {:?}\n {:?} {:?} {:?}", stats(&app,control), stats(&alone,same), app.world().get::<ClothContacts>(control).map(|c|c.iter().map(|c|c.collider).collect::<Vec<_>>()), alone.world().get::<ClothContacts>(same).map(|c|c.iter().map(|c|c.collider).collect::<Vec<_>>()), app.world().get::<ClothFault>(control), app.world().get_resource::<ClothGravity>()); }
+        if own != truth {
+            let m = own
+                .positions()
+                .zip(truth.positions())
+                .map(|(a, b)| a.distance(b))
+                .fold(0.0f32, f32::max);
+            eprintln!(
+                "ZZ differs by {m} {:?} {:?}\n {:?}\n {:?} {:?} {:?}",
+                stats(&app, control),
+                stats(&alone, same),
+                app.world()
+                    .get::<ClothContacts>(control)
+                    .map(|c| c.iter().map(|c| c.collider).collect::<Vec<_>>()),
+                alone
+                    .world()
+                    .get::<ClothContacts>(same)
+                    .map(|c| c.iter().map(|c| c.collider).collect::<Vec<_>>()),
+                app.world().get::<ClothFault>(control),
+                app.world().get_resource::<ClothGravity>()
+            );
+        }
         assert!(own == truth, "{context}: the control cloth is another");
         counts.bits += own.len() * 7 * 32;
     }

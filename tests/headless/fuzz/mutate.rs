@@ -100,7 +100,7 @@ pub fn mutate(value: &mut dyn PartialReflect, random: &mut Random) {
             }
             ReflectMut::List(of) => {
                 let index = random.below(of.len());
-                if random.one_in(4) && of.len() > 0 {
+                if random.one_in(4) && !of.is_empty() {
                     of.remove(index);
                 } else if let Some(field) = of.get_mut(index) {
                     mutate(field, random);

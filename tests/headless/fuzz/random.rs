@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
+/// `SplitMix64` (Steele, Lea, Flood 2014).
 #[derive(Resource, Clone)]
 pub struct Random(pub u64);
 

@@ -238,7 +238,12 @@ fn no_tick_looks_at_more_than_its_bound() {
             assert!(looks <= MOST_LOOKS_IN_TICK * particles);
             assert!(contact.pairs() <= MOST_OF_ALL && contact.search.found.len() <= MOST_OF_ALL);
             let substeps = scene.step.substeps;
-            println!("{name}: {} searches, {looks} looks, {} pairs, lost {}", contact.searches, contact.pairs(), contact.lost());
+            println!(
+                "{name}: {} searches, {looks} looks, {} pairs, lost {}",
+                contact.searches,
+                contact.pairs(),
+                contact.lost()
+            );
             assert!(contact.lost() <= substeps);
             if contact.lost() == substeps {
                 assert!(contact.searches() <= 1 + substeps / LONGEST_WAIT, "{name}");
