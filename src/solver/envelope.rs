@@ -29,7 +29,7 @@ pub enum ClothLimit {
     /// get through.
     SmallFastCollider,
     /// Layers move so fast, are so thick or so crowded that what may touch is too much to look for: nothing keeps them apart meanwhile.
-    /// For each particle a search looks at 1,024 nodes and pairs of features at most, and all of a tick at 4,096.
+    /// For each particle a search looks at 4,096 nodes and pairs of features at most, and a tick at 131,072.
     Layers,
 }
 

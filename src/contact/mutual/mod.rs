@@ -45,8 +45,9 @@ const ROUNDS: u32 = 4;
 const LONGEST_WAIT: u32 = 16;
 const PART_OF_WAY: f32 = 0.5;
 
-/// For each particle all searches of a tick look at so many nodes and pairs of features at most: four whole ones.
-const MOST_LOOKS_IN_TICK: usize = 4 * search::MOST_LOOKS;
+/// For each particle a tick looks at so many nodes and pairs of features at most, in searches and in going through what was found. A
+/// tightly twisted strip needs a third of that.
+const MOST_WORK: usize = 131_072;
 
 /// As long as particles come nearer to each other by less than this part of the thickness, those that are pushed are held by the
 /// mean of their last pushes in this many sub-steps at most.
@@ -94,9 +95,9 @@ pub(crate) struct MutualContact {
     passed: Origin,
     searches: u32,
     has_touched: bool,
-    /// What searches may look at in the rest of the tick.
-    looks: usize,
-    /// Whether the last search found no end: nothing is kept apart until another does.
+    /// What may be looked at in the rest of the tick.
+    work: usize,
+    /// Whether there was too much to look at: nothing is kept apart until another search comes to its end.
     is_lost: bool,
     /// In how many sub-steps of the tick that was so.
     lost: u32,
@@ -123,7 +124,7 @@ impl MutualContact {
         self.has_touched = false;
         self.lost = 0;
         let particles = cloths.iter().map(|cloth| cloth.particles.len());
-        self.looks = MOST_LOOKS_IN_TICK * particles.sum::<usize>();
+        self.work = MOST_WORK * particles.sum::<usize>();
         let is_same = self.circumstances.renew(cloths, &meets);
         let is_known = is_same && self.is_searched && !self.is_lost && self.origin.is_of(cloths);
         if is_known {
@@ -261,6 +262,13 @@ impl MutualContact {
         for round in 0..ROUNDS {
             if !self.near.covers(since + pushed) {
                 since = in_substep;
+                let Some(left) = self.work.checked_sub(self.pairs.len()) else {
+                    self.lost += 1;
+                    self.members.scatter(cloths, is_pushed, &mut self.hold);
+                    self.lose();
+                    return 0.5 * pushed + held;
+                };
+                self.work = left;
                 self.near.find(
                     &mut self.pairs,
                     &mut self.members,

@@ -14,6 +14,16 @@ const SUBSTEPS: f32 = 8.0;
 const MARGINS: [f32; 2] = [0.05, 0.25];
 
 impl MutualContact {
+    /// Keeps nothing apart for a while.
+    pub(super) fn lose(&mut self) {
+        self.is_lost = true;
+        (self.wait, self.waited) = (LONGEST_WAIT, 0);
+        self.near.forget();
+        self.pairs.clear();
+        self.members.clear();
+        self.member_of.clear();
+    }
+
     /// Searches for all pairs that may come near each other before any two particles have come nearer by a margin, besides those
     /// that may have met while they came nearer by `missed` (m).
     pub(super) fn search(
@@ -49,13 +59,13 @@ impl MutualContact {
             self.member_of.clear();
             return;
         }
-        let (search, looks) = (&mut self.search, &mut self.looks);
-        let is_found = search.find(cloths, &meets, self.margin + missed, looks)
+        let (search, work) = (&mut self.search, &mut self.work);
+        let is_found = search.find(cloths, &meets, self.margin + missed, work)
             // What has been passed meanwhile is not to be had: what is near now may be.
-            || missed > 0.0 && search.find(cloths, &meets, self.margin, looks);
-        self.is_lost = !is_found;
-        if self.is_lost {
-            (self.wait, self.waited) = (LONGEST_WAIT, 0);
+            || missed > 0.0 && search.find(cloths, &meets, self.margin, work);
+        if !is_found {
+            self.lose();
+            return;
         }
         std::mem::swap(&mut self.members, &mut self.members_before);
         std::mem::swap(&mut self.member_of, &mut self.member_of_before);

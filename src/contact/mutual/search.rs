@@ -16,13 +16,13 @@ const EDGES: f32 = 0.5;
 /// A part of its distance at rest, which no pair of one cloth is kept farther apart than.
 const OF_REST: f32 = 0.5;
 
-/// For each particle a search looks at so many nodes and pairs of features, and finds so many pairs, at most. Sheets that run into
-/// each other at 20 m/s need a tenth of that, and the worst at 60 m/s a half (`cargo run --example lab -- self`).
-pub(super) const MOST_LOOKS: usize = 1_024;
-pub(super) const MOST_PAIRS: usize = 256;
+/// For each particle a search looks at so many nodes and pairs of features, and finds so many pairs, at most. What runs into itself at
+/// 5 m/s needs a ninth of that, and the worst at 20 m/s, ten sheets in a stack, two thirds (`cargo run --example lab -- self`).
+const MOST_LOOKS: usize = 4_096;
+const MOST_PAIRS: usize = 2_048;
 
-/// So many pairs at most whatever there is of particles: 200 MB of them.
-pub(super) const MOST_OF_ALL: usize = 1 << 20;
+/// So many pairs at most however many particles there are: 300 MB of them.
+pub(super) const MOST_OF_ALL: usize = 1 << 21;
 
 /// Two features that may come near each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,18 +87,18 @@ struct Between<'a> {
 
 impl Search {
     /// Finds all pairs of features that are nearer to each other than their thickness and a `margin` (m). Their order depends on
-    /// the trees alone. With so many `looks` left and no more; says whether that was enough.
+    /// the trees alone. Looks at as much as there is of `work`, and takes that from it; says whether it was enough.
     pub fn find(
         &mut self,
         participants: &[Participant],
         meets: impl Fn(usize, usize) -> bool,
         margin: f32,
-        looks: &mut usize,
+        work: &mut usize,
     ) -> bool {
         self.found.clear();
         let each = participants.iter().map(|cloth| cloth.particles.len());
         let particles = each.sum::<usize>();
-        let most = (MOST_LOOKS * particles).min(*looks);
+        let most = (MOST_LOOKS * particles).min(*work);
         let mut finds = Finds {
             found: &mut self.found,
             looks: most,
@@ -138,7 +138,7 @@ impl Search {
             }
         }
         let is_over = finds.is_over;
-        *looks -= most - finds.looks;
+        *work -= most - finds.looks;
         if is_over {
             self.found.clear();
         }
