@@ -295,6 +295,10 @@ impl EdgeMemory {
         faces: &[[Slot; 3]],
         corners: &[Slot],
     ) -> &mut [KnownFace] {
+        // Those that touch a pin are left out, and may come back.
+        if faces.is_empty() {
+            return &mut [];
+        }
         let known = &mut self.places[particle as usize].faces;
         if *known == NONE {
             *known = self.faces.len() as u32;

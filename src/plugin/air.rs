@@ -1,6 +1,9 @@
 //! The air of a cloth in a tick.
 
-use bevy::{ecs::entity::Entity, math::Vec3};
+use bevy::{
+    ecs::entity::{Entity, EntityMapper, MapEntities},
+    math::Vec3,
+};
 
 use super::{
     ClothFrame,
@@ -21,6 +24,14 @@ pub(super) struct KnownAir {
     zones: Vec<PlacedZone>,
     /// What the last tick was left with.
     pub memory: AirMemory,
+}
+
+impl MapEntities for KnownAir {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        for zone in &mut self.zones {
+            zone.entity = mapper.get_mapped(zone.entity);
+        }
+    }
 }
 
 impl KnownAir {
@@ -119,7 +130,9 @@ impl KnownAir {
         let inside = match self.pressure {
             None => 0.0,
             Some(ClothPressure::Gauge(pressure)) => pressure.abs() / material.areal_density,
-            Some(ClothPressure::Gas { .. }) => FILLING / seconds.max(f32::MIN_POSITIVE),
+            // In no time it fills nothing.
+            Some(ClothPressure::Gas { .. }) if seconds > 0.0 => FILLING / seconds,
+            Some(ClothPressure::Gas { .. }) => 0.0,
         };
         let Some(breeze) = &self.breeze else {
             return inside;

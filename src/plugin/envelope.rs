@@ -46,8 +46,13 @@ pub(super) struct Gathered {
 impl Gathered {
     fn add(&mut self, cloth: Entity, name: impl FnOnce() -> String, quantity: [f32; 2]) {
         self.cloths.insert(cloth);
-        let known = self.worst.as_ref().map(|(_, [worst, good])| worst / good);
-        if known.is_none_or(|worst| quantity[0] / quantity[1] > worst) {
+        // Of sub-steps that failed none is good.
+        let excess = |[quantity, good]: [f32; 2]| match good {
+            0.0 => quantity,
+            _ => quantity / good,
+        };
+        let known = self.worst.as_ref().map(|(_, worst)| excess(*worst));
+        if known.is_none_or(|worst| excess(quantity) > worst) {
             self.worst = Some((name(), quantity));
         }
     }
@@ -84,10 +89,11 @@ pub(super) fn report_limits(
         scratch.limit_inputs = None;
         stats.exceeded = None;
         // That longer sub-steps stretch more was asked for.
-        if state.lod.moved_by() > 1 {
-            continue;
-        }
+        let is_coarse = state.lod.moved_by() > 1;
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
+            if is_coarse && limit != ClothLimit::Layers {
+                continue;
+            }
             let beyond = limit_inputs.exceeded(limit);
             stats.exceeded = stats.exceeded.or(beyond.map(|_| limit));
             let is_reported =

@@ -43,11 +43,15 @@ pub(super) fn stand(
     let (now, _) = ClothFrame::of(&transform)?;
     let Some(carried_by) = carrier(targets, state, now) else {
         return match (attachments.first(), state.targets.first()) {
-            (Some(ClothAttachment { pin, .. }), Some(&target)) => Err(ClothError::NoTarget {
-                pin: pin.clone(),
-                target,
-            }),
-            // What was taken off meanwhile falls once it moves again.
+            (Some(ClothAttachment { pin, .. }), Some(&target))
+                if state.attachments == attachments =>
+            {
+                Err(ClothError::NoTarget {
+                    pin: pin.clone(),
+                    target,
+                })
+            }
+            // What was taken off meanwhile falls once it moves again, and what was attached to others goes there.
             _ => Ok(()),
         };
     };

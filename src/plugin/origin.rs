@@ -3,7 +3,8 @@
 use bevy::{
     ecs::{
         entity::Entity,
-        query::QueryData,
+        entity_disabling::Disabled,
+        query::{Allow, QueryData},
         system::{In, Query, ResMut, RunSystemOnce},
         world::World,
     },
@@ -78,10 +79,10 @@ struct Shifted {
 
 fn shift(
     In(shift): In<Shift>,
-    mut cloths: Query<Shifted>,
-    mut colliders: Query<(Entity, &mut ColliderMotion)>,
-    mut roots: Query<(Entity, &mut RootMotion)>,
-    zones: Query<&ClothWindZone>,
+    mut cloths: Query<Shifted, Allow<Disabled>>,
+    mut colliders: Query<(Entity, &mut ColliderMotion), Allow<Disabled>>,
+    mut roots: Query<(Entity, &mut RootMotion), Allow<Disabled>>,
+    zones: Query<&ClothWindZone, Allow<Disabled>>,
     mut field: ResMut<WindField>,
     places: Places,
     skins: Skins,

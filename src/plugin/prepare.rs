@@ -86,8 +86,7 @@ pub(super) fn prepare_cloths(
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
-            cloth.scratch.forget_tick();
-            cloth.bounds.leave_out();
+            pass(&mut cloth);
             if !cloth.state.resumes {
                 cloth.state.rest.disturb();
             }
@@ -333,5 +332,6 @@ fn check_particles(particles: &mut Mut<ClothParticles>) -> Result<f32, ClothErro
     particles.validate()?;
     // What was not valid has been mended, but for what it left beside the particles.
     particles.clear_padding();
+    particles.mend_substep();
     Ok(particles.survey().largest_speed)
 }

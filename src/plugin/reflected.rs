@@ -90,6 +90,11 @@ fn shorten(own: &mut dyn PartialReflect, value: &dyn PartialReflect) {
                 shorten_at(own.field_mut(index), value.field(index));
             }
         }
+        (ReflectMut::Tuple(own), ReflectRef::Tuple(value)) => {
+            for index in 0..value.field_len() {
+                shorten_at(own.field_mut(index), value.field(index));
+            }
+        }
         (ReflectMut::Enum(own), ReflectRef::Enum(value))
             if own.variant_name() == value.variant_name() =>
         {

@@ -157,5 +157,6 @@ impl MapEntities for ClothState {
         for known in &mut self.rests_on {
             known.map_entities(mapper);
         }
+        self.air.map_entities(mapper);
     }
 }

@@ -42,6 +42,7 @@ mod search;
 mod self_collision;
 mod shapes;
 mod snapshot;
+mod soak;
 mod solids;
 mod spin;
 mod startup;

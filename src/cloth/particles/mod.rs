@@ -120,7 +120,7 @@ impl ClothParticles {
 
     /// Number of particles.
     pub fn len(&self) -> usize {
-        self.layout.len()
+        self.sound_layout().len()
     }
 
     /// Whether there is no particle, as before the first tick.
@@ -130,12 +130,12 @@ impl ClothParticles {
 
     /// Particles a row.
     pub fn columns(&self) -> u32 {
-        self.layout.columns
+        self.sound_layout().columns
     }
 
     /// Particles a column.
     pub fn rows(&self) -> u32 {
-        self.layout.rows
+        self.sound_layout().rows
     }
 
     /// The index of a particle, if there is such a one.
@@ -261,7 +261,7 @@ impl ClothParticles {
         &'a self,
         of: fn(&Block, usize) -> T,
     ) -> impl ExactSizeIterator<Item = T> + 'a {
-        let slots = self.layout.slots();
+        let slots = self.sound_layout().slots();
         slots.map(move |Slot { block, lane }| of(&self.blocks[block], lane))
     }
 
@@ -281,7 +281,7 @@ impl ClothParticles {
             validity::is_valid(squares, block.inverse_mass(slot.lane))
         };
         let Some((index, slot)) = self
-            .layout
+            .sound_layout()
             .slots()
             .enumerate()
             .find(|(_, slot)| !valid(*slot))

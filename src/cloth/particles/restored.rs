@@ -1,6 +1,6 @@
 //! Particles that were read from a file, and put back.
 
-use super::ClothParticles;
+use super::{ClothParticles, DEFAULT_SUBSTEP};
 use crate::cloth::{Block, Lanes, Layout, MAX_PARTICLES, W};
 
 impl ClothParticles {
@@ -18,10 +18,32 @@ impl ClothParticles {
         let blocks = self.blocks.len();
         let is_past = self.past.blocks.is_empty() || self.past.blocks.len() == blocks;
         let is_empty = columns == 0 && rows == 0;
-        let is_stepped = self.substep > 0.0 && self.substep.is_finite();
-        is_stepped
+        self.is_stepped()
             && is_past
             && (is_empty && blocks == 0 || is_laid_out && blocks == self.layout.blocks())
+    }
+
+    /// How they lie in memory; that of none, where a scene file or an inspector has written what can't be: they are built again.
+    pub(super) fn sound_layout(&self) -> Layout {
+        let Layout { columns, rows, .. } = self.layout;
+        let is_sound =
+            self.blocks.len() == self.layout.blocks() && self.layout == Layout::new(columns, rows);
+        if is_sound {
+            self.layout
+        } else {
+            Layout::default()
+        }
+    }
+
+    /// Has them have stepped by as much as any, where what is written there can't be.
+    pub(crate) fn mend_substep(&mut self) {
+        if !self.is_stepped() {
+            self.substep = DEFAULT_SUBSTEP;
+        }
+    }
+
+    pub(super) fn is_stepped(&self) -> bool {
+        self.substep > 0.0 && self.substep.is_finite()
     }
 
     /// Whether two hold the same particles still, and give the others the same masses.

@@ -103,7 +103,7 @@ impl ClothParticles {
             }
         }
         Survey {
-            is_valid: valid == [true; LANES],
+            is_valid: valid == [true; LANES] && self.is_stepped(),
             largest_speed: largest.into_iter().fold(0.0, f32::max).sqrt() / self.substep,
         }
     }

@@ -45,9 +45,10 @@ const ROUNDS: u32 = 4;
 const LONGEST_WAIT: u32 = 16;
 const PART_OF_WAY: f32 = 0.5;
 
-/// For each particle a tick looks at so many nodes and pairs of features at most, in searches and in going through what was found. A
-/// tightly twisted strip needs a third of that.
-const MOST_WORK: usize = 131_072;
+/// For each particle a tick looks at so many nodes and pairs of features at most, in searches and in going through what was found; and at
+/// so many however many particles there are.
+const MOST_WORK: usize = 1 << 17;
+const MOST_WORK_OF_ALL: usize = 1 << 28;
 
 /// As long as particles come nearer to each other by less than this part of the thickness, those that are pushed are held by the
 /// mean of their last pushes in this many sub-steps at most.
@@ -124,7 +125,8 @@ impl MutualContact {
         self.has_touched = false;
         self.lost = 0;
         let particles = cloths.iter().map(|cloth| cloth.particles.len());
-        self.work = MOST_WORK * particles.sum::<usize>();
+        let particles = particles.sum::<usize>();
+        self.work = MOST_WORK.saturating_mul(particles).min(MOST_WORK_OF_ALL);
         let is_same = self.circumstances.renew(cloths, &meets);
         let is_known = is_same && self.is_searched && !self.is_lost && self.origin.is_of(cloths);
         if is_known {
@@ -241,7 +243,7 @@ impl MutualContact {
         }
         if self.is_lost {
             self.lost += 1;
-            return 0.0;
+            return held;
         }
         if self.pairs.is_empty() {
             let pace = (self.nearer - before).max(0.0) / self.waited as f32;
@@ -283,6 +285,7 @@ impl MutualContact {
                 } = &mut self.near;
                 self.has_touched |= push(contacts, too_near, &mut self.members, dt);
             } else if let Some(nearer) = self.near.may_meet_within(since + pushed) {
+                self.work = self.work.saturating_sub(self.near.contacts.len());
                 self.zones
                     .certify(&self.near.contacts, nearer, &mut self.members);
             } else {

@@ -60,12 +60,13 @@ impl MutualContact {
             return;
         }
         let (search, work) = (&mut self.search, &mut self.work);
-        let is_found = search.find(cloths, &meets, self.margin + missed, work)
-            // What has been passed meanwhile is not to be had: what is near now may be.
-            || missed > 0.0 && search.find(cloths, &meets, self.margin, work);
-        if !is_found {
-            self.lose();
-            return;
+        if !search.find(cloths, &meets, self.margin + missed, work) {
+            // What has passed through meanwhile is not to be had: what is near now may be.
+            if missed == 0.0 || !search.find(cloths, &meets, self.margin, work) {
+                self.lose();
+                return;
+            }
+            self.lost += 1;
         }
         std::mem::swap(&mut self.members, &mut self.members_before);
         std::mem::swap(&mut self.member_of, &mut self.member_of_before);

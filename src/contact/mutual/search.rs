@@ -21,8 +21,9 @@ const OF_REST: f32 = 0.5;
 const MOST_LOOKS: usize = 4_096;
 const MOST_PAIRS: usize = 2_048;
 
-/// So many pairs at most however many particles there are: 300 MB of them.
-pub(super) const MOST_OF_ALL: usize = 1 << 21;
+/// So many pairs at most however many particles there are: 300 MB of them. But at least so many for each particle: heaps at rest have 50.
+const MOST_OF_ALL: usize = 1 << 21;
+const LEAST_OF_EACH: usize = 128;
 
 /// Two features that may come near each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,11 +99,13 @@ impl Search {
         self.found.clear();
         let each = participants.iter().map(|cloth| cloth.particles.len());
         let particles = each.sum::<usize>();
-        let most = (MOST_LOOKS * particles).min(*work);
+        let most = MOST_LOOKS.saturating_mul(particles).min(*work);
+        let each = |pairs: usize| pairs.saturating_mul(particles);
+        let pairs = each(MOST_PAIRS).min(MOST_OF_ALL.max(each(LEAST_OF_EACH)));
         let mut finds = Finds {
             found: &mut self.found,
             looks: most,
-            pairs: (MOST_PAIRS * particles).min(MOST_OF_ALL),
+            pairs,
             is_over: false,
         };
         self.cloths

@@ -162,6 +162,10 @@ impl ClothSnapshot {
         if let Some(mut state) = entity.get_mut::<ClothState>() {
             state.copy_from(&self.state);
             state.written = written.filter(|_| !self.is_written);
+            // In what somebody has written by hand they may be anything.
+            let survey = self.particles.survey();
+            state.is_valid &= survey.is_valid;
+            state.largest_speed = survey.largest_speed;
             // What was attached is not written in files: it is what the game says.
             let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
             if state.attachments.is_empty() && state.targets.len() == wanted.len() {

@@ -21,6 +21,8 @@ pub struct Pool {
     pub roots: Vec<Entity>,
     /// Whether to save the world before the next tick, or to put it back.
     pub request: Option<bool>,
+    /// Whether a tick has moved particles already.
+    pub is_late: bool,
     /// How many acts there were.
     pub acts: usize,
 }
@@ -54,20 +56,14 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
     let Some(&entity) = random.pick(&pool.all) else {
         return spawn(world, pool, random);
     };
-    let which = random.below(24);
-    if std::env::var("ZZ").is_ok() {
-        eprintln!(
-            "ZZ act {which} on {entity} {:?}",
-            components(world, entity).len()
-        );
-    }
-    match which {
+    match random.below(24) {
         0..=1 if pool.all.len() < MOST => spawn(world, pool, random),
         0..=1 => {
             world.despawn(entity);
         }
-        2..=8 => write(world, entity, random),
-        9..=11 => {
+        2..=5 => write(world, entity, random),
+        6..=9 => heal(world, entity),
+        10..=11 => {
             let makers = makers(world);
             if let Some((component, default)) = random.pick(&makers) {
                 let mut value = default.default();
@@ -100,7 +96,7 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
             }
         },
         15 => drop(world.entity_mut(entity).insert(ClothTeleport)),
-        16..=17 => place_particle(world, entity, random),
+        16..=17 if !pool.is_late => place_particle(world, entity, random),
         18 => replace_mesh(world, entity, random),
         19 => pool.request = Some(random.one_in(2)),
         20 => {
@@ -127,6 +123,34 @@ fn write(world: &mut World, entity: Entity, random: &mut Random) {
     {
         mutate(value.as_partial_reflect_mut(), random);
     }
+}
+
+/// Takes back what was written, so that not all is at fault in the end.
+fn heal(world: &mut World, entity: Entity) {
+    let cloth = Cloth::new(5, 6, 0.1);
+    let mut entity = world.entity_mut(entity);
+    if entity.contains::<Cloth>() {
+        entity.insert((
+            cloth,
+            ClothMaterial::default(),
+            ClothSettings::default(),
+            Pins::default(),
+        ));
+        entity.remove::<(
+            ClothAttachments,
+            ClothSkin,
+            ClothAir,
+            ClothPressure,
+            ClothLod,
+            ClothInertia,
+            ClothSelfCollision,
+        )>();
+    } else if entity.contains::<ClothCollider>() {
+        entity
+            .insert(ClothCollider::ball(0.2))
+            .remove::<ClothBody>();
+    }
+    entity.insert(Transform::default());
 }
 
 fn insert(

@@ -1,5 +1,7 @@
 //! Writes into components as an inspector does, field by field.
 
+use std::any::TypeId;
+
 use bevy::{
     ecs::{component::ComponentId, reflect::AppTypeRegistry},
     prelude::*,
@@ -15,7 +17,7 @@ use super::random::Random;
 /// All layers but those of what nobody touches.
 pub const OTHERS: u32 = u32::MAX >> 1;
 
-/// Which components of an entity are of the crate, and known to reflection.
+/// Which components of an entity are of the crate, known to reflection, and no results of a tick.
 pub fn components(world: &World, entity: Entity) -> Vec<ReflectComponent> {
     let registry = world.resource::<AppTypeRegistry>().read();
     let entity = world.entity(entity);
@@ -26,11 +28,17 @@ pub fn components(world: &World, entity: Entity) -> Vec<ReflectComponent> {
         .filter_map(|id: &ComponentId| {
             let info = world.components().get_info(*id)?;
             let registration = registry.get(info.type_id()?)?;
-            let is_of_a_game = [std::any::TypeId::of::<ClothParticles>()]
-                .iter()
-                .all(|own| *own != registration.type_id());
+            let id = registration.type_id();
+            let results = [
+                // Written by their own functions.
+                TypeId::of::<ClothParticles>(),
+                TypeId::of::<ClothContacts>(),
+                TypeId::of::<ClothFrame>(),
+                TypeId::of::<ClothStats>(),
+            ];
+            let is_left_alone = results.contains(&id);
             let path = registration.type_info().type_path();
-            (path.starts_with("bevy_drape::") && is_of_a_game || path.ends_with("::Transform"))
+            (path.starts_with("bevy_drape::") && !is_left_alone || path.ends_with("::Transform"))
                 .then(|| registration.data::<ReflectComponent>().cloned())
                 .flatten()
         });

@@ -6,9 +6,9 @@ use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{Scene, Sheeted, participants, settings};
 use crate::contact::mutual::{
-    LONGEST_WAIT, MOST_WORK,
+    LONGEST_WAIT,
     bounds::Tangents,
-    search::{Found, MOST_OF_ALL, Search},
+    search::{Found, Search},
 };
 
 /// What a square of 1 m is bent into: flat, rolled up more and more, folded, wavy, crumpled.
@@ -204,11 +204,11 @@ fn what_is_hardly_bent_keeps_its_points_apart() {
     assert!(has_bound > 5, "{has_bound}");
 }
 
-/// However many features are near each other, a tick looks at so many of them at most: of a sheet that is crammed into a tenth of a
+/// A search ends, however many features are near each other, and finds no more than it may: of a sheet that is crammed into a tenth of a
 /// spacing or thrown asunder, and of one so thick that everything is near. It is said that layers were not kept apart, and what comes
 /// back into shape is kept apart again.
 #[test]
-fn no_tick_looks_at_more_than_its_bound() {
+fn what_is_too_much_to_look_for_is_let_go() {
     let scattered = |size: f32| {
         move |at: Vec3| {
             let turn = |k: f32| (k * at.x + 1.7 * k * at.z).sin();
@@ -234,18 +234,15 @@ fn no_tick_looks_at_more_than_its_bound() {
             }
             scene.tick(|_, _, _| {});
             let contact = &scene.contact;
-            assert!(contact.work <= MOST_WORK * particles);
-            assert!(contact.pairs() <= MOST_OF_ALL && contact.search.found.len() <= MOST_OF_ALL);
             let substeps = scene.step.substeps;
-            assert!(contact.lost() <= substeps);
             if contact.lost() == substeps {
                 assert!(contact.searches() <= 1 + substeps / LONGEST_WAIT, "{name}");
+                assert!(contact.pairs() == 0 && contact.search.found.is_empty());
             }
         }
         assert!(name == "asunder" || scene.contact.lost() > 0, "{name}");
         let again = Sheeted::new(side, 1.0, |at| at);
         scene.cloths[0].particles.copy_from(&again.particles);
-        scene.contact.forget();
         scene.settings = settings(0.01);
         scene.tick(|_, _, _| {});
         assert_eq!(scene.contact.lost(), 0, "{name}");
