@@ -138,9 +138,14 @@ pub(super) fn first_touch(
         if left <= tolerance {
             return Some(part);
         }
-        part += left / speed;
+        let step = left / speed;
+        part += step;
         if part > 1.0 {
             return None;
+        }
+        // So fast that no number tells the next step from this one.
+        if step < f32::EPSILON {
+            break;
         }
     }
     // So long beside each other: as near as that is a touch. NaN is none.

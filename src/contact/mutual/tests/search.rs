@@ -215,7 +215,7 @@ fn what_is_too_much_to_look_for_is_let_go() {
             size * Vec3::new(turn(1.0e3), turn(2.3e3), turn(3.1e3))
         }
     };
-    let side = 32;
+    let side = 24;
     let particles = (side * side) as usize;
     for (name, size, thickness) in [
         ("crammed", 0.003, 0.01),
@@ -243,6 +243,8 @@ fn what_is_too_much_to_look_for_is_let_go() {
         assert!(name == "asunder" || scene.contact.lost() > 0, "{name}");
         let again = Sheeted::new(side, 1.0, |at| at);
         scene.cloths[0].particles.copy_from(&again.particles);
+        // As the plugin does where particles are put elsewhere.
+        scene.contact.forget();
         scene.settings = settings(0.01);
         scene.tick(|_, _, _| {});
         assert_eq!(scene.contact.lost(), 0, "{name}");
