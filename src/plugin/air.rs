@@ -128,11 +128,10 @@ impl KnownAir {
     /// what it goes itself, and gas not beyond the speed at which it fills.
     pub fn acceleration(&self, material: &ClothMaterial, speed: f32, seconds: f32) -> f32 {
         let inside = match self.pressure {
-            None => 0.0,
             Some(ClothPressure::Gauge(pressure)) => pressure.abs() / material.areal_density,
-            // In no time it fills nothing.
             Some(ClothPressure::Gas { .. }) if seconds > 0.0 => FILLING / seconds,
-            Some(ClothPressure::Gas { .. }) => 0.0,
+            // In no time gas fills nothing.
+            None | Some(ClothPressure::Gas { .. }) => 0.0,
         };
         let Some(breeze) = &self.breeze else {
             return inside;

@@ -68,7 +68,8 @@ fn a_storm_wears_nothing_out() {
     let seconds: usize = told.map_or(10, |told| told.parse().expect("seconds"));
     let mut app = storm();
     let mut system = System::new().expect("the machine's figures");
-    let (mut exceeded, mut slowest, mut start) = (0, 0.0_f64, Instant::now());
+    let (mut exceeded, mut touched, mut slowest) = (0, 0, 0.0_f64);
+    let mut start = Instant::now();
     let mut memories = Vec::new();
     for second in 1..=seconds {
         for _ in 0..TICKS_A_SECOND {
@@ -88,11 +89,14 @@ fn a_storm_wears_nothing_out() {
             );
         }
         exceeded += messages::<ClothLimitExceeded>(&mut app).len();
+        touched += messages::<ClothTouchStarted>(&mut app).len();
+        // What a test hears it keeps until it is asked.
+        messages::<ClothTouchStopped>(&mut app);
         if second % 60 == 0 {
             memories.push(memory(&mut system));
             let mean = 1000.0 * start.elapsed().as_secs_f64() / (60 * TICKS_A_SECOND) as f64;
             println!(
-                "{} min: {mean:.2} ms a tick, the slowest {:.1}, {:.1} MiB, {exceeded} limits told",
+                "{} min: {mean:.2} ms a tick, the slowest {:.1}, {:.1} MiB, {exceeded} limits told, {touched} touches",
                 second / 60,
                 1000.0 * slowest,
                 memories[memories.len() - 1] as f64 / 1_048_576.0
@@ -102,6 +106,7 @@ fn a_storm_wears_nothing_out() {
     }
     // Each is told once, and again when it is ten times worse.
     assert!(exceeded <= CLOTHS, "{exceeded} warnings");
+    assert!(touched > 0, "no curtain met its ball");
     // Where it runs alone: all was there after five minutes.
     if let Some(&[early, .., late]) = memories.get(4..) {
         let grown = late.saturating_sub(early);
