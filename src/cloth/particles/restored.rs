@@ -5,10 +5,6 @@ use crate::cloth::{Block, Lanes, Layout, MAX_PARTICLES, W};
 
 impl ClothParticles {
     /// Whether they lie in memory as so many columns and rows do, in what somebody has read from a file.
-    #[cfg_attr(
-        not(feature = "serialize"),
-        allow(dead_code, reason = "nothing is read")
-    )]
     pub(crate) fn is_sound(&self) -> bool {
         let Layout { columns, rows, .. } = self.layout;
         let is_laid_out = columns
