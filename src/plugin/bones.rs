@@ -20,7 +20,11 @@ use bevy::{
     transform::components::{GlobalTransform, Transform},
 };
 
-use super::{ClothFault, frame::Places, naming::Part};
+use super::{
+    ClothFault,
+    frame::{Places, unusable},
+    naming::Part,
+};
 use crate::{cloth::ClothError, contact::ClothCollider};
 
 /// Colliders on bones below an entity, each in one line: beside a character's scene, from before it is spawned. Bones are found by
@@ -221,9 +225,7 @@ fn collider(
     let scale = place.scale().abs().max_element();
     let scale = Vec3::splat(scale.recip());
     if !(to_bone.is_finite() && scale.is_finite()) {
-        return Err(ClothError::Transform {
-            transform: format!("{place:?}"),
-        });
+        return Err(unusable(place.affine()));
     }
     let (shape, transform) = match &bone.end {
         None => (ClothCollider::ball(bone.radius), Transform::default()),

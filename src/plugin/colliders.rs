@@ -8,7 +8,7 @@ use bevy::{
 use super::{
     ClothBody, ClothFrame,
     collider_tree::Bounds,
-    frame::{Places, Shift},
+    frame::{Places, Shift, unusable},
     inertia::Carried,
     source::{ColliderMeshes, Source},
 };
@@ -142,9 +142,7 @@ impl ColliderMotion {
         }
         let is_far = translation.abs().max_element() > FARTHEST;
         if is_far || !(translation.is_finite() && rotation.is_finite()) {
-            return Err(ClothError::Transform {
-                transform: format!("{transform:?}"),
-            });
+            return Err(unusable(transform.affine()));
         }
         let place = Isometry3d::new(translation, rotation.normalize());
         let last = self.last.unwrap_or(place);

@@ -35,6 +35,15 @@ pub(super) fn global_transform(
         })
 }
 
+/// The error of a global transform that nothing can be done with.
+pub(super) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
+    let affine: Affine3A = transform.into();
+    let [x, y, z] = [0, 1, 2].map(|axis| affine.matrix3.col(axis));
+    ClothError::Transform {
+        transform: format!("at {}, axes {x}, {y} and {z}", affine.translation),
+    }
+}
+
 /// Where things are as of now, also what is below something disabled: that does not disable its children.
 #[derive(SystemParam)]
 pub(super) struct Places<'w, 's> {
@@ -91,9 +100,7 @@ impl ClothFrame {
         {
             Ok((Self { isometry, affine }, scale))
         } else {
-            Err(ClothError::Transform {
-                transform: format!("{affine:?}"),
-            })
+            Err(unusable(affine))
         }
     }
 

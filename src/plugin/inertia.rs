@@ -18,7 +18,7 @@ use bevy::{
 
 use super::{
     ClothFrame, ClothTeleport,
-    frame::{Places, Shift, relative, rigid},
+    frame::{Places, Shift, relative, rigid, unusable},
 };
 use crate::cloth::ClothError;
 
@@ -163,11 +163,7 @@ pub(super) fn follow_roots(
         let place = places.of(entity).map(|place| rigid(&place.affine()));
         let checked = inertia.validate().and(place).and_then(|place| {
             let is_finite = place.translation.is_finite() && place.rotation.is_finite();
-            is_finite
-                .then_some(place)
-                .ok_or_else(|| ClothError::Transform {
-                    transform: format!("{place:?}"),
-                })
+            is_finite.then_some(place).ok_or_else(|| unusable(place))
         });
         motion.carried = None;
         let place = match checked {

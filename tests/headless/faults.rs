@@ -322,4 +322,15 @@ fn errors_read_well() {
         error.to_string(),
         "Row(3) is outside of a cloth of 4 columns × 3 rows"
     );
+    let mut app = app();
+    let nowhere = Transform::from_xyz(f32::NAN, 1.0, 0.0);
+    let cloth = (Cloth::new(4, 4, 0.1), nowhere);
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 1);
+    let fault = app.world().get::<ClothFault>(cloth).expect("a fault");
+    assert_eq!(
+        fault.error.to_string(),
+        "the global transform must be finite, with a scale other than zero: \
+         at [NaN, 1, 0], axes [1, 0, 0], [0, 1, 0] and [0, 0, 1]"
+    );
 }

@@ -7,7 +7,10 @@ use bevy::{
     transform::components::GlobalTransform,
 };
 
-use super::super::{ClothMesh, frame::rigid};
+use super::super::{
+    ClothMesh,
+    frame::{rigid, unusable},
+};
 use crate::cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh};
 
 /// A mesh that is bound to a surface, and where it is drawn.
@@ -61,9 +64,7 @@ impl Driven {
         let to_surface = Affine3A::from(rigid(&cloth.affine()).inverse()) * place.affine();
         let for_normals = to_surface.matrix3.inverse().transpose();
         if !(to_surface.is_finite() && for_normals.is_finite()) {
-            return Err(ClothError::Transform {
-                transform: format!("{:?}", place.affine()),
-            });
+            return Err(unusable(place.affine()));
         }
         for position in &mut positions {
             *position = to_surface.transform_point3(*position);

@@ -9,7 +9,7 @@ use bevy::{
 use super::check_velocity;
 use crate::{
     cloth::ClothError,
-    plugin::frame::{Places, Shift},
+    plugin::frame::{Places, Shift, unusable},
 };
 
 /// A wind in one place, as of a fan: added to that of the world. It is where its entity's `GlobalTransform` is, scaled and turned with
@@ -190,9 +190,7 @@ impl PlacedZone {
         let (scale, rotation, _) = affine.to_scale_rotation_translation();
         let rotation: Quat = rotation.normalize();
         if !(affine.is_finite() && from_world.is_finite() && rotation.is_finite()) {
-            return Err(ClothError::Transform {
-                transform: format!("{affine:?}"),
-            });
+            return Err(unusable(affine));
         }
         let (centre, radius) = zone.shape.around();
         Ok(Self {
