@@ -82,12 +82,18 @@ fn sag_of_strip(mass: f32, compliance: f32, seconds: usize) -> [f64; 2] {
     [reach - last.iter().sum::<f64>() / 128.0, expected]
 }
 
+/// Every second of these masses (kg), from the first or the second on; all of them where tests run at their full length.
+fn in_turn(masses: [f32; 4], first: usize) -> impl Iterator<Item = f32> {
+    let (first, step) = if is_long() { (0, 1) } else { (first, 2) };
+    masses.into_iter().skip(first).step_by(step)
+}
+
 /// A roller of 2 to 220 times the mass of the strip that it lies across sags it as deep as its weight says: within 4 %, as what keeps its
 /// equations soluble gives by some thousandths, which the sag shows some ten times as large.
 #[test]
 fn a_roller_sags_a_strip_as_its_weight_says() {
-    for compliance in [1.0e-5, 1.0e-4] {
-        for mass in [0.1, 0.5, 2.0, 10.0] {
+    for (index, compliance) in [1.0e-5, 1.0e-4].into_iter().enumerate() {
+        for mass in in_turn([0.1, 0.5, 2.0, 10.0], index) {
             let [is, expected] = sag_of_strip(mass, compliance, 20);
             println!("{mass} kg, {compliance} m/N: {is:.4} m of {expected:.4}");
             let off = (is / expected - 1.0).abs();
@@ -100,8 +106,9 @@ fn a_roller_sags_a_strip_as_its_weight_says() {
 /// the ball began with.
 #[test]
 fn a_heavy_ball_is_held_and_gains_nothing() {
-    for narrow_phase in [NarrowPhase::Particles, NarrowPhase::Triangles] {
-        for mass in [1.0_f32, 5.0, 20.0, 70.0] {
+    let narrow_phases = [NarrowPhase::Particles, NarrowPhase::Triangles];
+    for (index, narrow_phase) in narrow_phases.into_iter().enumerate() {
+        for mass in in_turn([1.0, 5.0, 20.0, 70.0], index) {
             let mut app = app_with_bodies();
             let sheet = spawn_trampoline(&mut app, 33);
             app.world_mut().entity_mut(sheet).insert(narrow_phase);

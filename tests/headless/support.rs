@@ -1,8 +1,13 @@
 //! The app that the tests drive, and short ways to ask it.
 
 use bevy::{
-    asset::AssetPlugin, camera::visibility::VisibilityPlugin, ecs::schedule::ScheduleLabel,
-    gizmos::GizmoPlugin, mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy,
+    asset::AssetPlugin,
+    camera::visibility::VisibilityPlugin,
+    ecs::schedule::{ScheduleLabel, SingleThreadedExecutor},
+    gizmos::GizmoPlugin,
+    mesh::MeshPlugin,
+    prelude::*,
+    time::TimeUpdateStrategy,
 };
 use bevy_drape::{
     plugin::{ClothBuilt, ClothGizmosPlugin, ClothPlugin, ClothSearch},
@@ -16,9 +21,20 @@ pub const TICK: f32 = 1.0 / 64.0;
 /// Standard gravity as the plugin has it (m/s²).
 pub const GRAVITY: f32 = 9.81;
 
-/// An app in which every update is one tick.
+/// Whether tests are to run at their full length, which takes minutes: CI sets `BEVY_DRAPE_LONG`.
+pub fn is_long() -> bool {
+    std::env::var_os("BEVY_DRAPE_LONG").is_some()
+}
+
+/// An app in which every update is one tick, whose systems run one after the other on this thread: tests that run beside each other
+/// share Bevy's threads, and would wait for each other's systems. Those that draw run as in a game.
 pub fn app() -> App {
-    with_plugins(DrapePlugins::default())
+    let mut app = with_plugins(DrapePlugins::default());
+    let mut schedules = app.world_mut().resource_mut::<Schedules>();
+    for (_, schedule) in schedules.iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
+    app
 }
 
 /// The same with all that draws, short of a renderer, and the cloth in `schedule`.

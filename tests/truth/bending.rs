@@ -199,16 +199,22 @@ fn a_clamped_strip_rings_at_its_frequency() {
 }
 
 /// The drape coefficient rises with the rigidity and depends neither on the spacing (m) nor on how the mesh is turned: each is
-/// within a tenth of their mean.
+/// within a tenth of their mean. At 3 mm it takes a minute: CI sets `BEVY_DRAPE_LONG`.
 #[test]
 fn a_disc_drapes_alike_whatever_its_mesh() {
+    let is_long = std::env::var_os("BEVY_DRAPE_LONG").is_some();
+    let spacings: &[f32] = if is_long {
+        &[0.012, 0.006, 0.003]
+    } else {
+        &[0.012, 0.006]
+    };
     let mut least = 0.0;
     for (name, material) in [
         ("cotton", ClothMaterial::COTTON),
         ("denim", ClothMaterial::DENIM),
     ] {
         let mut found = Vec::new();
-        for spacing in [0.012, 0.006, 0.003] {
+        for &spacing in spacings {
             for degrees in [0.0, 45.0] {
                 let drape = Drape {
                     spacing,

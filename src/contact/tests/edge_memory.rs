@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::{
     begin_with_all, build,
-    random::{Random, cases},
+    random::{Random, many_cases},
 };
 use crate::{
     cloth::{ClothParticles, Surface},
@@ -209,7 +209,7 @@ fn compare(seed: u64) -> Result<bool, TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(cases(1_000))]
+    #![proptest_config(many_cases(1_000))]
 
     /// Whatever a cloth remembers of a shape's edges, contact does the same, bit for bit, as if it looked at all triangles anew
     /// in each sub-step; also where edges have come all through triangles.

@@ -5,6 +5,16 @@ use proptest::prelude::ProptestConfig;
 
 use crate::contact::{ClothCollider, ColliderShape, MovingCollider};
 
+/// Whether tests are to run at their full length, which takes minutes: CI sets `BEVY_DRAPE_LONG`.
+fn is_long() -> bool {
+    std::env::var_os("BEVY_DRAPE_LONG").is_some()
+}
+
+/// A fifth of this many cases, that are the same each time, and all of them where tests run at their full length.
+pub fn many_cases(at_length: u32) -> ProptestConfig {
+    cases(if is_long() { at_length } else { at_length / 5 })
+}
+
 /// This many cases, that are the same each time.
 pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::{
     all_of,
-    random::{Random, cases},
+    random::{Random, many_cases},
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, SpringKind, Springs, Surface},
@@ -217,7 +217,7 @@ fn difference(found: &Outcome, truth: &Outcome) -> String {
 }
 
 proptest! {
-    #![proptest_config(cases(1_500))]
+    #![proptest_config(many_cases(1_500))]
 
     /// With a margin of nothing, one that is too small, and one that is large enough, by tree and by scan, done once
     /// and again: the tick ends as if every particle had been tested against every collider in every sub-step, to the
@@ -230,7 +230,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(100))]
+    #![proptest_config(many_cases(100))]
 
     /// Nor is a triangle, nor an edge of a box: these take a third of a second each.
     #[test]

@@ -1,6 +1,6 @@
 //! Garbage for every component, at any time: nothing panics or hangs, what has no fault is finite, and what nobody touches is as it is without.
 //!
-//! Seconds long. `BEVY_DRAPE_FUZZ=500 cargo test --test headless fuzz` does five hundred runs of 400 ticks, and prints what it has counted;
+//! Seconds long, in CI minutes. `BEVY_DRAPE_FUZZ=500 cargo test --test headless fuzz` does five hundred runs of 400 ticks, and prints what it has counted;
 //! `BEVY_DRAPE_SEED=7` begins with another seed.
 
 mod acts;
@@ -19,8 +19,8 @@ use self::{
 };
 use crate::support::*;
 
-/// Runs by default, and ticks of each.
-const RUNS: u64 = 8;
+/// Runs by default, in CI, and ticks of each.
+const RUNS: [u64; 2] = [2, 30];
 const TICKS: usize = 400;
 
 /// Farther than this nothing without a fault may be from its frame (m), as `ClothParticles::validate` has it.
@@ -266,7 +266,7 @@ fn garbage_harms_nobody_else() {
     let (runs, seed) = (told("BEVY_DRAPE_FUZZ"), told("BEVY_DRAPE_SEED"));
     let mut counts = Counts::default();
     let first = seed.unwrap_or(0);
-    let all = runs.unwrap_or(RUNS);
+    let all = runs.unwrap_or(RUNS[usize::from(is_long())]);
     for seed in first..first + all {
         run(seed, seed % 2 == 1, &mut counts);
         if runs.is_some() {
