@@ -1,39 +1,23 @@
-//! Cloth for [Bevy](https://bevyengine.org), with collisions found by a quad-tree of bounding spheres that is
-//! searched from the top down.
-//!
-//! Add [`DrapePlugins`](plugin::DrapePlugins), spawn a [`Cloth`](cloth::Cloth), and put a
-//! [`ClothCollider`](contact::ClothCollider) on whatever it shall touch:
+//! Cloth for [Bevy](https://bevyengine.org). Add [`DrapePlugins`](plugin::DrapePlugins), spawn a
+//! [`Cloth`](cloth::Cloth), and put a [`ClothCollider`](contact::ClothCollider) on whatever it touches:
 //!
 //! ```no_run
 //! use bevy::prelude::*;
 //! use bevy_drape::prelude::*;
 //!
 //! fn main() {
-//!     App::new()
-//!         .add_plugins((MinimalPlugins, DrapePlugins::default()))
-//!         .add_systems(Startup, |mut commands: Commands| {
-//!             commands.spawn(Cloth::new(32, 32, 0.1));
-//!             commands.spawn((ClothCollider::ball(0.5), Transform::from_xyz(1.5, -1.5, 0.5)));
-//!         })
-//!         .run();
+//!     App::new().add_plugins((DefaultPlugins, DrapePlugins::default())).add_systems(Startup, setup).run();
+//! }
+//!
+//! fn setup(mut commands: Commands, mut materials: ResMut<Assets<StandardMaterial>>) {
+//!     let red = MeshMaterial3d(materials.add(fabric(Color::srgb(0.7, 0.1, 0.15))));
+//!     commands.spawn((Cloth::new(32, 32, 0.1), red));
+//!     commands.spawn((ClothCollider::ball(0.5), Transform::from_xyz(1.5, -1.5, 0.5)));
 //! }
 //! ```
 //!
-//! # Where things are
-//! Each module uses only those above it in this list; all but the last are plain functions on plain data, free
-//! of systems and apps, to be tested and measured as such.
-//!
-//! | module | what lives there |
-//! |---|---|
-//! | [`cloth`] | what a cloth *is*: its surface, from a grid or a mesh, particles, springs and their colours, material, pins |
-//! | [`solver`] | how it *moves*: Verlet, distance constraints, sub-steps, tethers, tolerance, rest |
-//! | [`hierarchy`] | how it is *searched*: the quad-tree, bound rules, the top-down query |
-//! | [`contact`] | what happens on *touch*: shapes, push-out, friction |
-//! | [`plugin`] | the ECS: plugins, system sets, components, messages, mesh, gizmos, diagnostics, rapier, panel |
-//!
-//! How to use it is told in the [`guide`], chapter by chapter.
-//!
-//! Lengths are metres, masses kilograms, times seconds throughout.
+//! The [`guide`] goes on from here: a first cloth, wind, characters, contact, tuning. [`prelude`] lists the components. Lengths
+//! are metres, masses kilograms, times seconds.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod cloth;
@@ -52,15 +36,13 @@ pub mod prelude {
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,
     };
-    pub use crate::hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason};
-    #[cfg(feature = "egui")]
-    pub use crate::plugin::ClothPanelPlugin;
+    pub use crate::hierarchy::SearchMethod;
     #[cfg(feature = "mesh")]
     pub use crate::plugin::ClothRenderMesh;
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     pub use crate::plugin::{
-        ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones,
+        ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothBuilt,
         ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothInertia,
         ClothLimitExceeded, ClothLod, ClothLodLevel, ClothPush, ClothSnapshot, ClothStats,
         ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
@@ -69,6 +51,8 @@ pub mod prelude {
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};
+    #[cfg(feature = "egui")]
+    pub use crate::plugin::{ClothPanel, ClothPanelPlugin};
     #[cfg(feature = "rapier")]
     pub use crate::plugin::{ClothPushBack, RapierClothCollider};
     pub use crate::solver::{ClothLimit, ClothPressure, ClothSettings, Substepping, TimeOrder};

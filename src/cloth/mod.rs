@@ -14,17 +14,20 @@ mod springs;
 mod surface;
 
 pub use error::ClothError;
-pub use grid::{ClothGrid, ClothPlane, GridShape};
+#[doc(hidden)]
+pub use grid::ClothGrid;
+pub use grid::{ClothPlane, GridShape};
 pub use limits::MAX_PARTICLES;
 pub use material::ClothMaterial;
 pub use particles::{ClothParticles, ParticleId};
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
 pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
+#[doc(hidden)]
 pub use springs::{Spring, SpringKind, Springs};
-pub use surface::{
-    MAX_MESH_PARTICLES, Spacing, Surface, SurfaceBinding, TriangleMesh, VertexAttribute,
-};
+#[doc(hidden)]
+pub use surface::SurfaceBinding;
+pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttribute};
 
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;

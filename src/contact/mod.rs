@@ -39,20 +39,31 @@ mod tests;
 mod touch;
 mod triangle;
 
+#[doc(hidden)]
 pub use body::BodyChange;
 pub(crate) use carriers::Carrier;
 pub use collider::{ClothCollider, MeshCollider};
+#[doc(hidden)]
 pub use corners::meets_triangles;
 #[doc(hidden)]
 pub use depth::deepest_penetration;
+#[doc(hidden)]
 pub use detection::Detection;
 pub use geometry::ColliderGeometry;
 pub use layers::ClothLayers;
+#[doc(hidden)]
 pub use mass::BodyMass;
+#[doc(hidden)]
 pub use moving::MovingCollider;
-pub use mutual::{ClothSelfCollision, intersections};
+pub use mutual::ClothSelfCollision;
+#[doc(hidden)]
+pub use mutual::intersections;
 pub(crate) use mutual::{MutualContact, Participant, Sheet};
-pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
+pub use narrow_phase::NarrowPhase;
+#[doc(hidden)]
+pub use narrow_phase::PARTICLES_FROM;
 pub use shape::ColliderShape;
 pub use source::SharedCollider;
-pub use touch::{ContactPoint, ContactSettings, Touch};
+pub use touch::ContactPoint;
+#[doc(hidden)]
+pub use touch::{ContactSettings, Touch};

@@ -125,8 +125,12 @@ mod tree;
 mod volume;
 
 pub use bounds::NodeBounds;
+#[doc(hidden)]
 pub use brute::brute_force;
-pub use method::{SEARCH_FROM, SearchMethod, SearchReason};
+#[doc(hidden)]
+pub use method::SEARCH_FROM;
+pub use method::{SearchMethod, SearchReason};
+#[doc(hidden)]
 pub use probe::{Core, Probe};
 pub use query::{NodeState, TopDownQuery};
 pub use rule::BoundRule;

@@ -82,20 +82,30 @@ mod tether;
 mod threads;
 mod twist;
 
-pub use air::{Air, ClothPressure};
+#[doc(hidden)]
+pub use air::Air;
+pub use air::ClothPressure;
 pub(crate) use air::{AirMemory, FILLING};
+#[doc(hidden)]
 pub use bending::Bending;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]
 pub use kernel::SimdLevel;
 pub(crate) use motion::MotionConstraints;
+#[doc(hidden)]
 pub use rest::Rest;
 pub use settings::ClothSettings;
-pub use step::{DampingFrame, PinMotion, SubStep, TickStep, TimeOrder};
+pub use step::TimeOrder;
+#[doc(hidden)]
+pub use step::{DampingFrame, PinMotion, SubStep, TickStep};
 pub use stretch::Stretch;
+#[doc(hidden)]
 pub use substep::Solver;
 pub(crate) use substep::StartedTick;
-pub use substepping::{Control, Substepping};
+#[doc(hidden)]
+pub use substepping::Control;
+pub use substepping::Substepping;
+#[doc(hidden)]
 pub use tether::Tethers;
 pub(crate) use tether::material_stretch;

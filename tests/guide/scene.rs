@@ -1,0 +1,5 @@
+use bevy::prelude::*;
+
+fn scene(mut commands: Commands, assets: Res<AssetServer>) {
+    commands.spawn(DynamicWorldRoot(assets.load("scenes/flag.scn.ron")));
+}
