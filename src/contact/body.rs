@@ -15,7 +15,7 @@ pub struct BodyChange {
     pub velocity: Vec3,
     /// Change of its angular velocity (rad/s).
     pub angular_velocity: Vec3,
-    /// Displacement of its shape's origin at the end of the tick (m).
+    /// Change of its shape's origin at the end of the tick (m).
     pub translation: Vec3,
     /// Change of its rotation at the end of the tick: axis × angle (rad).
     pub rotation: Vec3,

@@ -18,7 +18,7 @@ use super::{
 use crate::cloth::{ClothError, FARTHEST};
 
 /// A collider for cloth at the entity's [`Transform`]. Every cloth collides with it, unless
-/// [`ClothLayers`](super::ClothLayers) exclude it. The game moves it in any way. Cloth pushes it back only if it has a
+/// [`ClothLayers`](super::ClothLayers) exclude it. Move it however you like. Cloth pushes it back only if it has a
 /// [`ClothBody`](crate::plugin::ClothBody).
 ///
 /// Its velocity, and so its friction, comes from the change of its transform since the last tick. Move it in the
@@ -89,7 +89,8 @@ pub enum ClothCollider {
     Mesh(MeshCollider),
     /// Several shapes, each with a pose in the entity's frame (m).
     Compound(Vec<(Isometry3d, Self)>),
-    /// Points, triangles or heights given in code. They cannot be serialized: loaded from a scene file, it is a fault.
+    /// Points, triangles or heights given in code. They cannot be serialized: loaded from a scene file, the collider
+    /// raises a [`ClothFault`](crate::plugin::ClothFault).
     Shared(#[reflect(ignore)] SharedCollider),
 }
 
@@ -146,7 +147,7 @@ impl ClothCollider {
         }
     }
 
-    /// A cone with a base of `radius`, and of `height` (m).
+    /// A cone of `height` with a base of `radius` (m).
     pub const fn cone(radius: f32, height: f32) -> Self {
         Self::Cone {
             radius,

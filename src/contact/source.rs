@@ -242,7 +242,7 @@ fn height_field(
 mod tests {
     use super::*;
 
-    /// A scale that can't be has no say in what comes of another.
+    /// An invalid scale does not affect a valid one.
     #[test]
     fn a_bad_scale_is_not_remembered() {
         let ball = SharedCollider::parry(SharedShape::ball(0.5));

@@ -11,8 +11,8 @@ use super::{MovingCollider, NarrowPhase, candidates::Ranges};
 pub struct ContactPoint {
     /// Index of the particle. If the collider is tested against triangles, the particle that owns them.
     pub particle: u32,
-    /// Its largest depth inside the collider in the tick (m). Negative for the smallest distance; −∞ if it was not
-    /// tested, because it is pinned or far away.
+    /// Its largest depth inside the collider in the tick (m). If it stayed outside, minus its smallest distance; −∞ if
+    /// it was not tested, because it is pinned or far away.
     pub depth: f32,
 }
 

@@ -64,9 +64,10 @@ pub struct ClothSkin {
     /// The blend from the pose, at 0, to the simulation, at 1. In between, each max distance is multiplied by it; an
     /// infinite one counts as twice the cloth's diagonal.
     pub blend: f32,
-    /// Threshold for a cut of the animation or a teleport (m), positive. It applies to the motion of any position of
-    /// the pose in a tick, beyond that of the entity itself ([`ClothInertia`](crate::plugin::ClothInertia)). Above it,
-    /// each particle jumps with its position in the pose, and gets no velocity from the jump.
+    /// Motion of the pose in a tick above which it counts as a cut of the animation or a teleport (m), positive. The
+    /// motion of any one position counts, without the motion that the cloth is [carried
+    /// along](crate::plugin::ClothInertia) with. Each particle then jumps with its position in the pose, and gets no
+    /// velocity from the jump.
     pub teleport_distance: f32,
 }
 

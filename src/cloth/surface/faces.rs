@@ -17,7 +17,7 @@ impl Faces {
             end += count;
             end
         }));
-        debug_assert_eq!(end as usize, all.len(), "each face is some particle's");
+        debug_assert_eq!(end as usize, all.len(), "each face needs an owner");
         Self { all, first }
     }
 

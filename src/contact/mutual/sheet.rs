@@ -66,7 +66,7 @@ impl Sheet {
     pub fn new(surface: &Arc<Surface>, tree: &QuadTree) -> Self {
         assert!(
             tree.validate(surface.len()).is_ok(),
-            "the surface's own tree"
+            "the tree belongs to another surface"
         );
         let mut seen = HashSet::new();
         let (mut edges, mut first_edge) = (Vec::new(), vec![0]);

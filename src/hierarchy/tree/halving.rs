@@ -169,7 +169,7 @@ fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
     };
     let mut levels = vec![vec![part(0..full)]];
     loop {
-        let above = levels.last_mut().expect("the whole");
+        let above = levels.last_mut().expect("at least one level");
         // The first is the largest.
         let largest = above[0].full_end;
         if largest == 1 {

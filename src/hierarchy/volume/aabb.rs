@@ -133,9 +133,7 @@ fn slabs_may_reach(aabb: &Aabb3d, probe: &Probe, reach: f32) -> bool {
 /// Eight numbers of a block from an offset on.
 #[inline(always)]
 pub(super) fn coordinates(view: &View, from: usize) -> &Lane {
-    view[from..]
-        .first_chunk()
-        .expect("three times eight of them")
+    view[from..].first_chunk().expect("24 numbers")
 }
 
 /// The union of four intervals along an axis.

@@ -29,11 +29,11 @@ pub enum BoundingVolume {
     Aabb,
     /// An oriented box.
     Obb,
-    /// A 14-DOP, between seven pairs of parallel planes: a box without its corners.
+    /// A 14-DOP, between seven pairs of parallel planes: a box with its corners cut off.
     KDop14,
-    /// An 18-DOP, between nine pairs: a box without its edges.
+    /// An 18-DOP, between nine pairs: a box with its edges cut off.
     KDop18,
-    /// A 26-DOP, between thirteen pairs: a box without corners and edges.
+    /// A 26-DOP, between thirteen pairs: a box with its corners and edges cut off.
     KDop26,
 }
 
