@@ -17,8 +17,8 @@ pub const SEARCH_FROM: usize = 64 * 64;
 /// A refit pays from one nearby collider for this many particles on: at 256 × 256, from 100 balls on.
 const PARTICLES_A_COLLIDER: f32 = 600.0;
 
-/// The method that finds the particles that a collider may touch. All methods find the same particles, except the rule
-/// [`Paper`].
+/// The method that finds the particles that a collider may touch. All methods find the same particles, except
+/// that the rule [`Paper`] misses some.
 ///
 /// [`Paper`]: BoundRule::Paper
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
