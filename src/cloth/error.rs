@@ -1,4 +1,4 @@
-//! What can be wrong with a cloth or a collider.
+//! Errors of cloths and colliders.
 
 use std::mem::discriminant;
 
@@ -11,11 +11,10 @@ use thiserror::Error;
 
 use super::{MAX_PARTICLES, ParticleId, Pin, Spring};
 
-/// Why a cloth or a collider is not simulated, with the value that is at fault.
+/// The reason why a cloth or a collider is not simulated, with the value at fault.
 ///
-/// The plugin logs each once with its entity, marks the entity with a
-/// [`ClothFault`](crate::plugin::ClothFault), and goes on with the others. Mending the value is enough to
-/// bring the entity back.
+/// The plugin logs each error once with its entity, marks the entity with a [`ClothFault`](crate::plugin::ClothFault),
+/// and continues with the other entities. Fixing the value brings the entity back.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
 #[reflect(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -29,216 +28,218 @@ pub enum ClothError {
         rows: u32,
     },
     /// More particles than [`MAX_PARTICLES`], or a product that overflows.
-    #[error("{columns} × {rows} particles are more than the {MAX_PARTICLES} that a cloth may have")]
+    #[error("{columns} × {rows} particles exceed the maximum of {MAX_PARTICLES} for a cloth")]
     GridTooLarge {
         /// Particles along the width.
         columns: u32,
         /// Particles along the height.
         rows: u32,
     },
-    /// A number that is zero, negative, too large or not finite where it may not be.
+    /// A number outside its valid range, or not finite.
     #[error("{quantity} must be {expected}, not {value}")]
     Quantity {
-        /// What the number is, with its unit.
+        /// The name of the quantity, with its unit.
         #[reflect(ignore)]
         quantity: &'static str,
-        /// What it must be.
+        /// The valid range.
         #[reflect(ignore)]
         expected: &'static str,
-        /// What it is.
+        /// The invalid value.
         value: f32,
     },
-    /// Layers of cloth are to be kept farther apart than its particles leave room for.
+    /// A cloth's thickness is more than half of its shortest spacing.
     #[error(
-        "a thickness of {thickness} m asks for a spacing of at least twice as much, and the shortest is {shortest} m: make the thickness smaller, or the cloth of fewer particles"
+        "a thickness of {thickness} m needs a spacing of at least twice that, but the shortest is {shortest} m: use a smaller thickness or fewer particles"
     )]
     TooThick {
-        /// How far apart (m).
+        /// The thickness (m).
         thickness: f32,
         /// The shortest spacing at rest (m).
         shortest: f32,
     },
-    /// Rows and columns were asked of a cloth that was not made from a grid.
+    /// Rows and columns were requested of a cloth that was not made from a grid.
     #[error("the cloth is a mesh, which has neither rows nor columns")]
     NotAGrid,
-    /// Pressure was asked for in a cloth that does not enclose a volume.
+    /// A cloth with pressure does not enclose a volume.
     #[error(
-        "a cloth with pressure must be a closed mesh: each edge between two faces, and this one has a border"
+        "a cloth with pressure must be a closed mesh, with two faces at each edge, but this mesh has a border"
     )]
     NotClosed,
-    /// A pin that names a particle outside of the cloth.
-    #[error("{pin:?} is outside of a cloth of {cloth}")]
+    /// A pin names a particle outside the cloth.
+    #[error("{pin:?} is outside a cloth of {cloth}")]
     PinOutOfRange {
         /// The pin.
         pin: Pin,
-        /// Its columns and rows, or its particles and vertices.
+        /// The cloth's columns and rows, or its particles and vertices.
         cloth: String,
     },
-    /// A pin by rows and columns on a cloth that has neither.
+    /// A pin names rows and columns, but the cloth is not a grid.
     #[error(
-        "{pin:?} names rows and columns, and the cloth is a mesh: pin it by vertex, place, colour or attribute"
+        "{pin:?} names rows and columns, but the cloth is a mesh: pin it by vertex, position, colour or attribute"
     )]
     PinNeedsGrid {
         /// The pin.
         pin: Pin,
     },
-    /// A pin by a vertex attribute that the mesh does not have, or not as numbers.
-    #[error("{pin:?} asks for an attribute that the mesh does not have; it has: {attributes}")]
+    /// A pin names a vertex attribute that the mesh does not have, or that is not numeric.
+    #[error("{pin:?} needs an attribute that the mesh does not have; it has: {attributes}")]
     NoSuchAttribute {
         /// The pin.
         pin: Pin,
-        /// The names of those that it has.
+        /// The names of the mesh's attributes.
         attributes: String,
     },
-    /// A pin by place, colour or attribute that no particle answers to.
-    #[error("{pin:?} holds for no particle of the cloth")]
+    /// A pin by position, colour or attribute matches no particle.
+    #[error("{pin:?} matches no particle of the cloth")]
     PinFindsNothing {
         /// The pin.
         pin: Pin,
     },
-    /// A vertex attribute that a number of each particle was to come from does not exist.
+    /// A paint names a vertex attribute or a channel that does not exist.
     #[error(
-        "there is no channel {channel} of a vertex attribute \"{name}\"; the cloth has: {attributes}"
+        "the cloth has no channel {channel} of a vertex attribute \"{name}\"; it has: {attributes}"
     )]
     NoSuchPaint {
-        /// Its name.
+        /// The name of the attribute.
         name: String,
-        /// Which channel of it, from 0.
+        /// The channel, from 0.
         channel: usize,
-        /// The names of those that there are.
+        /// The names of the cloth's attributes.
         attributes: String,
     },
-    /// Numbers that are not one for each vertex.
-    #[error("the cloth has {expected} vertices, and {found} numbers were given for them")]
+    /// A paint does not have one value for each vertex.
+    #[error(
+        "the cloth has {expected} vertices, but {found} values were given: give one for each vertex"
+    )]
     PaintCount {
-        /// How many vertices there are.
+        /// Number of vertices.
         expected: usize,
-        /// How many numbers.
+        /// Number of values.
         found: usize,
     },
-    /// A skinned mesh whose joints' weights are no weights.
-    #[error("the weights of vertex {vertex}'s joints must be finite and not negative: {weights:?}")]
+    /// A skinned mesh has a joint weight that is negative or not finite.
+    #[error("the joint weights of vertex {vertex} must be finite and not negative: {weights:?}")]
     SkinWeights {
-        /// Which vertex.
+        /// Index of the vertex.
         vertex: usize,
         /// Its weights.
         weights: [f32; 4],
     },
-    /// A skinned mesh without joint indices and weights, or whose vertices name more joints than there are.
+    /// A skinned mesh has no joint indices and weights, or its vertices name joints that do not exist.
     #[error(
-        "the mesh needs a joint index and weights for each vertex, and {needed} joints with bind poses; there are {joints}"
+        "the mesh needs joint indices and weights for each vertex, and {needed} joints with inverse bind poses, but there are {joints}"
     )]
     SkinJoints {
-        /// How many joints its vertices name.
+        /// Number of joints that the vertices name.
         needed: usize,
-        /// How many there are.
+        /// Number of joints that exist.
         joints: usize,
     },
-    /// No entity below a character has the name of a bone.
-    #[error("there is no bone \"{name}\" below this entity")]
+    /// A character has no descendant with the name of the bone.
+    #[error("no descendant of this entity is a bone named \"{name}\"")]
     NoSuchBone {
-        /// The name.
+        /// The name of the bone.
         name: String,
     },
-    /// A joint of a skinned mesh that does not exist, or whose transform is not finite.
-    #[error("joint {joint} of the skin, {entity}, must exist with a finite global transform")]
+    /// A joint of a skinned mesh does not exist, or its transform is not finite.
+    #[error("joint {joint} of the skin, {entity}, must exist and have a finite global transform")]
     Joint {
-        /// Which joint.
+        /// Index of the joint.
         joint: usize,
         /// Its entity.
         entity: Entity,
     },
-    /// The asset of a cloth from a mesh is not there, and nothing loads it.
-    #[error(
-        "the mesh has not been loaded, and nothing is loading it: is there a `Mesh3d` with it?"
-    )]
+    /// The mesh asset of a cloth does not exist, and is not being loaded.
+    #[error("the mesh is neither loaded nor loading: does the entity have a `Mesh3d`?")]
     MeshNotLoaded,
-    /// The asset of a cloth from a mesh is being loaded: the cloth waits for it. Neither logged nor marked.
+    /// The mesh asset of a cloth is being loaded: the cloth waits for it. Neither logged nor marked.
     #[error("the mesh is being loaded")]
     MeshLoading,
-    /// The asset of a cloth from a mesh could not be loaded.
+    /// The mesh asset of a cloth could not be loaded.
     #[error("the mesh could not be loaded: {reason}")]
     MeshFailed {
-        /// What the asset server says.
+        /// The error of the asset server.
         reason: String,
     },
-    /// A mesh whose vertices are in the render world alone.
+    /// A mesh has its vertices only in the render world.
     #[error(
-        "the mesh is in the render world only: load it with `RenderAssetUsages::MAIN_WORLD` too, as by default"
+        "the mesh is only in the render world: load it with `RenderAssetUsages::MAIN_WORLD` too, which is the default"
     )]
     MeshNotReadable,
-    /// A mesh of lines or points.
-    #[error("a cloth needs a mesh of triangles, as a list or a strip, not a {topology}")]
+    /// A mesh is made of lines or points.
+    #[error("a cloth needs a triangle list or a triangle strip, not a {topology}")]
     MeshTopology {
-        /// What it is made of.
+        /// The topology of the mesh.
         topology: String,
     },
-    /// A mesh without positions of three floats.
-    #[error("the mesh has no positions of three floats")]
+    /// A mesh has no positions, or positions that are not `Float32x3`.
+    #[error("the mesh has no positions of format `Float32x3`")]
     MeshWithoutPositions,
-    /// Indices that are not three for each triangle.
-    #[error("{indices} indices are not three for each triangle")]
+    /// The number of indices is not a multiple of three.
+    #[error("{indices} indices do not make whole triangles: their number must be a multiple of 3")]
     MeshIndexCount {
-        /// How many there are.
+        /// Number of indices.
         indices: usize,
     },
-    /// A triangle of a vertex that does not exist.
-    #[error("triangle {triangle} has the corners {corners:?}, and there are {vertices} vertices")]
+    /// A triangle names a vertex that does not exist.
+    #[error(
+        "triangle {triangle} has the corners {corners:?}, but there are only {vertices} vertices"
+    )]
     TriangleOutOfRange {
-        /// Which triangle.
+        /// Index of the triangle.
         triangle: usize,
         /// Its corners.
         corners: [u32; 3],
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// A vertex that is not finite or beyond all measure.
-    #[error("vertex {vertex} is not finite, or beyond 10¹² m: {position}")]
+    /// A vertex is not finite, or beyond 10¹² m.
+    #[error("vertex {vertex} is not finite or is beyond 10¹² m: {position}")]
     VertexNotFinite {
-        /// Which vertex.
+        /// Index of the vertex.
         vertex: usize,
-        /// Where it is (m).
+        /// Its position (m).
         position: Vec3,
     },
-    /// A mesh in which no triangle has an area.
+    /// No triangle of the mesh has an area.
     #[error("none of the mesh's {triangles} triangles has an area")]
     MeshWithoutArea {
-        /// How many there are.
+        /// Number of triangles.
         triangles: usize,
     },
-    /// A mesh of more particles than [`MAX_MESH_PARTICLES`](super::MAX_MESH_PARTICLES).
-    #[error("{particles} particles are more than the 262144 that a cloth from a mesh may have")]
+    /// A mesh gives more particles than [`MAX_MESH_PARTICLES`](super::MAX_MESH_PARTICLES).
+    #[error("{particles} particles exceed the maximum of 262144 for a cloth from a mesh")]
     MeshTooLarge {
-        /// How many there would be.
+        /// Number of particles that the mesh gives.
         particles: usize,
     },
-    /// The cloth that drives a mesh does not exist, or is no cloth.
-    #[error("the mesh is driven by {cloth}, which does not exist or is no cloth")]
+    /// The cloth that drives a mesh does not exist, or is not a cloth.
+    #[error("the mesh is driven by {cloth}, which does not exist or is not a cloth")]
     NoDrivingCloth {
-        /// What was to drive it.
+        /// The missing cloth.
         cloth: Entity,
     },
-    /// A mesh that is to be driven by a cloth, and is elsewhere.
+    /// A mesh driven by a cloth is too far from it.
     #[error(
-        "vertex {vertex} of the mesh is {distance} m from the cloth at rest, whose size is {farthest} m: put the mesh where the cloth is"
+        "vertex {vertex} of the mesh is {distance} m from the cloth at rest, which is only {farthest} m across: place the mesh on the cloth"
     )]
     BoundTooFar {
-        /// Which vertex.
+        /// Index of the vertex.
         vertex: usize,
-        /// How far it is from the cloth (m).
+        /// Its distance from the cloth (m).
         distance: f32,
-        /// How far it may be (m).
+        /// The largest allowed distance (m).
         farthest: f32,
     },
-    /// A transform that is not finite, that is scaled to nothing, or that an ancestor lacks.
+    /// A transform is not finite, has a zero scale, or is missing from an ancestor.
     #[error("the global transform must be finite, with a scale other than zero: {transform}")]
     Transform {
-        /// The transform, written out.
+        /// The transform, as text.
         transform: String,
     },
-    /// A particle whose position, displacement or inverse mass is not a finite number, or beyond all measure.
+    /// A particle's position, displacement or inverse mass is not finite or out of range.
     #[error(
-        "particle {index} is not finite, beyond 10¹⁸ m, or lighter than 10⁻¹⁵ kg: position {position}, displacement {displacement}, inverse mass {inverse_mass}"
+        "particle {index} is not finite, is beyond 10¹⁸ m, or is lighter than 10⁻¹⁵ kg: position {position}, displacement {displacement}, inverse mass {inverse_mass}"
     )]
     ParticleNotFinite {
         /// Index of the first such particle.
@@ -247,103 +248,103 @@ pub enum ClothError {
         position: Vec3,
         /// Its displacement (m).
         displacement: Vec3,
-        /// Its inverse mass (1/kg), which may not be negative either.
+        /// Its inverse mass (1/kg), zero or more.
         inverse_mass: f32,
     },
     /// A shape that cloth cannot touch, such as a line.
-    #[error("cloth does not touch this shape: {shape}")]
+    #[error("cloth cannot collide with this shape: {shape}")]
     NoSuchShape {
-        /// What it is.
+        /// The shape.
         shape: String,
     },
-    /// A convex hull of points that lie in one plane.
-    #[error("the convex hull of these {points} points encloses nothing: they lie in one plane")]
+    /// The points of a convex hull lie in one plane.
+    #[error("the convex hull of these {points} points has no volume: they lie in one plane")]
     FlatHull {
-        /// How many points there are.
+        /// Number of points.
         points: usize,
     },
-    /// A height field of fewer than two rows or columns, or whose rows are not full.
+    /// A height field has fewer than two rows or columns, or an incomplete row.
     #[error(
-        "a height field needs at least 2 full rows of at least 2 columns: {heights} heights in {columns} columns are not"
+        "a height field needs at least 2 full rows of at least 2 columns, not {heights} heights in {columns} columns"
     )]
     HeightFieldSize {
-        /// How many heights there are.
+        /// Number of heights.
         heights: usize,
-        /// How many each row should have.
+        /// Number of heights in each row.
         columns: usize,
     },
-    /// A compound with a part that is turned, under a scale that is not the same along all axes.
-    #[error(
-        "a part of the compound is turned, which can't be stretched along one axis only: {scale}"
-    )]
+    /// A compound has a rotated part and a scale that is not uniform.
+    #[error("a compound with a rotated part needs a uniform scale, not {scale}")]
     SkewedPart {
         /// The scale of the transform.
         scale: Vec3,
     },
-    /// A compound with a part whose place is not finite or beyond all measure, or whose rotation is none.
+    /// A part of a compound has a position that is out of range, or a rotation that cannot be normalized.
     #[error(
-        "part {part} of the compound needs a finite place within 10¹² m, and a rotation that is one: place {place}, rotation {rotation}"
+        "part {part} of the compound needs a finite position within 10¹² m and a rotation other than zero: position {place}, rotation {rotation}"
     )]
     PartPose {
-        /// Which part.
+        /// Index of the part.
         part: usize,
-        /// Its place (m).
+        /// Its position (m).
         place: Vec3,
-        /// Its rotation, written out.
+        /// Its rotation, as text.
         rotation: String,
     },
-    /// Particles that are not those of the surface.
+    /// The number of particles is not that of the surface.
     #[error(
         "the cloth has {expected} particles, its `ClothParticles` hold {found}: give it as many, or empty them"
     )]
     ParticleCount {
-        /// What the surface asks for.
+        /// Number of particles of the surface.
         expected: usize,
-        /// What was found.
+        /// Number of particles found.
         found: usize,
     },
-    /// A spring between particles that do not exist or are one, or with a bad rest length or compliance.
+    /// A spring does not join two different particles, or its rest length or compliance is out of range.
     #[error(
-        "spring {index}, {spring:?}, needs two of the {particles} particles, a rest length from 10⁻⁹ to 10¹² m and a finite compliance of zero or more"
+        "spring {index}, {spring:?}, must join two of the {particles} particles, with a rest length from 10⁻⁹ to 10¹² m and a finite compliance of zero or more"
     )]
     BadSpring {
-        /// Its place in the list.
+        /// Its index in the list.
         index: usize,
         /// The spring.
         spring: Spring,
-        /// How many particles there are.
+        /// Number of particles.
         particles: usize,
     },
-    /// A bounding volume that there is no such rule for.
-    #[error("there is no bound rule `{rule}` for {volume}: refit them, or take spheres or AABBs")]
+    /// A bounding volume does not support the bound rule.
+    #[error(
+        "{volume} do not support the bound rule `{rule}`: use `BoundRule::Refit`, or spheres or AABBs"
+    )]
     NoSuchBounds {
-        /// The volumes.
+        /// The bounding volumes, in the plural.
         #[reflect(ignore)]
         volume: &'static str,
         /// The rule.
         #[reflect(ignore)]
         rule: &'static str,
     },
-    /// What a pin is attached to does not exist or has no transform.
+    /// The target of an attached pin does not exist or has no transform.
     #[error("{pin:?} is attached to {target}, which does not exist or has no transform")]
     NoTarget {
         /// The attached pin.
         pin: Pin,
-        /// What it is attached to.
+        /// The target.
         target: Entity,
     },
-    /// No entity has the name that a pin is attached to.
-    #[error("{pin:?} is attached to \"{name}\", and no entity with a transform has that name")]
+    /// No entity has the name of an attached pin's target.
+    #[error("{pin:?} is attached to \"{name}\", but no entity with a transform has that name")]
     NoTargetNamed {
         /// The attached pin.
         pin: Pin,
-        /// The name.
+        /// The name of the target.
         name: String,
     },
     /// A particle that does not exist was written to.
-    #[error("{id:?} is outside of a cloth of {columns} columns × {rows} rows")]
+    #[error("{id:?} is outside a cloth of {columns} columns × {rows} rows")]
     NoSuchParticle {
-        /// The particle asked for.
+        /// The particle's ID.
         id: ParticleId,
         /// Particles along the width.
         columns: u32,
@@ -366,7 +367,7 @@ impl MapEntities for ClothError {
 }
 
 impl ClothError {
-    /// Whether `other` is at fault in the same place, whatever the value.
+    /// Whether `other` is the same fault of the same quantity, whatever its value.
     pub(crate) fn is_same_fault(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Quantity { quantity: a, .. }, Self::Quantity { quantity: b, .. }) => a == b,
@@ -375,7 +376,7 @@ impl ClothError {
         }
     }
 
-    /// `value` if it holds to `test`, else the error that names it.
+    /// Returns `value` if it passes `test`, else the error that names it.
     pub(crate) fn check(
         value: f32,
         test: fn(f32) -> bool,

@@ -7,14 +7,14 @@ use bevy::{
 
 use super::{ClothError, MAX_PARTICLES, limits::FARTHEST};
 
-/// The plane that a [`Cloth`](super::Cloth) is laid out in, in its entity's frame.
+/// The plane of a [`Cloth`](super::Cloth) at rest, in its entity's frame.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothPlane {
-    /// Columns along +x, rows along −y; it faces +z: a curtain, a flag.
+    /// Columns along +x, rows along −y, facing +z: a curtain, a flag.
     #[default]
     Hanging,
-    /// Columns along +x, rows along +z; it faces +y: a tablecloth, a trampoline.
+    /// Columns along +x, rows along +z, facing +y: a tablecloth, a trampoline.
     Lying,
 }
 
@@ -27,13 +27,13 @@ impl ClothPlane {
         }
     }
 
-    /// The side that cloth at rest faces.
+    /// The normal of the cloth at rest.
     pub fn normal(self) -> Vec3 {
         self.point(0.0, 0.0, 1.0)
     }
 }
 
-/// The grid that a cloth is made from, before the transform's scale.
+/// The grid of a cloth, before the transform's scale.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Debug, Clone, PartialEq)]
 pub struct GridShape {
@@ -43,9 +43,9 @@ pub struct GridShape {
     pub rows: u32,
     /// Distance between neighbours in a row or column (m).
     pub spacing: f32,
-    /// The plane that it is laid out in.
+    /// The plane of the cloth at rest.
     pub plane: ClothPlane,
-    /// Whether its middle is at the entity's origin; otherwise particle (0, 0) is.
+    /// Whether the grid's middle is at the entity's origin; otherwise particle (0, 0) is.
     pub centred: bool,
 }
 
@@ -56,11 +56,11 @@ impl GridShape {
         Vec2::from(sides) * self.spacing
     }
 
-    /// The checked grid under a transform's `scale`.
+    /// Returns the validated grid under a transform's `scale`.
     ///
     /// # Errors
-    /// Too few or too many particles; a spacing that is zero, negative, not finite, below 10⁻⁹ m, or of a cloth
-    /// larger than 10¹² m.
+    /// [`ClothError::GridTooSmall`] or [`ClothError::GridTooLarge`]. [`ClothError::Quantity`] for a spacing that is not
+    /// positive, not finite, below 10⁻⁹ m, or that makes the cloth larger than 10¹² m.
     pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
         let Self {
             columns,
@@ -90,7 +90,7 @@ impl GridShape {
         if !(measurable(scaled.x) && measurable(scaled.y) && measurable(extent.length())) {
             return Err(ClothError::Quantity {
                 quantity: "spacing × scale (m)",
-                expected: "at least 10⁻⁹, in a cloth of less than 10¹²",
+                expected: "at least 10⁻⁹, and the cloth smaller than 10¹² m",
                 value: scaled.abs().min_element(),
             });
         }
@@ -106,7 +106,7 @@ impl GridShape {
     }
 }
 
-/// A grid known to be valid: what springs, trees and meshes are built from.
+/// A validated grid. Springs, trees and meshes are built from it.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 pub struct ClothGrid {
     columns: u32,
@@ -136,7 +136,7 @@ impl ClothGrid {
         self.spacing.abs()
     }
 
-    /// From corner to corner at rest (m).
+    /// Distance between opposite corners at rest (m).
     pub fn diagonal(&self) -> f32 {
         let sides = Vec2::new(self.columns as f32 - 1.0, self.rows as f32 - 1.0);
         (sides * self.spacing()).length()
@@ -147,7 +147,7 @@ impl ClothGrid {
         self.scale
     }
 
-    /// How far it is at rest to a particle that is some rows down and columns across (m).
+    /// Distance at rest to the particle that is some rows down and columns across (m).
     pub(crate) fn step_length(&self, (down, across): (u32, i32)) -> f32 {
         (self.spacing() * Vec2::new(across as f32, down as f32)).length()
     }
@@ -157,7 +157,7 @@ impl ClothGrid {
         self.columns as usize * self.rows as usize
     }
 
-    /// Whether there is no particle, as before the first tick.
+    /// Whether the grid has no particles, as before the first tick.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -167,13 +167,13 @@ impl ClothGrid {
         row * self.columns + column
     }
 
-    /// Where a particle is at rest, in the cloth's frame (m).
+    /// Position of a particle at rest, in the cloth's frame (m).
     pub fn rest_position(&self, row: u32, column: u32) -> Vec3 {
         let place = Vec2::new(column as f32, row as f32) * self.spacing - self.origin;
         self.plane.point(place.x, place.y, 0.0)
     }
 
-    /// The side that the cloth at rest faces, of length 1.
+    /// The normal of the cloth at rest, of length 1.
     pub fn normal(&self) -> Vec3 {
         self.plane.normal()
     }
@@ -184,8 +184,8 @@ impl ClothGrid {
         (0..self.rows).flat_map(move |row| (0..columns).map(move |column| (row, column)))
     }
 
-    /// The part of the cloth's area that a particle stands for (m²): half of it on a border, a quarter in a
-    /// corner, so that the particles' masses add up to density × area.
+    /// A particle's share of the cloth's area (m²). It is half a cell on a border and a quarter in a corner, so that
+    /// the particles' masses add up to density × area.
     pub fn tributary_area(&self, row: u32, column: u32) -> f32 {
         let share = |index: u32, count: u32| {
             if index == 0 || index + 1 == count {
@@ -198,7 +198,7 @@ impl ClothGrid {
         spacing.x * share(column, self.columns) * spacing.y * share(row, self.rows)
     }
 
-    /// Two triangles a cell, as particle indices, counter-clockwise seen from where the cloth faces (paper, Figure 1).
+    /// Two triangles for each cell, as particle indices, counter-clockwise seen from the front (paper, Figure 1).
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + use<> {
         let grid = *self;
         (0..grid.rows.saturating_sub(1)).flat_map(move |row| {

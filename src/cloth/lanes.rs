@@ -1,15 +1,15 @@
-//! How particles lie in memory: in blocks of eight lanes, so that one instruction works on eight springs.
+//! The memory layout of particles: blocks of eight lanes, so that one instruction works on eight springs.
 //!
-//! Each row of the grid is cut into eight strips side by side, each `strip` columns long; lane `l` of a row's
-//! block `j` is the particle in column `l × strip + j`. So the neighbours of a whole block are whole blocks:
+//! Each row of the grid is cut into eight strips side by side, each `strip` columns long. Lane `l` of a row's block `j`
+//! is the particle in column `l × strip + j`. So the neighbours of a whole block are whole blocks:
 //!
 //! ```text
 //! columns of a row, strip = 4:   0 1 2 3 | 4 5 6 7 | 8 9 10 11 | …
 //! block 0 = columns 0 4 8 …      block 1 = columns 1 5 9 …      block 2 = …
 //! ```
 //!
-//! The last block of a row has its right neighbours in the first one, a lane further on: a view of that block
-//! which begins one number later. What its last lane then sees is masked by an infinite compliance.
+//! The right neighbours of a row's last block are in its first block, one lane further on: a view of that block that
+//! begins one number later. An infinite compliance masks the last lane of that view.
 
 use bevy::{math::Vec3, reflect::Reflect};
 
@@ -78,7 +78,7 @@ impl Block {
         self.0.first_chunk_mut().expect("56 of 64 numbers")
     }
 
-    /// The view in which each lane holds its right neighbour's numbers. What the last lane holds is no particle.
+    /// The view in which each lane holds its right neighbour's numbers. The last lane holds no particle.
     #[inline(always)]
     pub fn shifted(&self) -> &View {
         self.0[1..].first_chunk().expect("56 of 63 numbers")
@@ -179,7 +179,7 @@ impl Layout {
         self.slot(index / self.columns, index % self.columns)
     }
 
-    /// The column that a lane of a row's block stands for, if there is such a one.
+    /// The column of a lane of a row's block, if the lane holds a particle.
     pub fn column(&self, block: usize, lane: usize) -> Option<u32> {
         let column = lane as u32 * self.strip + block as u32;
         (column < self.columns).then_some(column)

@@ -3,6 +3,6 @@
 /// The most particles that a grid may have: 4096 × 4096.
 pub const MAX_PARTICLES: usize = 1 << 24;
 
-/// Nothing is larger than this, nor farther from the origin (m): squares of such lengths, and their products with masses, stay well
-/// inside of `f32`.
+/// Largest size of anything, and largest distance from the origin (m): squares of such lengths, and their products with
+/// masses, stay well within `f32`.
 pub(crate) const FARTHEST: f32 = 1.0e12;

@@ -1,4 +1,4 @@
-//! What a cloth is made of.
+//! The material of a cloth.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -7,22 +7,22 @@ use bevy::{
 
 use super::ClothError;
 
-/// What a cloth is made of. May change at any time.
+/// The material of a cloth. May change at any time.
 ///
-/// A compliance is that of a *square patch of the cloth*, whatever the patch's size: pulled by one newton at
-/// two opposite edges, that kind of springs alone would let it grow by this many metres. A square's compliance
-/// does not depend on its size, so stretch and shear keep their meaning under any resolution: a spring of a
-/// strip `w` wide and `l` long gets compliance × l ⁄ w. Zero is rigid.
+/// A compliance is that of a *square patch of the cloth*. Pull two opposite edges of the patch with one newton: if only
+/// springs of that kind resisted, the patch would grow by this many metres. The size of the patch does not matter, so
+/// stretch and shear mean the same at any resolution. The spring of a strip `w` wide and `l` long gets
+/// compliance × l ⁄ w. Zero is rigid.
 ///
-/// Bending is resisted as an elastic plate resists it, by the flexural rigidity D: a strip of width w that is bent to the radius r
-/// is held so by the moment D w ⁄ r. Textile laboratories measure it by bending a sample (KES-F, in gf·cm²/cm: one is 9.81·10⁻⁵ N·m)
-/// or by letting it hang over an edge (Peirce 1930, Cusick 1965). It means the same at any resolution and width, in all directions;
-/// Poisson's ratio in bending is 0, so that free edges do not curl.
+/// Cloth resists bending like an elastic plate, by its flexural rigidity D. The moment D w ⁄ r holds a strip of width w
+/// bent to the radius r. Textile laboratories measure D by bending a sample (KES-F, in gf·cm²/cm: one is 9.81·10⁻⁵ N·m)
+/// or by letting it hang over an edge (Peirce 1930, Cusick 1965). D means the same at any resolution and width, and in
+/// all directions. Poisson's ratio in bending is 0, so that free edges do not curl.
 ///
-/// A mesh has no rows: its stretch springs run along all edges, each standing for the area of the faces beside it, and give
-/// alike in all directions. They resist shear as well, as much as an isotropic sheet of that stretch and a Poisson's ratio of a
-/// third; only a shear compliance below the stretch compliance adds to that, by springs between the two corners that face each
-/// other across an edge.
+/// A mesh has no rows. Its stretch springs run along all edges, and each represents the area of the faces beside it.
+/// They stretch alike in all directions, and also resist shear, like an isotropic sheet with a Poisson's ratio of a
+/// third. A shear compliance below the stretch compliance adds springs across each edge, between the two opposite
+/// corners. A larger one changes nothing.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothMaterial {
@@ -30,20 +30,23 @@ pub struct ClothMaterial {
     pub areal_density: f32,
     /// Compliance along rows and columns (m/N), zero or more.
     pub stretch_compliance: f32,
-    /// Compliance along both diagonals (m/N), zero or more; infinite for no shear springs.
+    /// Compliance along both diagonals (m/N), zero or more; infinity for no shear springs.
     pub shear_compliance: f32,
-    /// Flexural rigidity (N·m): the moment that holds a strip bent to a curvature of 1/m, for each metre of its width. Zero or more,
-    /// finite; zero bends freely and costs nothing.
+    /// Flexural rigidity (N·m): the moment that holds a strip bent to a curvature of 1/m, per metre of its width. Zero
+    /// or more, finite. Zero bends freely and costs nothing.
     pub bend_rigidity: f32,
-    /// Damping along springs, the material's own loss: the time (s) in which a stretch that nothing pulls at any more dies away to
-    /// 1/e, τ of a Kelvin-Voigt solid, zero or more and finite. A bounce of angular frequency ω is damped by τ ω/2 of what is
-    /// critical. It takes no momentum, and slows no fall; rigid springs, which do not stretch, lose nothing. Zero costs nothing.
+    /// Damping along springs, the internal loss of the material: the time (s) in which a released stretch decays to
+    /// 1/e. It is the τ of a Kelvin-Voigt solid, zero or more and finite. The damping ratio of an oscillation of
+    /// angular frequency ω is τ ω/2. It conserves momentum and does not slow a fall. Rigid springs do not stretch and
+    /// lose nothing. Zero costs nothing.
     pub stretch_damping: f32,
-    /// The paper's D, inner loss of the material: the part of its motion that the cloth loses in 1/60 s, from 0 to 1. Of a cloth with
-    /// pins that is its velocity relative to the mean velocity of its pins, so that a cape in a vehicle hangs as in one that stands;
-    /// of a free cloth its velocity relative to its centre of mass, so that all materials fall alike, and a free cloth that turns
-    /// slows down in its turn alone. [`Solver`](crate::solver::Solver), used by itself, damps relative to what its
-    /// [`TickStep`](crate::solver::TickStep) says.
+    /// The paper's D, the internal loss of the material: the fraction of its relative velocity that the cloth loses in
+    /// 1/60 s, from 0 to 1.
+    ///
+    /// The velocity of a pinned cloth is relative to the mean velocity of its pins: a cape hangs the same in a moving
+    /// vehicle as in a parked one. That of a free cloth is relative to its centre of mass: all materials fall alike,
+    /// and only the spin of a free cloth slows down. [`Solver`](crate::solver::Solver), used on its own, damps relative
+    /// to the velocity in [`TickStep`](crate::solver::TickStep).
     pub damping: f32,
     /// Coulomb's μ against colliders, zero or more.
     pub friction: f32,
@@ -56,8 +59,8 @@ impl Default for ClothMaterial {
 }
 
 impl ClothMaterial {
-    /// A plain cotton weave, as in a bed sheet. Rigidity: 0.06 gf·cm²/cm, of the size that the KES-F finds of light shirting; here it
-    /// drapes by 41 to 46 %.
+    /// A plain cotton weave, as in a bed sheet. Rigidity: 0.06 gf·cm²/cm, similar to KES-F measurements of light
+    /// shirting; here it drapes by 41 to 46 %.
     pub const COTTON: Self = Self {
         areal_density: 0.15,
         stretch_compliance: 1.0e-4,
@@ -67,8 +70,8 @@ impl ClothMaterial {
         damping: 0.01,
         friction: 0.4,
     };
-    /// Thin, slippery, and free to shear and fold. Rigidity: 0.02 gf·cm²/cm, of the size that the KES-F finds of light
-    /// plain silks.
+    /// Thin, slippery, easy to shear and fold. Rigidity: 0.02 gf·cm²/cm, similar to KES-F measurements of light plain
+    /// silks.
     pub const SILK: Self = Self {
         areal_density: 0.06,
         stretch_compliance: 2.0e-4,
@@ -78,9 +81,10 @@ impl ClothMaterial {
         damping: 0.005,
         friction: 0.2,
     };
-    /// Cotton twill, as in jeans. Density and rigidity: an 11 oz denim, bent by its own weight (Wang, O'Brien and Ramamoorthi 2011,
-    /// Data-driven elastic models for cloth: 0.324 kg/m², 6·10⁻⁵ N·m where it is bent least). Softer denims have a third of that (0.14
-    /// to 0.23 gf·cm²/cm on the KES-F, Journal of Textiles 2016, 4614168).
+    /// Cotton twill, as in jeans. Density and rigidity are those of an 11 oz denim, bent by its own weight. It has 0.324
+    /// kg/m², and 6·10⁻⁵ N·m in its most flexible direction (Wang, O'Brien and Ramamoorthi 2011, Data-driven elastic
+    /// models for cloth). Softer denims have a third of that (0.14 to 0.23 gf·cm²/cm on the KES-F, Journal of Textiles
+    /// 2016, 4614168).
     pub const DENIM: Self = Self {
         areal_density: 0.324,
         stretch_compliance: 5.0e-5,
@@ -90,8 +94,8 @@ impl ClothMaterial {
         damping: 0.02,
         friction: 0.5,
     };
-    /// Heavy and stiff, as in a sail or a tent. Rigidity: that of a bending length c of 4.5 cm, an estimate for unwashed cotton duck, by
-    /// D = g ρ c³ (Peirce 1930).
+    /// Heavy and stiff, as in a sail or a tent. Rigidity: that of a bending length c of 4.5 cm by D = g ρ c³ (Peirce
+    /// 1930), an estimate for unwashed cotton duck.
     pub const CANVAS: Self = Self {
         areal_density: 0.4,
         stretch_compliance: 2.0e-5,
@@ -101,8 +105,8 @@ impl ClothMaterial {
         damping: 0.02,
         friction: 0.6,
     };
-    /// Pressed wool, a millimetre thick, as in a hat: the same in all directions, and hardly sheared. Rigidity: that of a bending length
-    /// c of 3.4 cm, an estimate, by D = g ρ c³ (Peirce 1930).
+    /// Pressed wool, a millimetre thick, as in a hat: the same in all directions, and stiff in shear. Rigidity: that of
+    /// a bending length c of 3.4 cm by D = g ρ c³ (Peirce 1930), an estimate.
     pub const FELT: Self = Self {
         areal_density: 0.25,
         stretch_compliance: 5.0e-4,
@@ -112,8 +116,8 @@ impl ClothMaterial {
         damping: 0.04,
         friction: 0.6,
     };
-    /// Sheepskin, 0.8 mm thick, as in a jacket. Rigidity: one with which it drapes as garment leathers of 0.64 to 0.96 mm do, by 47 to
-    /// 70 % (Memon et al. 2021, Materials 14, 4553).
+    /// Sheepskin, 0.8 mm thick, as in a jacket. Rigidity: chosen so that it drapes like garment leathers of 0.64 to
+    /// 0.96 mm, by 47 to 70 % (Memon et al. 2021, Materials 14, 4553).
     pub const LEATHER: Self = Self {
         areal_density: 0.5,
         stretch_compliance: 2.0e-4,
@@ -123,8 +127,8 @@ impl ClothMaterial {
         damping: 0.04,
         friction: 0.6,
     };
-    /// Stretchy and grippy, as a thin rubber sheet. Rigidity: that of a millimetre of natural rubber with a Young's modulus of 1.5 N/mm²,
-    /// E h³ ⁄ 12 (1 − ν²).
+    /// Stretchy and grippy, like a thin rubber sheet. Rigidity: that of a millimetre of natural rubber with a Young's
+    /// modulus of 1.5 N/mm², E h³ ⁄ 12 (1 − ν²).
     pub const RUBBER: Self = Self {
         areal_density: 1.0,
         stretch_compliance: 3.0e-3,
@@ -145,10 +149,10 @@ impl ClothMaterial {
         ("rubber", Self::RUBBER),
     ];
 
-    /// Whether each value is in its range.
+    /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not.
+    /// [`ClothError::Quantity`] for the first value that is out of range.
     pub fn validate(&self) -> Result<(), ClothError> {
         let check = ClothError::check;
         let finite = |v: f32| v >= 0.0 && v.is_finite();

@@ -1,4 +1,4 @@
-//! Floor 0: what a cloth *is*: its surface, particles, springs, material and pins.
+//! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
 mod error;
 mod grid;

@@ -1,4 +1,4 @@
-//! Whether anything simulates cloth: only a cloth that is spawned can say that nothing does.
+//! Detects cloth that is spawned into an app without the plugin.
 
 use bevy::{
     ecs::{
@@ -11,13 +11,14 @@ use bevy::{
 /// Whether a world's cloth is simulated.
 #[derive(Resource, Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ClothPresence {
-    /// A plugin does it.
+    /// The plugin simulates it.
     Simulated,
-    /// None does so far, and that was logged.
+    /// Nothing simulates it so far, and that was logged.
     Missed,
 }
 
-/// Logs the first cloth of an app's world without the plugin. Other worlds, as those of scene assets, run no schedules.
+/// Logs the first cloth of an app's world without the plugin. Other worlds, such as those of scene assets, run no
+/// schedules.
 pub(super) fn log_unsimulated(mut world: DeferredWorld, context: HookContext) {
     if world.contains_resource::<ClothPresence>() || !world.contains_resource::<Schedules>() {
         return;
@@ -29,6 +30,6 @@ pub(super) fn log_unsimulated(mut world: DeferredWorld, context: HookContext) {
         None => entity.to_string(),
     };
     error!(
-        "cloth {name} was spawned, and nothing moves it before `DrapePlugins` are added to the app"
+        "cloth {name} was spawned without `DrapePlugins`: add them to the app, or nothing simulates it"
     );
 }

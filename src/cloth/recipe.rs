@@ -1,4 +1,4 @@
-//! The component that says what a cloth is made from.
+//! The component that defines a cloth.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -14,22 +14,22 @@ use super::{
 
 /// A cloth: a grid of particles, or any triangle mesh.
 ///
-/// Spawning this is enough. A grid of `columns` × `rows` particles, `spacing` metres apart, hangs by its top row from the
-/// entity's [`Transform`], laid out from (0, 0, 0) to (width, −height, 0) in the entity's frame; [`lying`](Self::lying) lays
-/// it out in the horizontal plane and [`centred`](Self::centred) around its transform. Particle (row, column) has the index
-/// `row × columns + column` (paper, equation 1).
+/// Spawning this component is enough. A grid of `columns` × `rows` particles, `spacing` metres apart, hangs by its top
+/// row from the entity's [`Transform`]. It spans (0, 0, 0) to (width, −height, 0) in the entity's frame.
+/// [`lying`](Self::lying) lays it out horizontally, and [`centred`](Self::centred) centres it on its transform.
+/// Particle (row, column) has the index `row × columns + column` (paper, equation 1).
 ///
-/// A mesh is cloth as it lies in its asset, and nothing of it is pinned unless [`Pins`] say so. With feature `mesh`, which is
-/// on by default, `Cloth::mesh()` beside a `Mesh3d` takes that one's; [`triangles`](Self::triangles) takes positions and
-/// triangles.
+/// A mesh begins in the shape of its asset. Nothing of it is pinned unless you add [`Pins`]. With feature `mesh`, on by
+/// default, `Cloth::mesh()` takes the mesh of the `Mesh3d` on the same entity; [`triangles`](Self::triangles) takes
+/// positions and triangles.
 ///
-/// Position, rotation and scale are respected at spawn; moved later, the transform carries the pinned particles along and the
-/// others follow by their springs.
+/// Position, rotation and scale apply at spawn. When the transform moves later, it carries the pinned particles, and
+/// the springs pull the others along.
 ///
-/// This component may change at any time. A grid that gets another resolution and stays the same rectangle, so that columns − 1 times the
-/// spacing and rows − 1 times the spacing stay what they are, stays where it is and moves on as it did: so may a cloth become coarser
-/// with its distance. Folds that are finer than the new spacing unfold, as fast as they are stretched out. Masses that the game gave to single particles are those of the material again. Any other change builds a new
-/// cloth at rest.
+/// This component may change at any time. If a grid changes only its resolution, so that (columns − 1) × spacing and
+/// (rows − 1) × spacing stay the same, the cloth keeps its position, shape and motion. Use this to make a distant cloth
+/// coarser. Folds finer than the new spacing unfold as fast as they are stretched out, and particles lose masses that
+/// the game set individually. Any other change builds a new cloth at rest.
 ///
 /// ```
 /// use bevy::math::Vec3;
@@ -48,34 +48,34 @@ use super::{
 #[component(on_add = log_unsimulated)]
 #[require(ClothParticles, ClothMaterial, Pins, Transform)]
 pub struct Cloth {
-    /// What it is made from.
+    /// The grid or the triangles.
     pub shape: ClothShape,
-    /// How far particles that are not pinned begin beside the surface, at most, in spacings: as real cloth, which is
-    /// never flat. Without it nothing moves a flat cloth out of a vertical plane, and a flag stays a board. The same
-    /// for the same cloth, and no part of its rest lengths. From 0 to 0.1.
+    /// The largest initial offset of free particles from the surface, in spacings: real cloth is never perfectly flat.
+    /// Without it, nothing moves a flat cloth out of a vertical plane, and a flag stays a board. Equal cloths get equal
+    /// offsets, and rest lengths do not change. From 0 to 0.1.
     pub unevenness: f32,
 }
 
-/// What a [`Cloth`] is made from.
+/// The shape of a [`Cloth`].
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothShape {
     /// A grid of particles.
     Grid(GridShape),
-    /// Triangles that the game gives.
+    /// Triangles provided by the game.
     Triangles {
         /// Vertices in the entity's frame (m), before the transform's scale.
         positions: Vec<Vec3>,
-        /// Three vertices each, in either order.
+        /// Three vertices each, in either winding order.
         triangles: Vec<[u32; 3]>,
-        /// Vertices no farther apart than this are one particle (m), before the transform's scale.
+        /// Vertices no farther apart than this are welded into one particle (m), before the transform's scale.
         weld: f32,
     },
-    /// The entity's `Mesh3d`, once its asset has been loaded.
+    /// The mesh of the entity's `Mesh3d`, once its asset has loaded.
     #[cfg(feature = "mesh")]
     Mesh {
-        /// Vertices no farther apart than this are one particle (m), before the transform's scale.
+        /// Vertices no farther apart than this are welded into one particle (m), before the transform's scale.
         weld: f32,
     },
 }
@@ -95,15 +95,15 @@ impl Default for Cloth {
 }
 
 impl Cloth {
-    /// What [`unevenness`](Self::unevenness) is by default: a hundredth of a millimetre in a cloth with 0.1 m between
-    /// its particles.
+    /// Default of [`unevenness`](Self::unevenness): a hundredth of a millimetre in a cloth with 0.1 m between its
+    /// particles.
     pub const DEFAULT_UNEVENNESS: f32 = 1.0e-4;
 
-    /// How near vertices of a mesh are that are one particle by default (m, before the transform's scale): those that a
-    /// modelling program splits along seams are in exactly the same place.
+    /// Default distance below which vertices of a mesh become one particle (m, before the transform's scale). Vertices
+    /// that a modelling program splits along seams are at exactly the same position.
     pub const DEFAULT_WELD: f32 = 1.0e-5;
 
-    /// A cloth of `columns` × `rows` particles, `spacing` metres apart, hanging from its transform.
+    /// A cloth of `columns` × `rows` particles, `spacing` metres apart, that hangs from its transform.
     pub const fn new(columns: u32, rows: u32, spacing: f32) -> Self {
         Self::of_shape(ClothShape::Grid(GridShape {
             columns,
@@ -114,8 +114,8 @@ impl Cloth {
         }))
     }
 
-    /// The mesh of the entity's `Mesh3d`. It waits for the asset, is built from it, and draws it where the cloth is, in a mesh
-    /// of its own: others who use the asset see it as it was.
+    /// The mesh of the entity's `Mesh3d`. The cloth waits for the asset, and draws itself with its own copy: other
+    /// users of the asset see it unchanged.
     #[cfg(feature = "mesh")]
     pub const fn mesh() -> Self {
         Self::of_shape(ClothShape::Mesh {
@@ -142,7 +142,7 @@ impl Cloth {
         }
     }
 
-    /// A grid laid out in the horizontal plane, facing up. A mesh lies as it does in its asset.
+    /// Lays a grid out in the horizontal plane, facing up. A mesh keeps the shape of its asset.
     pub const fn lying(mut self) -> Self {
         if let ClothShape::Grid(grid) = &mut self.shape {
             grid.plane = ClothPlane::Lying;
@@ -150,7 +150,7 @@ impl Cloth {
         self
     }
 
-    /// A grid with its middle at the entity's origin. A mesh lies as it does in its asset.
+    /// Centres a grid on the entity's origin. A mesh keeps the shape of its asset.
     pub const fn centred(mut self) -> Self {
         if let ClothShape::Grid(grid) = &mut self.shape {
             grid.centred = true;
@@ -158,14 +158,15 @@ impl Cloth {
         self
     }
 
-    /// Exactly as it is at rest: for tests and comparisons that need its symmetry.
+    /// Begins exactly at rest, without [`unevenness`](Self::unevenness): for tests and comparisons that need the
+    /// symmetry.
     pub const fn flat(mut self) -> Self {
         self.unevenness = 0.0;
         self
     }
 
-    /// With vertices of a mesh no farther apart than `distance` (m, before the transform's scale) as one particle; 0 for
-    /// those in exactly the same place. A grid has none.
+    /// Welds vertices of a mesh that are no farther apart than `distance` (m, before the transform's scale) into one
+    /// particle. 0 welds only vertices at exactly the same position. Ignored by a grid.
     pub const fn welded(mut self, distance: f32) -> Self {
         match &mut self.shape {
             ClothShape::Grid(_) => {}
@@ -176,7 +177,7 @@ impl Cloth {
         self
     }
 
-    /// The grid that it is made from, if it is one.
+    /// The shape of the grid, if the cloth is one.
     pub const fn as_grid(&self) -> Option<&GridShape> {
         match &self.shape {
             ClothShape::Grid(grid) => Some(grid),
@@ -184,30 +185,30 @@ impl Cloth {
         }
     }
 
-    /// (columns − 1) × spacing (m) of a grid; 0 of a mesh.
+    /// (columns − 1) × spacing (m) of a grid; 0 for a mesh.
     pub fn width(&self) -> f32 {
         self.as_grid().map_or(0.0, |grid| grid.size().x)
     }
 
-    /// (rows − 1) × spacing (m) of a grid; 0 of a mesh.
+    /// (rows − 1) × spacing (m) of a grid; 0 for a mesh.
     pub fn height(&self) -> f32 {
         self.as_grid().map_or(0.0, |grid| grid.size().y)
     }
 
-    /// The checked grid under a transform's `scale`; of a mesh there is none.
+    /// Returns the validated grid under a transform's `scale`.
     ///
     /// # Errors
-    /// Too few or too many particles; a spacing that is zero, negative, not finite, below 10⁻⁹ m, or of a cloth
-    /// larger than 10¹² m; [`ClothError::NotAGrid`].
+    /// [`ClothError::NotAGrid`] for a mesh; otherwise those of [`GridShape::scaled`].
     pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
         let grid = self.as_grid().ok_or(ClothError::NotAGrid)?;
         grid.scaled(scale)
     }
 
-    /// The surface of a grid or of triangles under a transform's `scale`; [`Surface::of_mesh`] makes that of an asset.
+    /// Returns the surface of a grid or of triangles under a transform's `scale`. For an asset, use
+    /// [`Surface::of_mesh`].
     ///
     /// # Errors
-    /// As [`grid`](Self::grid) and [`Surface::of_mesh`] have them; [`ClothError::MeshNotLoaded`] of an asset's.
+    /// Those of [`grid`](Self::grid) and [`Surface::of_mesh`]; [`ClothError::MeshNotLoaded`] for an asset.
     pub fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         match &self.shape {
             ClothShape::Grid(grid) => grid.scaled(scale).map(|grid| Surface::of_grid(&grid)),
@@ -228,10 +229,10 @@ impl Cloth {
         }
     }
 
-    /// Whether its own values are in their ranges.
+    /// Checks that the component's own values are in range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for an unevenness that is not.
+    /// [`ClothError::Quantity`] for an unevenness out of range.
     pub fn validate(&self) -> Result<(), ClothError> {
         let range = |u: f32| (0.0..=0.1).contains(&u);
         ClothError::check(

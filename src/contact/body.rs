@@ -1,4 +1,4 @@
-//! Colliders that give way: bodies with a mass, which cloth pushes as it is pushed by them.
+//! Dynamic colliders: bodies with a mass, which cloth pushes back.
 
 use bevy::math::{DVec3, Isometry3d, Quat, Vec3};
 
@@ -8,21 +8,21 @@ use crate::{
     solver::SubStep,
 };
 
-/// What cloth has changed of a body's motion.
+/// The change that cloth has made to a body's motion.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub struct BodyChange {
-    /// Of the velocity of its centre of mass (m/s).
+    /// Change of the velocity of its centre of mass (m/s).
     pub velocity: Vec3,
-    /// Of its angular velocity (rad/s).
+    /// Change of its angular velocity (rad/s).
     pub angular_velocity: Vec3,
-    /// Of where the origin of its shape is as the tick ends (m).
+    /// Change of its shape's origin at the end of the tick (m).
     pub translation: Vec3,
-    /// Of how it is turned then: axis × angle (rad).
+    /// Change of its rotation at the end of the tick: axis × angle (rad).
     pub rotation: Vec3,
 }
 
 impl BodyChange {
-    /// Whether all of it is a number.
+    /// Whether all values are finite.
     pub fn is_finite(&self) -> bool {
         self.velocity.is_finite()
             && self.angular_velocity.is_finite()
@@ -30,7 +30,7 @@ impl BodyChange {
             && self.rotation.is_finite()
     }
 
-    /// The same, seen from another frame.
+    /// The same change in a rotated frame.
     pub fn turned(self, rotation: Quat) -> Self {
         Self {
             velocity: rotation * self.velocity,
@@ -41,37 +41,40 @@ impl BodyChange {
     }
 }
 
-/// A body on its way through a tick, which each sub-step's pushes change.
+/// A body during a tick, changed by the pushes of each sub-step.
 ///
-/// A sub-step first pushes the particles as if nothing could move the body. That gives the impulse `g = Σ m Δx` and, with
-/// the body's inverse mass matrix W, what the body would have to do, `W g`. Both shall have a part in it: the particles go the
-/// part `s` of their way, and the body `s W g` of its own. What is left between them is least, weighted with the masses, for
+/// A sub-step first pushes the particles as if the body were static. That gives the impulse `g = Σ m Δx` and, with the
+/// body's inverse mass matrix W, the body's displacement `W g` under that impulse. Particles and body then share the
+/// correction: the particles move by the fraction `s` of theirs, and the body by `s W g`. The mass-weighted remaining
+/// error is least for
 ///
 /// ```text
 /// s = a / (a + gᵀ W g),   a = Σ m Δx²
 /// ```
 ///
-/// A heavy body leaves s = 1; particles of the mass m that all go one way and a body of mass M share as M to m. Momentum is
-/// kept, and kinetic energy never grows: with what the whole push takes, `a`, it changes by `−s a + s² (a + gᵀ W g) / 2 ≤ 0`.
+/// A heavy body gives s = 1; particles of mass m moving one way and a body of mass M share as M to m. Momentum is
+/// conserved, and kinetic energy never grows: where the full push takes `a`, it changes by
+/// `−s a + s² (a + gᵀ W g) / 2 ≤ 0`.
 #[derive(Debug, Clone)]
 pub(super) struct Body {
-    /// Which of the caller's colliders.
+    /// Index of the caller's collider.
     pub id: usize,
     mass: BodyMass,
-    /// As it would go if nothing touched it.
+    /// Its motion without any contact.
     start: MovingCollider,
-    /// As it went when candidates were last searched for.
+    /// Its motion when candidates were last searched for.
     searched: MovingCollider,
     change: BodyChange,
-    /// What carries it while springs are solved.
+    /// The particles that carry it while springs are solved.
     pub carriers: Carriers,
 }
 
-/// Blocks of particles, as they were before a push.
+/// Blocks of particles before a push.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Before(Vec<(usize, Block)>);
 
-/// A push and a turn that particles have given (kg·m, kg·m²), about a centre, and `Σ m Δx²` (kg·m²).
+/// Linear and angular impulse times the sub-step, given by particles (kg·m, kg·m²) about a centre, and `Σ m Δx²`
+/// (kg·m²).
 #[derive(Debug, Default, Clone, Copy)]
 struct Given {
     push: DVec3,
@@ -87,13 +90,13 @@ impl Given {
         self.square += mass * way.length_squared();
     }
 
-    /// The part of it that the particles keep, and what the body does: how far it goes and turns.
+    /// The fraction that the particles keep, and the body's displacement and rotation.
     fn shared(&self, mass: &BodyMass) -> (f32, DVec3, DVec3) {
         let go = f64::from(mass.inverse_mass) * (mass.free.as_dmat3() * self.push);
         let turn = mass.inverse_inertia.as_dmat3() * self.turn;
         let body = go.dot(self.push) + turn.dot(self.turn);
         let part = self.square / (self.square + body);
-        // Nothing was pushed, or nothing can be said.
+        // Nothing was pushed, or the numbers are not finite.
         if !(part.is_finite() && go.is_finite() && turn.is_finite()) {
             return (1.0, DVec3::ZERO, DVec3::ZERO);
         }
@@ -102,7 +105,7 @@ impl Given {
 }
 
 impl Before {
-    /// Takes what is in these blocks, of which some may be named twice.
+    /// Saves these blocks; some may be named twice.
     pub fn save(&mut self, blocks: impl Iterator<Item = usize>, particles: &ClothParticles) {
         self.0.clear();
         self.0
@@ -113,8 +116,7 @@ impl Before {
 }
 
 impl Body {
-    /// Of a collider, if it gives way.
-    /// Its memory is that of a body of an earlier tick, if there is any.
+    /// The body of a collider, if the collider is dynamic. Reuses the memory of an earlier body.
     pub fn of(id: usize, collider: &MovingCollider, spare: &mut Vec<Carriers>) -> Option<Self> {
         let mass = collider.body?;
         let mut carriers = spare.pop().unwrap_or_default();
@@ -129,24 +131,24 @@ impl Body {
         })
     }
 
-    /// What has changed of its motion so far in the tick.
+    /// The change of its motion so far in the tick.
     pub fn change(&self) -> BodyChange {
         self.change
     }
 
-    /// Begins the tick again. Returns how it goes.
+    /// Begins the tick again. Returns the original motion.
     pub fn restart(&mut self) -> MovingCollider {
         self.change = BodyChange::default();
         self.carriers.clear();
         self.start.clone()
     }
 
-    /// Candidates have been searched for along this way.
+    /// Notes the motion with which candidates have been searched for.
     pub fn set_searched(&mut self, way: &MovingCollider) {
         self.searched = way.clone();
     }
 
-    /// How far, at most, any point of its surface is from where it was expected in what is left of the tick (m).
+    /// Largest distance of any point of its surface from its expected position in the rest of the tick (m).
     pub fn deviation(&self, way: &MovingCollider, passed: f32) -> f32 {
         let deviation = |part: f32| {
             let (expected, is) = (self.searched.pose_at(part), way.pose_at(part));
@@ -161,8 +163,8 @@ impl Body {
         deviation(passed).max(deviation(1.0))
     }
 
-    /// Has particles, which were pushed as if the body could not move, and the body share in it, and sends the body on from
-    /// where it then is. Returns the part of the momentum that the particles keep, and how far the body gave way at once (m).
+    /// Shares a push between particles, which were pushed as if the body were static, and the body. Returns the
+    /// fraction of the momentum that the particles keep, and the body's displacement (m).
     pub fn share(
         &mut self,
         before: &Before,
@@ -212,7 +214,7 @@ impl Body {
         [move_part, gone]
     }
 
-    /// Has particles carry it in the coming sub-step, if the others do not carry another body.
+    /// Makes particles carry the body in the coming sub-step, unless they already carry another one.
     pub fn lend<'a>(
         &mut self,
         particles: &mut ClothParticles,
@@ -225,8 +227,8 @@ impl Body {
         self.carriers.lend(particles, body, surface, others);
     }
 
-    /// Takes what the particles that carried it have given to it in a sub-step, and sends it on. Returns that, about the origin of its
-    /// shape, and how far it gave way at once (m); none if nothing was given.
+    /// Collects the impulses of the particles that carried the body in a sub-step, and updates its motion. Returns the
+    /// impulse about the origin of its shape, and the body's displacement (m); `None` if there was no impulse.
     pub fn take_back(
         &mut self,
         particles: &mut ClothParticles,
@@ -249,20 +251,20 @@ impl Body {
         Some((given, gone))
     }
 
-    /// How it lies when a part of the tick has passed, and where its centre of mass is then (m).
+    /// Its pose at a fraction of the tick, and its centre of mass then (m).
     fn centre(&self, way: &MovingCollider, passed: f32) -> (Isometry3d, DVec3) {
         let pose = way.pose_at(passed);
         let arm = self.arm(&pose);
         (pose, (Vec3::from(pose.translation) + arm).as_dvec3())
     }
 
-    /// From the origin of its shape to its centre of mass (m).
+    /// Vector from the origin of its shape to its centre of mass (m).
     fn arm(&self, pose: &Isometry3d) -> Vec3 {
         pose.rotation * self.start.from.rotation.inverse() * self.mass.centre
     }
 
-    /// Sends it on at the end of a sub-step of `dt` (s), in which it has gone (m) and turned (rad) besides, and has got faster by so much
-    /// a sub-step. Returns how far any of its points has gone at once (m).
+    /// Updates its motion at the end of a sub-step of `dt` (s), with an additional displacement (m) and rotation (rad),
+    /// and with a change of its displacement per sub-step. Returns the largest displacement of any of its points (m).
     fn send_on(
         &mut self,
         way: &mut MovingCollider,
@@ -277,7 +279,7 @@ impl Body {
         let [go, turn, push, spin] = changes.map(DVec3::as_vec3);
         self.change.velocity += push / dt;
         self.change.angular_velocity += spin / dt;
-        // It goes on from where it is now, with the velocity that it has now.
+        // It continues from its current pose with its current velocity.
         let rotation = (Quat::from_scaled_axis(turn) * pose.rotation).normalize();
         let here = Vec3::from(pose.translation) + go + arm - Quat::from_scaled_axis(turn) * arm;
         let step = way.to - Vec3::from(way.from.translation) + (push - spin.cross(arm)) * substeps;

@@ -4,13 +4,13 @@ use bevy::math::Vec3;
 
 use super::geometry::SharpEdge;
 
-/// How many edges a box has.
+/// Number of edges of a box.
 pub(super) const EDGES: u32 = 12;
 
 /// One of the edges of a box around the origin.
 #[inline]
 pub(super) fn edge(half: Vec3, index: u32) -> SharpEdge {
-    // The axis that it is parallel to, and on which side of the other two it lies.
+    // The axis that it is parallel to, and its side of the other two axes.
     let (axis, side) = ((index / 4) as usize, index % 4);
     let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
     let sign = |bit: u32| if side & bit == 0 { -1.0_f32 } else { 1.0 };
@@ -25,9 +25,9 @@ pub(super) fn edge(half: Vec3, index: u32) -> SharpEdge {
     }
 }
 
-/// How far a point is from the nearest edge of a box around the origin (m).
+/// Distance of a point from the nearest edge of a box around the origin (m).
 pub(super) fn edge_distance(half: Vec3, point: Vec3) -> f32 {
-    // From the planes of its faces, and beyond them.
+    // Distances from the planes of its faces, and beyond them.
     let beside = point.abs() - half;
     let squares = beside * beside;
     let beyond = beside.max(Vec3::ZERO);

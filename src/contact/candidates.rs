@@ -1,23 +1,23 @@
-//! Which particles and triangles each collider may touch in a tick, and in which blocks of eight they are.
+//! The particles and triangles that each collider may touch in a tick, in blocks of eight.
 
 use std::ops::Range;
 
 use super::held::Held;
 use crate::cloth::{LANES, Lanes, Layout, Slot, Surface};
 
-/// A particle that a collider may touch in the tick; with triangles, one that stands for some.
+/// A particle that a collider may touch in the tick, with the triangles that it owns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Candidate {
     pub particle: u32,
     /// Its lane, counted through the [`ContactBlock`]s.
     pub place: u32,
-    /// From where to where the corners and the faces that it stands for are among the [`Fans`]; none without triangles.
+    /// Range of the corners and faces that it owns in the [`Fans`]; empty without triangles.
     pub corners: [u32; 2],
     pub faces: [u32; 2],
 }
 
 impl Candidate {
-    /// Which contact block it is in, and which lane of it.
+    /// Its contact block and lane.
     pub fn lane(&self) -> (usize, usize) {
         (self.place as usize / LANES, self.place as usize % LANES)
     }
@@ -31,17 +31,18 @@ const NONE: u32 = u32::MAX;
 pub(super) struct ContactBlock {
     /// Which of the cloth's blocks.
     pub block: u32,
-    /// Which lanes are candidates, a bit each.
+    /// Bit mask of the lanes that are candidates.
     pub lanes: u8,
-    /// Those of the same collider in which a grid's cells have their other corners: to the right, below, and below to the right.
+    /// Blocks of the same collider with the other corners of a grid's cells: to the right, below, and below to the
+    /// right.
     pub around: [u32; 3],
-    /// Whether it has to be looked at lane by lane in this sub-step.
+    /// Whether it is tested lane by lane in this sub-step.
     pub is_left: bool,
-    /// No lane can touch before everything has moved so far (m).
+    /// Until everything has moved this far, no lane can touch (m).
     pub clear_until: f32,
-    /// The part of the cloth's area that each stands for (m²).
+    /// Each particle's share of the cloth's area (m²).
     pub area: Lanes,
-    /// The deepest that each has been found (m); negative if it has only come so near.
+    /// Largest depth of each (m); negative for the smallest distance.
     pub depth: Lanes,
 }
 
@@ -58,7 +59,7 @@ impl ContactBlock {
         }
     }
 
-    /// Whether the cells are known of which its particles are the first.
+    /// Whether the cells that its particles own are known.
     pub fn has_cells(&self) -> bool {
         self.around[2] != NONE
     }
@@ -69,25 +70,25 @@ impl ContactBlock {
     }
 }
 
-/// The faces that candidates stand for.
+/// The faces that candidates own.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Fans {
-    /// All corners of each candidate's faces, each once; the candidate itself first.
+    /// All corners of each candidate's faces, without repetition; the candidate itself first.
     corners: Vec<Slot>,
     faces: Vec<[Slot; 3]>,
-    /// How many triangles a particle may be a corner of, and be pushed by.
+    /// Largest number of triangles at a particle, each of which may push it.
     pub max_faces: f32,
 }
 
 impl Fans {
-    /// Forgets all.
+    /// Clears everything.
     pub fn clear(&mut self) {
         self.corners.clear();
         self.faces.clear();
     }
 
-    /// Adds the faces that a particle stands for, or none if one of them is left out. Returns from where to where their corners and
-    /// they are.
+    /// Adds the faces that a particle owns, or none if one of them is left out. Returns the ranges of their corners and
+    /// faces.
     pub fn add(
         &mut self,
         surface: &Surface,
@@ -97,7 +98,7 @@ impl Fans {
     ) -> [[u32; 2]; 2] {
         let (first_corner, first_face) = (self.corners.len(), self.faces.len());
         let mut faces = surface.faces().of(particle);
-        // All or none: what is remembered of a particle's faces counts on the same ones.
+        // All or none: the memory of a particle's faces relies on the same set.
         if faces.iter().any(is_left_out) {
             faces = &[];
         }
@@ -128,20 +129,20 @@ impl Fans {
     }
 }
 
-/// What all colliders may touch in the tick.
+/// Everything that colliders may touch in the tick.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Candidates {
     pub all: Vec<Candidate>,
     pub blocks: Vec<ContactBlock>,
     pub fans: Fans,
-    /// For each block of those colliders that are tested against triangles.
+    /// For each block of the colliders that are tested against triangles.
     pub helds: Vec<Held>,
-    /// Of each of the cloth's blocks, which contact block it was last.
+    /// The last contact block of each of the cloth's blocks.
     marks: Vec<u32>,
 }
 
 impl Candidates {
-    /// Forgets all.
+    /// Clears everything.
     pub fn clear(&mut self) {
         self.all.clear();
         self.blocks.clear();
@@ -158,9 +159,9 @@ impl Candidates {
         self.helds.fill(Held::NONE);
     }
 
-    /// Adds those of a collider, whatever their order; with the triangles that they stand for, if `is_left_out`
-    /// is given, which says of each whether it is not to be tested. Returns where they and their blocks are, each in the order of the cloth: so the
-    /// result is the same whichever search has found them.
+    /// Adds the candidates of a collider, in any order. With `is_left_out`, adds the triangles that they own, too; it
+    /// returns whether a triangle is excluded. Returns the ranges of the candidates and their blocks, both in the order
+    /// of the cloth. So the result does not depend on the search method.
     pub fn add(
         &mut self,
         found: &[u32],
@@ -226,7 +227,7 @@ impl Candidates {
         }
     }
 
-    /// Has a block of the cloth be among those from `first` on.
+    /// Makes a block of the cloth one of those from `first` on.
     fn mark(&mut self, block: usize, first: usize) {
         let mark = self.marks[block] as usize;
         let known = self.blocks.get(mark).filter(|_| mark >= first);
@@ -236,14 +237,14 @@ impl Candidates {
         }
     }
 
-    /// The deepest that a candidate has been found (m).
+    /// The largest depth of a candidate (m).
     pub fn depth_of(&self, candidate: &Candidate) -> f32 {
         let (block, lane) = candidate.lane();
         self.blocks[block].depth[lane]
     }
 }
 
-/// Where the candidates of a collider are, their blocks, and what these hold.
+/// Ranges of a collider's candidates, their blocks, and their contents.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Ranges {
     pub candidates: Range<usize>,

@@ -1,26 +1,29 @@
-//! Particles that carry a body from sub-step to sub-step.
+//! Particles that carry a body between sub-steps.
 //!
-//! A contact alone gives a body, in a sub-step, no more momentum than the particles have that it pushes: a heavy body on light cloth would
-//! pull these far out of place before they held it. So while the springs are solved, each particle that the body has just pushed is
-//! heavier by a part `μᵢ` of the body, a [`Load`]; what the springs then move it by, `Δᵢ`, the body gets as an impulse `μᵢ Δᵢ` in that
-//! place. Momentum and angular momentum are kept. With J the motion of the body's surface that its velocity and spin make in a place,
-//! and W its inverse mass matrix, the body then has the energy `½ ‖Σ Jᵢᵀ μᵢ Δᵢ‖²_W ≤ ½ Σ μᵢ Δᵢ² · K Σ μᵢ`, K being the largest inverse
-//! mass that the body shows in any of these places and directions. So none is gained as long as `Σ μᵢ ≤ 1/K`: of a ball, which
-//! turns, 2/7 of its mass.
+//! A contact alone gives a body, in a sub-step, at most the momentum of the particles that it pushes. A heavy body on
+//! light cloth would displace them far before they held it. So while the springs are solved, each particle that the
+//! body has just pushed carries a part `μᵢ` of its mass, a [`Load`]. The springs move it by `Δᵢ`, and the body receives
+//! the impulse `μᵢ Δᵢ` there. Momentum and angular momentum are conserved.
 //!
-//! A particle has one inverse mass, so it is as heavy along the surface as across it. It begins the sub-step with the momentum that the
-//! body has there, in all directions: what it carries rolls, and does not slide. (With its own momentum along the surface instead, the
-//! body came to rest as soon, and without friction fell through: its particles slipped aside from under it.)
+//! Let J be the motion of the body's surface at a point per unit of velocity and spin, and W its inverse mass matrix.
+//! The body then has the energy `½ ‖Σ Jᵢᵀ μᵢ Δᵢ‖²_W ≤ ½ Σ μᵢ Δᵢ² · K Σ μᵢ`. K is the largest inverse mass of the body
+//! at any of these points and directions. So no energy is gained as long as `Σ μᵢ ≤ 1/K`: for a ball, which turns, 2/7
+//! of its mass.
+//!
+//! A particle has one inverse mass, the same along the surface and across it. It begins the sub-step with the body's
+//! momentum there, in all directions: a carried body rolls, and does not slide. (With the particle's own momentum along
+//! the surface instead, the body came to rest as soon, but without friction it fell through: its particles slipped
+//! aside.)
 
 use bevy::math::{DVec3, Mat3, Vec3};
 
 use super::BodyMass;
 use crate::cloth::{Block, ClothParticles, LANES, Load, Slot};
 
-/// In how many sub-steps a particle still carries that is not pushed again.
+/// Number of sub-steps that a particle carries after its last push.
 const REMEMBERED: u8 = 3;
 
-/// How many times as heavy as a particle its load is at most: more than that threads do not hold well.
+/// Largest ratio of a particle's load to its own mass: threads hold larger ones badly.
 const MAX_LOAD: f32 = 3.0e3;
 
 /// A particle that carries a body.
@@ -28,14 +31,14 @@ const MAX_LOAD: f32 = 3.0e3;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Carrier {
     slot: Slot,
-    /// Out of the body where it lay on it last, of length 1.
+    /// Outward normal of the body at the last contact, of length 1.
     normal: Vec3,
-    /// For how many sub-steps it still counts.
+    /// Number of sub-steps left.
     left: u8,
 }
 
 impl Carrier {
-    /// Whether it can be one of so many blocks.
+    /// Whether its block is one of `blocks`.
     pub(crate) fn is_in(&self, blocks: usize) -> bool {
         self.slot.block < blocks && self.slot.lane < LANES
     }
@@ -45,11 +48,11 @@ impl Carrier {
 #[derive(Debug, Default, Clone)]
 pub(super) struct Carriers {
     all: Vec<Carrier>,
-    /// Where the next ones are put together.
+    /// Scratch memory for the next list.
     next: Vec<Carrier>,
-    /// From where to where their loads are among the particles'.
+    /// Range of their loads among those of the particles.
     loads: [usize; 2],
-    /// How many times as heavy as all particles of a row and a column through the carriers the body is.
+    /// Ratio of the body's mass to that of all particles of a row and a column through the carriers.
     ratio: f32,
 }
 
@@ -60,10 +63,10 @@ impl Carriers {
         self.ratio = 0.0;
     }
 
-    /// How many times as heavy as the particles of the threads by which it hangs the body is: as far as the cloth holds it, which has
-    /// changed its velocity by `held` (m/s) in a tick in which it would fall by another (m/s).
+    /// Ratio of the body's mass to that of the threads that hold it, times the fraction of its weight that the cloth
+    /// holds. `held` is the change of its velocity by the cloth (m/s) in a tick; `fall` is that by gravity (m/s).
     pub fn load_ratio(&self, held: f32, fall: f32) -> f32 {
-        // Without a fall nothing has to be held.
+        // Without a fall there is no weight to hold.
         let part = held / fall.max(f32::MIN_POSITIVE);
         if fall > 0.0 && part > 0.0 {
             self.ratio * part.min(1.0)
@@ -76,7 +79,7 @@ impl Carriers {
         &self.all
     }
 
-    /// Takes over those of an earlier tick.
+    /// Restores the carriers of an earlier tick.
     pub fn recall(&mut self, carriers: impl Iterator<Item = Carrier>) {
         self.clear();
         self.all.extend(carriers);
@@ -88,8 +91,8 @@ impl Carriers {
             .binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
     }
 
-    /// Notes the particles of a block that the body has just pushed, with what leads `out` of it in a place. Blocks come in the order of
-    /// the cloth.
+    /// Notes the particles of a block that the body has just pushed. `out` gives the outward normal at a point. Blocks
+    /// come in the order of the cloth.
     pub fn note(&mut self, block: usize, [old, new]: [&Block; 2], out: impl Fn(Vec3) -> Vec3) {
         for lane in 0..LANES {
             if new.inverse_mass(lane) == 0.0 || new.position(lane) == old.position(lane) {
@@ -109,7 +112,7 @@ impl Carriers {
         }
     }
 
-    /// Adds those that were noted and not known.
+    /// Adds the noted particles that are new.
     pub fn add_noted(&mut self) {
         if !self.next.is_empty() {
             self.all.append(&mut self.next);
@@ -118,8 +121,8 @@ impl Carriers {
         }
     }
 
-    /// Has the particles carry a body around a centre (m) in the coming sub-step, in which its `surface` goes so far in each place. A
-    /// particle carries one body at a time: the `others` come first.
+    /// Makes the particles carry a body around a centre (m) in the coming sub-step, in which its `surface` moves by
+    /// that much at each point. A particle carries one body at a time: the `others` come first.
     pub fn lend<'a>(
         &mut self,
         particles: &mut ClothParticles,
@@ -145,7 +148,7 @@ impl Carriers {
             let arm = block.position(carrier.slot.lane).as_dvec3() - centre;
             largest = largest.max(turning(mass, arm.as_vec3()));
         }
-        // What they carry hangs by as many threads as there are along two ways.
+        // The load hangs by as many threads as there are in both directions.
         let count = self.all.len() as f32;
         self.ratio = if count > 0.0 {
             count.sqrt() / (2.0 * sum * mass.inverse_mass)
@@ -167,7 +170,8 @@ impl Carriers {
         self.loads = [from, particles.loads_mut().len()];
     }
 
-    /// Takes back what they carried. Returns the push and the turn that the sub-step gave to that (kg·m, kg·m²), about a centre (m).
+    /// Removes the loads. Returns the linear and angular impulse of the sub-step times its duration (kg·m, kg·m²),
+    /// about a centre (m).
     pub fn take_back(&mut self, particles: &mut ClothParticles, centre: DVec3) -> [DVec3; 2] {
         let [mut push, mut turn] = [DVec3::ZERO; 2];
         let [from, to] = std::mem::take(&mut self.loads);
@@ -180,7 +184,7 @@ impl Carriers {
             let place = particles.blocks()[slot.block].position(slot.lane);
             push += given;
             turn += (place.as_dvec3() - centre).cross(given);
-            // What is drawn away from the body carries it no longer.
+            // A particle pulled away from the body stops carrying it.
             if let Ok(at) = self.position(slot)
                 && moved.dot(self.all[at].normal) > 0.0
             {
@@ -191,8 +195,9 @@ impl Carriers {
     }
 }
 
-/// The largest inverse mass that a body shows in any direction, so far from its centre of mass (m), by its turning (1/kg): the largest
-/// eigenvalue of `A = [r]ₓ I⁻¹ [r]ₓᵀ`. Along r nothing turns it; the sum of the other two is the trace, that of their squares A's.
+/// The largest inverse mass of a body by rotation at an arm from its centre of mass (m), in any direction (1/kg). It is
+/// the largest eigenvalue of `A = [r]ₓ I⁻¹ [r]ₓᵀ`. One eigenvalue, along r, is 0; the other two follow from the traces
+/// of A and A².
 fn turning(mass: &BodyMass, arm: Vec3) -> f32 {
     let cross = Mat3::from_cols(
         Vec3::new(0.0, arm.z, -arm.y),

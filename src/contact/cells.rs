@@ -1,7 +1,7 @@
-//! The push of a grid's triangles by a ball, eight at a time.
+//! Pushes a grid's triangles out of a ball, eight at a time.
 //!
-//! A block of a grid is eight cells that lie a strip apart: they share no corners, so that the same triangle of each is pushed
-//! out at once, and what comes next sees it pushed, as if one came after the other.
+//! A block of a grid is eight cells that lie a strip apart and share no corners. So the same triangle of each can be
+//! pushed at once, and the result equals that of one push after the other.
 
 use multiversion::multiversion;
 
@@ -13,12 +13,12 @@ use super::{
 };
 use crate::cloth::{Block, LANES, Layout, Slot, View};
 
-/// A triangle of each of a block's cells.
+/// A triangle of each cell of a block.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Place {
-    /// Which of the cloth's blocks.
+    /// Index of the cloth's block.
     pub block: u32,
-    /// Which of both triangles.
+    /// Which of the two triangles.
     pub which: u32,
 }
 
@@ -30,12 +30,12 @@ impl Place {
     };
 }
 
-/// Why the push came to an end.
+/// The reason why the push stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stop {
     /// All is done.
     Done,
-    /// Some triangles have to be looked at one by one: of which contact block, and which lanes.
+    /// Some triangles have to be tested one by one: the contact block and its lanes.
     Left {
         contact: usize,
         which: u32,
@@ -45,7 +45,7 @@ pub(super) enum Stop {
     Room,
 }
 
-/// Where a block's corner lies.
+/// Location of a block's corner.
 #[derive(Clone, Copy)]
 struct Corner {
     block: usize,
@@ -73,8 +73,8 @@ impl Corner {
     }
 }
 
-/// Pushes a triangle of each of a block's cells. Returns which have to be looked at one by one, and how far the nearest is from being
-/// touched (m).
+/// Pushes a triangle of each cell of a block. Returns those that have to be tested one by one, and the distance of the
+/// nearest from a touch (m).
 #[inline(always)]
 fn push_eight(
     blocks: &mut [Block],
@@ -145,14 +145,15 @@ fn push_eight(
     (left, least)
 }
 
-/// Which of a block's lanes are cells.
+/// The lanes of a block that are cells.
 #[inline(always)]
 fn cells_of(layout: Layout, block: u32) -> [bool; LANES] {
     let place = block % layout.strip;
     std::array::from_fn(|lane| lane as u32 * layout.strip + place + 1 < layout.columns)
 }
 
-/// The corners of both triangles of a block's cells, as [`ClothGrid::triangles`](crate::cloth::ClothGrid::triangles) has them.
+/// The corners of both triangles of a block's cells, in the order of
+/// [`ClothGrid::triangles`](crate::cloth::ClothGrid::triangles).
 #[inline(always)]
 fn corners_of(layout: Layout, contact: &ContactBlock, index: usize) -> [[Corner; 3]; 2] {
     let (block, strip) = (contact.block as usize, layout.strip as usize);
@@ -188,7 +189,7 @@ pub(super) fn slots_of(
     })
 }
 
-/// Pushes triangles out of a ball, from one on. Says why it ended, and where to go on.
+/// Pushes triangles out of a ball, from a given one on. Returns the reason for the end, and where to continue.
 #[multiversion(targets("x86_64+avx+avx2"))]
 pub(super) fn push_cells(
     blocks: &mut [Block],
@@ -222,7 +223,7 @@ pub(super) fn push_cells_baseline(
         let is_begun = from == Place { block, which: 1 };
         let is_cell = cells_of(layout, block);
         let corners = corners_of(layout, contact, index);
-        // What was not seen to be clear is not.
+        // Blocks that were not tested are not clear.
         let mut clear = if is_begun {
             f32::NEG_INFINITY
         } else {
@@ -250,7 +251,7 @@ pub(super) fn push_cells_baseline(
                 return (Stop::Room, next);
             }
         }
-        // A little less than rounding, and than what counts as a touch.
+        // Smaller by rounding errors and by the tolerance of a touch.
         let rounding = 1.0e-5 * (centre + cells.reach + clear + motion.odometer);
         contact.clear_until = motion.odometer + (clear - 2.0 * motion.tolerance - rounding);
     }

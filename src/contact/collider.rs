@@ -1,4 +1,4 @@
-//! What a cloth can touch.
+//! Colliders for cloth.
 
 mod primitives;
 
@@ -17,22 +17,22 @@ use super::{
 };
 use crate::cloth::{ClothError, FARTHEST};
 
-/// Something that cloth collides with, at the entity's [`Transform`]: every cloth, unless
-/// [`ClothLayers`](super::ClothLayers) say otherwise. It moves however the game moves it; cloth pushes it back only if it has a
+/// A collider for cloth at the entity's [`Transform`]. Every cloth collides with it, unless
+/// [`ClothLayers`](super::ClothLayers) exclude it. Move it however you like. Cloth pushes it back only if it has a
 /// [`ClothBody`](crate::plugin::ClothBody).
 ///
-/// Its speed, and with it its friction, comes from how the transform changed since the last tick: move it in
-/// the cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To move it without any
-/// speed, a teleport, insert this component again.
+/// Its velocity, and so its friction, comes from the change of its transform since the last tick. Move it in the
+/// cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To teleport it without a velocity,
+/// insert this component again.
 ///
-/// However fast it is: what moves farther in a sub-step than half of its thickness is tested all along its way, so that
-/// nothing that it meets passes through it.
+/// Fast colliders do not tunnel: if one moves farther in a sub-step than half of its thickness, it is tested along its
+/// whole path.
 ///
 /// # Scale
-/// The transform's scale applies, also along one axis: a ball stays a ball of the largest, capsule, cylinder and cone stay
-/// round by the larger of x and z. Points, meshes and height fields take any. A negative scale mirrors: of what is the same in
-/// a mirror nothing changes, a cone points down, a mesh is mirrored and keeps its outer side. A part of a compound that is
-/// turned can't be stretched along one axis only. No scale may be zero.
+/// The transform's scale applies to all shapes, also if it is not uniform. A ball stays a ball, by the largest axis.
+/// Capsule, cylinder and cone stay round, by the larger of x and z. Points, meshes and height fields take any scale. A
+/// negative scale mirrors: symmetric shapes do not change, a cone points down, and a mesh is mirrored and keeps its
+/// outer side. A compound with a rotated part needs a uniform scale. No scale may be zero.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -57,51 +57,52 @@ pub enum ClothCollider {
         /// Radius (m), before the transform's scale.
         radius: f32,
     },
-    /// A capsule along the entity's y axis, as Bevy's `Capsule3d`.
+    /// A capsule along the entity's y axis, like Bevy's `Capsule3d`.
     Capsule {
         /// Radius (m), before the transform's scale.
         radius: f32,
-        /// Half of the length between the centres of its two half-balls (m), likewise.
+        /// Half of the length between the centres of its two half-balls (m), before the transform's scale.
         half_length: f32,
     },
-    /// A box, as Bevy's `Cuboid`.
+    /// A box, like Bevy's `Cuboid`.
     Cuboid {
-        /// Half of its lengths (m), before the transform's scale.
+        /// Half of its side lengths (m), before the transform's scale.
         half_size: Vec3,
     },
-    /// All below a plane, whose normal is the entity's y axis.
+    /// The half-space below a plane, whose normal is the entity's y axis.
     Plane,
-    /// A cylinder along the entity's y axis, as Bevy's `Cylinder`.
+    /// A cylinder along the entity's y axis, like Bevy's `Cylinder`.
     Cylinder {
         /// Radius (m), before the transform's scale.
         radius: f32,
-        /// Half of its height (m), likewise.
+        /// Half of its height (m), before the transform's scale.
         half_height: f32,
     },
-    /// A cone along the entity's y axis with its tip up, as Bevy's `Cone`; its origin is half-way up.
+    /// A cone along the entity's y axis with its tip up, like Bevy's `Cone`. Its origin is at half its height.
     Cone {
         /// Radius of its base (m), before the transform's scale.
         radius: f32,
-        /// Half of its height (m), likewise.
+        /// Half of its height (m), before the transform's scale.
         half_height: f32,
     },
-    /// The entity's `Mesh3d`, once its asset has been loaded; with feature `mesh`.
+    /// The entity's `Mesh3d`, once its asset has loaded; needs feature `mesh`.
     Mesh(MeshCollider),
-    /// Several shapes, each where it is in the entity's frame (m).
+    /// Several shapes, each with a pose in the entity's frame (m).
     Compound(Vec<(Isometry3d, Self)>),
-    /// Points, triangles or heights, given in code: a scene file does not hold them, and what is read from it is a fault.
+    /// Points, triangles or heights given in code. They cannot be serialized: loaded from a scene file, the collider
+    /// raises a [`ClothFault`](crate::plugin::ClothFault).
     Shared(#[reflect(ignore)] SharedCollider),
 }
 
-/// What is made of a mesh.
+/// The shape made from a mesh.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 #[non_exhaustive]
 pub enum MeshCollider {
-    /// Its triangles: a closed mesh has an outer side only, an open one two.
+    /// Its triangles. A closed mesh has an outer side only; an open mesh has two sides.
     #[default]
     Triangles,
-    /// The convex hull of its vertices: cheaper, and for what is convex the same.
+    /// The convex hull of its vertices: cheaper, and exact for a convex mesh.
     Hull,
 }
 
@@ -118,7 +119,7 @@ impl ClothCollider {
         Self::Ball { radius }
     }
 
-    /// A capsule of `radius`, with so much between the centres of its two half-balls (m).
+    /// A capsule of `radius`, with `length` between the centres of its two half-balls (m).
     pub const fn capsule(radius: f32, length: f32) -> Self {
         Self::Capsule {
             radius,
@@ -126,19 +127,19 @@ impl ClothCollider {
         }
     }
 
-    /// A box of these lengths (m).
+    /// A box with these side lengths (m).
     pub const fn cuboid(x: f32, y: f32, z: f32) -> Self {
         Self::Cuboid {
             half_size: Vec3::new(x / 2.0, y / 2.0, z / 2.0),
         }
     }
 
-    /// All below the entity's xz plane.
+    /// The half-space below the entity's xz plane.
     pub const fn plane() -> Self {
         Self::Plane
     }
 
-    /// A cylinder of a radius and a height (m).
+    /// A cylinder of `radius` and `height` (m).
     pub const fn cylinder(radius: f32, height: f32) -> Self {
         Self::Cylinder {
             radius,
@@ -146,7 +147,7 @@ impl ClothCollider {
         }
     }
 
-    /// A cone whose base has a radius, and of a height (m).
+    /// A cone of `height` with a base of `radius` (m).
     pub const fn cone(radius: f32, height: f32) -> Self {
         Self::Cone {
             radius,
@@ -154,47 +155,49 @@ impl ClothCollider {
         }
     }
 
-    /// The smallest convex shape around points (m), which may not all lie in one plane.
+    /// The convex hull of points (m), which must not all lie in one plane.
     pub fn convex_hull(points: impl Into<Vec<Vec3>>) -> Self {
         Self::Shared(SharedCollider::hull(points.into()))
     }
 
-    /// Triangles of vertices (m). If they are closed, each edge having two triangles, cloth stays outside, whichever way
-    /// they are turned; else they are a sheet 1 mm thick, which cloth touches from both sides. Vertices in one place are one.
+    /// Triangles between vertices (m). A closed mesh, with two triangles at each edge, is solid, whatever its winding
+    /// order. An open mesh is a sheet 1 mm thick, which cloth touches from both sides. Vertices at the same position
+    /// are merged.
     ///
-    /// Built once for all clones.
+    /// Built once and shared by all clones.
     pub fn trimesh(vertices: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
         Self::Shared(SharedCollider::triangles(vertices.into(), triangles.into()))
     }
 
-    /// Ground of given heights, row by row: rows lie along z, `columns` heights of each along x, around the entity's origin.
-    /// `size` (m) is how far it reaches along x and z, and what a height of 1 is. All below it is inside.
+    /// A height field around the entity's origin. `heights` are row by row: rows lie along z, with `columns` heights
+    /// along x. `size` (m) is its extent along x and z, and in y the scale of the heights. Everything below it is
+    /// inside.
     pub fn heightfield(heights: impl Into<Vec<f32>>, columns: usize, size: Vec3) -> Self {
         Self::Shared(SharedCollider::height_field(heights.into(), columns, size))
     }
 
-    /// Several shapes as one, each where it is in the entity's frame (m). Meshes that wait for an asset and planes can't be
+    /// Several shapes as one, each with a pose in the entity's frame (m). Planes and meshes from an asset cannot be
     /// parts.
     pub fn compound(parts: impl IntoIterator<Item = (Isometry3d, Self)>) -> Self {
         Self::Compound(parts.into_iter().collect())
     }
 
-    /// The triangles of the entity's `Mesh3d`, once it has been loaded.
+    /// The triangles of the entity's `Mesh3d`, once it has loaded.
     pub const fn mesh() -> Self {
         Self::Mesh(MeshCollider::Triangles)
     }
 
-    /// The convex hull of the entity's `Mesh3d`, once it has been loaded.
+    /// The convex hull of the entity's `Mesh3d`, once it has loaded.
     pub const fn mesh_hull() -> Self {
         Self::Mesh(MeshCollider::Hull)
     }
 
-    /// A shape of parry's, which is rapier's, as large as it is whatever the transform's scale.
+    /// A shape of parry, the geometry library of rapier. It ignores the transform's scale.
     pub fn parry(shape: SharedShape) -> Self {
         Self::Shared(SharedCollider::parry(shape))
     }
 
-    /// Where the shape's frame is in the entity's: not at its origin only for what is taken from parry.
+    /// Pose of the shape's frame in the entity's frame: the identity, except for shapes from parry.
     pub fn offset(&self) -> Isometry3d {
         match self {
             Self::Shared(shared) => shared.offset(),
@@ -202,13 +205,13 @@ impl ClothCollider {
         }
     }
 
-    /// The shape under a transform's `scale`: a ball stays one, so the largest axis counts, and so it does across a
+    /// Returns the shape under a transform's `scale`. A ball takes the largest axis, and so does the radius of a
     /// capsule.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for a length that is zero, negative or not finite, scaled or not; a capsule's may be
-    /// zero. [`ClothError::MeshNotLoaded`] of a mesh, as only the plugin knows the assets. What is wrong with points,
-    /// triangles, heights or parts.
+    /// [`ClothError::Quantity`] for a length that is zero, negative or not finite, before or after scaling; a capsule's
+    /// length may be zero. [`ClothError::MeshNotLoaded`] for a mesh, because only the plugin can access the assets.
+    /// Errors of points, triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         let sizes = Scale(scale.abs());
         match *self {
@@ -276,7 +279,7 @@ impl ClothCollider {
     }
 }
 
-/// How an error names the radius and the height of what is round, each as it is given and scaled.
+/// Names of the radius and the height of a round shape in errors, unscaled and scaled.
 type RoundNames = [[&'static str; 2]; 2];
 
 const CYLINDER: RoundNames = [
@@ -298,23 +301,23 @@ const CONE: RoundNames = [
     ],
 ];
 
-/// A length under a scale, if it is one, both before and after. `names` are those of the two.
+/// A length under a scale, checked before and after scaling. `names` are the names of both.
 fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
     let positive = |v: f32| v > 0.0 && v.is_finite();
     ClothError::check(value, positive, names[0], "positive")?;
     ClothError::check(value * scale, positive, names[1], "positive")
 }
 
-/// How many times as large a shape is along each axis, mirrored or not.
+/// The scale of a shape along each axis, mirrored or not.
 struct Scale(Vec3);
 
 impl Scale {
-    /// What is round about the y axis stays round, by the larger of x and z.
+    /// A radius about the y axis, scaled by the larger of x and z.
     fn across(&self, radius: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
         length(radius, self.0.x.max(self.0.z), names)
     }
 
-    /// The radius, and half of the height, of what is round about the y axis.
+    /// The radius and half of the height of a shape that is round about the y axis.
     fn round(
         &self,
         radius: f32,
@@ -338,7 +341,7 @@ fn compound(
         })
     };
     if children.is_empty() {
-        return no_such("a compound of nothing");
+        return no_such("an empty compound");
     }
     let is_even = scale.abs_diff_eq(Vec3::splat(scale.x), 1.0e-5 * scale.length());
     let mut parts = Parts::default();
@@ -347,7 +350,7 @@ fn compound(
         if let ClothCollider::Mesh(_) = child {
             return no_such("the entity's `Mesh3d` as a part of a compound");
         }
-        // What is turned and then stretched along one axis is sheared.
+        // Rotating and then stretching along one axis would shear the part.
         if !is_even && !pose.rotation.is_near_identity() {
             return Err(ClothError::SkewedPart { scale });
         }
@@ -374,14 +377,14 @@ fn compound(
     Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
 }
 
-/// Where a part of a compound is, with a rotation of length 1.
+/// The pose of a compound's part, with a normalized rotation.
 ///
 /// # Errors
-/// [`ClothError::PartPose`] of a place or a rotation that is none.
+/// [`ClothError::PartPose`] for an invalid position or rotation.
 fn part_pose(part: usize, pose: Isometry3d) -> Result<Isometry3d, ClothError> {
     let place = Vec3::from(pose.translation);
     let rotation = pose.rotation.normalize();
-    // Not by the largest element, which leaves NaN out.
+    // Not by the largest element, which ignores NaN.
     let is_in_reach = place.abs().cmplt(Vec3::splat(FARTHEST)).all();
     if is_in_reach && rotation.is_finite() && rotation.is_normalized() {
         Ok(Isometry3d::new(place, rotation))

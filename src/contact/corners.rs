@@ -1,4 +1,4 @@
-//! How a triangle of the cloth lies to a collider, at the end of a sub-step and on the way there.
+//! Tests of a cloth triangle against a collider, at the end of a sub-step and on the way there.
 
 use bevy::math::Vec3;
 
@@ -33,7 +33,7 @@ impl Corners {
         }
     }
 
-    /// Moves a corner by a way, and has it be faster by a displacement (m). Returns where it is then.
+    /// Moves a corner, and adds a displacement to its motion (m). Returns its new position.
     pub fn push(
         &self,
         corner: usize,
@@ -48,30 +48,30 @@ impl Corners {
         pushed
     }
 
-    /// When a part of the sub-step has passed.
+    /// Positions at a fraction of the sub-step.
     fn when(&self, part: f32) -> [Vec3; 3] {
         [0, 1, 2].map(|corner| self.positions[corner] - self.displacements[corner] * (1.0 - part))
     }
 }
 
-/// Where a triangle touches.
+/// The contact of a triangle.
 pub(super) struct Touching {
     pub weights: [f32; 3],
     pub normal: Vec3,
     /// The core's point (m).
     pub centre: Vec3,
-    /// Whether it was hit on a way farther than half of the reach.
+    /// Whether the sweep found it, on a path longer than half of the reach.
     pub is_swept: bool,
 }
 
-/// A collider's way through a sub-step, as triangles are tested against it.
+/// A collider's motion in a sub-step, for tests against triangles.
 pub(super) struct SubstepMotion<'a> {
     pub collider: &'a MovingCollider,
     pub settings: &'a ContactSettings,
     pub substep: SubStep,
-    /// How near the core may come (m).
+    /// Distance from the core at which it touches (m).
     pub reach: f32,
-    /// How far it moves in the sub-step, and its turn alone moves any point of its core (m).
+    /// Its displacement in the sub-step, and the largest displacement of any point of its core by rotation alone (m).
     pub slide: Vec3,
     pub swing: f32,
     /// The core at the end of the sub-step.
@@ -99,8 +99,8 @@ impl<'a> SubstepMotion<'a> {
         }
     }
 
-    /// How far all faces that a particle stands for are from being touched at least (m), and how far they have moved relative to
-    /// the collider in the sub-step at most (m). `corners` are all of theirs, and `own` is the particle's.
+    /// The smallest distance of a particle's faces from a touch (m), and their largest displacement relative to the
+    /// collider in the sub-step (m). `corners` are the corners of all faces, and `own` is the particle.
     #[inline]
     pub fn clearance(&self, blocks: &[Block], own: Slot, corners: &[Slot]) -> [f32; 2] {
         let first = blocks[own.block].position(own.lane);
@@ -118,21 +118,21 @@ impl<'a> SubstepMotion<'a> {
         } else {
             start
         };
-        // A little more than rounding, and than what counts as a touch.
+        // Larger by rounding errors and by the tolerance of a touch.
         let near = (1.0 + 4.0e-3) * self.reach + edge.sqrt();
         let rounding = 1.0e-5 * (near + first.length());
         let clear = first.distance(nearest) - near - rounding;
         [clear, speed.sqrt() + self.swing]
     }
 
-    /// How far the collider's surface moves in the sub-step, at a point (m).
+    /// Displacement of the collider's surface in the sub-step, at a point (m).
     pub fn surface_motion(&self, point: Vec3) -> Vec3 {
         self.collider
             .surface_motion(self.substep, self.origin, point)
     }
 
-    /// How a triangle lies to the collider at the end of the sub-step, or where it was hit in it; and how far its nearest
-    /// point has to go along the normal (m), negative if it is outside.
+    /// The contact of a triangle at the end of the sub-step or at its first hit, and its penetration along the normal
+    /// (m), negative outside.
     pub fn touch(&self, corners: &Corners) -> Option<(Touching, f32)> {
         let reach = self.reach;
         let count = self.substep.count as f32;
@@ -159,12 +159,12 @@ impl<'a> SubstepMotion<'a> {
             .map(|displacement| (displacement - self.slide).length());
         let speed = speeds[0].max(speeds[1]).max(speeds[2]) + self.swing;
         let nearest_at_end = nearest(corners.positions, self.at_end);
-        // Most candidates are too far away to have been met.
+        // Most candidates are too far away for a hit.
         let distance = nearest_at_end.offset.length();
         if distance.is_nan() || distance - speed > reach {
             return None;
         }
-        // What came less far than to half of the reach, and is not nearer, is still on the side that it came from.
+        // A triangle that moved less than half of the reach, and is not nearer, is still on its original side.
         let is_plain = speed <= reach / 2.0 && distance >= reach / 2.0;
         if self.settings.is_swept && !is_plain && speed.is_finite() {
             let tolerance = 1.0e-3 * reach;
@@ -175,7 +175,7 @@ impl<'a> SubstepMotion<'a> {
                 let (triangle, core) = (corners.when(part), segment(part));
                 let (mut touch, _) = touching(nearest(triangle, core), core, triangle);
                 touch.is_swept = speed > reach / 2.0;
-                // Where it would be if it had gone on with the surface.
+                // The position that it would have, had it moved on with the surface.
                 let way = [begin + part / count, self.substep.end()];
                 (touch.centre, touch.normal) = self.collider.carry(way, touch.centre, touch.normal);
                 let offset = at(corners.positions, touch.weights) - touch.centre;
@@ -190,7 +190,7 @@ impl<'a> SubstepMotion<'a> {
     }
 }
 
-/// The core of a ball or a capsule when a part of the tick has passed.
+/// The core of a ball or a capsule at a fraction of the tick.
 fn segment(collider: &MovingCollider, part: f32) -> [Vec3; 2] {
     match collider.shape.core(collider.pose_at(part)).0 {
         Core::Point(centre) => [centre; 2],
@@ -199,7 +199,7 @@ fn segment(collider: &MovingCollider, part: f32) -> [Vec3; 2] {
     }
 }
 
-/// Of a triangle that goes through the core's point: across it, away from the core's middle.
+/// Normal of a triangle that contains the core's point, away from the core's middle.
 fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
     let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
     if normal.dot(a - middle) < 0.0 {
@@ -209,8 +209,8 @@ fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
     }
 }
 
-/// Whether a probe meets a triangle of a surface that one of those particles stands for, as they lie now. Of a box or a
-/// half-space, it does where it meets the particles themselves.
+/// Whether a probe meets a triangle that any of the `found` particles owns, at the current positions. For a box or a
+/// half-space, whether any particle was found.
 pub fn meets_triangles(
     surface: &Surface,
     particles: &ClothParticles,

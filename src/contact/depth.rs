@@ -1,13 +1,14 @@
-//! How deep particles are inside of something: over all of them, in f64.
+//! Penetration depth over all particles, in f64.
 
 use bevy::math::{DQuat, DVec3, Isometry3d, Vec3};
 
 use super::ColliderShape;
 use crate::cloth::ClothParticles;
 
-/// How deep the deepest free particle is inside of a shape in a pose of the cloth's frame (m), 0 if none is.
+/// The penetration of the deepest free particle into a shape (m), with the shape's pose in the cloth's frame; 0 if none
+/// is inside.
 ///
-/// Of a geometry it is as deep as parry says, in f32.
+/// For a geometry, parry computes the depth in f32.
 pub fn deepest_penetration(
     particles: &ClothParticles,
     shape: &ColliderShape,

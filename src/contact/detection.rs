@@ -1,4 +1,5 @@
-//! Which particles each collider may touch in a tick, kept true while the tick goes on, and what came of it.
+//! Finds the particles that each collider may touch in a tick, keeps that list valid during the tick, and records the
+//! contacts.
 
 mod carrying;
 mod requery;
@@ -28,47 +29,47 @@ use crate::{
     solver::SubStep,
 };
 
-/// The area that triangles have inside is measured in every sub-step of so many, in the last, and until there is some: it costs half of
-/// what a push does.
+/// The penetrating area of triangles is measured in every fourth sub-step, in the last one, and until there is some. It
+/// costs half as much as a push.
 const MEASURED_EACH: u32 = 4;
 
-/// A particle is pushed by six triangles, with a third of each or more.
+/// A particle is pushed by six triangles, by at least a third of each.
 const TRIANGLES_A_PUSH: f32 = 3.0;
 
-/// Which particles each collider may touch in a tick.
+/// The broad phase during a tick: the particles that each collider may touch.
 ///
-/// They are those that come within the collider, all along its way, as far as a *margin*. Nothing is missed while no
-/// particle has moved farther than the margin since: that is watched from sub-step to sub-step, and if one has, all
-/// particles are searched again from where they are then.
+/// These are the particles within a *margin* of the collider, along its whole path. None is missed while no particle
+/// has moved farther than the margin since the search. This is checked in each sub-step: if one has, all colliders
+/// search again from the current positions.
 #[derive(Debug, Default, Clone)]
 pub struct Detection {
-    /// In the order of their numbers, so that the result is the same whenever they were found.
+    /// Sorted by ID, so that the result does not depend on when they were found.
     touches: Vec<Touch>,
     candidates: Candidates,
-    /// All that were searched for, touching or not, and among what: to search again.
+    /// All colliders searched for, touching or not, to search again.
     colliders: Vec<(usize, MovingCollider)>,
     surface: Arc<Surface>,
-    /// Of the particles (m), as far as is known as a tick begins.
+    /// Radius of the particles at the beginning of a tick (m).
     particle_radius: f32,
-    /// How far a particle may move before the candidates are searched for again (m).
+    /// Displacement of a particle after which the candidates are searched for again (m).
     margin: f32,
-    /// How far one may have moved since they were (m): as the largest moves and pushes add up, or as measured.
+    /// Largest displacement of a particle since the search (m): the sum of the largest moves and pushes, or measured.
     moved: f32,
-    /// The particles as they were then, if anything was searched for.
+    /// The particles at the time of the search, if there was one.
     origin: ClothParticles,
     has_origin: bool,
-    /// How often it was measured in this sub-step.
+    /// Number of measurements in this sub-step.
     measured: u32,
-    /// How far of that in this sub-step: the way that is swept lies so far behind (m).
+    /// The part of that in this sub-step: a sweep reaches this far back (m).
     moved_now: f32,
-    /// The sum of all moves in the tick so far (m): what was so far away can't have come.
+    /// Sum of all displacements in the tick so far (m): nothing farther away can have arrived.
     odometer: f32,
     requeries: u32,
     found: TopDownQuery,
     kept: Kept,
-    /// Those of the colliders that give way, and how far any of them may be from where it was searched for (m).
+    /// The dynamic colliders, and their largest deviation from the motion that was searched for (m).
     bodies: Vec<Body>,
-    /// Memory of those that were.
+    /// Memory of earlier ones.
     spare: Vec<Carriers>,
     deviation: f32,
     before: Before,
@@ -76,7 +77,7 @@ pub struct Detection {
 }
 
 impl Detection {
-    /// Begins a tick of a surface's particles, none of which is expected to move farther than `margin` (m).
+    /// Begins a tick of a surface's particles. None is expected to move farther than `margin` (m).
     pub fn begin(&mut self, surface: &Arc<Surface>, margin: f32) {
         if !Arc::ptr_eq(&self.surface, surface) {
             self.surface = surface.clone();
@@ -96,13 +97,13 @@ impl Detection {
         self.requeries = 0;
     }
 
-    /// With this radius of the particles (m) from now on, where triangles at pins are [left out](Self::add); 0 until then.
+    /// Sets the radius of the particles (m), 0 by default. [`add`](Self::add) uses it to leave out triangles at pins.
     pub fn set_particle_radius(&mut self, particle_radius: f32) {
         self.particle_radius = particle_radius;
     }
 
-    /// What to search for, for this collider to be tested in the tick, and against what it then is tested. Triangles
-    /// reach `longest_edge` (m) from the particle that stands for them.
+    /// Returns the probe to search for this collider in the tick, and the narrow phase for it. Triangles reach
+    /// `longest_edge` (m) from the particle that owns them.
     pub fn probe(
         &self,
         collider: &MovingCollider,
@@ -119,7 +120,7 @@ impl Detection {
             NarrowPhase::Triangles => longest_edge,
             NarrowPhase::Auto | NarrowPhase::Particles => 0.0,
         };
-        // What each sub-step's rounding of a position may add to its move.
+        // Rounding of a position in each sub-step may add this to its displacement.
         let farthest = Vec3::from(cloth.center).length() + cloth.radius();
         let rounding = (farthest + collider.farthest_distance(cloth)) * 1.0e-5;
         let probe = collider.probe(
@@ -130,12 +131,13 @@ impl Detection {
         (probe, narrow_phase)
     }
 
-    /// Takes over which particles the search has found for a collider, which is the caller's number `id`. To be called
-    /// for each collider, whether any were found or not: others may yet push some to it. They are as the tick begins.
+    /// Adds the particles that the search has found for a collider, whose caller's ID is `id`. Call it for each
+    /// collider, even if none were found, because other colliders may push particles to it. `particles` are those at
+    /// the beginning of the tick.
     ///
-    /// Triangles of which a corner is pinned right there, inside of the collider or at most a
-    /// [particle's radius](Self::set_particle_radius) before it, are not tested, nor those that a particle stands for together with them: as those of
-    /// a flag along its pole.
+    /// Triangles with a corner pinned inside the collider, or within a [particle's radius](Self::set_particle_radius)
+    /// of it, are not tested, such as those of a flag along its pole. Neither are the other triangles of the same
+    /// owner.
     pub fn add(
         &mut self,
         id: usize,
@@ -152,7 +154,7 @@ impl Detection {
         self.hold(id, collider, narrow_phase, 0, found, particles);
     }
 
-    /// What the cloth has changed of a collider's motion so far, if it gives way and was near.
+    /// The change of a collider's motion by the cloth so far, if it is dynamic and was near.
     pub fn body_change(&self, id: usize) -> Option<BodyChange> {
         self.bodies
             .iter()
@@ -160,7 +162,7 @@ impl Detection {
             .map(Body::change)
     }
 
-    /// When so many sub-steps have passed.
+    /// Adds a collider after a number of sub-steps.
     fn hold(
         &mut self,
         id: usize,
@@ -177,7 +179,7 @@ impl Detection {
             (self.bodies).extend(Body::of(id, collider, &mut self.spare));
         }
         if !self.has_origin {
-            // Pushes that balance springs add up to much in a tick, and lead nowhere: that is measured from here.
+            // Pushes that balance springs add up in a tick without a displacement, so it is measured from here.
             self.remember(particles);
         }
         let layout = particles.layout();
@@ -209,11 +211,11 @@ impl Detection {
         }
     }
 
-    /// Pushes what is inside of a collider out, at the end of a sub-step. Returns whether anything moved.
+    /// Pushes particles out of the colliders at the end of a sub-step. Returns whether anything moved.
     ///
-    /// Where particles may have moved farther than the margin, by themselves or by a push, all are searched again before
-    /// anything else is done; `others` then adds the colliders with their numbers that were never [added](Self::add), as
-    /// they seemed to be too far away.
+    /// If particles may have moved farther than the margin, by themselves or by a push, all colliders search again
+    /// first. `others` then adds colliders, with their IDs, that were never [added](Self::add) because they seemed too
+    /// far away.
     pub fn respond(
         &mut self,
         particles: &mut ClothParticles,
@@ -231,7 +233,7 @@ impl Detection {
         is_pushed || has_carried
     }
 
-    /// Pushes what is inside of a collider out. Returns whether anything moved.
+    /// Pushes particles out of the colliders. Returns whether anything moved.
     fn push_out(
         &mut self,
         particles: &mut ClothParticles,
@@ -340,7 +342,7 @@ impl Detection {
                     &way,
                 );
             }
-            // One may be pushed by several.
+            // Several triangles may push one particle.
             self.moved += found.farthest_push;
             self.moved_now += found.farthest_push;
             self.odometer += found.farthest_push;
@@ -382,13 +384,13 @@ impl Detection {
             })
     }
 
-    /// How often in the tick particles moved farther than the margin.
+    /// Number of searches repeated in the tick because particles moved farther than the margin.
     pub fn requeries(&self) -> u32 {
         self.requeries
     }
 }
 
-/// Has a collider go another way from now on.
+/// Gives a collider a new motion.
 fn send_on(
     touches: &mut [Touch],
     colliders: &mut [(usize, MovingCollider)],

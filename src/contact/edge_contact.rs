@@ -1,30 +1,31 @@
-//! How a triangle of the cloth lies to the edges of a shape.
+//! Tests of a cloth triangle against the edges of a shape.
 
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{ColliderShape, geometry::SharpEdge, triangle::nearest};
 
-/// How far beyond a triangle's sides, in barycentric weights, an edge counts as below it: neighbours leave no gap.
+/// An edge counts as below a triangle up to this far beyond its sides, in barycentric weights, so that neighbours leave
+/// no gap.
 pub(super) const BEYOND: f32 = 0.05;
-/// How far through a triangle an edge counts, in lengths of the triangle's longest side.
+/// Largest depth of an edge through a triangle, in lengths of the triangle's longest side.
 pub(super) const DEEPEST: f32 = 0.5;
 
-/// An edge goes steeply through a triangle's plane above this sine of their angle.
+/// Above this sine of the angle between them, an edge is steep to a triangle's plane.
 pub(super) const STEEP: f32 = 0.5;
-/// A triangle whose normal leads into the shape by more than this sine, as an edge has it, is on the shape's far side.
+/// Above this sine, a triangle whose normal points into the shape at an edge is on the shape's far side.
 pub(super) const FAR_SIDE: f32 = 0.1;
 
-/// Where an edge comes nearest to a triangle, or through it.
+/// The point where an edge comes nearest to a triangle, or passes through it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct EdgeContact {
     pub weights: [f32; 3],
-    /// Of the triangle, away from the shape, of length 1.
+    /// Normal of the triangle, away from the shape, of length 1.
     pub normal: Vec3,
-    /// How far its point has to move (m).
+    /// Distance that its point has to move (m).
     pub depth: f32,
 }
 
-/// A triangle of the shape's frame, as edges are tested against it one after the other.
+/// A triangle in the shape's frame, tested against edges one by one.
 pub(super) struct EdgeTest<'a> {
     pub shape: &'a ColliderShape,
     bounds: [Vec3; 2],
@@ -33,9 +34,9 @@ pub(super) struct EdgeTest<'a> {
     /// The longest side (m).
     pub longest: f32,
     pub middle: Vec3,
-    /// The way out of the shape at the triangle's middle, if it is known.
+    /// Outward direction of the shape at the triangle's middle, if known.
     pub outside: Option<Vec3>,
-    /// The contact with the edge that comes nearest, or farthest through it.
+    /// The contact with the nearest edge, or with the deepest one through it.
     pub found: Option<EdgeContact>,
 }
 
@@ -68,7 +69,7 @@ impl<'a> EdgeTest<'a> {
         let [from, to] = [self.plane.place(begin), self.plane.place(end)];
         let near = self.reach + edge.radius;
         let is_on_one_side = from.height * to.height > 0.0;
-        // Wholly on one side, and too far away.
+        // Entirely on one side, and too far away.
         if is_on_one_side && from.height.abs().min(to.height.abs()) > near {
             return;
         }
@@ -84,7 +85,7 @@ impl<'a> EdgeTest<'a> {
         };
         let deepest = DEEPEST * self.longest;
         let beside = self.plane.beside([from, to], edge, near, deepest);
-        // Through it, whichever way out is shorter.
+        // Through it: the shorter way out counts.
         let contact = match (above, beside) {
             (Some(above), Some(beside)) if beside.depth < above.depth => Some(beside),
             (Some(above), _) => Some(above),
@@ -97,8 +98,8 @@ impl<'a> EdgeTest<'a> {
         }
     }
 
-    /// Whether the boxes around an edge and around what the triangle reaches are apart. A box has so few edges that all count:
-    /// one that has come all through the triangle too.
+    /// Whether the bounding boxes of an edge and of the triangle's reach are disjoint. A box has so few edges that all
+    /// are tested, including edges that have passed all through the triangle.
     #[inline]
     fn is_beyond(&self, edge: &SharpEdge) -> bool {
         let [lower, upper] = edge.corners();
@@ -106,13 +107,13 @@ impl<'a> EdgeTest<'a> {
         is_beyond && matches!(self.shape, ColliderShape::Geometry(_))
     }
 
-    /// The contact of an edge that comes up to the triangle, or through it, along its normal.
+    /// The contact of an edge that touches the triangle, or passes through it, along the triangle's normal.
     #[inline]
     fn over(&mut self, ends: [Placed; 2], edge: &SharpEdge, near: f32) -> Option<EdgeContact> {
         let [from, to] = clip(ends)?;
         let deepest = DEEPEST * self.longest;
         let normal = self.plane.normal;
-        // The far side of the shape is none, and too far is too far.
+        // The shape's far side has no contact, nor does an edge too far away.
         let may_touch = |sign: f32| {
             let height = (from.height * sign).max(to.height * sign);
             let is_far_side = normal.dot(edge.outward) * sign < -FAR_SIDE;
@@ -126,7 +127,8 @@ impl<'a> EdgeTest<'a> {
             let shape = self.shape;
             shape.nearest(Isometry3d::IDENTITY, self.middle).normal
         });
-        // On which side of the triangle the shape is: by what is outside there, or by the edge where that says little.
+        // The side of the triangle on which the shape lies: by the outward direction there, or by the edge where that
+        // is unclear.
         let facing = normal.dot(outside);
         let facing = if facing.abs() > 0.3 || edge.outward == Vec3::ZERO {
             facing
@@ -139,16 +141,16 @@ impl<'a> EdgeTest<'a> {
     }
 }
 
-/// The corners of the box around a triangle and what is so far from it (m).
+/// The bounding box of a triangle, enlarged by a distance (m).
 pub(super) fn bounds_of([a, b, c]: [Vec3; 3], around: f32) -> [Vec3; 2] {
     let around = Vec3::splat(around);
     [a.min(b).min(c) - around, a.max(b).max(c) + around]
 }
 
-/// The contact of the part of an edge that comes up to a triangle, or through it, on the side of a sign.
+/// The contact of the part of an edge that touches a triangle, or passes through it, on the side of a sign.
 fn over([from, to]: [Placed; 2], normal: Vec3, sign: f32, near: f32) -> EdgeContact {
     let [first, last] = [from.height * sign, to.height * sign];
-    // All along it if it lies flat, not at one end and then at the other.
+    // The middle of it if it lies flat, so that the contact does not jump from end to end.
     let part = match first - last {
         off if off.abs() < 0.05 * near => 0.5,
         off if off > 0.0 => 0.0,
@@ -161,12 +163,12 @@ fn over([from, to]: [Placed; 2], normal: Vec3, sign: f32, near: f32) -> EdgeCont
     }
 }
 
-/// A point as a triangle sees it.
+/// A point relative to a triangle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
     /// Barycentric weights of its projection.
     pub weights: Vec3,
-    /// How far it is along the normal (m).
+    /// Height along the normal (m).
     pub height: f32,
 }
 
@@ -185,7 +187,7 @@ impl Placed {
 pub(super) struct Plane {
     origin: Vec3,
     pub normal: Vec3,
-    /// Of the second and the third weight.
+    /// Gradients of the second and the third weight.
     pub gradients: [Vec3; 2],
 }
 
@@ -221,12 +223,12 @@ impl Plane {
         }
     }
 
-    /// The contact of an edge that goes steeply through the triangle's plane with the side of the triangle that has come
-    /// over it:
+    /// The contact of an edge that is steep to the triangle's plane, with the side of the triangle that has passed over
+    /// it:
     ///
     /// ```text
     ///   |  edge, seen from its end: a point x in the triangle's plane
-    ///   x-----o   from x inwards to the triangle's side o: so far has the triangle to go outwards
+    ///   x-----o   from x inwards to the triangle's side o: the triangle moves outwards by this much
     /// ```
     fn beside(
         &self,
@@ -243,7 +245,7 @@ impl Plane {
         let crossing = from.weights.lerp(to.weights, part);
         let in_plane = edge.outward - self.normal * self.normal.dot(edge.outward);
         let outwards = in_plane.try_normalize()?;
-        // How the weights change with each metre inwards.
+        // Change of the weights per metre inwards.
         let [v, w] = self.gradients.map(|gradient| -gradient.dot(outwards));
         let change = Vec3::new(-v - w, v, w);
         let (mut enters, mut leaves) = (f32::NEG_INFINITY, f32::INFINITY);
@@ -300,8 +302,8 @@ fn within(weights: Vec3) -> [f32; 3] {
     (inside / inside.element_sum()).to_array()
 }
 
-/// How far the nearest edge is from a triangle of the shape's frame, if it is within so far (m), where from it, and its
-/// nearest point.
+/// The distance of the nearest edge from a triangle in the shape's frame, if it is within a distance (m), with the
+/// vector from the edge and its nearest point.
 pub(super) fn nearest_edge(
     shape: &ColliderShape,
     triangle: [Vec3; 3],

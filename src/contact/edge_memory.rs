@@ -1,7 +1,7 @@
-//! How triangles lay to the edges of a shape when they were looked at, so that most need not be looked at again.
+//! Memory of triangles near the edges of a shape, so that most need not be tested again.
 //!
-//! All that is remembered is said of a place: a triangle whose corners have not moved farther since than there was room
-//! touches no edge, however much time has passed. So it is remembered from tick to tick, and what is forgotten is found again.
+//! Every entry is a statement about positions: a triangle whose corners have moved less than its room since the test
+//! touches no edge, however much time has passed. So it stays valid from tick to tick, and a lost entry is found again.
 
 use bevy::math::Vec3;
 
@@ -13,57 +13,57 @@ use super::{
 };
 use crate::cloth::Slot;
 
-/// How many edges near a triangle are remembered; of more, none is.
+/// Number of edges remembered for a triangle; with more, none is.
 const MAX_EDGES: usize = 8;
 
-/// The way out of a shape is the same where a triangle's middle has moved no farther in the tick than this part of its reach:
-/// only on which side of the triangle it lies counts.
+/// A shape's outward direction is reused while a triangle's middle has moved less in the tick than this fraction of its
+/// reach. Only its side of the triangle matters.
 const SAME_SIDE: f32 = 0.1;
 
-/// Room is hardly any below this part of the slack, and so often it is then not measured.
+/// Below this fraction of the slack, room counts as none, and for this many sub-steps it is then not measured.
 const HARDLY: f32 = 0.02;
 const RESTS: u32 = 12;
 
 /// No faces are remembered.
 const NONE: u32 = u32::MAX;
 
-/// What is not used for so many ticks is forgotten.
+/// Number of ticks after which unused entries are dropped.
 const FORGOTTEN: u32 = 120;
 
-/// What is known of a cloth's triangles near the edges of one shape.
+/// The memory of a cloth's triangles near the edges of one shape.
 #[derive(Debug, Clone)]
 pub(super) struct EdgeMemory {
-    /// The collider's number, and its shape.
+    /// ID and shape of the collider.
     id: usize,
     shape: ColliderShape,
-    /// How near triangles may come to edges, and for which distances edges are remembered (m).
+    /// Distance at which triangles touch edges, and up to which edges are remembered (m).
     near: [f32; 2],
-    /// Of each particle, and of each face that one of those near an edge stands for.
+    /// One entry for each particle, with the faces of those near an edge.
     places: Vec<KnownPlace>,
     faces: Vec<KnownFace>,
-    /// For how many ticks it was of no use.
+    /// Number of ticks without use.
     age: u32,
-    /// Counts ticks.
+    /// Tick counter.
     pub tick: u32,
 }
 
-/// Where a particle was when the nearest edge was looked for.
+/// The position of a particle when the nearest edge was searched for.
 #[derive(Debug, Clone, Copy)]
 struct KnownPlace {
-    /// In the shape's frame (m); NaN before the first look.
+    /// Position in the shape's frame (m); NaN before the first test.
     at: Vec3,
-    /// How far away the nearest edge was at least (m).
+    /// Lower bound of the distance to the nearest edge (m).
     distance: f32,
-    /// The first of the faces that it stands for, if they are known.
+    /// First of its faces, if they are known.
     faces: u32,
 }
 
-/// How near a triangle may come to edges, and for which distances edges are remembered (m).
+/// Distance at which a triangle touches edges, and up to which edges are remembered (m).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearness {
     pub reach: f32,
     pub slack: f32,
-    /// Which tick it is.
+    /// The current tick.
     pub tick: u32,
 }
 
@@ -71,27 +71,27 @@ pub(super) struct Nearness {
 #[derive(Debug, Clone, Copy)]
 struct KnownEdge {
     index: u32,
-    /// How far the triangle's corners may be from where they were before it can touch (m); 0 or less if it may.
+    /// Displacement of the triangle's corners before it can touch (m); 0 or less if it may touch.
     room: f32,
-    /// How often the room is not measured, as there was hardly any.
+    /// Number of sub-steps in which the room is not measured, because there was hardly any.
     rests: u32,
 }
 
-/// How a triangle lay to the edges.
+/// The memory of a triangle near edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct KnownFace {
-    /// Which of the corners of its fan it has.
+    /// Indices of its corners in its fan.
     pub of: [u16; 3],
-    /// Where its corners were in the shape's frame when edges were tested, and when they were listed (m); NaN before the first
-    /// look.
+    /// Positions of its corners in the shape's frame when edges were tested, and when they were listed (m); NaN before
+    /// the first test.
     corners: [Vec3; 3],
     listed: [Vec3; 3],
-    /// How far they may be from the first before any edge can touch it (m); 0 or less if one may.
+    /// Displacement from the first before any edge can touch it (m); 0 or less if one may.
     pub room: f32,
-    /// The edges that may touch it while its corners are within the slack of the second, if these are not too many.
+    /// The edges that may touch it while its corners are within the slack of the second, unless there are too many.
     edges: [KnownEdge; MAX_EDGES],
     count: usize,
-    /// The way out of the shape where its middle was (m), in that tick.
+    /// Outward direction of the shape at its middle (m), and the tick.
     outside: Vec3,
     middle: Vec3,
     tick: u32,
@@ -114,14 +114,14 @@ impl KnownFace {
         tick: 0,
     };
 
-    /// How far the corners have moved since (m); NaN before the first look.
+    /// Displacement of the corners since the test (m); NaN before the first test.
     #[inline]
     pub fn moved(&self, corners: [Vec3; 3]) -> f32 {
         farthest(corners, self.corners)
     }
 
-    /// The contact with the edge that comes nearest, or farthest through it, of a triangle whose corners have `moved` so far
-    /// (m); takes over what room there is.
+    /// The contact with the nearest edge, or with the deepest one through it, of a triangle whose corners have `moved`
+    /// this far (m). Updates the room.
     pub fn deepest(
         &mut self,
         shape: &ColliderShape,
@@ -133,7 +133,7 @@ impl KnownFace {
         self.room = 0.0;
         let mut test = EdgeTest::new(shape, corners, reach)?;
         let strayed = farthest(corners, self.listed);
-        // NaN is looked at.
+        // False for NaN.
         let is_known = strayed <= slack;
         if is_known {
             for edge in &mut self.edges {
@@ -146,7 +146,7 @@ impl KnownFace {
         let is_same = tick == self.tick && test.middle.distance(self.middle) <= SAME_SIDE * reach;
         test.outside = is_same.then_some(self.outside);
         if self.count <= MAX_EDGES {
-            // Those that are not listed are as far as the slack from where the list was made.
+            // Edges that are not listed are at least the slack away from the positions at the listing.
             let strayed = if is_known { strayed } else { 0.0 };
             let left = slack * (1.0 - 1.0e-3) - strayed;
             self.room = self.test_listed(&mut test, slack).min(left);
@@ -166,7 +166,7 @@ impl KnownFace {
         test.found
     }
 
-    /// Tests those of the listed edges that may touch. Returns how far the triangle's corners may move before any can (m).
+    /// Tests the listed edges that may touch. Returns the displacement of the triangle's corners before any can (m).
     fn test_listed(&mut self, test: &mut EdgeTest, slack: f32) -> f32 {
         let mut measure = None;
         let mut left = slack;
@@ -191,7 +191,7 @@ impl KnownFace {
         left
     }
 
-    /// Remembers the edges near it.
+    /// Lists the edges near it.
     fn list(&mut self, test: &EdgeTest, corners: [Vec3; 3], near: Nearness) {
         (self.corners, self.listed) = (corners, corners);
         self.count = 0;
@@ -214,7 +214,7 @@ impl KnownFace {
     }
 }
 
-/// How far the farthest of three points has moved (m); NaN where none is known.
+/// Largest displacement of three points (m); NaN where none is known.
 #[inline]
 fn farthest([a, b, c]: [Vec3; 3], [p, q, r]: [Vec3; 3]) -> f32 {
     let (a, b, c) = (
@@ -226,7 +226,7 @@ fn farthest([a, b, c]: [Vec3; 3], [p, q, r]: [Vec3; 3]) -> f32 {
 }
 
 impl EdgeMemory {
-    /// Of a collider's shape, for a cloth of so many particles.
+    /// An empty memory for a collider's shape and a number of particles.
     fn new(id: usize, shape: &ColliderShape, particles: usize) -> Self {
         let place = KnownPlace {
             at: Vec3::NAN,
@@ -244,7 +244,7 @@ impl EdgeMemory {
         }
     }
 
-    /// Forgets all if triangles have another reach now.
+    /// Clears everything if triangles have another reach now.
     pub fn match_reach(&mut self, near: Nearness) {
         let near = [near.reach, near.slack];
         if near != self.near {
@@ -258,8 +258,8 @@ impl EdgeMemory {
         }
     }
 
-    /// How far everything may move before a triangle that a particle stands for can touch an edge (m). The particle is at a
-    /// place of the shape's frame, and its triangles reach so far from it (m).
+    /// Displacement of everything before a triangle that a particle owns can touch an edge (m). The particle is at a
+    /// position in the shape's frame, and `extent` is the reach of its triangles (m).
     pub fn room(&mut self, particle: u32, at: Vec3, extent: f32, reach: f32) -> f32 {
         let known = &mut self.places[particle as usize];
         let room = |distance: f32| (distance - extent) * (1.0 - 1.0e-4) - reach;
@@ -269,14 +269,14 @@ impl EdgeMemory {
         if left > 0.0 || is_near {
             return left;
         }
-        // Far enough to leave it alone for a while.
+        // Far enough to skip it for a while.
         let within = 8.0 * extent + 2.0 * reach;
         known.at = at;
         known.distance = self.shape.edge_distance(at, within).min(within);
         room(known.distance)
     }
 
-    /// Forgets where anything was, but not which way led out of the shape: what that is asked for depends on nothing else.
+    /// Clears the positions, but not the shape's outward directions, which depend only on the shape.
     #[cfg(test)]
     pub fn forget(&mut self) {
         for place in &mut self.places {
@@ -288,14 +288,14 @@ impl EdgeMemory {
         }
     }
 
-    /// What is known of the faces that a particle stands for, whose corners are these.
+    /// The memory of the faces that a particle owns, with these corners.
     pub fn faces(
         &mut self,
         particle: u32,
         faces: &[[Slot; 3]],
         corners: &[Slot],
     ) -> &mut [KnownFace] {
-        // Those that touch a pin are left out, and may come back.
+        // Faces at a pin are left out, and may come back.
         if faces.is_empty() {
             return &mut [];
         }
@@ -312,17 +312,17 @@ impl EdgeMemory {
     }
 }
 
-/// What is known of all colliders with edges.
+/// The memories of all colliders with edges.
 #[derive(Debug, Default, Clone)]
 pub(super) struct EdgeMemories(Vec<EdgeMemory>);
 
 impl EdgeMemories {
-    /// Forgets all: the cloth is another.
+    /// Clears everything for another cloth.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Forgets where anything was.
+    /// Clears the positions.
     #[cfg(test)]
     pub fn forget(&mut self) {
         self.0.iter_mut().for_each(EdgeMemory::forget);
@@ -344,8 +344,8 @@ impl EdgeMemories {
         }
     }
 
-    /// What is known of a collider's edges, on a cloth of so many particles. Numbers change when colliders come and go: what was not
-    /// used in this tick may be of the same shape under another number.
+    /// The memory of a collider's edges, for a cloth with this number of particles. IDs change when colliders come and
+    /// go: a memory that was not used in this tick may belong to the same shape under another ID.
     pub fn of(&mut self, id: usize, shape: &ColliderShape, particles: usize) -> &mut EdgeMemory {
         let is_of =
             |memory: &EdgeMemory| memory.shape == *shape && memory.places.len() == particles;

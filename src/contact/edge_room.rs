@@ -1,4 +1,4 @@
-//! How far a triangle may move before the edges of a shape can touch it.
+//! Displacement of a triangle before the edges of a shape can touch it.
 
 use bevy::math::Vec3;
 
@@ -7,50 +7,50 @@ use super::{
     geometry::SharpEdge,
 };
 
-/// A point of a triangle that reaches beyond its sides moves so many times as far as the farthest of its corners at most.
+/// Largest displacement of a point up to `BEYOND` outside a triangle's sides, relative to that of its corners.
 const LEVER: f32 = 1.0 + 4.0 * BEYOND;
 
-/// How deep an edge counts grows with the longest side, and that by twice what a corner moves.
+/// The largest depth of an edge grows with the longest side, by twice the displacement of a corner.
 const GROWING: f32 = LEVER + 2.0 * DEEPEST;
 
-/// An edge above this sine of its angle with the triangle may soon be steep.
+/// Above this sine of its angle with the triangle, an edge may soon be steep.
 const ALMOST_STEEP: f32 = 0.4;
 
-/// How many times as long as a sine its arc is at most, up to where an edge is steep.
+/// Largest ratio of an arc to its sine, up to a steep edge.
 const ARC: f32 = 1.05;
 
-/// A triangle whose normal leads out of the shape by more than this sine does not soon lead into it.
+/// Above this sine, a triangle whose normal points out of the shape does not soon point into it.
 const SURELY: f32 = 0.3;
 
-/// How a line lies to a triangle.
+/// A line relative to a triangle.
 struct Line {
-    /// Of its angle with the triangle's plane.
+    /// Sine of its angle with the triangle's plane.
     sine: f32,
-    /// How much the triangle's normal leads out of the shape there, from −1 to 1; 0 if that is not known.
+    /// Cosine of the triangle's normal with the outward direction there, from −1 to 1; 0 if unknown.
     side: f32,
-    /// How near it touches (m).
+    /// Distance at which it touches (m).
     near: f32,
 }
 
-/// How far a triangle's corners may move before edges can touch it.
+/// Displacement of a triangle's corners before edges can touch it.
 pub(super) struct EdgeRoom {
     plane: Plane,
-    /// How far each corner is from the side across (m).
+    /// Altitude of each corner over the opposite side (m).
     altitudes: Vec3,
     middle: Vec3,
-    /// How far from its middle it reaches, beyond its sides too (m).
+    /// Reach from its middle, including `BEYOND` (m).
     size: f32,
     reach: f32,
     deepest: f32,
-    /// More than this is not asked for (m).
+    /// Upper limit of the result (m).
     slack: f32,
-    /// What all edges have left so far (m).
+    /// The smallest room of all edges so far (m).
     left: f32,
     rounding: f32,
 }
 
 impl EdgeRoom {
-    /// Of a tested triangle, as far as a `slack` (m).
+    /// The room of a tested triangle, up to a `slack` (m).
     pub fn new(test: &EdgeTest, slack: f32) -> Self {
         let EdgeTest {
             plane,
@@ -75,7 +75,7 @@ impl EdgeRoom {
         }
     }
 
-    /// How far they may move before any edge can (m).
+    /// Displacement of the corners before any edge can touch (m).
     pub fn left(&self) -> f32 {
         self.left
     }
@@ -85,10 +85,10 @@ impl EdgeRoom {
         self.left = self.left.min(self.of(edge));
     }
 
-    /// How far they may move before an edge can touch (m), as far as the slack.
+    /// Displacement of the corners before an edge can touch (m), up to the slack.
     pub fn of(&self, edge: &SharpEdge) -> f32 {
         let left = self.apart(edge);
-        // Of rounding.
+        // Smaller by rounding errors.
         left.min(self.slack) * (1.0 - 1.0e-4) - self.rounding
     }
 
@@ -108,7 +108,7 @@ impl EdgeRoom {
         if apart >= self.slack {
             return apart;
         }
-        // Of a long edge, only what passes the triangle counts.
+        // Of a long edge, only the part near the triangle counts.
         let offset = self.middle - begin;
         let part = offset.dot(along) / square;
         let radius = self.size + LEVER * self.slack + near.max(self.deepest);
@@ -126,10 +126,11 @@ impl EdgeRoom {
         self.between([from.lerp(to, first), from.lerp(to, last)], &line)
     }
 
-    /// How far they may move before a part of a line can touch (m): until it is near the triangle's plane, and over the triangle.
+    /// Displacement of the corners before a part of a line can touch (m): it has to be near the triangle's plane, and
+    /// over the triangle.
     ///
-    /// As a triangle tilts, what is at a height over it goes beside it, and what is beside it goes up and down, by as much more as it
-    /// is farther away than the lowest altitude.
+    /// As a triangle tilts, a point over it moves sideways, and a point beside it moves up and down. The motion grows
+    /// with its distance, relative to the lowest altitude.
     fn between(&self, [from, to]: [Placed; 2], line: &Line) -> f32 {
         let Line { sine, side, near } = *line;
         let beyond = Vec3::splat(-BEYOND) - from.weights.max(to.weights);
@@ -141,12 +142,12 @@ impl EdgeRoom {
             0.0
         };
         let far = near.max(self.deepest);
-        // As far as is asked for, an altitude loses a quarter of itself at most.
+        // Up to the slack, an altitude shrinks by at most a quarter.
         let most = self.altitudes.min_element() / 8.0;
         let lowest = 6.0 * most;
-        // Moved by so much, a triangle turns by twice as much of its lowest altitude.
+        // A displacement of the corners turns the triangle by at most twice its ratio to the lowest altitude.
         let turned = |angle: f32| angle / 2.0 * lowest;
-        // What is inside of the shape comes out of it first; else it may have come through already.
+        // An edge inside the shape comes out of it first; otherwise it may have passed through already.
         let is_inside = is_on_one_side && side.abs() > SURELY && from.height * side < 0.0;
         let (margin, until) = if is_inside {
             (near, turned(side.abs() - FAR_SIDE))
@@ -158,7 +159,7 @@ impl EdgeRoom {
         let over = over.min(most);
         // NaN of a point is not steep.
         if sine > ALMOST_STEEP {
-            // What goes through the plane may touch the triangle's sides from beside it.
+            // An edge through the plane may touch the triangle's sides from beside it.
             let through = ((beside - far) / GROWING).max(above / (GROWING + 2.0 * far / lowest));
             over.min(through)
         } else {

@@ -1,4 +1,4 @@
-//! Eight triangles against a ball, in plain loops that the compiler vectorises.
+//! Tests eight triangles against a ball, in plain loops that the compiler vectorises.
 
 use std::f32::consts::PI;
 
@@ -10,45 +10,46 @@ use super::{
 };
 use crate::cloth::{DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z};
 
-/// How many times as far as a triangle's point one of its corners is pushed at most. Corners that are all free, with the
-/// masses of a grid, up to four times each other's, go no more than 2.0 times as far.
+/// Largest push of a corner, relative to that of the triangle's point. With free corners and the masses of a grid, up
+/// to four times each other's, it is at most 2.0.
 pub(super) const MAX_SHARE: f32 = 2.0;
 
-/// What does not change from block to block.
+/// Constants for all blocks.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cells {
     pub layout: Layout,
     pub centre: [f32; 3],
-    /// Of the ball and a particle (m).
+    /// Radius of the ball and a particle (m).
     pub reach: f32,
-    /// How far anything may have moved in the sub-step, relative to the ball (m).
+    /// Largest displacement of anything in the sub-step, relative to the ball (m).
     pub fastest: f32,
-    /// How far particles were pushed in earlier passes (m).
+    /// Largest push of particles in earlier passes (m).
     pub pushed: f32,
-    /// How far they may be pushed before candidates may be missing (m), and by how many triangles each.
+    /// Largest push before candidates may be missing (m), and the number of triangles that may push each particle.
     pub room: f32,
     pub max_faces: f32,
     /// Whether areas are wanted.
     pub is_measured: bool,
 }
 
-/// How eight triangles lie to a point.
+/// The nearest points of eight triangles to a point.
 pub(super) struct Nearest {
-    /// Parts of the second and the third corner in the nearest point.
+    /// Weights of the second and the third corner at the nearest point.
     pub parts: [Lanes; 2],
-    /// From the point (m).
+    /// Vector from the point (m).
     pub offset: [Lanes; 3],
     pub distance: Lanes,
-    /// Twice the areas of the parts that a point of the plane cuts a triangle into, times twice its own, and their sum.
+    /// Twice the areas of the parts into which a point of the plane divides a triangle, times twice its own, and their
+    /// sum.
     pub areas: [Lanes; 3],
     pub sum: Lanes,
-    /// Squared lengths of the edges opposite to the corners (m²).
+    /// Squared lengths of the edges opposite the corners (m²).
     pub edges: [Lanes; 3],
-    /// The least squared distance of a corner (m²).
+    /// The smallest squared distance of a corner (m²).
     pub corner: Lanes,
 }
 
-/// The nearest points of eight triangles, of the Voronoi regions that they are in (Ericson 2005, chapter 5).
+/// The nearest points of eight triangles, by their Voronoi regions (Ericson 2005, chapter 5).
 #[inline(always)]
 pub(super) fn nearest(a: &View, b: &View, c: &View, [px, py, pz]: [f32; 3]) -> Nearest {
     let zero = [0.0; LANES];
@@ -86,7 +87,7 @@ pub(super) fn nearest(a: &View, b: &View, c: &View, [px, py, pz]: [f32; 3]) -> N
         let of_a = d3 * d6 - d5 * d4;
         let sum = of_a + of_b + of_c;
         let (to_c, to_b) = (d4 - d3, d5 - d6);
-        // Of the face, and then of what goes before it: edges, and corners.
+        // The face, then the regions that take precedence: edges, and corners.
         let (v, w, whole) = (of_b, of_c, sum);
         let is_bc = (of_a <= 0.0) & (to_c >= 0.0) & (to_b >= 0.0);
         let v = if is_bc { to_b } else { v };
@@ -140,7 +141,7 @@ pub(super) fn nearest(a: &View, b: &View, c: &View, [px, py, pz]: [f32; 3]) -> N
     near
 }
 
-/// How far the fastest corner of each triangle has moved relative to the ball (m).
+/// Displacement of the fastest corner of each triangle relative to the ball (m).
 #[inline(always)]
 pub(super) fn speeds(corners: [&View; 3], [sx, sy, sz]: [f32; 3]) -> Lanes {
     let mut fastest = [0.0_f32; LANES];
@@ -158,16 +159,16 @@ pub(super) fn speeds(corners: [&View; 3], [sx, sy, sz]: [f32; 3]) -> Lanes {
     fastest.map(f32::sqrt)
 }
 
-/// How eight triangles are pushed.
+/// The pushes of eight triangles.
 pub(super) struct Pushes {
     pub normal: [Lanes; 3],
-    /// How far along the normal the point goes, and what of that is momentum (m).
+    /// Displacement of the point along the normal, and the part of it that becomes momentum (m).
     pub far: Lanes,
     pub stopped: Lanes,
     pub shares: [Lanes; 3],
 }
 
-/// The pushes of those that are inside, and what they come to.
+/// Computes the pushes of penetrating triangles, and adds to the sums.
 #[inline(always)]
 pub(super) fn pushes(
     corners: [&View; 3],
@@ -196,7 +197,7 @@ pub(super) fn pushes(
         let mobility = u * part_a + v * part_b + w * part_c;
         let largest = if part_a > part_b { part_a } else { part_b };
         let largest = if largest > part_c { largest } else { part_c };
-        // One that hardly has a part, beside pins, can't make up for them: it would be thrown away.
+        // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
         let least = largest / MAX_SHARE;
         let mobility = if mobility > least { mobility } else { least };
         let is_pushed = is_pushed[l] & (mobility > 0.0);
@@ -257,7 +258,7 @@ pub(super) fn pushes(
     pushes
 }
 
-/// Moves a corner of each triangle. Adds what it gives to the ball.
+/// Moves a corner of each triangle. Adds its impulse on the ball.
 #[inline(always)]
 pub(super) fn move_corner(
     view: &mut View,
@@ -301,8 +302,8 @@ pub(super) fn move_corner(
     momentum
 }
 
-/// The part of a circle of a radius (m) that is beyond a line `inside` of which its centre is (m), as an area (m²): `r² acos(s/r) − s √(r² − s²)`.
-/// The arc cosine is a polynomial's (Abramowitz and Stegun 4.4.45), off by 7·10⁻⁵.
+/// Area of a circle of a radius (m) beyond a line whose distance from the centre is `inside` (m), in m²:
+/// `r² acos(s/r) − s √(r² − s²)`. The arc cosine is a polynomial (Abramowitz and Stegun 4.4.45), with an error of 7·10⁻⁵.
 #[inline(always)]
 fn beyond(inside: f32, radius: f32, square: f32) -> f32 {
     let inside = if inside < radius { inside } else { radius };
@@ -317,9 +318,9 @@ fn beyond(inside: f32, radius: f32, square: f32) -> f32 {
     square * arc - inside * chord
 }
 
-/// Adds the area inside of the ball (m²) of each triangle that is pushed, and ∫ depth dA over it (m³): of the circle that the ball cuts
-/// out of its plane, less what is beyond each edge. Returns which are left out, as what is beyond two of their edges counts: those with
-/// corners inside of the ball, and with a circle's centre far outside.
+/// Adds the penetrating area (m²) of each pushed triangle, and ∫ depth dA over it (m³): the circle in which the ball
+/// cuts its plane, less the parts beyond each edge. Returns the lanes left out, where parts beyond two edges overlap:
+/// triangles with corners inside the ball, and with a circle's centre far outside.
 #[inline(always)]
 pub(super) fn areas(
     near: &Nearest,
@@ -330,7 +331,7 @@ pub(super) fn areas(
     let mut crosses = [false; LANES];
     for l in 0..LANES {
         let normal = near.sum[l].sqrt();
-        // How far the foot of the ball's centre is inside of each edge.
+        // Distance of the ball's projected centre inside each edge.
         let a = near.areas[0][l] / (normal * near.edges[0][l].sqrt());
         let b = near.areas[1][l] / (normal * near.edges[1][l].sqrt());
         let c = near.areas[2][l] / (normal * near.edges[2][l].sqrt());

@@ -1,4 +1,4 @@
-//! The narrow phase by triangles, for what is so small that it would slip between particles.
+//! The narrow phase by triangles, for colliders so small that they would slip between particles.
 
 mod one;
 
@@ -17,39 +17,39 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Slot};
 
-/// How often all triangles are gone through at most, while any is hit on a fast way: one that was passed by may have been
-/// moved into the way by another's corners.
+/// Largest number of passes over all triangles while fast ones are hit: a corner's push may move a passed triangle into
+/// the way.
 const MAX_PASSES: u32 = 4;
 
-/// What to go on with.
+/// Where to continue.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct ResumePoint {
     pass: u32,
-    /// A particle, and which of the triangles that it stands for.
+    /// A particle, and the index among its triangles.
     at: (u32, usize),
-    /// In blocks of cells.
+    /// Position in blocks of cells.
     place: Place,
-    /// Whether one was hit on a fast way in this pass.
+    /// Whether a fast triangle was hit in this pass.
     is_swept: bool,
 }
 
-/// What a collider's triangles are pushed in.
+/// Context for pushing a collider's triangles.
 pub(super) struct Pushed<'a> {
     pub candidates: &'a [Candidate],
-    /// Those of the collider, of which the first is the `first` of all.
+    /// Blocks of the collider; `first` is the index of the first among all.
     pub contacts: &'a mut [ContactBlock],
     pub first: usize,
     pub helds: &'a mut [Held],
     pub fans: &'a Fans,
-    /// Once particles may have been pushed farther than this, candidates may be missing (m).
+    /// Largest push before candidates may be missing (m).
     pub room: f32,
-    /// How far anything has moved in the sub-step (m).
+    /// Largest displacement in the sub-step (m).
     pub moved: f32,
     /// Whether areas are wanted.
     pub is_measured: bool,
-    /// What the sub-step comes to.
+    /// Result of the sub-step.
     pub found: Found,
-    /// The farthest that one triangle has pushed in this pass (m).
+    /// Largest push by one triangle in this pass (m).
     passed: f32,
 }
 
@@ -76,11 +76,11 @@ impl<'a> Pushed<'a> {
         }
     }
 
-    /// Pushes the triangles out of a collider that it touches or passed through in this sub-step, each by moving its
-    /// corners as much as they have a part in the nearest point, and mass allows; then friction holds back their particles.
+    /// Pushes triangles out of a collider that they touch or passed through in this sub-step. Each push moves the
+    /// corners by their weights in the nearest point and their inverse masses. Friction then acts on their particles.
     ///
-    /// Goes on `from` a triangle. Once a particle may have been pushed farther than there is room, candidates may be
-    /// missing: it stops then, and says with which triangle to go on.
+    /// Continues `from` a triangle. Once the pushes exceed the room, candidates may be missing: it stops, and returns
+    /// the triangle to continue with.
     pub fn push(
         &mut self,
         particles: &mut ClothParticles,
@@ -116,7 +116,7 @@ impl<'a> Pushed<'a> {
         None
     }
 
-    /// One after the other. Returns whether it has to stop.
+    /// Pushes one by one. Returns whether it has to stop.
     fn push_each(
         &mut self,
         particles: &mut ClothParticles,
@@ -125,7 +125,7 @@ impl<'a> Pushed<'a> {
     ) -> bool {
         let push_out = lanes.push_out;
         for contact in self.contacts.iter_mut() {
-            // NaN is looked at.
+            // False for NaN.
             let is_clear = lanes.odometer < contact.clear_until;
             contact.is_left = !is_clear;
             if contact.is_left {
@@ -173,24 +173,24 @@ impl<'a> Pushed<'a> {
         false
     }
 
-    /// How far a particle may have been pushed so far (m).
+    /// Largest push of a particle so far (m).
     fn pushed(&self) -> f32 {
         self.found.farthest_push + self.passed * self.fans.max_faces
     }
 
-    /// Whether that is farther than there is room.
+    /// Whether that exceeds the room.
     fn is_full(&self) -> bool {
         self.pushed() > self.room
     }
 
-    /// Has all be looked at again.
+    /// Marks everything for another test.
     fn look_again(&mut self) {
         for contact in self.contacts.iter_mut() {
             contact.clear_until = f32::NEG_INFINITY;
         }
     }
 
-    /// By blocks of cells, out of a ball. Returns whether it has to stop.
+    /// Pushes by blocks of cells, out of a ball. Returns whether it has to stop.
     fn push_cells(
         &mut self,
         particles: &mut ClothParticles,
@@ -248,7 +248,7 @@ impl<'a> Pushed<'a> {
         stops
     }
 
-    /// Has friction hold back what was pushed.
+    /// Applies friction to the pushed particles.
     fn hold(
         &mut self,
         particles: &mut ClothParticles,

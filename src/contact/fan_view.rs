@@ -1,14 +1,14 @@
-//! The triangles that a particle stands for, seen from the frame of a shape.
+//! A particle's triangles in the frame of a shape.
 
 use bevy::math::{Isometry3d, Vec3};
 
 use crate::cloth::{Block, Slot};
 
-/// How a shape's frame moves in a sub-step, and where it is at its end.
+/// A shape's motion in a sub-step, and its frame at the end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     to_local: Isometry3d,
-    /// How far the shape moves, and any of its points turns (m).
+    /// Displacement of the shape, and the largest one of any of its points by rotation (m).
     slide: Vec3,
     swing: f32,
 }
@@ -23,21 +23,21 @@ impl Frame {
     }
 }
 
-/// The corners of the triangles that a particle stands for.
+/// The corners of a particle's triangles.
 #[derive(Debug, Default, Clone)]
 pub(super) struct FanView {
-    /// In the shape's frame (m), each once.
+    /// Positions in the shape's frame (m), without repetition.
     corners: Vec<Vec3>,
     /// The particle itself.
     pub own: Vec3,
-    /// How far the farthest is from it (m).
+    /// Distance of the farthest corner (m).
     pub extent: f32,
-    /// How far any of them moved past the shape in the sub-step at most (m).
+    /// Largest displacement relative to the shape in the sub-step (m).
     pub speed: f32,
 }
 
 impl FanView {
-    /// Looks at the corners, of which the particle is the first.
+    /// Reads the corners; the first is the particle itself.
     #[inline]
     pub fn look(&mut self, blocks: &[Block], corners: &[Slot], frame: &Frame) {
         self.corners.resize(corners.len(), Vec3::ZERO);
@@ -63,7 +63,7 @@ impl FanView {
     }
 }
 
-/// Which of the corners of a fan a face has.
+/// Indices of a face's corners in its fan.
 pub(super) fn corners_of(face: [Slot; 3], corners: &[Slot]) -> [u16; 3] {
     face.map(|slot| {
         let at = corners.iter().position(|&corner| corner == slot);

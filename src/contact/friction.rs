@@ -1,4 +1,4 @@
-//! Friction of triangles, at their particles: each spends what contacts have [pushed](Held) it by, times μ.
+//! Friction of triangles, at their particles: the contacts' [push](Held) times μ is the budget of each.
 
 use multiversion::multiversion;
 
@@ -9,22 +9,22 @@ use super::{
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, View, W, X, Y, Z};
 
-/// How long what is not spent is kept, to the part 1/e (s).
+/// Decay time of an unspent budget, to 1/e (s).
 const KEPT_FOR: f32 = 0.01;
 
-/// A budget that is none (m).
+/// A budget below this is empty (m).
 const NONE_LEFT: f32 = 1.0e-15;
 
-/// The middle of what pushes, a ball or a capsule, for where its surface is.
+/// The axis of a ball or a capsule, which defines its surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axle {
     pub axis: [f32; 3],
-    /// 0 of a ball (m).
+    /// Half of the length; 0 for a ball (m).
     pub half_length: f32,
     pub radius: f32,
 }
 
-/// Has friction hold back the particles of a block, relative to the surface of a ball or a capsule.
+/// Applies friction to the particles of a block, relative to the surface of a ball or a capsule.
 #[inline(always)]
 fn hold(
     view: &mut View,
@@ -70,7 +70,7 @@ fn hold(
         } else {
             -axle.half_length
         };
-        // Of the surface where it is touched.
+        // Displacement of the surface at the contact.
         let ax = ux * along + nx * axle.radius;
         let ay = uy * along + ny * axle.radius;
         let az = uz * along + nz * axle.radius;
@@ -121,7 +121,7 @@ fn hold(
     held.is_active = left.into_iter().any(|left| left > 0.0);
 }
 
-/// Has friction hold back all that contacts have pushed.
+/// Applies friction to everything that contacts have pushed.
 #[multiversion(targets("x86_64+avx+avx2"))]
 pub(super) fn hold_all(
     blocks: &mut [Block],
@@ -145,7 +145,7 @@ pub(super) fn hold_all_baseline(
     seconds: f32,
     sums: &mut Sums,
 ) {
-    // No power of e: instructions of its own would round it in their own way.
+    // Not an exponential function: its rounding differs between instruction sets.
     let kept = KEPT_FOR / (KEPT_FOR + seconds);
     let mut own = *sums;
     for (contact, held) in contacts.iter().zip(helds) {

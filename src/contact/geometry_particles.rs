@@ -1,5 +1,5 @@
-//! The narrow phase by particles against shapes whose nearest point costs a search: each is asked for where a particle has
-//! moved since, and its plane serves in between.
+//! The narrow phase by particles against shapes with an expensive nearest point. It is computed where a particle has
+//! moved since; in between, its plane is reused.
 
 use bevy::math::{Isometry3d, Vec3};
 
@@ -16,14 +16,14 @@ use crate::{
     solver::SubStep,
 };
 
-/// A particle that has moved no farther than this part of its radius is tested against the plane that was found last. Of
-/// a flat surface that is exact; another part of a mesh may be nearer by twice as much, at most.
+/// A particle that has moved less than this fraction of its radius is tested against the last plane. For a flat surface
+/// that is exact; another part of a mesh may be nearer by at most twice as much.
 const SAME_PLANE: f32 = 0.1;
 
-/// How a particle lay to a shape when it was looked at.
+/// The last test of a particle against a shape.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct KnownParticle {
-    /// Where it was in the shape's frame (m); NaN before the first look.
+    /// Position in the shape's frame (m); NaN before the first test.
     pub at: Vec3,
     pub nearest: Nearest,
 }
@@ -40,7 +40,7 @@ impl Default for KnownParticle {
     }
 }
 
-/// Pushes those candidates out that are inside of a shape, or that passed through it in this sub-step.
+/// Pushes candidates out that are inside a shape, or that passed through it in this sub-step.
 pub(super) fn push_particles_out(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
@@ -64,7 +64,7 @@ pub(super) fn push_particles_out(
         let local = to_local * position;
         let moved = local.distance(known.at);
         let swept = way.swept(displacement);
-        // Where nothing of the shape can have come near since. NaN is looked at.
+        // The shape cannot have come near since. False for NaN.
         let left = known.nearest.distance - moved - swept;
         if left > radius {
             pushing.note_depth(index, lane, radius - known.nearest.distance - moved);
@@ -114,14 +114,14 @@ pub(super) fn push_particles_out(
     found
 }
 
-/// A sub-step's way, as what moves fast in it is tested.
+/// A sub-step's motion, for tests of fast particles.
 struct Way<'a> {
     collider: &'a MovingCollider,
     substep: SubStep,
     radius: f32,
-    /// Radius and depth to which the side is known (m).
+    /// Radius and depth up to which the side is known (m).
     thickness: f32,
-    /// How far the collider moves in the sub-step, and any of its points turns (m).
+    /// Displacement of the collider in the sub-step, and the largest one of any of its points by rotation (m).
     slide: Vec3,
     swing: f32,
     is_on: bool,
@@ -141,7 +141,7 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// How far a particle moved past the shape, if that is so far that it may have come through (m); 0 if not.
+    /// Displacement of a particle relative to the shape, if it may have passed through (m); else 0.
     fn swept(&self, displacement: Vec3) -> f32 {
         let speed = (displacement - self.slide).length() + self.swing;
         if self.is_on && speed > self.thickness / 2.0 && speed.is_finite() {
@@ -151,8 +151,8 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// The normal where a particle that came from outside hit the shape, and how far it has to go along it to stay in front
-    /// of the surface there.
+    /// The normal where a particle from outside hit the shape, and its displacement along it to stay in front of the
+    /// surface (m).
     fn hit(&self, position: Vec3, displacement: Vec3) -> Option<(Vec3, f32)> {
         let start = position - displacement;
         let count = self.substep.count as f32;
@@ -161,7 +161,7 @@ impl<'a> Way<'a> {
             self.collider
                 .nearest(begin + part / count, start + displacement * part)
         };
-        // From what was so deep already, nobody knows from which side it came.
+        // For a particle this deep already, the original side is unknown.
         if nearest(0.0).distance < self.radius - self.thickness / 2.0 {
             return None;
         }

@@ -1,20 +1,20 @@
-//! What friction may still hold back, particle by particle.
+//! Friction budgets of particles.
 //!
-//! What pushes one triangle out may lift its neighbours as well, so that in one sub-step not all that lie on a collider are
-//! pushed; and one whose friction acts at the triangle alone slips a little in each sub-step in which it is not. So each particle
-//! has a budget: what its triangles' contacts pushed it by along their normals, times μ, which slipping spends. What is not
-//! spent is kept for a while: Coulomb's law holds in the mean over some milliseconds, for each particle.
+//! A push on one triangle may lift its neighbours, so that not all triangles on a collider are pushed in each sub-step.
+//! If friction acted on each triangle alone, it would slip a little in the sub-steps without a push. So each particle
+//! has a budget: its triangles' pushes along their normals, times μ. Slipping spends it, and the rest decays slowly:
+//! Coulomb's law holds for each particle on average over some milliseconds.
 
 use crate::cloth::{LANES, Lanes};
 
-/// What eight particles may spend on slipping.
+/// The friction budgets of eight particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Held {
-    /// What contacts have pushed them by in this sub-step, along their normals (m).
+    /// Pushes of contacts in this sub-step, along their normals (m).
     pub push: [Lanes; 3],
-    /// Of the last contact.
+    /// Normal of the last contact.
     pub normal: [Lanes; 3],
-    /// How far they may be held back (m).
+    /// Largest displacement by friction (m).
     pub budget: Lanes,
     /// Whether any of them has a push or a budget.
     pub is_active: bool,
@@ -28,7 +28,7 @@ impl Held {
         is_active: false,
     };
 
-    /// Adds what contacts push by.
+    /// Adds the pushes of contacts.
     #[inline(always)]
     pub fn add(&mut self, push: &[Lanes; 3]) {
         for (to, push) in self.push.iter_mut().zip(push) {
@@ -39,7 +39,7 @@ impl Held {
         self.is_active = true;
     }
 
-    /// Adds what contacts push those by that are a lane to the right.
+    /// Adds the pushes of contacts to the particles a lane to the right.
     #[inline(always)]
     pub fn add_shifted(&mut self, push: &[Lanes; 3]) {
         for (to, [a, b, c, d, e, f, g, _]) in self.push.iter_mut().zip(push) {
@@ -51,7 +51,7 @@ impl Held {
         self.is_active = true;
     }
 
-    /// Adds what a contact pushes one by.
+    /// Adds the push of a contact to one particle.
     pub fn add_one(&mut self, lane: usize, push: [f32; 3]) {
         for (to, push) in self.push.iter_mut().zip(push) {
             to[lane] += push;

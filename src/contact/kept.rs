@@ -1,4 +1,4 @@
-//! What is kept when candidates are searched for again within a tick.
+//! State kept across a repeated search within a tick.
 
 use super::{
     candidates::Candidates,
@@ -6,16 +6,16 @@ use super::{
     touch::{ContactPoint, Touch},
 };
 
-/// What is known of candidates, by the numbers of their colliders.
+/// State of the candidates, by the IDs of their colliders.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Kept {
     points: Vec<(usize, ContactPoint)>,
-    /// And by the cloth's blocks.
+    /// Also by the cloth's blocks.
     helds: Vec<(usize, u32, Held)>,
 }
 
 impl Kept {
-    /// Takes over what was found out so far.
+    /// Saves the results so far.
     pub fn take(&mut self, touches: &[Touch], candidates: &Candidates) {
         self.points.clear();
         self.helds.clear();
@@ -37,9 +37,9 @@ impl Kept {
         }
     }
 
-    /// The particles of a collider that were looked at: they stay candidates, so that nothing that touched is forgotten.
+    /// The tested particles of a collider: they stay candidates, so that no contact is forgotten.
     pub fn particles(&self, id: usize) -> impl Iterator<Item = u32> + '_ {
-        // In the order of the touches' numbers.
+        // In the order of the touches' IDs.
         let first = self.points.partition_point(|(known, _)| *known < id);
         self.points[first..]
             .iter()
@@ -47,7 +47,7 @@ impl Kept {
             .map(|(_, point)| point.particle)
     }
 
-    /// Gives back what is known of candidates that were found again.
+    /// Restores the state of candidates that were found again.
     pub fn give_back(&self, touches: &[Touch], candidates: &mut Candidates) {
         let of = |id: usize| {
             let at = touches.binary_search_by_key(&id, |touch| touch.id);

@@ -1,11 +1,11 @@
-//! The push of particles by analytic shapes, eight at a time, in plain loops that the compiler vectorises.
+//! Pushes particles out of analytic shapes, eight at a time, in plain loops that the compiler vectorises.
 //!
-//! A block is tested against the collider where it is at the end of the sub-step. What is inside of it is pushed out at once.
-//! Two kinds of particles ask for more, and their blocks are left to the caller: those that came so fast that they may have
-//! passed through, and those so deep that the nearest way out may be on the other side.
+//! A block is tested against the collider at the end of the sub-step, and particles inside it are pushed out at once.
+//! The caller handles blocks with two kinds of particles. Fast particles may have passed through; for deep particles,
+//! the nearest way out may be on the other side.
 //!
-//! A block that is clear is not looked at again before something can have come near: its clearance is kept, and compared with
-//! how far everything may have moved since. So most of a cloth costs a comparison for eight particles.
+//! The clearance of a block is stored and compared with the largest possible displacement since, so that a clear block
+//! is not tested again. So most of a cloth costs one comparison for eight particles.
 
 use multiversion::multiversion;
 
@@ -17,9 +17,9 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
 pub(super) struct Round {
     pub centre: [f32; 3],
     pub axis: [f32; 3],
-    /// Half of the axis's length, 0 of a ball (m).
+    /// Half of the axis's length, 0 for a ball (m).
     pub half_length: f32,
-    /// Of the shape and a particle (m).
+    /// Radius of the shape and a particle (m).
     pub reach: f32,
 }
 
@@ -29,44 +29,44 @@ pub(super) struct Cuboid {
     pub centre: [f32; 3],
     pub axes: [[f32; 3]; 3],
     pub half_size: [f32; 3],
-    /// Of a particle (m).
+    /// Radius of a particle (m).
     pub reach: f32,
 }
 
-/// All below a plane.
+/// The half-space below a plane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HalfSpace {
     pub centre: [f32; 3],
     pub normal: [f32; 3],
-    /// Of a particle (m).
+    /// Radius of a particle (m).
     pub reach: f32,
 }
 
-/// What is the same for all blocks of a collider in a sub-step.
+/// Constants for all blocks of a collider in a sub-step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LaneMotion {
     /// The collider's origin (m).
     pub origin: [f32; 3],
-    /// How far it moves (m) and turns (rad) in the sub-step.
+    /// Its displacement (m) and rotation (rad) in the sub-step.
     pub slide: [f32; 3],
     pub spin: [f32; 3],
-    /// How far its turn alone moves any point of its core (m).
+    /// Largest displacement of any point of its core by rotation alone (m).
     pub swing: f32,
     pub particle_radius: f32,
-    /// What moves farther, or is deeper, is the caller's (m).
+    /// Larger displacements and depths are left to the caller (m).
     pub most: f32,
-    /// What comes as near as this counts as touching where it is fast (m).
+    /// Distance at which a fast particle counts as touching (m).
     pub tolerance: f32,
     pub is_swept: bool,
     pub friction: f32,
     pub push_out: PushOut,
-    /// How far everything may have moved so far in the tick (m).
+    /// Largest displacement of everything so far in the tick (m).
     pub odometer: f32,
-    /// How deep anything counts as at most (m).
+    /// Largest depth that counts (m).
     pub thickness: f32,
 }
 
-/// What all blocks come to, lane by lane.
+/// Sums over all blocks, lane by lane.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Sums {
     pub deepest: Lanes,
@@ -77,17 +77,17 @@ pub(super) struct Sums {
     /// Mass × displacement that the cloth has lost (kg m), and its moment about the collider's origin (kg m²).
     pub linear: [Lanes; 3],
     pub angular: [Lanes; 3],
-    /// How many blocks are left to the caller.
+    /// Number of blocks left to the caller.
     pub left: u32,
-    /// Of triangles, how far the farthest corner was pushed by one (m).
+    /// Largest push of a corner by one triangle (m).
     pub passed: f32,
 }
 
-/// How eight particles lie to a shape.
+/// Eight particles relative to a shape.
 struct Near {
-    /// How deep they are inside (m), negative outside.
+    /// Depth inside (m), negative outside.
     depth: Lanes,
-    /// Away from the shape, of any length.
+    /// Direction away from the shape, of any length.
     offset: [Lanes; 3],
     length: Lanes,
 }
@@ -135,7 +135,7 @@ fn near_half_space(view: &View, shape: &HalfSpace) -> Near {
     near
 }
 
-/// How far to go out of a box along an axis: what is beyond its face, or inside 1 where no face is nearer.
+/// Displacement out of a box along an axis: the excess over its face, or 1 inside at the nearest face.
 #[inline(always)]
 fn outward(over: f32, least: f32, is_in: bool) -> f32 {
     let beyond = if over > 0.0 { over } else { 0.0 };
@@ -157,7 +157,7 @@ fn near_cuboid(view: &View, shape: &Cuboid) -> Near {
         let (over_a, over_b, over_c) = (a.abs() - hu, b.abs() - hv, c.abs() - hw);
         let largest = if over_a > over_b { over_a } else { over_b };
         let largest = if largest > over_c { largest } else { over_c };
-        // Outside, what is beyond each face counts; inside, only the nearest face.
+        // Outside, the excess over each face counts; inside, only the nearest face.
         let least = if largest > 0.0 { 0.0 } else { largest };
         let is_in = largest <= 0.0;
         let pa = outward(over_a, least, is_in).copysign(a);
@@ -182,7 +182,7 @@ impl Near {
     };
 }
 
-/// Takes over how deep a block is and how far it is clear, and says whether its particles are to be pushed.
+/// Stores the depth and the clearance of a block, and returns whether to push its particles.
 #[inline(always)]
 fn survey(
     view: &View,
@@ -223,13 +223,13 @@ fn survey(
         };
         *known = if depth > *known { depth } else { *known };
     }
-    // A little less than rounding, and than what counts as a touch.
+    // Smaller by rounding errors and by the tolerance of a touch.
     let clear = -most - 2.0 * motion.tolerance - 1.0e-5 * (farthest - most + motion.odometer);
     contact.clear_until = motion.odometer + clear;
     most > 0.0
 }
 
-/// Pushes those out that are inside, as [`Contact::push`](super::response::Contact::push) does.
+/// Pushes particles out that are inside, like [`Contact::push`](super::response::Contact::push).
 #[inline(always)]
 fn push(view: &mut View, near: &Near, area: &Lanes, motion: &LaneMotion, sums: &mut Sums) {
     let ([ox, oy, oz], [sx, sy, sz]) = (motion.origin, motion.slide);
@@ -310,8 +310,8 @@ fn push(view: &mut View, near: &Near, area: &Lanes, motion: &LaneMotion, sums: &
     }
 }
 
-/// Makes the push by one kind of shape: for the widest instructions that the machine has, and for those that all have. The
-/// results are the same to the last bit.
+/// Defines the push for one kind of shape: for the widest instructions of the machine, and for the baseline. The
+/// results are equal to the last bit.
 macro_rules! by_shape {
     ($($near:ident, $widest:ident, $baseline:ident: $shape:ty;)*) => {$(
         /// Pushes the particles of blocks out of the shape.

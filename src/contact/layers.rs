@@ -1,42 +1,42 @@
-//! Which cloths meet which colliders.
+//! Collision layers of cloths and colliders.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-/// The collision layers of a cloth or a collider, as bit masks: those that it is in, and those that it meets. Two things
-/// touch if each is in a layer that the other's `filters` name. Without this component an entity is in all layers and meets all.
+/// The collision layers of a cloth or a collider, as bit masks of memberships and filters. Two entities collide if each
+/// is a member of a layer in the other's `filters`. Without this component, an entity is in all layers and meets all.
 ///
-/// What is in no layer, or meets none, touches nothing else; a cloth with [`ClothSelfCollision`](super::ClothSelfCollision) still
-/// touches itself. A change counts from the next tick on; a cloth that sleeps wakes if
-/// it may no longer touch what it lies on.
+/// An entity in no layer, or with empty filters, touches nothing else. A cloth with
+/// [`ClothSelfCollision`](super::ClothSelfCollision) still touches itself. Changes take effect in the next tick. A
+/// sleeping cloth wakes if it may no longer touch the collider that it lies on.
 ///
-/// These are the cloth's own: the groups of a physics engine say nothing about cloth.
+/// These layers are only for cloth: it ignores the collision groups of a physics engine.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 pub struct ClothLayers {
-    /// The layers that it is in, one bit each.
+    /// The layers that the entity is a member of, one bit each.
     pub memberships: u32,
-    /// The layers that it meets, one bit each.
+    /// The layers that the entity collides with, one bit each.
     pub filters: u32,
 }
 
 impl Default for ClothLayers {
-    /// In all layers, meets all.
+    /// A member of all layers that collides with all layers.
     fn default() -> Self {
         Self::ALL
     }
 }
 
 impl ClothLayers {
-    /// In all layers, meets all: as without the component.
+    /// A member of all layers that collides with all layers: the same as without the component.
     pub const ALL: Self = Self::new(u32::MAX, u32::MAX);
 
     /// Touches nothing but itself.
     pub const NONE: Self = Self::new(0, 0);
 
-    /// In the layers `memberships`, meets the layers `filters`: one bit each.
+    /// A member of the layers `memberships` that collides with the layers `filters`: one bit each.
     pub const fn new(memberships: u32, filters: u32) -> Self {
         Self {
             memberships,
@@ -44,7 +44,7 @@ impl ClothLayers {
         }
     }
 
-    /// Whether the two may touch: each is in a layer that the other's `filters` name.
+    /// Whether two entities collide: each is a member of a layer in the other's `filters`.
     pub const fn interacts_with(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0
     }

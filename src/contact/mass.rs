@@ -1,30 +1,30 @@
-//! How hard a collider is to move.
+//! The mass of a dynamic collider.
 
 use bevy::math::{Mat3, Quat, Vec3};
 
-/// How hard a collider is to move. In the frame in which the cloth moves, as the tick begins.
+/// The mass and inertia of a dynamic collider, in the frame in which the cloth moves, at the beginning of the tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyMass {
-    /// One over its mass (1/kg).
+    /// Inverse mass (1/kg).
     pub inverse_mass: f32,
-    /// Inverse of its inertia about its centre of mass (1/(kg·m²)).
+    /// Inverse inertia about its centre of mass (1/(kg·m²)).
     pub inverse_inertia: Mat3,
-    /// From the origin of the collider's shape to the centre of mass (m).
+    /// Vector from the origin of the collider's shape to the centre of mass (m).
     pub centre: Vec3,
-    /// What of a push moves the centre of mass: all, the identity, or all but what goes along the axes that it is locked along.
+    /// Projection of a push onto the free translation axes: the identity, unless translation is locked along some.
     pub free: Mat3,
 }
 
 impl BodyMass {
-    /// The same, seen from another frame.
+    /// The same mass in a rotated frame.
     pub fn turned(&self, rotation: Quat) -> Self {
         let axes = Mat3::from_quat(rotation);
         Self {
             inverse_mass: self.inverse_mass,
             inverse_inertia: axes * self.inverse_inertia * axes.transpose(),
             centre: rotation * self.centre,
-            // The same from all sides.
+            // Equal in all directions.
             free: if self.free == Mat3::IDENTITY {
                 Mat3::IDENTITY
             } else {
@@ -33,7 +33,7 @@ impl BodyMass {
         }
     }
 
-    /// One of several equal parts of it, each of which cloths of their own push.
+    /// One of several equal shares of it, each for the cloths of one group.
     pub fn part_of(&self, parts: u32) -> Self {
         let parts = parts.max(1) as f32;
         Self {

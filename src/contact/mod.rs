@@ -1,4 +1,4 @@
-//! Floor 2: what happens on *touch*: collider shapes, swept tests, push-out, friction, how deep and how much.
+//! Floor 2: contact: collider shapes, swept tests, push-out, friction, penetration depth and area.
 
 mod body;
 mod boxes;

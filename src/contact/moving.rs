@@ -1,4 +1,4 @@
-//! A collider on its way through a tick.
+//! Colliders in motion.
 
 use bevy::math::{Isometry3d, Quat, Vec3, bounding::BoundingSphere};
 
@@ -8,23 +8,23 @@ use crate::{
     solver::SubStep,
 };
 
-/// A collider on its way through a tick, in the cloth's frame: along a straight line, turning evenly.
+/// A collider during a tick, in the cloth's frame. It moves along a straight line and turns uniformly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MovingCollider {
-    /// What it is.
+    /// Its shape.
     pub shape: ColliderShape,
-    /// Where it is as the tick begins (m).
+    /// Its pose at the beginning of the tick (m).
     pub from: Isometry3d,
-    /// Where its origin is as the tick ends (m).
+    /// Position of its origin at the end of the tick (m).
     pub to: Vec3,
-    /// How far it turns in the tick: axis × angle (rad).
+    /// Its rotation in the tick: axis × angle (rad).
     pub turn: Vec3,
-    /// How it gives way where cloth pushes it; `None` if nothing can move it.
+    /// Its mass, if cloth can push it; `None` if nothing can move it.
     pub body: Option<BodyMass>,
 }
 
 impl MovingCollider {
-    /// A ball that moves from one centre to another (m) and does not turn.
+    /// A ball that moves from one centre to another (m) without rotation.
     pub fn ball(radius: f32, from: Vec3, to: Vec3) -> Self {
         Self {
             shape: ColliderShape::Ball { radius },
@@ -35,7 +35,7 @@ impl MovingCollider {
         }
     }
 
-    /// Something that stays where it is.
+    /// A static collider.
     pub fn still(shape: ColliderShape, pose: Isometry3d) -> Self {
         Self {
             shape,
@@ -46,7 +46,7 @@ impl MovingCollider {
         }
     }
 
-    /// Where it is when a fraction of the tick, from 0 to 1, has passed.
+    /// Its pose at a fraction of the tick, from 0 to 1.
     pub fn pose_at(&self, fraction: f32) -> Isometry3d {
         let place = self.start().lerp(self.to, fraction);
         let rotation = if self.turn == Vec3::ZERO {
@@ -61,13 +61,13 @@ impl MovingCollider {
         self.from.translation.into()
     }
 
-    /// How far its origin moves in the tick (m).
+    /// Displacement of its origin in the tick (m).
     pub fn travel(&self) -> f32 {
         self.start().distance(self.to)
     }
 
-    /// How far its surface moves at most, by travel and turn: how far it can drag what sticks to it (m). Of a
-    /// half-space that turns, no farther than `within` of its origin.
+    /// Largest displacement of its surface in the tick by translation and rotation (m): cloth that sticks to it is
+    /// dragged that far. For a rotating half-space, only points within `within` of its origin count (m).
     pub fn max_surface_travel(&self, within: f32) -> f32 {
         let turn = self.turn.length();
         let swing = if turn > 0.0 {
@@ -78,7 +78,7 @@ impl MovingCollider {
         self.travel() + swing
     }
 
-    /// How far its turn alone moves any point of its core in the tick (m): nothing in a ball.
+    /// Largest displacement of any point of its core by rotation alone in the tick (m): 0 for a ball.
     pub(super) fn swing(&self) -> f32 {
         let turn = self.turn.length();
         if turn > 0.0 {
@@ -88,8 +88,8 @@ impl MovingCollider {
         }
     }
 
-    /// What its motion from one part of the tick to a later one makes of a point that moves with it (m), and of a
-    /// normal. A ball's normals do not turn with it: it is the same all around.
+    /// Carries a point (m) and a normal along with its motion between two fractions of the tick. A ball does not turn
+    /// normals: it is the same from all sides.
     pub(super) fn carry(&self, [from, to]: [f32; 2], point: Vec3, normal: Vec3) -> (Vec3, Vec3) {
         let (before, after) = (self.pose_at(from), self.pose_at(to));
         let rotation = match self.shape {
@@ -103,11 +103,11 @@ impl MovingCollider {
         )
     }
 
-    /// The collider all along its way, inflated by `margin` (m), as what a query searches for among particles of a
-    /// radius (m) that are all inside of `cloth`. A ball's is its exact way, a capsule along it.
+    /// A probe of the collider along its whole path, inflated by `margin` (m), for a search among particles of a radius
+    /// (m) that are all inside `cloth`. For a ball it is the exact path, a capsule.
     ///
-    /// Of other shapes it is the one half-way, inflated by how far any of its points ever is from there: half of the
-    /// travel, and half of the turn's arc.
+    /// For other shapes it is the shape halfway, inflated by the largest distance of any of its points from there: half
+    /// of the translation, and half of the rotation's arc.
     pub fn probe(&self, margin: f32, particle_radius: f32, cloth: &BoundingSphere) -> Probe {
         let (core, radius) = match self.shape {
             ColliderShape::Ball { radius } if self.start() == self.to => {
@@ -120,7 +120,7 @@ impl MovingCollider {
             | ColliderShape::Geometry(_) => {
                 let pose = self.pose_at(0.5);
                 let (core, radius) = self.shape.core(pose);
-                // Particles may leave the sphere as far as the margin.
+                // Particles may leave the sphere by the margin.
                 (
                     core,
                     radius + self.max_surface_travel(self.farthest_distance(cloth) + margin) / 2.0,
@@ -134,19 +134,19 @@ impl MovingCollider {
         }
     }
 
-    /// How far the far end of a cloth is from the origin, at most (m).
+    /// Largest distance of the cloth's far end from the origin (m).
     pub fn farthest_distance(&self, cloth: &BoundingSphere) -> f32 {
         let distance = |place: Vec3| place.distance(cloth.center.into());
         distance(self.start()).max(distance(self.to)) + cloth.radius()
     }
 
-    /// Its motion in one sub-step, seen from a point (m): that of the surface there.
+    /// Displacement of its surface in one sub-step, at a point (m).
     pub(super) fn surface_motion(&self, substep: SubStep, centre: Vec3, point: Vec3) -> Vec3 {
         let count = substep.count as f32;
         (self.to - self.start()) / count + (self.turn / count).cross(point - centre)
     }
 
-    /// How a point lies to it when a part of the tick has passed.
+    /// The surface nearest to a point at a fraction of the tick.
     #[inline]
     pub(super) fn nearest(&self, part: f32, point: Vec3) -> Nearest {
         self.shape.nearest(self.pose_at(part), point)

@@ -1,4 +1,4 @@
-//! Whether a collider is tested against particles or against triangles.
+//! The choice between particles and triangles in the narrow phase.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -7,36 +7,37 @@ use bevy::{
 
 use super::MovingCollider;
 
-/// From this many spacings of radius on, a collider is tested against particles, below against triangles.
+/// Colliders with a radius of at least this many spacings are tested against particles, smaller ones against triangles.
 ///
-/// A ball that is pressed into a cloth until it wraps it dips into the flat triangles between the particles that hold it:
-/// by 22 % of its radius at 1.5 spacings, 11 at 2, 6.6 at 2.5, 4.6 at 3, 2.7 at 4, and falls through at 1 and below;
-/// against triangles, by 0.2 % or less from 0.7 spacings on (`cargo bench --profile dev --bench contact`). A whole tick of a
-/// 64² cloth at rest on a large ball takes 2.4 times as long against triangles. Five per cent is what an eye notices.
+/// A ball that a cloth wraps dips into the flat triangles between the particles. It dips by 22 % of its radius at 1.5 spacings,
+/// 11 at 2, 6.6 at 2.5, 4.6 at 3, and 2.7 at 4. At 1 and below it falls through. Against triangles it dips by 0.2 % or
+/// less from 0.7 spacings on (`cargo bench --profile dev --bench contact`). A whole tick of a 64² cloth at rest on a
+/// large ball takes 2.4 times as long against triangles. The eye notices five per cent.
 pub const PARTICLES_FROM: f32 = 3.0;
 
-/// What moves farther in a tick than this many of its radii parts the particles before it faster than the springs can hold
-/// them together: it is tested against triangles.
+/// A collider that moves farther in a tick than this many of its radii separates the particles before the springs can
+/// hold them together. It is tested against triangles.
 const SLOW_RADII: f32 = 2.0;
 
-/// A shape with edges is tested against triangles where a spacing is longer than this many radii of a particle. Particles a
-/// radius off the faces keep the triangle across an edge of a box outside up to 2.8 radii (2√2), across a corner up to 2.1
-/// (1.5 √2): so nothing shows through a finer cloth.
+/// A shape with edges is tested against triangles if a spacing exceeds this many particle radii. Particles a radius off
+/// the faces keep the triangle across an edge of a box outside up to 2.8 radii (2√2), and across a corner up to 2.1
+/// (1.5 √2). So nothing shows through a finer cloth.
 const EDGES_FROM: f32 = 2.0;
 
-/// What a cloth's colliders are tested against. A component of the cloth.
+/// The narrow phase of a cloth: its colliders are tested against particles or against triangles. A component of the
+/// cloth.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 pub enum NarrowPhase {
-    /// Triangles for balls and capsules of a radius below [`PARTICLES_FROM`] spacings, and for those that move farther
-    /// than their width in the tick; and for all that has edges, unless the cloth's spacing is at most two radii of its
-    /// particles. Else particles.
+    /// Triangles for three kinds of colliders, particles otherwise. These are balls and capsules with a radius below
+    /// [`PARTICLES_FROM`] spacings, those that move farther than their width in the tick, and shapes with edges. Shapes
+    /// with edges use particles if the cloth's spacing is at most two radii of its particles.
     #[default]
     Auto,
-    /// Particles: exact while the collider is large against the spacing.
+    /// Particles: exact while the collider is large compared with the spacing.
     Particles,
-    /// Triangles, of everything but a plane, which particles meet exactly.
+    /// Triangles for all colliders but planes, for which particles are exact.
     Triangles,
 }
 
@@ -48,7 +49,7 @@ impl NarrowPhase {
         ("triangles", Self::Triangles),
     ];
 
-    /// What a collider is tested against, on a cloth of a spacing and a radius of its particles (m).
+    /// The narrow phase of a collider, on a cloth with a spacing and a particle radius (m).
     pub(super) fn of(self, collider: &MovingCollider, spacing: f32, particle_radius: f32) -> Self {
         if !collider.shape.has_edges() {
             return self.chosen(collider.shape.radius(), collider.travel(), spacing);
@@ -61,8 +62,8 @@ impl NarrowPhase {
         }
     }
 
-    /// What a collider of `radius` (m), if it has one, is tested against that goes so far in the tick (m), on a cloth of a
-    /// spacing (m).
+    /// The narrow phase of a collider of `radius` (m), if it has one, that moves by `travel` in the tick (m), on a
+    /// cloth with a `spacing` (m).
     pub fn chosen(self, radius: Option<f32>, travel: f32, spacing: f32) -> Self {
         let is_small =
             |radius: f32| radius < PARTICLES_FROM * spacing || travel > SLOW_RADII * radius;

@@ -1,4 +1,4 @@
-//! The narrow phase by particles: each is a ball of its own radius.
+//! The narrow phase by particles: each is a ball with its own radius.
 
 use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
 
@@ -15,23 +15,23 @@ use crate::{
     solver::SubStep,
 };
 
-/// What a sub-step's contacts come to.
+/// The result of a sub-step's contacts.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Found {
-    /// How deep the deepest was (m).
+    /// Largest depth (m).
     pub deepest: f32,
-    /// The farthest that anything was pushed (m).
+    /// Largest push (m).
     pub farthest_push: f32,
-    /// Area of the cloth that was inside (m²).
+    /// Penetrating area of the cloth (m²).
     pub area: f32,
     /// ∫ depth dA over it (m³).
     pub volume: f32,
-    /// What the collider was given.
+    /// The impulse on the collider.
     pub given: Given,
 }
 
 impl Found {
-    /// Adds what blocks of lanes came to.
+    /// Adds the sums of blocks of lanes.
     pub fn add(&mut self, sums: &Sums) {
         let largest = |lanes: &Lanes| lanes.iter().copied().fold(0.0, f32::max);
         let sum = |lanes: &Lanes| lanes.iter().copied().map(f64::from).sum::<f64>();
@@ -48,9 +48,9 @@ impl Found {
     }
 }
 
-/// Pushes those particles out that are inside of `collider`, or that passed through it in this sub-step.
+/// Pushes particles out that are inside `collider`, or that passed through it in this sub-step.
 ///
-/// Pinned particles are left where they are.
+/// Pinned particles do not move.
 pub(super) fn push_particles(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
@@ -71,7 +71,7 @@ pub(super) fn push_particles(
     found
 }
 
-/// What is the same for all blocks.
+/// Constants for all blocks.
 pub(super) fn lane_motion(
     collider: &MovingCollider,
     settings: &ContactSettings,
@@ -98,7 +98,7 @@ pub(super) fn lane_motion(
     }
 }
 
-/// Pushes what is to be pushed in blocks, and marks the blocks that are to be looked at one by one.
+/// Pushes blocks of particles, and marks the blocks that have to be tested one by one.
 fn push_lanes(
     blocks: &mut [Block],
     contacts: &mut [ContactBlock],
@@ -157,12 +157,12 @@ fn push_lanes(
     }
 }
 
-/// How far the collider moves in the sub-step (m).
+/// Displacement of the collider in the sub-step (m).
 fn slide(collider: &MovingCollider, substep: SubStep) -> Vec3 {
     (collider.to - Vec3::from(collider.from.translation)) / substep.count as f32
 }
 
-/// How near is a touch, where something moves fast (m).
+/// Distance that counts as a touch where something moves fast (m).
 fn tolerance(thickness: f32) -> f32 {
     if thickness.is_finite() {
         1.0e-3 * thickness
@@ -171,7 +171,7 @@ fn tolerance(thickness: f32) -> f32 {
     }
 }
 
-/// Pushes the particles of those blocks that are left, one by one.
+/// Pushes the particles of the remaining blocks one by one.
 fn push_left(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
@@ -253,13 +253,13 @@ fn push_left(
     }
 }
 
-/// The test all along a sub-step, for what moves so far in it that the test at its end may come too late.
+/// The swept test of a sub-step, for motion so large that the test at its end may come too late.
 struct Sweep<'a> {
     collider: &'a MovingCollider,
     substep: SubStep,
     particle_radius: f32,
     thickness: f32,
-    /// How far the collider moves in the sub-step, and any of its points turns (m).
+    /// Displacement of the collider in the sub-step, and the largest one of any of its points by rotation (m).
     slide: Vec3,
     swing: f32,
     is_on: bool,
@@ -283,12 +283,12 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// The normal where a particle that came from outside hit the collider, and how far it has to go along it to stay
-    /// in front of the surface there.
+    /// The normal where a particle from outside hit the collider, and its displacement along it to stay in front of the
+    /// surface there (m).
     #[inline]
     fn hit(&self, position: Vec3, displacement: Vec3) -> Option<(Vec3, f32)> {
         let speed = (displacement - self.slide).length() + self.swing;
-        // Who came less far than to half of the thickness is still on the side that it came from.
+        // A particle that moved less than half of the thickness is still on its original side.
         if !self.is_on || speed <= self.thickness / 2.0 || !speed.is_finite() {
             return None;
         }
@@ -298,7 +298,7 @@ impl<'a> Sweep<'a> {
             let passed = begin + part / self.substep.count as f32;
             self.collider.nearest(passed, start + displacement * part)
         };
-        // From what was so deep already, nobody knows from which side it came.
+        // For a particle this deep already, the original side is unknown.
         if nearest(0.0).distance < self.particle_radius - self.thickness / 2.0 {
             return None;
         }
@@ -307,7 +307,7 @@ impl<'a> Sweep<'a> {
             nearest(part).distance
         })?;
         let Nearest { distance, normal } = nearest(part);
-        // Where it would be if it had gone on with the surface, which keeps it in front of all that is convex.
+        // The position that it would have, had it moved on with the surface: in front of every convex shape.
         let passed = begin + part / self.substep.count as f32;
         let way = [passed, self.substep.end()];
         let (carried, normal) = self
@@ -318,7 +318,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// The side on which most of what is inside would leave: the mean of the normals, of length 1; 0 if they have none.
+/// The side on which most particles would leave: the mean of the normals, of length 1; 0 if there is none.
 fn side_of(
     blocks: &[Block],
     contacts: &[ContactBlock],
@@ -335,13 +335,13 @@ fn side_of(
     });
     let inside = places.filter_map(|position| {
         let nearest = collider.shape.nearest(pose, position);
-        // Those that were pushed out already are on the surface.
+        // Particles that were pushed out already are on the surface.
         (nearest.distance < particle_radius + 1.0e-3 * thickness).then_some(nearest.normal)
     });
     inside.sum::<Vec3>().normalize_or_zero()
 }
 
-/// How far it is along `side` to the surface (m), unless it is too far along the inside of a box to tell.
+/// Distance along `side` to the surface (m), unless it is too far along the inside of a box.
 fn way_out(
     collider: &MovingCollider,
     pose: Isometry3d,

@@ -1,4 +1,4 @@
-//! What is near a shape with edges.
+//! Particles near a shape with edges.
 
 use super::{
     MovingCollider,
@@ -11,7 +11,7 @@ use crate::{cloth::Slot, solver::SubStep};
 /// The particles near a shape with edges, at the end of a sub-step.
 pub(super) struct Pushing<'a> {
     pub candidates: &'a [Candidate],
-    /// Their blocks, of which the first has this number among all.
+    /// Their blocks; `first` is the index of the first among all.
     pub contacts: &'a mut [ContactBlock],
     pub first: usize,
     pub collider: &'a MovingCollider,
@@ -21,7 +21,7 @@ pub(super) struct Pushing<'a> {
 }
 
 impl Pushing<'_> {
-    /// Where a candidate is among the blocks, and among the cloth's.
+    /// Index of a candidate's block, and its slot in the cloth.
     pub fn place(&self, candidate: &Candidate) -> (usize, Slot) {
         let (block, lane) = candidate.lane();
         let index = block - self.first;
@@ -29,7 +29,7 @@ impl Pushing<'_> {
         (index, Slot { block, lane })
     }
 
-    /// Notes how deep a candidate was found (m).
+    /// Stores the depth of a candidate (m).
     pub fn note_depth(&mut self, index: usize, lane: usize, depth: f32) {
         let known = &mut self.contacts[index].depth[lane];
         *known = known.max(depth);

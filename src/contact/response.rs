@@ -1,19 +1,19 @@
-//! What a contact does to what it touches, whatever it is.
+//! The response to a contact.
 
 use bevy::math::{DVec3, Vec3};
 
 /// A contact at the end of a sub-step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
-    /// Away from the collider, of length 1.
+    /// Direction away from the collider, of length 1.
     pub normal: Vec3,
-    /// How far along the normal it has to move (m).
+    /// Penetration along the normal (m).
     pub depth: f32,
-    /// Its displacement in the sub-step, less that of the collider's surface (m).
+    /// Displacement in the sub-step relative to the collider's surface (m).
     pub relative: Vec3,
 }
 
-/// What has to be added to the position and to the displacement of what is touched (m).
+/// Corrections of position and displacement (m).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Push {
     pub position: Vec3,
@@ -21,17 +21,17 @@ pub(super) struct Push {
 }
 
 impl Contact {
-    /// How far along the normal it is stopped, and how far it is pushed out, that included (m).
+    /// The stopped displacement along the normal, and the total push out including it (m).
     ///
-    /// What both came towards each other in this sub-step is what velocity has to lose, and what friction can hold against. An older
-    /// overlap is no velocity, and must not become one.
+    /// Velocity loses only the approach of this sub-step, and only that counts for friction. An older overlap is not a
+    /// velocity, and must not become one.
     pub fn stopped_and_out(&self, push_out: &PushOut) -> [f32; 2] {
         let stopped = self.depth.min(-self.normal.dot(self.relative)).max(0.0);
         [stopped, stopped + push_out.of(self.depth - stopped)]
     }
 
-    /// Pushes out along the normal, and slows against the surface by Coulomb's law: the tangential move is taken
-    /// away up to μ times the normal one. What was inside already leaves without gaining speed, as fast as it may.
+    /// Pushes out along the normal, and applies Coulomb friction: the tangential displacement shrinks by up to μ times
+    /// the normal one. An older overlap is released without gaining speed, at a limited rate.
     pub fn push(&self, friction: f32, push_out: &PushOut) -> Push {
         let Self {
             normal, relative, ..
@@ -51,25 +51,25 @@ impl Contact {
     }
 }
 
-/// How fast an overlap is let out that was there when a contact began. All of it at once would stretch the springs beside it,
-/// and these would throw the cloth.
+/// Release rate of an overlap that existed when a contact began. If it were released at once, it would stretch the
+/// springs beside it, and these would throw the cloth.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PushOut {
-    /// The part of it that is let out in a sub-step.
+    /// Fraction of it released in a sub-step.
     pub rate: f32,
-    /// So far at least, and so far at most (m).
+    /// Smallest and largest release (m).
     pub slowest: f32,
     pub fastest: f32,
 }
 
-/// What an overlap takes to be let out to the part 1/e (s), and how slow and how fast it leaves at most (m/s).
+/// Time in which an overlap decays to 1/e (s), and the smallest and largest speed of the release (m/s).
 const OVERLAP_TIME: f32 = 0.1;
 const SLOWEST_OUT: f32 = 0.05;
 const FASTEST_OUT: f32 = 0.25;
 
 impl PushOut {
-    /// In a sub-step of so many seconds, in which the collider itself travels so far (m): its own way makes room at once. With
-    /// `shares`, what each of several that push the same particle has a part in.
+    /// For a sub-step of `seconds`, in which the collider itself moves by `travel` (m) and so makes room at once.
+    /// `shares` is the share of each of several pushes on the same particle.
     pub fn new(seconds: f32, travel: f32, shares: f32) -> Self {
         let seconds = seconds / shares;
         Self {
@@ -79,53 +79,52 @@ impl PushOut {
         }
     }
 
-    /// How much of an overlap is let out (m).
+    /// The released part of an overlap (m).
     pub fn of(&self, overlap: f32) -> f32 {
         let let_out = (overlap * self.rate).max(self.slowest);
         let_out.min(self.fastest).min(overlap)
     }
 }
 
-/// What a collider is given by what it pushes: mass × displacement (kg m), which over the sub-step is momentum.
+/// The impulse on a collider as mass × displacement (kg m): momentum times the sub-step.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Given {
     pub linear: DVec3,
-    /// About the collider's origin (kg m²).
+    /// Moment about the collider's origin (kg m²).
     pub angular: DVec3,
 }
 
 impl Given {
-    /// Adds what a particle of an inverse mass (1/kg), so far from the collider's origin (m), gives as it is pushed by a
-    /// displacement (m).
+    /// Adds a particle of an inverse mass (1/kg) at an arm from the collider's origin (m), pushed by a displacement
+    /// (m).
     pub fn add(&mut self, arm: Vec3, displacement: Vec3, inverse_mass: f32) {
         let given = -displacement.as_dvec3() / f64::from(inverse_mass);
         self.linear += given;
         self.angular += arm.as_dvec3().cross(given);
     }
 
-    /// Leaves a part of it.
+    /// Keeps a fraction of it.
     pub fn scale(&mut self, part: f64) {
         self.linear *= part;
         self.angular *= part;
     }
 
-    /// Adds what another one was given.
+    /// Adds another impulse.
     pub fn merge(&mut self, other: &Self) {
         self.linear += other.linear;
         self.angular += other.angular;
     }
 }
 
-/// How many steps are taken along a way towards what may be hit on it.
+/// Largest number of steps along a path towards a possible hit.
 pub(super) const MAX_STEPS: u32 = 32;
 
-/// The part of a sub-step, from 0 to 1, after which two things first are as near as `touch` (m), to a `tolerance` (m)
-/// above it, stepping no farther at a time than can be without coming nearer (conservative advancement; Mirtich
-/// 1996). `distance` is that between them when a part has passed (m), `speed` the most that it changes by in the
-/// whole sub-step (m).
+/// The fraction of a sub-step, from 0 to 1, at which two objects are first within `touch` (m), with a `tolerance` (m)
+/// above it. Each step is short enough not to pass a contact (conservative advancement; Mirtich 1996). `distance` is
+/// the distance at a fraction (m), and `speed` its largest change in the whole sub-step (m).
 ///
-/// `None` if they do not meet. Where they are so close beside each other that the steps run out, as when what moves slides along, it is the
-/// part that was come to: nothing was missed before, and what comes behind is not known.
+/// `None` if they do not meet. If they stay so close that the steps run out, for example while sliding, returns the
+/// fraction reached: no earlier contact was missed, and later ones are unknown.
 pub(super) fn first_touch(
     speed: f32,
     touch: f32,
@@ -143,11 +142,11 @@ pub(super) fn first_touch(
         if part > 1.0 {
             return None;
         }
-        // So fast that no number tells the next step from this one.
+        // Too fast: rounding would lose the next step.
         if step < f32::EPSILON {
             break;
         }
     }
-    // So long beside each other: as near as that is a touch. NaN is none.
+    // Close for so long: this counts as a touch. NaN does not.
     (part <= 1.0).then_some(part)
 }

@@ -1,4 +1,4 @@
-//! Shapes that a cloth can touch, and how far a point is from them.
+//! Shapes of colliders, and the distance of a point from them.
 
 use bevy::{
     math::{Isometry3d, Vec3},
@@ -21,7 +21,7 @@ pub enum ColliderShape {
         /// Radius (m).
         radius: f32,
     },
-    /// All that is nearer than a radius to a segment along the y axis.
+    /// All points within a radius of a segment along the y axis.
     Capsule {
         /// Radius (m).
         radius: f32,
@@ -30,17 +30,17 @@ pub enum ColliderShape {
     },
     /// A box around the origin.
     Cuboid {
-        /// Half of its lengths (m).
+        /// Half of its side lengths (m).
         half_size: Vec3,
     },
-    /// All below the plane through the origin whose normal is the y axis.
+    /// The half-space below the xz plane.
     HalfSpace,
-    /// Anything else.
+    /// Any other shape.
     Geometry(ColliderGeometry),
 }
 
 impl ColliderShape {
-    /// The shape in a pose, as the neighbourhood of a core; of a geometry, the box around it.
+    /// The shape in a pose, as a core and a radius around it. For a geometry, its bounding box.
     pub fn core(&self, pose: Isometry3d) -> (Core, f32) {
         let centre = Vec3::from(pose.translation);
         match *self {
@@ -75,7 +75,7 @@ impl ColliderShape {
         }
     }
 
-    /// Distance from the origin to what is farthest from it (m); infinite for a half-space.
+    /// Distance from the origin to the farthest point of the shape (m); infinite for a half-space.
     pub fn extent(&self) -> f32 {
         match *self {
             Self::Ball { radius } => radius,
@@ -92,7 +92,7 @@ impl ColliderShape {
         }
     }
 
-    /// Distance from the origin to what is farthest from it in the core (m); infinite for a half-space.
+    /// Distance from the origin to the farthest point of the core (m); infinite for a half-space.
     pub(super) fn core_extent(&self) -> f32 {
         match *self {
             Self::Ball { .. } => 0.0,
@@ -101,7 +101,7 @@ impl ColliderShape {
         }
     }
 
-    /// How deep a point may get without being nearer to the other side (m); infinite for a half-space.
+    /// Smallest depth at which a point can be nearer to the other side (m); infinite for a half-space.
     pub fn thickness(&self) -> f32 {
         match *self {
             Self::Ball { radius } | Self::Capsule { radius, .. } => radius,
@@ -111,7 +111,7 @@ impl ColliderShape {
         }
     }
 
-    /// The radius that triangles are tested against (m); only balls and capsules have one.
+    /// The radius for tests against triangles (m); only balls and capsules have one.
     pub fn radius(&self) -> Option<f32> {
         match *self {
             Self::Ball { radius } | Self::Capsule { radius, .. } => Some(radius),
@@ -119,12 +119,12 @@ impl ColliderShape {
         }
     }
 
-    /// Whether it has edges that may come through a triangle whose corners are all outside.
+    /// Whether the shape has edges that may pass through a triangle whose corners are all outside.
     pub fn has_edges(&self) -> bool {
         matches!(self, Self::Cuboid { .. } | Self::Geometry(_))
     }
 
-    /// One of its edges, as [`edges_near`](Self::edges_near) numbers them.
+    /// The edge with an index of [`edges_near`](Self::edges_near).
     #[inline]
     pub(super) fn edge(&self, index: u32) -> Option<SharpEdge> {
         match self {
@@ -134,7 +134,7 @@ impl ColliderShape {
         }
     }
 
-    /// Hands out the edges that may come into a box of the shape's frame, with their numbers: always in the same order.
+    /// Visits the edges that may overlap a box of the shape's frame, with their indices, always in the same order.
     pub(super) fn edges_near(&self, within: [Vec3; 2], mut visit: impl FnMut(u32, &SharpEdge)) {
         match self {
             Self::Cuboid { half_size } => {
@@ -147,7 +147,8 @@ impl ColliderShape {
         }
     }
 
-    /// How far a point of the shape's frame is from its nearest edge (m); infinite if none is within so far.
+    /// Distance of a point of the shape's frame from its nearest edge (m); infinite if none is within the given
+    /// distance.
     pub(super) fn edge_distance(&self, point: Vec3, within: f32) -> f32 {
         match self {
             Self::Cuboid { half_size } => boxes::edge_distance(*half_size, point),
@@ -156,7 +157,7 @@ impl ColliderShape {
         }
     }
 
-    /// How a point lies to the shape in a pose.
+    /// The surface nearest to a point, with the shape in a pose.
     #[inline]
     pub(super) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
         let offset = point - Vec3::from(pose.translation);
@@ -208,7 +209,7 @@ impl ColliderShape {
 
 fn around(offset: Vec3, radius: f32) -> Nearest {
     let distance = offset.length();
-    // A particle in the very centre may leave either way.
+    // A particle exactly at the centre may leave in any direction.
     let normal = if distance > 0.0 {
         offset / distance
     } else {

@@ -1,4 +1,4 @@
-//! What is known of particles and triangles near a shape from an earlier sub-step, so that most are not tested again.
+//! A cache of earlier tests near a shape, so that most particles and triangles are not tested again.
 
 use std::ops::Range;
 
@@ -14,35 +14,35 @@ use super::{
 };
 use crate::cloth::ClothParticles;
 
-/// What is known of each candidate of a tick. Only kept for what has edges: it stays empty in a scene without.
+/// The cache of each candidate of a tick. Only used for shapes with edges; empty in a scene without them.
 #[derive(Debug, Default, Clone)]
 pub(super) struct ShapeCache {
     particles: Vec<KnownParticle>,
-    /// How far anything may have moved before the triangles of a candidate can touch an edge (m), as `travelled` counts it.
+    /// Displacement of anything before a candidate's triangles can touch an edge (m), on the scale of `travelled`.
     clear: Vec<f32>,
-    /// How far any particle may have moved since the candidates were found (m).
+    /// Largest displacement of any particle since the search (m).
     pub travelled: f32,
-    /// What is known of edges, whichever tick it is.
+    /// Memories of edges, across ticks.
     pub memories: EdgeMemories,
     view: FanView,
 }
 
 impl ShapeCache {
-    /// Forgets all: the candidates are others.
+    /// Clears everything for other candidates.
     pub fn clear(&mut self) {
         self.particles.clear();
         self.clear.clear();
         self.travelled = 0.0;
     }
 
-    /// Forgets all that is known of edges.
+    /// Clears the memory of edges.
     #[cfg(test)]
     pub fn forget_edges(&mut self) {
         self.memories.forget();
         self.clear.fill(f32::NEG_INFINITY);
     }
 
-    /// Makes room for so many candidates.
+    /// Resizes for a number of candidates.
     pub fn make_room(&mut self, candidates: usize) {
         if self.clear.len() < candidates {
             self.particles.resize(candidates, KnownParticle::default());
@@ -50,8 +50,8 @@ impl ShapeCache {
         }
     }
 
-    /// What is known of some of them, and of the edges, where triangles are tested, of a collider of a number and a shape, on a cloth of
-    /// so many particles.
+    /// The cache of some candidates of a collider, with its memory of edges where triangles are tested. The collider
+    /// has an ID and a shape, and the cloth a number of particles.
     pub fn of(
         &mut self,
         candidates: Range<usize>,
@@ -68,7 +68,7 @@ impl ShapeCache {
     }
 }
 
-/// What is known of a collider's candidates.
+/// The cache of a collider's candidates.
 pub(super) struct Known<'a> {
     particles: &'a mut [KnownParticle],
     clear: &'a mut [f32],
@@ -77,7 +77,8 @@ pub(super) struct Known<'a> {
     view: &'a mut FanView,
 }
 
-/// Pushes particles out of a shape with edges and, with the fans and the spacing (m) of its triangles, those off its edges.
+/// Pushes particles out of a shape with edges. With the fans and the spacing (m) of its triangles, pushes those off its
+/// edges, too.
 pub(super) fn push_shape(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,

@@ -1,7 +1,7 @@
-//! Triangles against what comes through them between particles: the sharp edges and corners of a shape.
+//! Tests of triangles against sharp edges and corners of a shape, which pass between particles.
 //!
-//! A triangle whose corners are all outside of a solid can only come to cut it where one of the solid's edges comes through
-//! the triangle. So beside the particles only edges are tested, and of flat surfaces nothing.
+//! A triangle whose corners are all outside a solid can only intersect it where one of the solid's edges passes through
+//! the triangle. So only edges are tested beside the particles, and nothing for flat surfaces.
 
 use bevy::math::{Isometry3d, Vec3};
 
@@ -23,33 +23,33 @@ use crate::{
     solver::SubStep,
 };
 
-/// Triangles keep at least this part of a spacing from edges, for particles without a radius.
+/// Smallest distance of triangles from edges for particles without a radius, in spacings.
 const SKIN: f32 = 0.02;
-/// Edges are remembered that are farther than a triangle reaches by this part of a spacing, or by what it reaches itself.
+/// Edges are remembered up to this fraction of a spacing beyond a triangle's reach, or up to the reach itself.
 const SLACK: f32 = 0.25;
-/// How many times as far as a triangle's point one of its corners is pushed at most.
+/// Largest push of a corner, relative to that of a triangle's point.
 const MAX_SHARE: f32 = 2.0;
 
-/// A shape's way through a sub-step, as triangles are tested against its edges.
+/// A shape's motion in a sub-step, for tests of triangles against its edges.
 pub(super) struct EdgeMotion<'a> {
     pub collider: &'a MovingCollider,
     pub settings: &'a ContactSettings,
     pub substep: SubStep,
-    /// How near an edge may come (m), and for how much more it is remembered.
+    /// Distance at which an edge touches (m), and the additional distance up to which it is remembered.
     reach: f32,
     near: Nearness,
     pose: Isometry3d,
     frame: Frame,
-    /// How far it moves in the sub-step, and any of its points turns (m).
+    /// Its displacement in the sub-step, and the largest one of any of its points by rotation (m).
     slide: Vec3,
     swing: f32,
     push_out: PushOut,
-    /// How far its surface has moved in the tick (m).
+    /// Displacement of its surface in the tick so far (m).
     carried: f32,
 }
 
 impl<'a> EdgeMotion<'a> {
-    /// On a cloth of a spacing (m), whose particles have moved so far since they were searched for (m), in a tick.
+    /// On a cloth with a spacing (m), whose particles have moved by `travelled` since the search (m), in a tick.
     pub fn new(pushing: &Pushing<'a>, spacing: f32, travelled: f32, tick: u32) -> Self {
         let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
         let count = substep.count as f32;
@@ -76,7 +76,7 @@ impl<'a> EdgeMotion<'a> {
         }
     }
 
-    /// What is tested on its way as it moved so far past the shape in the sub-step (m); 0 if it is not.
+    /// Displacement relative to the shape for the swept test (m); 0 without one.
     #[inline]
     fn swept(&self, speed: f32) -> f32 {
         if self.settings.is_swept && speed > self.reach / 2.0 && speed.is_finite() {
@@ -86,7 +86,7 @@ impl<'a> EdgeMotion<'a> {
         }
     }
 
-    /// Where the nearest edge was when a fast triangle first came to it.
+    /// The nearest edge at the first contact of a fast triangle.
     fn hit(&self, corners: &Corners) -> Option<(Vec3, Vec3)> {
         let speeds = corners.displacements;
         let speeds = speeds.map(|displacement| (displacement - self.slide).length());
@@ -106,7 +106,7 @@ impl<'a> EdgeMotion<'a> {
             let (distance, offset, centre) = nearest_edge(&self.collider.shape, triangle, around);
             (distance, pose.rotation * offset, pose * centre)
         };
-        // From what cut an edge already, nobody knows from which side it came.
+        // For an edge that cut the triangle already, the original side is unknown.
         if closest(0.0).0 < self.reach / 2.0 {
             return None;
         }
@@ -119,8 +119,8 @@ impl<'a> EdgeMotion<'a> {
     }
 }
 
-/// Pushes triangles off the edges of a shape that come through them, by moving their corners as much as they have a part in
-/// the point, and mass allows. `clear` says until when a candidate's triangles can't touch any.
+/// Pushes triangles off the edges of a shape that pass through them. Moves their corners by their weights and their
+/// inverse masses. `clear` stores the displacement before a candidate's triangles can touch any.
 pub(super) fn push_off_edges(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
@@ -129,7 +129,7 @@ pub(super) fn push_off_edges(
     motion: &EdgeMotion,
 ) -> Found {
     let mut found = Found::default();
-    // The farthest that one triangle has pushed (m).
+    // Largest push by one triangle (m).
     let mut farthest = 0.0_f32;
     memory.match_reach(motion.near);
     let candidates = pushing.candidates;
@@ -159,10 +159,10 @@ pub(super) fn push_off_edges(
     found
 }
 
-/// A candidate, the corners of its triangles, and these.
+/// A candidate, the corners of its triangles, and the triangles.
 type Fan<'a> = (&'a Candidate, &'a [Slot], &'a [[Slot; 3]]);
 
-/// Pushes the triangles that a candidate stands for. Returns how far everything may move before one of them can touch an
+/// Pushes the triangles that a candidate owns. Returns the displacement of everything before one of them can touch an
 /// edge (m); 0 if one does.
 fn push_fan(
     particles: &mut ClothParticles,
@@ -212,7 +212,7 @@ fn push_fan(
     room
 }
 
-/// Pushes a triangle's point along its normal. Returns how far the farthest corner has moved, and how deep it was (m).
+/// Pushes a triangle's point along its normal. Returns the largest displacement of a corner and the depth (m).
 fn push_point(
     particles: &mut ClothParticles,
     corners: &Corners,
@@ -228,7 +228,7 @@ fn push_point(
     let normal = motion.pose.rotation * normal;
     let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
     let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
-    // One that hardly has a part, beside pins, can't make up for them: it would be thrown away.
+    // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
     let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
     if mobility == 0.0 {
         return (0.0, depth);
@@ -257,8 +257,8 @@ fn push_point(
     (farthest, depth)
 }
 
-/// Pushes each corner of a triangle in front of the plane of a point that it hit. Returns how far the farthest has moved,
-/// and how deep it was (m).
+/// Pushes each corner of a triangle in front of the plane at its hit. Returns the largest displacement and the depth
+/// (m).
 fn push_in_front(
     particles: &mut ClothParticles,
     corners: &Corners,

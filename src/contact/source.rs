@@ -1,4 +1,4 @@
-//! What shapes that are more than a formula are made from.
+//! Sources of complex shapes.
 
 use std::sync::{Arc, OnceLock};
 
@@ -17,8 +17,8 @@ use super::{
 };
 use crate::cloth::ClothError;
 
-/// A shape of many points, before the transform's scale. Clones share it, and what is built of it: cloning it
-/// costs nothing, and the clones are equal.
+/// A shape of many points, before the transform's scale. Clones share it and the geometry built from it: cloning is
+/// cheap, and clones are equal.
 #[derive(Reflect, Debug, Clone)]
 #[reflect(opaque, Debug, Clone, PartialEq)]
 pub struct SharedCollider(Arc<Made>);
@@ -26,13 +26,13 @@ pub struct SharedCollider(Arc<Made>);
 #[derive(Debug)]
 struct Made {
     source: Source,
-    /// What came of it at the first scale at which anything did.
+    /// The result for the first valid scale.
     built: OnceLock<(Vec3, ColliderShape)>,
 }
 
 #[derive(Debug)]
 enum Source {
-    /// Of a file, which can't hold any of these.
+    /// Loaded from a file, which cannot store any of these.
     Nothing,
     Hull(Vec<Vec3>),
     Triangles(Vec<Vec3>, Vec<[u32; 3]>),
@@ -41,7 +41,7 @@ enum Source {
         columns: usize,
         size: Vec3,
     },
-    /// As large as it is in the world, whatever the transform's scale.
+    /// In world units, whatever the transform's scale.
     Parry(SharedShape),
 }
 
@@ -52,7 +52,7 @@ impl PartialEq for SharedCollider {
 }
 
 impl Default for SharedCollider {
-    /// What is left of any in a scene file: a fault.
+    /// The value loaded from a scene file: a fault.
     fn default() -> Self {
         Self::new(Source::Nothing)
     }
@@ -86,18 +86,18 @@ impl SharedCollider {
         Self::new(Source::Parry(shape))
     }
 
-    /// Whether it is this very shape of parry's.
+    /// Whether it is this same shape of parry.
     #[cfg(feature = "rapier")]
     pub(crate) fn is_of(&self, shape: &SharedShape) -> bool {
         matches!(&self.0.source, Source::Parry(own) if Arc::ptr_eq(&own.0, &shape.0))
     }
 
-    /// The shape under a scale: built once for the first that is asked for and that it can have, and shared by all clones; anew for
-    /// any other.
+    /// The shape under a scale. The first valid scale is built once and shared by all clones; any other is built each
+    /// time.
     pub(super) fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         check_scale(scale)?;
         if let Some((first, built)) = self.0.built.get()
-            // Two scales are one to the rounding of a transform.
+            // Two scales are equal up to the rounding of a transform.
             && (first.abs_diff_eq(scale, 1.0e-5 * first.length()) || self.is_world_sized())
         {
             return Ok(built.clone());
@@ -111,7 +111,7 @@ impl SharedCollider {
         matches!(self.0.source, Source::Parry(_))
     }
 
-    /// Where its frame is in the collider's: what parry turns or moves within a shape that we do not.
+    /// Pose of its frame in the collider's frame, for poses inside a parry shape that ours do not have.
     pub(super) fn offset(&self) -> Isometry3d {
         match &self.0.source {
             Source::Parry(shape) => upright(shape).map_or(Isometry3d::IDENTITY, |(pose, _)| pose),
@@ -126,7 +126,8 @@ impl Source {
         match self {
             Self::Nothing => {
                 return Err(ClothError::NoSuchShape {
-                    shape: "points or triangles that code has given, which no file holds".into(),
+                    shape: "points or triangles given in code, which a scene file cannot store"
+                        .into(),
                 });
             }
             Self::Hull(points) => {
@@ -154,10 +155,10 @@ impl Source {
     }
 }
 
-/// Whether something can be scaled so.
+/// Checks that a shape can have this scale.
 ///
 /// # Errors
-/// [`ClothError::Quantity`] of a scale that is zero or not finite.
+/// [`ClothError::Quantity`] for a scale that is zero or not finite.
 pub(super) fn check_scale(scale: Vec3) -> Result<(), ClothError> {
     let is_scale = |scale: f32| scale != 0.0 && scale.is_finite();
     for scale in scale.to_array() {
@@ -166,7 +167,7 @@ pub(super) fn check_scale(scale: Vec3) -> Result<(), ClothError> {
     Ok(())
 }
 
-/// A shape of parry's that is one of our fast ones, in a pose.
+/// A parry shape as one of our analytic shapes, with its pose.
 fn upright(shape: &SharedShape) -> Option<(Isometry3d, ColliderShape)> {
     let along_y = |direction: Vec3| bevy::math::Quat::from_rotation_arc(Vec3::Y, direction);
     match shape.as_typed_shape() {
@@ -201,7 +202,7 @@ fn upright(shape: &SharedShape) -> Option<(Isometry3d, ColliderShape)> {
 /// The triangles of a height field: rows along z and columns along x, around the origin.
 ///
 /// # Errors
-/// [`ClothError::HeightFieldSize`] unless there are two rows and columns, and a height for each of their crossings.
+/// [`ClothError::HeightFieldSize`] unless there are at least two rows and columns, and a height at each crossing.
 fn height_field(
     heights: &[f32],
     columns: usize,
@@ -241,7 +242,7 @@ fn height_field(
 mod tests {
     use super::*;
 
-    /// A scale that can't be has no say in what comes of another.
+    /// An invalid scale does not affect a valid one.
     #[test]
     fn a_bad_scale_is_not_remembered() {
         let ball = SharedCollider::parry(SharedShape::ball(0.5));

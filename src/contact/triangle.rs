@@ -1,15 +1,15 @@
-//! The nearest points of a triangle and a point or a segment.
+//! Nearest points between a triangle and a point or a segment.
 
 use bevy::math::Vec3;
 
 /// The nearest points of a triangle and a core.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NearestPoints {
-    /// Parts of the triangle's corners in its point; they add up to 1.
+    /// Barycentric weights of the triangle's point; their sum is 1.
     pub weights: [f32; 3],
-    /// From the core's point to the triangle's (m).
+    /// Vector from the core's point to the triangle's (m).
     pub offset: Vec3,
-    /// Distance of the core's point along the segment, from 0 to 1.
+    /// Position of the core's point along the segment, from 0 to 1.
     pub along: f32,
 }
 
@@ -23,20 +23,20 @@ impl NearestPoints {
     }
 }
 
-/// A point of the triangle.
+/// The point of the triangle with these weights.
 pub(super) fn at([a, b, c]: [Vec3; 3], [u, v, w]: [f32; 3]) -> Vec3 {
     a * u + b * v + c * w
 }
 
-/// Weights of the point of a triangle that is nearest to `point`: of the Voronoi region that it is in, of a corner,
-/// an edge or the face (Ericson 2005, chapter 5).
+/// Weights of the point of a triangle that is nearest to `point`, by its Voronoi region: a corner, an edge or the face
+/// (Ericson 2005, chapter 5).
 pub(super) fn nearest_to_point([a, b, c]: [Vec3; 3], point: Vec3) -> [f32; 3] {
     let (ab, ac) = (b - a, c - a);
     let longest = ab
         .length_squared()
         .max(ac.length_squared())
         .max(b.distance_squared(c));
-    // Of a line or a point, the regions are lost in rounding: the nearest of the edges.
+    // For a line or a point, rounding destroys the regions: the nearest of the edges.
     if ab.cross(ac).length_squared() <= 1.0e-9 * longest * longest {
         return nearest_of_edges([a, b, c], point);
     }
@@ -91,7 +91,7 @@ fn nearest_of_edges(triangle: [Vec3; 3], point: Vec3) -> [f32; 3] {
     nearest.0
 }
 
-/// An edge without length has parts of nothing.
+/// An edge of zero length gives 0.
 fn ratio(part: f32, whole: f32) -> f32 {
     if whole == 0.0 {
         0.0
@@ -126,7 +126,7 @@ pub(super) fn nearest(triangle: [Vec3; 3], [start, end]: [Vec3; 2]) -> NearestPo
             along: t,
         });
     }
-    // What goes through the face is nearest there.
+    // If the segment passes through the face, they are nearest there.
     let [a, b, c] = triangle;
     let normal = (b - a).cross(c - a);
     let (before, after) = ((start - a).dot(normal), (end - a).dot(normal));
@@ -143,7 +143,7 @@ pub(super) fn nearest(triangle: [Vec3; 3], [start, end]: [Vec3; 2]) -> NearestPo
     found
 }
 
-/// How far along two segments their nearest points are, from 0 to 1.
+/// Positions of the nearest points along two segments, from 0 to 1.
 pub(super) fn nearest_of_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f32, f32) {
     let (ab, cd, ca) = (b - a, d - c, a - c);
     let (aa, ee, f) = (ab.length_squared(), cd.length_squared(), cd.dot(ca));
@@ -169,8 +169,8 @@ pub(super) fn nearest_of_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f32,
     (s, clamped)
 }
 
-/// Area (m²) of the part of a triangle that is nearer than `radius` to a point of its plane: of sectors and triangles
-/// from that point, one pair an edge.
+/// Area (m²) of the part of a triangle within `radius` of a point of its plane: sectors and triangles from that point,
+/// one pair for each edge.
 pub(super) fn area_within(corners: [Vec3; 3], centre: Vec3, radius: f32) -> f32 {
     let [a, b, c] = corners;
     let Some(normal) = (b - a).cross(c - a).try_normalize() else {
@@ -194,8 +194,7 @@ pub(super) fn area_within(corners: [Vec3; 3], centre: Vec3, radius: f32) -> f32 
     (edge(a, b) + edge(b, c) + edge(c, a)).abs()
 }
 
-/// Area of the triangle inside of a ball (m²), and ∫ depth dA over it (m³) with the mean depth of a cap, half of its
-/// height.
+/// Area of the triangle inside a ball (m²), and ∫ depth dA over it (m³), with a cap's mean depth of half its height.
 pub(super) fn cap(corners: [Vec3; 3], centre: Vec3, radius: f32) -> (f32, f32) {
     let [a, b, c] = corners;
     let normal = (b - a).cross(c - a).normalize_or_zero();

@@ -8,22 +8,22 @@ use super::{
 };
 use crate::cloth::{ClothError, ClothParticles};
 
-/// The bounding volumes of a tree's nodes, of a kind and by a rule that are chosen as the program runs.
+/// The bounding volumes of a tree's nodes, with a volume type and a rule chosen at run time.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct NodeBounds {
     pub(super) volumes: Volumes,
-    /// Of the tree that they were last brought up to date for.
+    /// Size of the tree of the last update.
     size: [usize; 2],
 }
 
 impl NodeBounds {
-    /// Brings the volumes up to date with the particles. `stretch` is the largest over structural and shear
-    /// springs ([`Stretch::bound`](crate::solver::Stretch)).
+    /// Updates the volumes for the particles. `stretch` is the largest stretch of any structural or shear spring
+    /// ([`Stretch::bound`](crate::solver::Stretch)).
     ///
     /// # Errors
-    /// [`ClothError::NoSuchBounds`] if there is no such rule for the volume. Nothing is changed then.
+    /// [`ClothError::NoSuchBounds`] if the volume does not support the rule. Nothing changes then.
     pub fn rebuild(
         &mut self,
         (volume, rule): (BoundingVolume, BoundRule),
@@ -41,23 +41,23 @@ impl NodeBounds {
         Ok(())
     }
 
-    /// Whether they are those of a tree as large as this. Those of the rest shape belong to any tree.
+    /// Whether they belong to a tree of this size. Those of the rest shape belong to any tree.
     pub(super) fn matches(&self, tree: &QuadTree) -> bool {
         self.rule() == BoundRule::RestShape || self.size == tree.size()
     }
 
-    /// The kind of volume.
+    /// The type of the volumes.
     pub fn volume(&self) -> BoundingVolume {
         self.volumes.kind()
     }
 
-    /// The rule by which the volumes were last brought up to date.
+    /// The rule of the last update.
     pub fn rule(&self) -> BoundRule {
         each!(&self.volumes, bounds => bounds.rule)
     }
 
-    /// The volume of a node around the whole of its particles, which are of a radius (m), in the cloth's frame. The
-    /// paper's volumes are as large as they are, whatever its particles.
+    /// The volume of a node around its particles, including their radius (m), in the cloth's frame. Volumes by `Paper`
+    /// ignore the radius.
     pub fn node(
         &self,
         tree: &QuadTree,
@@ -74,11 +74,11 @@ impl NodeBounds {
             .inflated(radius)
     }
 
-    /// Whether each node's volume holds its particles' centres and, under `Refit`, its children's volumes. Under
-    /// `Paper` that often does not hold.
+    /// Checks that each node's volume contains its particles' centres and, under `Refit`, its children's volumes. Under
+    /// `Paper` this often fails.
     ///
     /// # Errors
-    /// A sentence that names the node at fault.
+    /// A message that names the node at fault.
     pub fn validate(&self, tree: &QuadTree, particles: &ClothParticles) -> Result<(), String> {
         let volume_of = |node| tree.shape().volume(&self.volumes, particles, node);
         for node in 0..tree.len() as u32 {

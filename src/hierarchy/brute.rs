@@ -1,10 +1,10 @@
-//! The search without a tree, in f64: what every query is held against.
+//! The search without a tree, in f64: the reference for every query.
 
 use crate::cloth::ClothParticles;
 
 use super::Probe;
 
-/// Indices of all particles that `probe` meets, found one by one in f64.
+/// Returns the indices of all particles that `probe` meets, tested one by one in f64.
 pub fn brute_force(particles: &ClothParticles, probe: &Probe) -> Vec<u32> {
     let meets = |&(_, position): &(usize, _)| probe.meets(position);
     let positions = particles.positions().enumerate();

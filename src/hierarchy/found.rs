@@ -1,14 +1,14 @@
-//! What a top-down search finds.
+//! Results of a top-down search.
 
 use bevy::reflect::Reflect;
 
-/// What searches have found, and memory for the next one.
+/// Results of searches, and memory for the next one.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 pub(crate) struct Found {
-    /// Nodes in the order in which they were looked at, and whether they touched.
+    /// Nodes in the order of the tests, and whether they touched.
     pub visits: Vec<(u32, bool)>,
-    /// Children of touching nodes on the level that is looked at, and on the next: from and to which row, from and to
-    /// which column; of nodes that are stored one by one, from and to which.
+    /// Children of touching nodes on the current level, and on the next: their ranges of rows and of columns. For
+    /// stored nodes, their range of indices.
     pub frontier: [Vec<[u32; 4]>; 2],
     pub candidates: Vec<u32>,
     pub leaf_tests: usize,

@@ -1,4 +1,4 @@
-//! How a cloth is searched, and the choice where nobody asked.
+//! Search methods, and the automatic choice between them.
 
 use std::fmt;
 
@@ -10,15 +10,15 @@ use bevy::{
 use super::{BoundRule, BoundingVolume};
 use crate::cloth::ClothError;
 
-/// A cloth of fewer particles is scanned rather than searched: at 64 × 64 a scan of all particles, eight at a time,
-/// takes as long as the search of the tree (`cargo bench --profile dev --bench hierarchy`).
+/// A cloth with fewer particles is scanned. At 64 × 64, a scan of all particles, eight at a time, takes as long as the
+/// search of the tree (`cargo bench --profile dev --bench hierarchy`).
 pub const SEARCH_FROM: usize = 64 * 64;
 
-/// With a collider near for this many particles or fewer, a refit pays: at 256 × 256 from 100 balls on.
+/// A refit pays from one nearby collider for this many particles on: at 256 × 256, from 100 balls on.
 const PARTICLES_A_COLLIDER: f32 = 600.0;
 
-/// How the particles are found that a collider may touch. Whatever is asked for, the same are found, [`Paper`]'s
-/// rule excepted.
+/// The method that finds the particles that a collider may touch. All methods find the same particles, except
+/// that the rule [`Paper`] misses some.
 ///
 /// [`Paper`]: BoundRule::Paper
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
@@ -26,12 +26,12 @@ const PARTICLES_A_COLLIDER: f32 = 600.0;
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 #[non_exhaustive]
 pub enum SearchMethod {
-    /// Whatever costs least, by the number of particles and of colliders near.
+    /// The cheapest method, by the number of particles and of colliders near.
     #[default]
     Auto,
-    /// Every particle is tested, eight at a time.
+    /// Tests every particle, eight at a time.
     Scan,
-    /// Top down through the tree, with volumes of a kind and by a rule.
+    /// Searches the tree top down, with a volume type and a rule.
     Tree(BoundingVolume, BoundRule),
 }
 
@@ -52,7 +52,7 @@ impl SearchMethod {
         Self::Tree(BoundingVolume::Aabb, BoundRule::Paper),
     ];
 
-    /// The rule of the volumes that are searched, if any are.
+    /// The rule of the volumes, if the method uses any.
     pub fn rule(self) -> Option<BoundRule> {
         match self {
             Self::Tree(_, rule) => Some(rule),
@@ -60,10 +60,10 @@ impl SearchMethod {
         }
     }
 
-    /// Whether there is such a method.
+    /// Checks that the method exists.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchBounds`] for a volume without the rule.
+    /// [`ClothError::NoSuchBounds`] if the volume does not support the rule.
     pub fn validate(self) -> Result<(), ClothError> {
         match self {
             Self::Tree(volume, rule) => rule.check(volume),
@@ -71,13 +71,13 @@ impl SearchMethod {
         }
     }
 
-    /// What costs least for this many particles and colliders near, at a stretch
-    /// ([`Stretch::bound`](crate::solver::Stretch)), if that is to be chosen; and why.
+    /// Resolves [`Auto`](Self::Auto) to the cheapest method, and returns the reason, too. The choice depends on the
+    /// number of particles, the number of colliders near, and the stretch ([`Stretch::bound`](crate::solver::Stretch)).
     pub fn chosen(self, particles: usize, near: usize, stretch: f32) -> (Self, SearchReason) {
         if self != Self::Auto {
             return (self, SearchReason::Asked);
         }
-        // What a search at rest radii looks at grows with their square.
+        // The number of nodes in a search at rest radii grows with the square of the radius.
         let looked_at = near as f32 * (1.0 + stretch) * (1.0 + stretch);
         if particles < SEARCH_FROM {
             (Self::Scan, SearchReason::FewParticles)
@@ -103,23 +103,23 @@ impl fmt::Display for SearchMethod {
     }
 }
 
-/// Why a cloth was searched as it was.
+/// The reason for a cloth's search method.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 #[non_exhaustive]
 pub enum SearchReason {
-    /// No collider was near: nothing was searched.
+    /// No collider was near: there was no search.
     #[default]
     NothingNear,
-    /// The cloth slept on: nothing moved that touches it.
+    /// The cloth slept: nothing that touches it moved.
     Asleep,
-    /// The game asked for it.
+    /// The game chose it.
     Asked,
-    /// There are so few particles that testing all costs least.
+    /// With few particles, testing all of them is cheapest.
     FewParticles,
-    /// There are so few colliders that volumes which cost nothing to keep are best.
+    /// With few colliders, volumes without an update are cheapest.
     FewColliders,
-    /// There are many colliders, or the cloth is stretched much: tight volumes are worth a refit.
+    /// With many colliders or a large stretch, tight volumes are worth a refit.
     ManyColliders,
 }
 

@@ -1,93 +1,96 @@
-//! Floor 1: how a cloth is *searched*: a quad-tree over the particles, bounding volumes, the top-down query.
+//! Floor 1: searching a cloth: a quadtree over the particles, bounding volumes, the top-down query.
 //!
 #![doc = include_str!("../../assets/hierarchy.svg")]
 //!
 //! # The tree
 //!
-//! A [`QuadTree`] parts the particles into patches, each into four at most, down to one particle a leaf. It
-//! depends on the rest shape alone and is made once.
+//! A [`QuadTree`] divides the particles into patches, and each patch into up to four, down to one particle in each
+//! leaf. It depends only on the rest shape and is built once.
 //!
-//! - *Grids.* Rows and columns are halved on each level. Nothing is stored a node: the halves of the rows and
-//!   those of the columns say all. Columns are split strip by strip first, and all strips are then halved
-//!   alike. So, where nodes are no wider than a strip, eight lanes hold eight nodes of one level, and one
-//!   instruction works on all of them.
-//! - *Meshes.* Any particles, joined by any springs. A patch is halved along its longest extent at rest, and each
-//!   half along its own. Where it is folded, its radius along the surface 1.5 times that through space, it is halved
-//!   by which of its two ends is nearer along the surface: the front of a sleeve soon shares few patches with its back.
-//!   Distances along the springs are shortest paths (Dijkstra 1959).
+//! - *Grids.* Rows and columns are halved on each level. No nodes are stored: the halves of the rows and columns define
+//!   them. Columns are first split into strips, and all strips are then halved alike. So, where nodes are no wider than
+//!   a strip, eight lanes hold eight nodes of one level, and one instruction works on all of them.
+//! - *Meshes.* Any particles, joined by any springs. A patch is halved along its longest extent at rest. A patch is
+//!   folded if its radius along the surface is at least 1.5 times that through space. Its particles are then
+//!   divided by the nearer of its two ends along the surface, so the front of a sleeve soon shares few patches with its
+//!   back. Distances along the springs are shortest paths (Dijkstra 1959).
 //!
-//! A node knows its *middle particle* *m*, and its *rest radius*: the largest distance at rest, along
-//! structural and shear springs, from *m* to a particle of its patch. Leaves, all on the last level, have 0.
+//! A node stores its *middle particle* *m*, and its *rest radius*: the largest distance at rest, along structural and
+//! shear springs, from *m* to a particle of its patch. Leaves are all on the last level and have the radius 0.
 //!
 //! # Top down
 //!
-//! A [`TopDownQuery`] looks at the root, and then, level by level, at the children of whatever touches the
-//! [`Probe`]. A node that it looks at is *visited*. It is *touching* if its volume is within reach of the
-//! probe, and otherwise *pruned*: nothing below it is looked at. A leaf that touches is tested by the paper's
-//! equation (4): its particle is a *candidate* if it is nearer to the probe's core than both radii together.
-//! That test is made in `f64`, and it is the one that [`brute_force`] makes. Volumes are computed in `f32`
-//! and err towards touching. So where no volume leaves a particle out, the candidates are those of brute
-//! force: no more, no fewer.
+//! A [`TopDownQuery`] tests the root, and then, level by level, the children of each node that touches the [`Probe`]. A
+//! tested node is *visited*. It is *touching* if its volume is within reach of the probe. Otherwise it is *pruned*, and
+//! nothing below it is tested. A touching leaf is tested by the paper's equation (4): its particle is a *candidate* if
+//! its distance from the probe's core is less than the sum of both radii.
+//!
+//! The leaf test uses `f64`, like [`brute_force`]. Volumes use `f32` and round towards touching. So if no volume misses
+//! a particle, the candidates equal those of brute force.
 //!
 //! # The rules
 //!
-//! A [`BoundRule`] says where the volumes are. `Paper`'s lengths are in spacings.
+//! A [`BoundRule`] defines the volumes. `Paper`'s lengths are in spacings.
 //!
-//! | rule | where the volume is | a tick costs | complete? |
+//! | rule | position of the volume | cost of a tick | complete? |
 //! |---|---|---|---|
-//! | `RestShape` | around *m*; rest radius × (1 + largest stretch) | one number a cloth | yes |
+//! | `RestShape` | around *m*; rest radius × (1 + largest stretch) | one number per cloth | yes |
 //! | `Refit` | around the children's volumes, bottom up | all particles and nodes | yes |
-//! | `Paper` | around the corners' mean; (longest side + 1)/2, halved a level | all nodes | **no** |
+//! | `Paper` | around the corners' mean; (longest side + 1)/2, halved on each level | all nodes | **no** |
 //!
-//! `Paper` is of grids; over a network `RestShape` takes its place. A sphere or an AABB may follow any rule,
-//! an OBB or a k-DOP only `Refit`.
+//! `Paper` is defined for grids; over a network `RestShape` replaces it. A sphere or an AABB supports all rules, an OBB
+//! or a k-DOP only `Refit`.
 //!
 //! # Nothing is missed
 //!
 //! **Theorem.** Under `RestShape`, every particle that the probe meets is among the candidates.
 //!
-//! *Proof.* Let a node have the middle particle *m*, and let *p* be any particle of its patch. Some path of
-//! structural and shear springs leads from *m* to *p* and is *d*(*m*, *p*) long at rest. Let *s* be the
-//! largest stretch over all of these springs. Each spring on the path is now no longer than its rest length ×
-//! (1 + *s*). By the triangle inequality along the path, |*x*ₘ − *x*ₚ| ≤ *d*(*m*, *p*) (1 + *s*) ≤ *r*: the
-//! node's sphere holds *p*, and so does the box around it. Now let the probe meet *p*: then a point of the
-//! volume is within reach of the core, and the node touches. This holds for the leaf of *p* and for each of
-//! its ancestors by itself, as the patch of each holds *p*. By induction from the root, which is always
-//! visited, all of them are visited and touch, and *p* passes the leaf's test. ∎ Nothing here needs a child's
-//! volume to be inside its parent's, and it need not be.
+//! *Proof.* Let a node have the middle particle *m*, and let *p* be any particle of its patch. Some path of structural
+//! and shear springs leads from *m* to *p*. Its length at rest is *d*(*m*, *p*). Let *s* be the largest stretch over
+//! all of these springs. Each spring on the path is now no longer than its rest length × (1 + *s*). The
+//! triangle inequality along the path gives |*x*ₘ − *x*ₚ| ≤ *d*(*m*, *p*) (1 + *s*) ≤ *r*. So the node's sphere contains
+//! *p*, and so does the box around it.
 //!
-//! What the proof assumes:
+//! Now let the probe meet *p*. Then a point of the volume is within reach of the core, and the node touches. The
+//! patches of the leaf of *p* and of all its ancestors contain *p*, so this holds for each of these nodes. By induction
+//! from the root, which is always visited, all of them are visited and touch, and *p* passes the leaf's test. ∎ The
+//! proof does not need a child's volume inside its parent's, and it may be outside.
 //!
-//! 1. *s* is measured on the positions that are searched. The solver's last sub-step measures it, after its
-//!    responses to contacts; where a game has written particles, it is measured again before the search.
-//! 2. The springs are there as listed, with rest lengths above 0. Where shear compliance is infinite there
-//!    are no diagonals: distances are along rows and columns. Where no path leads, the radius is infinite.
-//! 3. Rounding is on the safe side. Radii and reaches grow by 10⁻⁵ each, which is more than all roundings of
-//!    a bound and its test together. Leaves are tested in `f64`.
-//! 4. Within a tick, particles move on. The probe is the collider along all of its way, inflated by a
-//!    *margin*. The largest displacement of each sub-step and the largest pushes are added up. Where the sum
-//!    exceeds the margin, how far particles are from where they were searched is measured; if that exceeds it
-//!    too, all of them are searched again before anything else is done.
+//! The proof assumes:
 //!
-//! What need not hold: the cloth need not be flat, convex or smooth; it may be folded, crumpled, or passed
-//! through itself. A network's path may leave its patch, as *s* is that of the whole cloth.
+//! 1. *s* is measured on the searched positions. The solver's last sub-step measures it, after its responses to
+//!    contacts. If a game has written particles, it is measured again before the search.
+//! 2. The springs exist as listed, with rest lengths above 0. If shear compliance is infinite, there are no diagonals:
+//!    distances are along rows and columns. Without a path, the radius is infinite.
+//! 3. Rounding is on the safe side. Radii and reaches grow by 10⁻⁵ each, which exceeds all rounding errors of a bound
+//!    and its test together. Leaves are tested in `f64`.
+//! 4. Particles move within a tick. The probe is the collider along its whole path, inflated by a *margin*. The largest
+//!    displacement of each sub-step and the largest pushes are added up. If the sum exceeds the margin, the particles'
+//!    displacement since the search is measured. If that exceeds the margin, too, the search is repeated before anything
+//!    else is done.
 //!
-//! `Refit` is complete, too. A leaf's volume holds its particle. If the volumes of a node's children hold
-//! their particles, the node's, which holds the children's, holds them all. By induction every volume holds
+//! The proof does not assume that the cloth is flat, convex or smooth: it may be folded, crumpled, or intersect itself.
+//! A network's path may leave its patch, because *s* is that of the whole cloth.
+//!
+//! `Refit` is complete, too. A leaf's volume contains its particle. If the volumes of a node's children contain their
+//! particles, the node's volume, which contains the children's, contains them all. By induction every volume contains
 //! its patch.
 //!
-//! `Paper` is not. On level *l* of 2ᵏ × 2ᵏ particles, patches have *n* = 2ᵏ⁻ˡ a side and the radius (*n* +
-//! 2⁻ˡ)/2, but the corner of a flat one is (*n* − 1)/√2 from the mean. Of 16 × 16 the root has 8.5 where 7.5
-//! √2 = 10.61 is needed, and level 1 has 4.25 for 4.95; level 2 just suffices, 2.125 for 2.121. From 32 × 32
-//! on, every node of 4 × 4 or more falls short: all levels but the last two. A ball at the corner of such a
-//! patch is missed. Boxes of that half side hold flat patches along the axes on every level. They fail as
-//! spheres do where the patch is turned by 45° in its plane, where it is stretched by more than (1 +
-//! 2⁻ˡ)/(*n* − 1), 13 % for the root of 16 × 16, or where its corners' mean is far from its middle, as when
-//! it is folded along a diagonal.
+//! `Paper` is not complete. On level *l* of 2ᵏ × 2ᵏ particles, patches have *n* = 2ᵏ⁻ˡ particles a side and the radius
+//! (*n* + 2⁻ˡ)/2. But the corner of a flat patch is (*n* − 1)/√2 from the mean. For 16 × 16, the root has the radius
+//! 8.5 and needs 7.5 √2 = 10.61. Level 1 has 4.25 and needs 4.95; level 2 just suffices, with 2.125 for 2.121. From 32
+//! × 32 on, every node of 4 × 4 or more is too small: all levels but the last two. A ball at the corner of such a patch
+//! is missed.
+//!
+//! Boxes with that half side contain flat patches along the axes on every level. They fail like spheres in three cases:
+//!
+//! - The patch is rotated by 45° in its plane.
+//! - It is stretched by more than (1 + 2⁻ˡ)/(*n* − 1), 13 % for the root of 16 × 16.
+//! - Its corners' mean is far from its middle, as in a patch folded along a diagonal.
 //!
 //! # When each volume pays
 //!
-//! A ball of 4 spacings, a draped cloth of 256 × 256 particles, a core of a 2.8 GHz Xeon; a scan takes 25 µs.
+//! A ball of 4 spacings, a draped cloth of 256 × 256 particles, one core of a 2.8 GHz Xeon; a scan takes 25 µs.
 //!
 //! | volume, rule | rebuild (µs) | query (µs) | nodes visited |
 //! |---|---|---|---|
@@ -102,12 +105,13 @@
 //!
 //! `cargo bench --profile dev --bench hierarchy` prints these.
 //!
-//! For one ball, take spheres by the rest shape, at any size: a refit costs more than testing every particle.
-//! Below about 64 × 64 particles a scan of all of them, eight at a time, is as fast, and simpler. A refit is
-//! paid once a tick, a query once a collider. So from about one collider for every 600 particles on, AABBs by
-//! `Refit` pay. Stretch counts as colliders do: what a search at rest radii visits grows with (1 + *s*)².
-//! OBBs and k-DOPs fit closer than spheres do, but a node of theirs costs more to keep and to test than its
-//! pruning saves here; they are for comparison and study. [`SearchMethod::Auto`] chooses by these figures.
+//! For one ball, use spheres by the rest shape, at any size: a refit costs more than testing every particle. Below
+//! about 64 × 64 particles, a scan of all of them, eight at a time, is as fast, and simpler. A refit costs once per
+//! tick, a query once per collider. So AABBs by `Refit` pay from about one collider for every 600 particles on. Stretch
+//! counts like colliders: the number of nodes that a search at rest radii visits grows with (1 + *s*)².
+//!
+//! OBBs and k-DOPs fit closer than spheres. But a node of theirs costs more to update and to test than its pruning
+//! saves here; they are for comparison and study. [`SearchMethod::Auto`] chooses by these figures.
 
 mod bounds;
 mod brute;

@@ -1,4 +1,4 @@
-//! What a tree is searched for.
+//! Regions to search a tree for.
 
 use bevy::{
     math::{DQuat, DVec3, Isometry3d, Mat3, Vec3},
@@ -7,36 +7,36 @@ use bevy::{
 
 use crate::cloth::{LANES, View, X, Y, Z};
 
-/// What a length grows by so that rounding in `f32` never makes a bound too small. A bound and the test against
-/// it take fewer than 20 roundings of half an ε each; this is 84 ε.
+/// Factor on lengths, so that rounding in `f32` never makes a bound too small. A bound and its test take fewer than 20
+/// roundings of half an ε each; this is 84 ε.
 pub(crate) const ROUNDING: f32 = 1.0 + 1.0e-5;
 
-/// What a [`Probe`] is a neighbourhood of.
+/// The core of a [`Probe`].
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 pub enum Core {
     /// A point: the probe is a ball.
     Point(Vec3),
-    /// All points between two (m): the probe is a capsule.
+    /// A segment between two points (m): the probe is a capsule.
     Segment([Vec3; 2]),
-    /// A box: the probe is a rounded one.
+    /// A box: the probe is a rounded box.
     Cuboid {
         /// Its middle (m) and axes.
         pose: Isometry3d,
-        /// Half of its lengths along its axes (m).
+        /// Half of its side lengths along its axes (m).
         half_size: Vec3,
     },
-    /// All that is behind a plane.
+    /// A half-space.
     HalfSpace {
-        /// A point of the plane (m).
+        /// A point of its plane (m).
         point: Vec3,
-        /// Away from what is behind it, of length 1.
+        /// Outward normal, of length 1.
         normal: Vec3,
     },
 }
 
 impl Core {
-    /// Vector from the nearest point of the core to `point` (m), in `f64`. In a half-space it points inwards, and is
-    /// as long as the point is deep.
+    /// Vector from the nearest point of the core to `point` (m), in `f64`. In a half-space it points inwards, and its
+    /// length is the depth.
     fn offset(&self, point: Vec3) -> DVec3 {
         let point = point.as_dvec3();
         match *self {
@@ -45,7 +45,7 @@ impl Core {
                 let (a, b) = (a.as_dvec3(), b.as_dvec3());
                 let (offset, along) = (point - a, b - a);
                 let t = (offset.dot(along) / along.length_squared()).clamp(0.0, 1.0);
-                // A segment of no length is its first end.
+                // A segment of zero length is its first end.
                 if t > 0.0 { offset - along * t } else { offset }
             }
             Self::Cuboid { pose, half_size } => {
@@ -63,7 +63,7 @@ impl Core {
         }
     }
 
-    /// How far `point` is from the core (m), in `f64`: 0 inside, less than 0 behind a half-space's plane.
+    /// Distance of `point` from the core (m), in `f64`: 0 inside, negative inside a half-space.
     pub fn distance(&self, point: Vec3) -> f64 {
         let offset = self.offset(point);
         match self {
@@ -72,7 +72,7 @@ impl Core {
         }
     }
 
-    /// Length (m) to whose rounding a distance from this core is exact.
+    /// Length (m) that determines the rounding errors of a distance from this core.
     pub(crate) fn size(&self) -> f32 {
         match self {
             Self::Point(_) | Self::HalfSpace { .. } => 0.0,
@@ -81,7 +81,7 @@ impl Core {
         }
     }
 
-    /// Whether `point` may be within `reach` (m) of the core. Never says no where it is.
+    /// Whether `point` may be within `reach` (m) of the core. Never false if it is.
     #[inline(always)]
     pub(crate) fn may_reach(&self, point: Vec3, reach: f32) -> bool {
         match self {
@@ -100,7 +100,7 @@ impl Core {
             Self::Segment([a, b]) => {
                 let (offset, along) = (point - a, b - a);
                 let t = (offset.dot(along) / along.length_squared()).clamp(0.0, 1.0);
-                // A segment of no length is its first end.
+                // A segment of zero length is its first end.
                 let nearest = if t > 0.0 { along * t } else { Vec3::ZERO };
                 offset.distance_squared(nearest)
             }
@@ -117,7 +117,7 @@ impl Core {
         square <= reach * reach
     }
 
-    /// Whether [`may_reach`](Self::may_reach) holds for any of eight particles, in plain loops.
+    /// Whether [`may_reach`](Self::may_reach) is true for any of eight particles, in plain loops.
     #[inline(always)]
     pub(crate) fn may_reach_any(&self, view: &View, reach: f32) -> bool {
         let reach = reach * ROUNDING + self.size() * 1.0e-5;
@@ -186,8 +186,7 @@ impl Core {
         any
     }
 
-    /// From where to where the core reaches along `axis`, times its length (m); without end on a half-space's
-    /// inner side.
+    /// The interval of the core along `axis`, times the axis' length (m); unbounded on a half-space's inner side.
     pub(crate) fn interval(&self, axis: Vec3) -> (f32, f32) {
         match *self {
             Self::Point(centre) => (centre.dot(axis), centre.dot(axis)),
@@ -204,7 +203,7 @@ impl Core {
         }
     }
 
-    /// What is in the middle of the core (m), of a half-space on its plane.
+    /// The middle of the core (m); for a half-space, its point on the plane.
     pub fn middle(&self) -> Vec3 {
         match *self {
             Self::Point(centre) => centre,
@@ -215,20 +214,20 @@ impl Core {
     }
 }
 
-/// What is searched for, in the cloth's frame: all particles nearer to a core than a radius and their own.
+/// A region to search for, in the cloth's frame: all particles whose distance from a core is less than a radius and
+/// their own.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 pub struct Probe {
-    /// Of which it is the neighbourhood.
+    /// The core.
     pub core: Core,
-    /// How far the probe reaches around its core (m), with all that it is inflated by: how far it and the cloth
-    /// may move.
+    /// Radius around the core (m), including the margin for the motion of the collider and of the cloth.
     pub radius: f32,
     /// Radius of each particle (m).
     pub particle_radius: f32,
 }
 
 impl Probe {
-    /// A ball of `radius` around `centre` (m), for particles of a radius (m).
+    /// A ball of `radius` around `centre` (m), for particles of `particle_radius` (m).
     pub const fn ball(centre: Vec3, radius: f32, particle_radius: f32) -> Self {
         Self {
             core: Core::Point(centre),
@@ -237,13 +236,13 @@ impl Probe {
         }
     }
 
-    /// How near a particle's centre is to the core where the probe meets it (m).
+    /// Distance between core and particle centre below which the probe meets a particle (m).
     pub fn reach(&self) -> f64 {
         f64::from(self.radius) + f64::from(self.particle_radius)
     }
 
-    /// Equation (4): whether a particle at `position` is nearer to the core than both radii together. In `f64`, so
-    /// that it is the same wherever it is asked.
+    /// Equation (4): whether the distance of a particle at `position` from the core is less than the sum of both radii.
+    /// In `f64`, so that all callers get the same result.
     pub fn meets(&self, position: Vec3) -> bool {
         self.core.distance(position) < self.reach()
     }

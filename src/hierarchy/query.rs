@@ -7,36 +7,35 @@ use bevy::reflect::Reflect;
 use super::{NodeBounds, Probe, QuadTree, found::Found, scan::scan};
 use crate::cloth::ClothParticles;
 
-/// What the last search made of a node.
+/// The result of the last search for a node.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum NodeState {
-    /// An ancestor did not touch: the node was not looked at.
+    /// An ancestor did not touch: the node was not tested.
     #[default]
     Unvisited,
-    /// Looked at; no collider touches it, and its children were not looked at: pruned.
+    /// Tested and pruned: no collider touches it, and its children were not tested.
     Untouched,
-    /// Looked at; a collider touches it, or may within the tick.
+    /// Tested: a collider touches it, or may within the tick.
     Touching,
 }
 
-/// A top-down search through a tree, level by level, with what it found. Reused from tick to tick without
-/// allocating once it has grown.
+/// A top-down search through a tree, level by level, with its results. Reused from tick to tick; once it has grown, it
+/// does not allocate.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 pub struct TopDownQuery {
     found: Found,
 }
 
 impl TopDownQuery {
-    /// Forgets what was found.
+    /// Clears the results.
     pub fn clear(&mut self) {
         self.found.visits.clear();
         self.found.candidates.clear();
         self.found.leaf_tests = 0;
     }
 
-    /// Searches for `probe`, adds to what was found since [`clear`](Self::clear), and says which of the
-    /// [`candidates`](Self::candidates) are the probe's. The tree and the bounds must be those of the
-    /// particles: in others nothing is found.
+    /// Searches for `probe`, and appends to the results since [`clear`](Self::clear). Returns the range of the probe's
+    /// [`candidates`](Self::candidates). The tree and the bounds must belong to the particles, or nothing is found.
     pub fn search(
         &mut self,
         tree: &QuadTree,
@@ -52,7 +51,7 @@ impl TopDownQuery {
         first..self.found.candidates.len()
     }
 
-    /// Tests every particle instead, eight at a time: for cloths so small that a tree does not pay.
+    /// Tests every particle instead, eight at a time: for cloths too small for a tree.
     pub fn scan(&mut self, particles: &ClothParticles, probe: &Probe) -> Range<usize> {
         let first = self.found.candidates.len();
         scan(particles, probe, &mut self.found.candidates);
@@ -60,17 +59,17 @@ impl TopDownQuery {
         first..self.found.candidates.len()
     }
 
-    /// Particles that a probe meets, in the order of the searches.
+    /// Particles that the probes meet, in the order of the searches.
     pub fn candidates(&self) -> &[u32] {
         &self.found.candidates
     }
 
-    /// Nodes that were looked at, in that order, once for each search, and whether they touched.
+    /// Tested nodes in the order of the tests, once for each search, and whether they touched.
     pub fn visits(&self) -> &[(u32, bool)] {
         &self.found.visits
     }
 
-    /// What became of each node of the tree: touched by any collider is touched. Written to `states`.
+    /// Writes the state of each node of the tree to `states`. A node that any collider touches is `Touching`.
     pub fn states_into(&self, tree: &QuadTree, states: &mut Vec<NodeState>) {
         states.clear();
         states.resize(tree.len(), NodeState::Unvisited);
@@ -85,14 +84,14 @@ impl TopDownQuery {
         }
     }
 
-    /// What became of each node of the tree.
+    /// The state of each node of the tree.
     pub fn states(&self, tree: &QuadTree) -> Vec<NodeState> {
         let mut states = Vec::new();
         self.states_into(tree, &mut states);
         states
     }
 
-    /// Nodes of `level` that were looked at, once for each search, and those of them that touched.
+    /// Number of tested nodes of `level`, once for each search, and number of those that touched.
     pub fn level(&self, tree: &QuadTree, level: usize) -> (usize, usize) {
         let nodes = tree.levels().get(level).cloned().unwrap_or_default();
         let on_it = || {
@@ -107,12 +106,12 @@ impl TopDownQuery {
         )
     }
 
-    /// Nodes looked at since [`clear`](Self::clear), leaves included, once for each search.
+    /// Number of nodes tested since [`clear`](Self::clear), including leaves, once for each search.
     pub fn nodes_visited(&self) -> usize {
         self.found.visits.len()
     }
 
-    /// Particles tested: leaves among the nodes, and all of a scan's.
+    /// Number of particles tested: tested leaves, and all particles of a scan.
     pub fn leaf_tests(&self) -> usize {
         self.found.leaf_tests
     }

@@ -1,8 +1,8 @@
-//! `Refit` over a grid: eight nodes at a time, bottom up, from the particles' own blocks.
+//! `Refit` over a grid: eight nodes at a time, bottom up, from the particles' blocks.
 //!
-//! Lane `l` of a block is the particle of the `l`th strip of a row's columns, and all strips are halved alike. So
-//! what unites four blocks unites the particles of eight nodes, and what unites four of the results the nodes of
-//! eight parents, until a node is as wide as a strip.
+//! Lane `l` of a block is a particle of the `l`th strip of a row's columns, and all strips are halved alike. So uniting
+//! four blocks unites the particles of eight nodes. Uniting four of the results gives eight parents, until a node is as
+//! wide as a strip.
 
 use multiversion::multiversion;
 
@@ -15,15 +15,15 @@ use crate::cloth::Block;
 /// The volumes of all levels but the last, whose nodes are the particles.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RefitLevels<V: Volume> {
-    /// Of levels whose nodes are no wider than a strip, eight nodes each.
+    /// Levels whose nodes are no wider than a strip, in groups of eight nodes.
     lanes: Vec<Aligned<V::Lanes>>,
-    /// Of the levels above.
+    /// The levels above.
     nodes: Vec<V>,
-    /// Where each level begins in either.
+    /// Start of each level in either.
     first: Vec<usize>,
 }
 
-/// At the start of a cache line, as blocks of particles are: no eight numbers lie across two.
+/// Aligned to a cache line, like blocks of particles: no eight numbers cross a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 struct Aligned<T>(T);
@@ -39,7 +39,7 @@ impl<V: Volume> Default for RefitLevels<V> {
 }
 
 impl<V: Volume> RefitLevels<V> {
-    /// Brings all volumes up to date.
+    /// Updates all volumes.
     pub fn refit(&mut self, tree: &GridTree, blocks: &[Block]) {
         self.make_room(tree);
         let inner = &tree.levels[..tree.levels.len() - 1];
@@ -84,7 +84,7 @@ impl<V: Volume> RefitLevels<V> {
         self.nodes.resize(nodes, V::lane(&V::UNSET, 0));
     }
 
-    /// A row of nodes, and before it all rows below: they are still in the first cache then.
+    /// Updates a row of nodes, and before it all rows below, which are then still in the first-level cache.
     fn refit_row(&mut self, tree: &GridTree, blocks: &[Block], level: usize, row: usize) {
         let (at, below) = (&tree.levels[level], &tree.levels[level + 1]);
         let children = &at.rows[row].children;
@@ -107,7 +107,7 @@ impl<V: Volume> RefitLevels<V> {
             let of = |row: usize| &rest[row * width..(row + 1) * width];
             unite_row::<V>(out, &at.columns, of(upper), of(lower));
         }
-        // The last strip may end inside of a part: what that part of other strips has more of is not there.
+        // The last strip may end inside a part: it has fewer particles than that part of other strips.
         if let Some(part) = at
             .columns
             .last()

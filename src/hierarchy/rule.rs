@@ -1,25 +1,25 @@
-//! Where bounding volumes are, by three rules.
+//! Rules for bounding volumes.
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 use super::BoundingVolume;
 use crate::cloth::ClothError;
 
-/// How the bounding volumes of a tree's nodes come about.
+/// The rule that defines the bounding volumes of a tree's nodes.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 pub enum BoundRule {
-    /// The paper's Figure 4: the root's radius is (longest side + 1)/2 spacings, each level below has half of
-    /// its parent's. Around the mean of the patch's four corners. *Misses contacts*: the radius is less than
-    /// half of a square patch's diagonal. Of spheres, and of boxes whose half side it is; of grids.
+    /// The paper's Figure 4, around the mean of the patch's four corners. The root's radius is (longest side + 1)/2
+    /// spacings, and each level below has half of its parent's. *Misses contacts*: the radius is less than half of a
+    /// square patch's diagonal. Supports spheres, and boxes with that half side; for grids.
     Paper,
-    /// The smallest around the children's, computed bottom up each tick: tight, complete, at the cost of touching
-    /// every particle. Of every volume.
+    /// The smallest volume around the children's, computed bottom up each tick: tight and complete, but reads every
+    /// particle. Supports every volume.
     Refit,
-    /// Around the patch's middle particle; the radius is the largest distance at rest, along the springs, to a
-    /// particle of the patch, times 1 + the largest stretch present. Nothing is computed a node, and nothing
-    /// is missed ([proof](super#nothing-is-missed)). Of spheres, and of the boxes around them.
+    /// Around the patch's middle particle. The radius is the largest distance at rest, along the springs, to a particle
+    /// of the patch, times 1 + the current largest stretch. Needs no update of nodes, and misses nothing
+    /// ([proof](super#nothing-is-missed)). Supports spheres, and the boxes around them.
     #[default]
     RestShape,
 }
@@ -38,13 +38,13 @@ impl BoundRule {
         Self::ALL.iter().find(is_it).map_or("", |(name, _)| name)
     }
 
-    /// Whether there is such a rule for a volume: all can be refitted, spheres and AABBs follow the others, too.
+    /// Whether a volume supports the rule. All volumes support `Refit`; spheres and AABBs support all rules.
     pub fn matches(self, volume: BoundingVolume) -> bool {
         self == Self::Refit || matches!(volume, BoundingVolume::Sphere | BoundingVolume::Aabb)
     }
 
     /// # Errors
-    /// [`ClothError::NoSuchBounds`] if there is no such rule for the volume.
+    /// [`ClothError::NoSuchBounds`] if the volume does not support the rule.
     pub(super) fn check(self, volume: BoundingVolume) -> Result<(), ClothError> {
         if self.matches(volume) {
             return Ok(());

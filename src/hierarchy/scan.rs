@@ -20,7 +20,7 @@ fn scan_blocks(blocks: &[Block], layout: Layout, probe: &Probe, found: &mut Vec<
     }
 }
 
-/// Those of a block that the probe meets to the last digit.
+/// Appends the particles of a block that the probe meets exactly.
 #[cold]
 #[inline(never)]
 fn meet(block: &Block, index: usize, layout: Layout, probe: &Probe, found: &mut Vec<u32>) {

@@ -1,4 +1,4 @@
-//! What is stored of a tree's bounding volumes.
+//! Storage of a tree's bounding volumes.
 
 use bevy::math::{
     Vec3,
@@ -9,20 +9,20 @@ use super::{
     BoundRule, BoundingVolume, KDop, Obb, probe::ROUNDING, refit::RefitLevels, volume::Volume,
 };
 
-/// What a radius at rest grows by. Finite, so that a leaf's, 0 times this, is 0 whatever becomes of the cloth.
+/// Growth factor of a rest radius. Finite, so that a leaf's radius, 0 times this, is always 0.
 pub(super) fn growth(stretch: f32) -> f32 {
     ((1.0 + stretch) * ROUNDING).min(f32::MAX)
 }
 
-/// The bounding volumes of one kind.
+/// The bounding volumes of one type.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bounds<V: Volume> {
     pub rule: BoundRule,
-    /// Of `RestShape`: what a radius at rest grows by.
+    /// For `RestShape`: growth factor of a rest radius.
     pub growth: f32,
-    /// Of `Paper` each node's; of `Refit` those of nodes that are stored one by one.
+    /// For `Paper`, those of all nodes; for `Refit`, those of stored nodes.
     pub nodes: Vec<V>,
-    /// Of `Refit` over a grid.
+    /// For `Refit` over a grid.
     pub refit_levels: RefitLevels<V>,
 }
 
@@ -45,7 +45,7 @@ impl<V: Volume> Bounds<V> {
     }
 }
 
-/// One of the kinds, so that all that loops over nodes is compiled for it.
+/// Bounding volumes of one of the types, so that all loops over nodes are compiled for it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Volumes {
     Sphere(Bounds<BoundingSphere>),
@@ -62,7 +62,7 @@ impl Default for Volumes {
     }
 }
 
-/// Runs the same code for whichever kind it is.
+/// Runs the same code for any type.
 macro_rules! each {
     ($volumes:expr, $bounds:ident => $code:expr) => {{
         use $crate::hierarchy::stored::Volumes;
@@ -79,7 +79,7 @@ macro_rules! each {
 pub(super) use each;
 
 impl Volumes {
-    /// None yet, of a kind.
+    /// An empty set of a type.
     pub fn of(volume: BoundingVolume) -> Self {
         match volume {
             BoundingVolume::Sphere => Self::Sphere(Bounds::default()),
@@ -91,7 +91,7 @@ impl Volumes {
         }
     }
 
-    /// Which kind it is.
+    /// The type.
     pub fn kind(&self) -> BoundingVolume {
         match self {
             Self::Sphere(_) => BoundingVolume::Sphere,

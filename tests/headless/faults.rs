@@ -320,7 +320,7 @@ fn errors_read_well() {
         .expect_err("out of range");
     assert_eq!(
         error.to_string(),
-        "Row(3) is outside of a cloth of 4 columns × 3 rows"
+        "Row(3) is outside a cloth of 4 columns × 3 rows"
     );
     let mut app = app();
     let nowhere = Transform::from_xyz(f32::NAN, 1.0, 0.0);

@@ -8,7 +8,7 @@ use crate::{
     support::tick,
 };
 
-const UNSIMULATED: &str = "cloth \"early bird\" was spawned, and nothing moves it";
+const UNSIMULATED: &str = "cloth \"early bird\" was spawned without `DrapePlugins`";
 
 /// Cloths and colliders that were there before the plugin are simulated as any other, and those that come after; that
 /// there was no plugin is said once a world.

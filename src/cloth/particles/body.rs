@@ -5,8 +5,8 @@ use bevy::math::{Isometry3d, Vec3};
 use super::ClothParticles;
 
 impl ClothParticles {
-    /// Gives all particles the velocities of one rigid body that is moved `by` so much in `seconds`; none in no time. They stay where
-    /// they are.
+    /// Gives all particles the velocities of one rigid body that moves `by` this motion in `seconds`, or zero if
+    /// `seconds` is zero. Positions do not change.
     pub(crate) fn set_body_motion(&mut self, by: Isometry3d, seconds: f32) {
         let part = if seconds > 0.0 {
             self.substep / seconds

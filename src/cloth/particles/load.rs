@@ -4,33 +4,34 @@ use bevy::math::Vec3;
 
 use crate::cloth::{Block, Slot};
 
-/// What a body at rest is thrown up and down by: in a tick it gets its gravity at once, and cloth gives it back sub-step by sub-step. So
-/// it leaves particles by some sub-steps' pull, or by a part of the way that both go.
+/// Tolerance of a body's bounce at rest, in pulls of gravity. Gravity acts on a body once a tick, and the cloth returns
+/// that momentum sub-step by sub-step. So a resting body leaves its particles by a few sub-steps' pull, or by a
+/// fraction of their common motion.
 const SAME_PULLS: f32 = 64.0;
 const SAME_WAY: f32 = 0.1;
 
-/// A part of a body's mass that a particle carries while a sub-step's springs are solved: so they hold what lies on them, and not the
-/// particle alone.
+/// A part of a body's mass that a particle carries while the springs of a sub-step are solved. So the springs hold the
+/// body's weight as well as the particle's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Load {
     /// The particle.
     pub slot: Slot,
     /// Mass (kg).
     pub mass: f32,
-    /// Out of the body in that place, of length 1.
+    /// Outward normal of the body there, of length 1.
     pub normal: Vec3,
-    /// How far the body's surface there goes in the sub-step by itself (m).
+    /// Motion of the body's surface there in the sub-step, without the cloth (m).
     pub surface: Vec3,
-    /// What the sub-step moved it by, more than it would have gone (m).
+    /// Displacement that the sub-step added to `alone` (m).
     pub moved: Vec3,
-    /// As it would have gone (m).
+    /// Displacement without the springs (m).
     alone: Vec3,
-    /// Of the particle alone.
+    /// Inverse mass of the particle without the load.
     inverse_mass: f32,
 }
 
 impl Load {
-    /// Of a mass (kg) on a particle.
+    /// A load of a mass (kg) on a particle.
     pub fn new(slot: Slot, mass: f32, normal: Vec3, surface: Vec3) -> Self {
         Self {
             slot,
@@ -43,9 +44,10 @@ impl Load {
         }
     }
 
-    /// Puts it on its particle, which a sub-step has just been foreseen for: both go on with the momentum that they have together. `pull`
-    /// is what gravity alone moves a particle by in that (m): the body has its own, from whoever moves it. It goes as the body's surface does,
-    /// which so has a hold of the particle as by friction without a limit; a body that leaves the particle behind is not carried.
+    /// Adds the load to its particle after a sub-step's prediction: both continue with their common momentum. `pull` is
+    /// the displacement by gravity alone in the sub-step (m); the body already has its own from the physics engine. The
+    /// load moves with the body's surface and holds the particle like friction without a limit. A body that leaves the
+    /// particle is not carried.
     pub fn put_on(&mut self, blocks: &mut [Block], pull: Vec3) {
         let Slot { block, lane } = self.slot;
         let block = &mut blocks[block];
@@ -69,7 +71,7 @@ impl Load {
         block.set_inverse_mass(lane, self.inverse_mass * own_part);
     }
 
-    /// Takes it off, after the springs were solved.
+    /// Removes the load, after the springs were solved.
     pub fn take_off(&mut self, blocks: &mut [Block]) {
         let Slot { block, lane } = self.slot;
         if self.inverse_mass == 0.0 {

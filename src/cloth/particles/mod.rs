@@ -1,4 +1,4 @@
-//! The particles of a cloth, in columns.
+//! The particles of a cloth, as a structure of arrays.
 
 mod body;
 mod id;
@@ -26,20 +26,20 @@ pub(crate) use past::{Earlier, Past, StepKind};
 /// The sub-step that displacements span until the first tick says otherwise: 20 a tick of Bevy's 64 Hz.
 const DEFAULT_SUBSTEP: f32 = 1.0 / 1280.0;
 
-/// Sub-steps of first order after a particle was put somewhere else, or was given another mass.
+/// Sub-steps of first order after a particle's position or mass was set.
 const AFTER_A_JUMP: u32 = 3;
 
-/// The particles of a cloth: position, displacement and inverse mass, in columns of eight lanes.
+/// The particles of a cloth: position, displacement and inverse mass, stored as arrays of eight lanes.
 ///
-/// Those of a grid are in rows; those of a mesh are one row, in an order in which neighbours are near each other:
-/// [`Surface::particle_of_vertex`] says which particle a vertex is.
+/// The particles of a grid are in rows. Those of a mesh are in one row, ordered so that neighbours are near each other:
+/// [`Surface::particle_of_vertex`] gives the particle of a vertex.
 ///
-/// Everything is in metres in the cloth's own frame: the entity's global translation and rotation, with the
-/// scale already multiplied in. The state is (position, displacement) rather than two positions because
-/// position − previous position, taken from rounded numbers, loses gravity as steps shrink.
+/// Everything is in metres in the cloth's own frame: the entity's global translation and rotation, with the scale
+/// already applied. The state is (position, displacement) rather than two positions: the difference of two rounded
+/// positions loses gravity as steps shrink.
 ///
-/// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write between
-/// ticks; emptying it (`*particles = default()`) builds the cloth again at rest.
+/// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write it between ticks.
+/// To rebuild the cloth at rest, empty it: `*particles = default()`.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
@@ -49,7 +49,7 @@ pub struct ClothParticles {
     substep: f32,
     #[reflect(ignore)]
     past: Past,
-    /// What they carry in the coming sub-step; nothing between ticks.
+    /// Loads in the coming sub-step; empty between ticks.
     #[reflect(ignore)]
     #[cfg_attr(feature = "serialize", serde(skip))]
     loads: Vec<Load>,
@@ -68,10 +68,10 @@ impl Default for ClothParticles {
 }
 
 impl ClothParticles {
-    /// The particles of a surface, at rest, all of them free and with masses from `material`.
+    /// The particles of a surface at rest, all free, with masses from `material`.
     ///
     /// # Errors
-    /// A mass that a float can't hold or invert.
+    /// [`ClothError::Quantity`] for a particle mass outside 10⁻¹⁵ to 10¹⁵ kg.
     pub fn at_rest(surface: &Surface, material: &ClothMaterial) -> Result<Self, ClothError> {
         let mut particles = Self::of_layout(Layout::of(surface));
         for (&position, slot) in surface
@@ -85,11 +85,11 @@ impl ClothParticles {
         Ok(particles)
     }
 
-    /// Any particles, at rest: positions (m) and inverse masses (1/kg, 0 for a pinned one), in one row.
+    /// Particles at rest in one row, from positions (m) and inverse masses (1/kg, 0 for a pinned particle).
     ///
     /// # Errors
-    /// [`ClothError::ParticleCount`] if there are not as many of either;
-    /// [`ClothError::ParticleNotFinite`] for the first that is not.
+    /// [`ClothError::ParticleCount`] if the two slices differ in length; [`ClothError::ParticleNotFinite`] for the
+    /// first invalid particle.
     pub fn new(positions: &[Vec3], inverse_masses: &[f32]) -> Result<Self, ClothError> {
         if positions.len() != inverse_masses.len() {
             return Err(ClothError::ParticleCount {
@@ -123,22 +123,22 @@ impl ClothParticles {
         self.sound_layout().len()
     }
 
-    /// Whether there is no particle, as before the first tick.
+    /// Whether there are no particles, as before the first tick.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Particles a row.
+    /// Number of particles in a row.
     pub fn columns(&self) -> u32 {
         self.sound_layout().columns
     }
 
-    /// Particles a column.
+    /// Number of particles in a column.
     pub fn rows(&self) -> u32 {
         self.sound_layout().rows
     }
 
-    /// The index of a particle, if there is such a one.
+    /// The index of a particle, if it exists.
     pub fn index(&self, id: impl Into<ParticleId>) -> Option<usize> {
         let index = match id.into() {
             ParticleId::Index(index) => index,
@@ -161,8 +161,8 @@ impl ClothParticles {
             .map(|Slot { block, lane }| self.blocks[block].displacement(lane))
     }
 
-    /// Velocity (m/s): displacement over the sub-step that it spans and, where the displacement before is known, what
-    /// half a sub-step of the same acceleration adds to that.
+    /// Velocity (m/s): the displacement divided by its sub-step. If the previous displacement is known, half of the
+    /// last change is added (second order).
     pub fn velocity(&self, id: impl Into<ParticleId>) -> Option<Vec3> {
         let slot = self.slot(id)?;
         let moved = self.blocks[slot.block].displacement(slot.lane);
@@ -177,14 +177,14 @@ impl ClothParticles {
             .map(|Slot { block, lane }| self.blocks[block].inverse_mass(lane))
     }
 
-    /// Whether nothing but its pin moves the particle.
+    /// Whether the particle is pinned: only its pin moves it.
     pub fn is_pinned(&self, id: impl Into<ParticleId>) -> Option<bool> {
         self.inverse_mass(id)
             .map(|inverse_mass| inverse_mass == 0.0)
     }
 
-    /// Moves a particle (m); it keeps its velocity, and gets none from the jump. A pinned one stays where it
-    /// is put.
+    /// Moves a particle (m) and keeps its velocity: the jump itself adds none. A pinned particle stays at the new
+    /// position.
     ///
     /// # Errors
     /// [`ClothError::NoSuchParticle`].
@@ -227,7 +227,7 @@ impl ClothParticles {
         self.set_displacement(id, velocity * substep)
     }
 
-    /// Sets the inverse mass (1/kg); 0 pins the particle. Holds until the material or the pins change.
+    /// Sets the inverse mass (1/kg); 0 pins the particle. Lasts until the material or the pins change.
     ///
     /// # Errors
     /// [`ClothError::NoSuchParticle`].
@@ -265,11 +265,10 @@ impl ClothParticles {
         slots.map(move |Slot { block, lane }| of(&self.blocks[block], lane))
     }
 
-    /// Whether every number is finite, no length is beyond all measure (10¹⁸ m), and each inverse mass is from 0 to
-    /// 10¹⁵ 1/kg.
+    /// Checks that every number is finite, no length exceeds 10¹⁸ m, and each inverse mass is from 0 to 10¹⁵ 1/kg.
     ///
     /// # Errors
-    /// [`ClothError::ParticleNotFinite`] for the first particle that is not.
+    /// [`ClothError::ParticleNotFinite`] for the first invalid particle.
     pub fn validate(&self) -> Result<(), ClothError> {
         if self.survey().is_valid {
             return Ok(());
@@ -297,7 +296,7 @@ impl ClothParticles {
         })
     }
 
-    /// The largest speed of a particle (m/s).
+    /// The largest speed of any particle (m/s).
     pub fn largest_speed(&self) -> f32 {
         self.survey().largest_speed
     }

@@ -1,11 +1,11 @@
-//! What particles remember of their motion, for a method of second order.
+//! History of the particles' motion, for a second-order method.
 
 use bevy::math::Vec3;
 
 use crate::cloth::{Block, LANES, Lanes};
 
-/// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the one before, then of the one
-/// before that.
+/// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the later one, then of
+/// the earlier one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
@@ -19,7 +19,7 @@ impl Earlier {
         Vec3::from([0, 1, 2].map(|axis| self.0[axis][lane]))
     }
 
-    /// What the displacement of a particle in the sub-step before the last gained on the one before that (m).
+    /// The change of a particle's displacement from the earlier of these sub-steps to the later (m).
     pub fn gain(&self, lane: usize) -> Vec3 {
         Vec3::from([0, 1, 2].map(|axis| self.0[axis][lane] - self.0[axis + 3][lane]))
     }
@@ -29,15 +29,15 @@ impl Earlier {
 #[derive(Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Past {
-    /// Block by block; none where all is of first order.
+    /// One entry for each block; empty for a first-order method.
     pub blocks: Vec<Earlier>,
     /// Whether they are known.
     is_known: bool,
-    /// For how many sub-steps to come the past says nothing of the future.
+    /// Number of coming sub-steps in which the history is ignored.
     wait: u32,
     /// Whether there was a tick before.
     has_moved: bool,
-    /// After a change to shorter sub-steps.
+    /// Set after a change to shorter sub-steps.
     watch: Watch,
 }
 
@@ -45,38 +45,38 @@ pub(crate) struct Past {
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Watch {
-    /// How many are still to come.
+    /// Ticks left.
     ticks: u32,
-    /// Energy that was lost in those before, and may come back (J).
+    /// Energy lost in earlier ticks, which may return (J).
     lost: f64,
 }
 
-/// Of which order a sub-step is.
+/// The order of a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StepKind {
     /// Implicit Euler.
     First,
-    /// The first of second order, from position and velocity alone.
+    /// The first step of second order, from position and velocity alone.
     Start,
     /// BDF2.
     Second,
 }
 
 impl Past {
-    /// Forgets all but the velocity, and waits for nothing.
+    /// Forgets everything but the velocity, without first-order steps.
     pub fn end(&mut self, now: &mut [Block]) {
         self.restart(now, 1.0);
         self.wait = 0;
         self.watch = Watch::default();
     }
 
-    /// Forgets all, and lets this many sub-steps of first order pass first.
+    /// Forgets everything, and takes this many first-order sub-steps first.
     pub fn forget(&mut self, wait: u32) {
         self.is_known = false;
         self.wait = self.wait.max(wait);
     }
 
-    /// Of which order the coming sub-step is, if the second is wanted.
+    /// The order of the coming sub-step, if second order is enabled.
     pub fn next(&mut self, blocks: usize) -> StepKind {
         if self.blocks.len() != blocks {
             self.blocks.clear();
@@ -94,8 +94,8 @@ impl Past {
         StepKind::Start
     }
 
-    /// Forgets all but the velocity: displacements become what it makes of a sub-step `ratio` times as long, to second order
-    /// where the past is known.
+    /// Forgets everything but the velocity, and rescales displacements to a sub-step `ratio` times as long. Second
+    /// order where the history is known.
     pub fn restart(&mut self, now: &mut [Block], ratio: f32) {
         if !self.is_known || self.blocks.len() != now.len() {
             for moved in now.iter_mut().flat_map(Block::displacements_mut) {
@@ -111,7 +111,7 @@ impl Past {
                     let (before, first) = (earlier[axis][lane], earlier[axis + 3][lane]);
                     let now = &mut moved[axis * LANES + lane];
                     let [change, earlier] = [*now - before, before - first];
-                    // What changes to and fro is no acceleration.
+                    // Alternating changes are not an acceleration.
                     let steady = if change * earlier > 0.0 {
                         change.signum() * change.abs().min(earlier.abs())
                     } else {
@@ -128,19 +128,19 @@ impl Past {
         self.is_known.then_some(&self.blocks)
     }
 
-    /// Watches this many ticks from the coming one on, if there was motion before.
+    /// Watches this many ticks from the next one on, if there was motion before.
     pub fn watch(&mut self, ticks: u32) {
         if self.has_moved {
             self.watch.ticks = ticks;
         }
     }
 
-    /// A tick has passed.
+    /// Marks that a tick has passed.
     pub fn set_moved(&mut self) {
         self.has_moved = true;
     }
 
-    /// Energy that may come back in the coming tick (J), if it is watched; what comes after it has one tick less.
+    /// Energy that may return in the coming tick (J), if that tick is watched. Uses up one watched tick.
     pub fn next_watched(&mut self) -> Option<f64> {
         if self.watch.ticks == 0 {
             self.watch.lost = 0.0;
@@ -150,13 +150,13 @@ impl Past {
         Some(self.watch.lost)
     }
 
-    /// Energy that may come back (J).
+    /// Energy that may return (J).
     #[cfg(test)]
     pub fn lost(&self) -> f64 {
         self.watch.lost
     }
 
-    /// Has this much energy be what may come back (J).
+    /// Sets the energy that may return (J).
     pub fn set_lost(&mut self, lost: f64) {
         self.watch.lost = lost;
     }
@@ -175,7 +175,7 @@ impl Past {
         }
     }
 
-    /// Becomes what `other` is, in the memory that it has.
+    /// Copies `other` into the existing allocation.
     pub fn copy_from(&mut self, other: &Self) {
         self.blocks.clone_from(&other.blocks);
         (self.is_known, self.wait) = (other.is_known, other.wait);

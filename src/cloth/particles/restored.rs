@@ -1,10 +1,10 @@
-//! Particles that were read from a file, and put back.
+//! Validation of particles that were read from a file.
 
 use super::{ClothParticles, DEFAULT_SUBSTEP};
 use crate::cloth::{Block, Lanes, Layout, MAX_PARTICLES, W};
 
 impl ClothParticles {
-    /// Whether they lie in memory as so many columns and rows do, in what somebody has read from a file.
+    /// Whether the stored arrays fit the numbers of columns and rows.
     pub(crate) fn is_sound(&self) -> bool {
         let Layout { columns, rows, .. } = self.layout;
         let is_laid_out = columns
@@ -19,7 +19,8 @@ impl ClothParticles {
             && (is_empty && blocks == 0 || is_laid_out && blocks == self.layout.blocks())
     }
 
-    /// How they lie in memory; that of none, where a scene file or an inspector has written what can't be: they are built again.
+    /// The memory layout, or an empty one if a scene file or an inspector has written an invalid one. The particles are
+    /// then rebuilt.
     pub(super) fn sound_layout(&self) -> Layout {
         let Layout { columns, rows, .. } = self.layout;
         let is_sound =
@@ -31,7 +32,7 @@ impl ClothParticles {
         }
     }
 
-    /// Has them have stepped by as much as any, where what is written there can't be.
+    /// Replaces an invalid sub-step with the default.
     pub(crate) fn mend_substep(&mut self) {
         if !self.is_stepped() {
             self.substep = DEFAULT_SUBSTEP;
@@ -42,7 +43,7 @@ impl ClothParticles {
         self.substep > 0.0 && self.substep.is_finite()
     }
 
-    /// Whether two hold the same particles still, and give the others the same masses.
+    /// Whether both pin the same particles, and give the others the same masses.
     pub(crate) fn weigh_as(&self, other: &Self) -> bool {
         let masses = |block: &Block| -> Lanes {
             let view = block.view();

@@ -1,4 +1,4 @@
-//! What the solver and the plugin do to all particles at once.
+//! Operations of the solver and the plugin on all particles.
 
 use bevy::math::{DVec3, Isometry3d, Vec3, bounding::BoundingSphere};
 
@@ -7,13 +7,13 @@ use crate::cloth::{
     Block, ClothError, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, Surface, W, X, Y, Z,
 };
 
-/// Blocks that are compared at a time.
+/// Number of blocks compared at a time.
 const BLOCKS: usize = 64;
 
-/// What one pass over the particles finds.
+/// The result of one pass over the particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Survey {
-    /// Whether all is as [`ClothParticles::validate`] wants it.
+    /// Whether all particles pass [`ClothParticles::validate`].
     pub is_valid: bool,
     /// Speed of the fastest particle (m/s).
     pub largest_speed: f32,
@@ -23,7 +23,7 @@ impl ClothParticles {
     /// Sets the inverse masses from the surface's areas, the material's density and the pins.
     ///
     /// # Errors
-    /// A mass that a float can't hold or invert; a pin that names no particle. Nothing is changed then.
+    /// A particle mass outside 10⁻¹⁵ to 10¹⁵ kg; a pin that names no particle. Nothing changes then.
     pub(crate) fn assign_masses(
         &mut self,
         surface: &Surface,
@@ -41,8 +41,8 @@ impl ClothParticles {
         Ok(())
     }
 
-    /// Moves each particle that is neither pinned nor held off the surface at rest, by at most `unevenness` spacings: by a
-    /// number that its index gives, so that the same cloth begins the same.
+    /// Moves each free particle off the surface at rest, by at most `unevenness` spacings. The offset is a function of
+    /// the particle's index, so equal cloths begin equal.
     pub(crate) fn make_uneven(
         &mut self,
         surface: &Surface,
@@ -60,7 +60,7 @@ impl ClothParticles {
         }
     }
 
-    /// Has nothing but its pin move a particle.
+    /// Pins a particle: only its pin moves it.
     pub(crate) fn pin(&mut self, index: usize) {
         let slot = self.layout.slot_of(index);
         self.blocks[slot.block].set_inverse_mass(slot.lane, 0.0);
@@ -82,7 +82,7 @@ impl ClothParticles {
         Ok(())
     }
 
-    /// Looks at every particle once.
+    /// Checks every particle once.
     pub(crate) fn survey(&self) -> Survey {
         let mut valid = [true; LANES];
         let mut largest = [0.0_f32; LANES];
@@ -108,7 +108,7 @@ impl ClothParticles {
         }
     }
 
-    /// Masses of the lightest and of the heaviest particle that is free (kg); 0 where all are pinned.
+    /// Masses of the lightest and the heaviest free particle (kg); 0 if all are pinned.
     pub(crate) fn free_masses(&self) -> [f32; 2] {
         let free = self.inverse_masses().filter(|w| *w > 0.0);
         let ends = free.fold([0.0, f32::INFINITY], |[light, heavy]: [f32; 2], w| {
@@ -121,7 +121,7 @@ impl ClothParticles {
         }
     }
 
-    /// Whether they are as many as the surface has, and laid out alike.
+    /// Whether the number and the layout of the particles match the surface.
     pub(crate) fn matches(&self, surface: &Surface) -> bool {
         self.layout == Layout::of(surface) && self.blocks.len() == self.layout.blocks()
     }
@@ -132,17 +132,17 @@ impl ClothParticles {
         self.blocks[block].position(lane)
     }
 
-    /// How the particles lie in memory.
+    /// The memory layout.
     pub(crate) fn layout(&self) -> Layout {
         self.layout
     }
 
-    /// The memory that they lie in.
+    /// The blocks.
     pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
-    /// The memory that they lie in, and what they remember of their motion.
+    /// The blocks, and the particles' earlier displacements.
     pub(crate) fn blocks_and_past(&mut self) -> (&mut [Block], &mut [Earlier]) {
         (&mut self.blocks, &mut self.past.blocks)
     }
@@ -152,21 +152,21 @@ impl ClothParticles {
         self.past.known()
     }
 
-    /// What they remember of their motion.
+    /// The history of the motion.
     pub(crate) fn past_mut(&mut self) -> &mut Past {
         &mut self.past
     }
 
-    /// Of which order the coming sub-step is, if the second is wanted.
+    /// The order of the coming sub-step, if second order is enabled.
     pub(crate) fn next_step(&mut self) -> StepKind {
         self.past.next(self.blocks.len())
     }
 
-    /// Forgets the displacements before the last, and lets this many sub-steps of first order pass first.
+    /// Forgets the displacements before the last, and takes this many first-order sub-steps first.
     ///
-    /// Of second order, velocity is the last displacement and half of what it gained on the one before. Of a cloth that nothing
-    /// holds, all particles are given what that is in the mean: no momentum is forgotten. The gain is that of the sub-step
-    /// before, as the last displacement may hold a push.
+    /// In a second-order method, velocity is the last displacement plus half of its last change. In a cloth without
+    /// pins, all particles keep the mean of that change, so that momentum is conserved. The change is that of the
+    /// sub-step before, because the last displacement may contain a push.
     pub(crate) fn forget_past(&mut self, wait: u32) {
         if self.past.known().is_some() {
             let gained = self.mean_gain();
@@ -180,8 +180,8 @@ impl ClothParticles {
         self.past.forget(wait);
     }
 
-    /// What displacements gained from one sub-step to the next, before the last (m), in the mean over all masses; 0 if a particle is
-    /// pinned.
+    /// The mean change of displacements from one sub-step to the next, before the last (m), weighted by mass; 0 if a
+    /// particle is pinned.
     fn mean_gain(&self) -> Vec3 {
         let (mut sum, mut mass) = (DVec3::ZERO, 0.0);
         for Slot { block, lane } in self.layout.slots() {
@@ -196,7 +196,7 @@ impl ClothParticles {
         (sum / mass).as_vec3()
     }
 
-    /// Has a particle be faster by `displacement` a sub-step (m), at any time that is remembered.
+    /// Adds `displacement` per sub-step (m) to a particle's motion, in the history too.
     pub(crate) fn accelerate(&mut self, slot: Slot, displacement: Vec3) {
         let block = &mut self.blocks[slot.block];
         block.set_displacement(slot.lane, block.displacement(slot.lane) + displacement);
@@ -204,12 +204,12 @@ impl ClothParticles {
             .change(slot.block, slot.lane, |moved| moved + displacement);
     }
 
-    /// The memory that they lie in.
+    /// The blocks.
     pub(crate) fn blocks_mut(&mut self) -> &mut [Block] {
         &mut self.blocks
     }
 
-    /// Forgets what lanes that hold no particle have come to hold: NaN spreads into them.
+    /// Resets lanes that hold no particle: NaN may have spread into them.
     pub(crate) fn clear_padding(&mut self) {
         for index in 0..self.blocks.len() {
             let mut clean = Block::EMPTY;
@@ -226,7 +226,7 @@ impl ClothParticles {
         }
     }
 
-    /// Gives a particle the mass that surface and material give it.
+    /// Sets a particle's mass from surface and material.
     pub(crate) fn assign_mass(
         &mut self,
         index: usize,
@@ -239,7 +239,7 @@ impl ClothParticles {
         self.past.forget(AFTER_A_JUMP);
     }
 
-    /// Forgets what the pinned particles were moved by.
+    /// Sets the displacements of pinned particles to zero.
     pub(crate) fn zero_pin_displacements(&mut self) {
         for block in &mut self.blocks {
             let view = block.view_mut();
@@ -252,14 +252,14 @@ impl ClothParticles {
         }
     }
 
-    /// Has a pinned particle be at `position` when the sub-step ends.
+    /// Sets the position of a pinned particle at the end of the sub-step.
     pub(crate) fn set_pin_target(&mut self, index: usize, position: Vec3) {
         let Slot { block, lane } = self.layout.slot_of(index);
         let block = &mut self.blocks[block];
         block.set_displacement(lane, position - block.position(lane));
     }
 
-    /// Moves all particles as one body, velocities along with it.
+    /// Moves all particles as one body, and rotates their velocities.
     pub(crate) fn transform(&mut self, by: Isometry3d) {
         for slot in self.layout.slots() {
             let block = &mut self.blocks[slot.block];
@@ -270,7 +270,7 @@ impl ClothParticles {
         }
     }
 
-    /// Becomes what `other` is, in the memory that it has.
+    /// Copies `other` into the existing allocation.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.layout = other.layout;
         self.blocks.clone_from(&other.blocks);
@@ -279,14 +279,14 @@ impl ClothParticles {
         self.loads.clone_from(&other.loads);
     }
 
-    /// Becomes what `other` is, but for its past, in the memory that it has: for where particles were.
+    /// Copies `other` except its history into the existing allocation, as earlier positions.
     pub(crate) fn copy_places_from(&mut self, other: &Self) {
         self.layout = other.layout;
         self.blocks.clone_from(&other.blocks);
     }
 
-    /// How far the particle that is farthest from where it was in `other`, or was before its last displacement, is from
-    /// there (m). NaN if any is.
+    /// The largest distance of a particle from its position in `other`, now or before its last displacement (m). NaN if
+    /// any position is NaN.
     pub(crate) fn farthest_from(&self, other: &Self) -> f32 {
         let (mut largest, mut is_nan) = ([0.0_f32; LANES], [false; LANES]);
         for (block, was) in self.blocks.iter().zip(&other.blocks) {
@@ -314,16 +314,16 @@ impl ClothParticles {
         largest.into_iter().fold(0.0, f32::max).sqrt() * (1.0 + 1.0e-6)
     }
 
-    /// Whether no particle is farther than `reach` (m) from where it is in `other`: never of other particles, nor where
-    /// a position is NaN.
+    /// Whether every particle is within `reach` (m) of its position in `other`. False for different particles, or if a
+    /// position is NaN.
     pub(crate) fn stays_within(&self, reach: f32, other: &Self) -> bool {
         if self.layout != other.layout {
             return false;
         }
         let blocks = self.blocks.chunks(BLOCKS).zip(other.blocks.chunks(BLOCKS));
-        // What moves is mostly found out by the first few.
+        // The first few blocks usually show a motion.
         blocks.into_iter().all(|(now, before)| {
-            // NaN outlasts a sum, and an infinite square is no less.
+            // NaN survives a sum, and the square of infinity is infinite.
             let (mut largest, mut sum) = ([0.0_f32; LANES], [0.0_f32; LANES]);
             for (block, was) in now.iter().zip(before) {
                 let (view, was) = (block.view(), was.view());
@@ -345,7 +345,7 @@ impl ClothParticles {
         })
     }
 
-    /// A sphere around all of them (m).
+    /// A bounding sphere of all particles (m).
     pub(crate) fn bounding_sphere(&self) -> BoundingSphere {
         let low = self.positions().fold(Vec3::MAX, Vec3::min);
         let high = self.positions().fold(Vec3::MIN, Vec3::max);
@@ -353,7 +353,7 @@ impl ClothParticles {
         BoundingSphere::new(low.midpoint(high), radius.max(0.0))
     }
 
-    /// The farthest that a corner of a face is from the particle that stands for the face (m).
+    /// The largest distance from a particle to a corner of its faces (m).
     pub(crate) fn longest_face_reach(&self, surface: &Surface) -> f32 {
         let mut longest = 0.0_f32;
         for particle in 0..self.len() as u32 {
@@ -365,7 +365,7 @@ impl ClothParticles {
         longest.sqrt()
     }
 
-    /// Puts a particle somewhere.
+    /// Sets the position of a particle.
     pub(crate) fn put(&mut self, index: usize, position: Vec3) {
         let Slot { block, lane } = self.layout.slot_of(index);
         self.blocks[block].set_position(lane, position);
@@ -376,7 +376,7 @@ impl ClothParticles {
         self.substep
     }
 
-    /// Has displacements span `substep` seconds from now on, at the same velocities.
+    /// Sets the sub-step that displacements span (s), and keeps the velocities.
     pub(crate) fn set_substep(&mut self, substep: f32) {
         if substep != self.substep {
             let ratio = substep / self.substep;
@@ -385,18 +385,18 @@ impl ClothParticles {
         }
     }
 
-    /// Has displacements be the velocity times the sub-step, and nothing else be remembered of the past.
+    /// Sets displacements to velocity × sub-step, and forgets the rest of the history.
     pub(crate) fn end_past(&mut self) {
         self.past.end(&mut self.blocks);
     }
 }
 
-/// A number from −1 to 1 that looks random, the same for the same `index` (Steele, Lea and Flood 2014, `SplitMix`).
+/// A pseudorandom number from −1 to 1 that depends only on `index` (Steele, Lea and Flood 2014, `SplitMix`).
 fn scattered(index: u64) -> f32 {
     let mut bits = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     bits ^= bits >> 31;
-    // 24 bits are what a float holds.
+    // A float holds 24 bits.
     (bits >> 40) as f32 / (1 << 23) as f32 - 1.0
 }

@@ -1,4 +1,4 @@
-//! Which particles hold still.
+//! Pinned particles.
 
 mod names;
 mod pin;
@@ -12,8 +12,8 @@ use super::{ClothError, Surface};
 
 pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
 
-/// Which particles are pinned: they move with the entity's transform and with nothing else. The top row of a grid, and
-/// nothing of a mesh, unless said otherwise. May change at any time.
+/// The pinned particles, which move only with the entity's transform. By default the top row of a grid, and nothing of
+/// a mesh. May change at any time.
 ///
 /// ```
 /// use bevy::math::Vec3;
@@ -23,7 +23,7 @@ pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
 /// let sheet = Pins::new([Pin::Corner(Corner::TopLeft), Pin::Corner(Corner::TopRight)]);
 /// let curtain = Pins::filter(|row, column| row == 0 && column % 3 == 0);
 /// let scarf = Pins::none();
-/// // Of a mesh: what an artist painted red, what is within 5 cm of a ring, all above the waist.
+/// // On a mesh: red paint of an artist, everything within 5 cm of a point, and everything above the waist.
 /// let painted = Pins::new([Pin::color(0, 0.5)]);
 /// let ring = Pins::new([Pin::Near { point: Vec3::new(0.0, 2.0, 0.0), radius: 0.05 }]);
 /// let skirt = Pins::new([Pin::at_rest(|place| place.y > 1.0)]);
@@ -40,35 +40,35 @@ impl Default for Pins {
 }
 
 impl Pins {
-    /// All of `pins` together.
+    /// Pins everything that any of `pins` names.
     pub fn new(pins: impl IntoIterator<Item = Pin>) -> Self {
         Self(pins.into_iter().collect())
     }
 
-    /// Nothing is pinned: the cloth falls.
+    /// Pins nothing: the cloth falls.
     pub const fn none() -> Self {
         Self(Vec::new())
     }
 
-    /// The top row, as in the paper's scene.
+    /// Pins the top row, as in the paper's scene.
     pub fn top_row() -> Self {
         Self::new([Pin::Row(0)])
     }
 
-    /// Every particle whose (row, column) `holds`.
+    /// Pins every particle for which `holds(row, column)` returns true.
     pub fn filter(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
         Self::new([Pin::filter(holds)])
     }
 
-    /// Whether each pin names particles of `surface`.
+    /// Checks that each pin names particles of `surface`.
     ///
     /// # Errors
-    /// As [`Pin::validate`] has them, for the first that does not.
+    /// Those of [`Pin::validate`], for the first invalid pin.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         self.0.iter().try_for_each(|pin| pin.validate(surface))
     }
 
-    /// Calls `pinned` with the index of each pinned particle of `surface`, some perhaps twice. The pins must be
+    /// Calls `pinned` with the index of each pinned particle of `surface`, possibly more than once. The pins must be
     /// valid for it.
     pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
         self.0

@@ -1,15 +1,15 @@
-//! What each way of naming particles means on a surface.
+//! The particles that each pin names on a surface.
 
 use super::{Corner, Pin};
 use crate::cloth::{ClothError, ClothGrid, Surface, VertexAttribute};
 
 impl Pin {
-    /// Whether it names particles of `surface`.
+    /// Checks that the pin names particles of `surface`. A predicate may match none.
     ///
     /// # Errors
     /// [`ClothError::PinOutOfRange`], [`PinNeedsGrid`](ClothError::PinNeedsGrid),
-    /// [`NoSuchAttribute`](ClothError::NoSuchAttribute), or [`PinFindsNothing`](ClothError::PinFindsNothing) if what an
-    /// artist was to mark is not there. A predicate may hold for none.
+    /// [`NoSuchAttribute`](ClothError::NoSuchAttribute), or [`PinFindsNothing`](ClothError::PinFindsNothing) if no
+    /// particle has the position, colour or attribute.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         let pin = || self.clone();
         let is_inside = match (self, surface.as_grid()) {
@@ -50,7 +50,7 @@ impl Pin {
         Err(ClothError::PinFindsNothing { pin: self.clone() })
     }
 
-    /// Calls `pinned` with the index of each particle of `surface` that it names, if it is valid for it.
+    /// Calls `pinned` with the index of each particle of `surface` that the pin names. The pin must be valid for it.
     pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
         let places = || {
             surface
@@ -65,7 +65,7 @@ impl Pin {
                 .into_iter()
                 .for_each(pinned),
             Self::Near { point, radius } => {
-                // To a rounding of where they are.
+                // Up to rounding of the positions.
                 let near = |place: bevy::math::Vec3| {
                     place.distance(*point) <= radius + 1.0e-6 * place.length()
                 };
@@ -104,7 +104,7 @@ impl Pin {
         }
     }
 
-    /// Those that are named by rows and columns.
+    /// The particles of pins by rows and columns.
     fn for_each_cell(&self, grid: &ClothGrid, mut cell: impl FnMut(u32, u32)) {
         let (rows, columns) = (grid.rows(), grid.columns());
         let (last_row, last_column) = (rows - 1, columns - 1);

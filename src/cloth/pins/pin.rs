@@ -1,4 +1,4 @@
-//! How particles to pin are named.
+//! Pins: selections of particles to pin.
 
 use std::{fmt, sync::Arc};
 
@@ -7,7 +7,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-/// A corner of the cloth at rest, seen from where it faces: +z, of a lying cloth +y.
+/// A corner of the cloth at rest, seen from its front: +z, or +y for a lying cloth.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum Corner {
@@ -22,7 +22,7 @@ pub enum Corner {
     BottomRight,
 }
 
-/// Particles to pin.
+/// A selection of particles to pin.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -37,39 +37,42 @@ pub enum Pin {
     Column(u32),
     /// One corner.
     Corner(Corner),
-    /// Every particle whose (row, column) it holds for. Code can't be saved: in a scene file it pins nothing.
+    /// Every particle whose (row, column) passes the predicate. Closures cannot be serialized: loaded from a scene
+    /// file, it pins nothing.
     Where(#[reflect(ignore)] PinPredicate),
-    /// The top row of a grid, and nothing of a mesh: what is pinned unless said otherwise.
+    /// The default: the top row of a grid, and nothing of a mesh.
     #[default]
     Top,
-    /// The particle of this vertex of the mesh, as its asset or the game numbers them: it outlasts welding.
+    /// The particle of a mesh vertex, by the vertex index in the asset or in
+    /// [`Cloth::triangles`](super::super::Cloth::triangles). Welding does not change these indices.
     Vertex(usize),
-    /// Every particle that is no farther at rest than a radius from a point.
+    /// Every particle within a radius of a point at rest.
     Near {
-        /// In the entity's frame (m), before the transform's scale, as a mesh's vertices are.
+        /// The point in the entity's frame (m), before the transform's scale, like a mesh's vertices.
         point: Vec3,
-        /// Likewise (m).
+        /// The radius (m), before the transform's scale.
         radius: f32,
     },
-    /// Every particle whose place at rest it holds for. Code can't be saved: in a scene file it pins nothing.
+    /// Every particle whose position at rest passes the predicate. Closures cannot be serialized: loaded from a scene
+    /// file, it pins nothing.
     AtRest(#[reflect(ignore)] RestPredicate),
-    /// Every particle with a vertex whose attribute is above a value: what an artist painted.
+    /// Every particle with a vertex whose attribute exceeds a value, such as an artist's paint.
     Attribute {
-        /// The name of the attribute: `Vertex_Color`, or as the game registered a custom one with `GltfPlugin`.
+        /// The name of the attribute: `Vertex_Color`, or that of a custom one registered with `GltfPlugin`.
         name: String,
-        /// Which of its channels, from 0.
+        /// The channel, from 0.
         channel: usize,
-        /// The value that it has to exceed.
+        /// The value to exceed.
         above: f32,
     },
 }
 
-/// Whether the particle at (row, column) is pinned. By default none is.
+/// A predicate of (row, column). The default pins none.
 #[derive(Clone)]
 pub struct PinPredicate(Arc<dyn Fn(u32, u32) -> bool + Send + Sync>);
 
 impl PinPredicate {
-    /// Every particle whose (row, column) `holds`.
+    /// Pins every particle for which `holds(row, column)` returns true.
     pub fn new(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
         Self(Arc::new(holds))
     }
@@ -79,13 +82,13 @@ impl PinPredicate {
     }
 }
 
-/// Whether the particle is pinned that is at a place at rest, in the entity's frame (m), before the transform's scale. By
-/// default none is.
+/// A predicate of a particle's position at rest, in the entity's frame (m), before the transform's scale. The default
+/// pins none.
 #[derive(Clone)]
 pub struct RestPredicate(Arc<dyn Fn(Vec3) -> bool + Send + Sync>);
 
 impl RestPredicate {
-    /// Every particle whose place at rest `holds`.
+    /// Pins every particle for which `holds(position at rest)` returns true.
     pub fn new(holds: impl Fn(Vec3) -> bool + Send + Sync + 'static) -> Self {
         Self(Arc::new(holds))
     }
@@ -132,22 +135,23 @@ impl PartialEq for PinPredicate {
 }
 
 impl Pin {
-    /// Every particle whose (row, column) `holds`.
+    /// Pins every particle for which `holds(row, column)` returns true.
     pub fn filter(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
         Self::Where(PinPredicate::new(holds))
     }
 
-    /// Every particle whose place at rest `holds`, in the entity's frame (m), before the transform's scale.
+    /// Pins every particle for whose position at rest `holds` returns true. The position is in the entity's frame (m),
+    /// before the transform's scale.
     pub fn at_rest(holds: impl Fn(Vec3) -> bool + Send + Sync + 'static) -> Self {
         Self::AtRest(RestPredicate::new(holds))
     }
 
-    /// Every particle with a vertex whose colour is above a value in a channel: 0 for red, 3 for alpha.
+    /// Pins every particle with a vertex whose colour exceeds a value in a channel: 0 for red, 3 for alpha.
     pub fn color(channel: usize, above: f32) -> Self {
         Self::attribute("Vertex_Color", channel, above)
     }
 
-    /// Every particle with a vertex whose attribute is above a value in a channel, from 0.
+    /// Pins every particle with a vertex whose attribute exceeds a value in a channel, from 0.
     pub fn attribute(name: impl Into<String>, channel: usize, above: f32) -> Self {
         Self::Attribute {
             name: name.into(),

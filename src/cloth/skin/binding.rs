@@ -6,14 +6,14 @@ use crate::cloth::JointWeights;
 #[cfg(feature = "mesh")]
 use crate::cloth::{ClothError, Surface};
 
-/// What moves the particles of a surface with joints. In the mesh's own metres, before any scale.
+/// Linear blend skinning of a surface's particles, in the mesh's metres, before any scale.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Skinning {
     particles: Vec<Bound>,
     joints: usize,
 }
 
-/// A particle as it is bound.
+/// The binding of one particle.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 struct Bound {
     place: Vec3A,
@@ -22,9 +22,8 @@ struct Bound {
 }
 
 impl Skinning {
-    /// Of a surface's particles, by the vertices of the mesh that it was made from: their places (m) and what moves them. A
-    /// particle of several vertices is moved as the first of them. Weights are divided by their sum; those without any go with
-    /// the first joint.
+    /// Binds a surface's particles by the vertices of its mesh: their positions (m), joints and weights. A particle
+    /// takes the skin of its first vertex. Weights are normalized; a vertex without weights follows the first joint.
     ///
     /// # Errors
     /// [`ClothError::SkinWeights`] for the first vertex whose weights are negative or not finite.
@@ -64,12 +63,12 @@ impl Skinning {
         Ok(Self { particles, joints })
     }
 
-    /// How many joints there have to be.
+    /// Number of joints required.
     pub fn joints(&self) -> usize {
         self.joints
     }
 
-    /// Where each particle is in a pose: `joints` are the matrices Jⱼ Bⱼ, at least [as many](Self::joints) as it names.
+    /// Positions of the particles in a pose. `joints` are the matrices Jⱼ Bⱼ, at least [this many](Self::joints).
     pub fn places(&self, joints: &[Affine3A], places: &mut Vec<Vec3>) {
         places.clear();
         places.extend(self.particles.iter().map(|bound| {
@@ -78,7 +77,7 @@ impl Skinning {
         }));
     }
 
-    /// Where each faces in a pose, of length 1.
+    /// Normals of the particles in a pose, of length 1.
     pub fn normals(&self, joints: &[Affine3A], normals: &mut Vec<Vec3>) {
         normals.clear();
         normals.extend(self.particles.iter().map(|bound| {

@@ -1,4 +1,4 @@
-//! A number for each particle.
+//! Values for each particle.
 
 use std::{fmt, sync::Arc};
 
@@ -9,13 +9,13 @@ use bevy::{
 
 use crate::cloth::{ClothError, Surface, VertexAttribute};
 
-/// A number for each particle of a cloth: the same for all, painted by an artist, or given by code.
+/// A value for each particle of a cloth: uniform, painted by an artist, or computed by code.
 ///
 /// ```
 /// use bevy_drape::prelude::*;
 ///
 /// let all = ClothPaint::from(0.2);
-/// // What is painted red moves by up to half a metre, what is black is held.
+/// // Full red moves by up to half a metre; particles without red are held.
 /// let red = ClothPaint::color(0, 0.5);
 /// let code = ClothPaint::at_rest(|place| (1.4 - place.y).max(0.0));
 /// # let _ = (all, red, code);
@@ -24,30 +24,31 @@ use crate::cloth::{ClothError, Surface, VertexAttribute};
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothPaint {
-    /// The same for all.
+    /// One value for all particles.
     Uniform(f32),
-    /// A vertex attribute times a scale. A particle of several vertices has the largest of their numbers.
+    /// A vertex attribute times a scale. A particle of several vertices takes their largest value.
     Attribute {
-        /// The name of the attribute, as [`Pin::Attribute`](crate::cloth::Pin::Attribute) has it.
+        /// The name of the attribute, as in [`Pin::Attribute`](crate::cloth::Pin::Attribute).
         name: String,
-        /// Which of its channels, from 0.
+        /// The channel, from 0.
         channel: usize,
-        /// What its numbers are multiplied with.
+        /// The factor for its values.
         scale: f32,
     },
-    /// What a function says of the place at rest. Code can't be saved: in a scene file it says 0.
+    /// A function of the position at rest. Closures cannot be serialized: loaded from a scene file, it returns 0.
     AtRest(#[reflect(ignore)] RestFunction),
-    /// One number for each vertex of the mesh, or for each particle of a grid. A particle of several vertices has the largest
-    /// of their numbers.
+    /// One value for each vertex of the mesh, or for each particle of a grid. A particle of several vertices takes
+    /// their largest value.
     Vertices(Vec<f32>),
 }
 
-/// A number for the particle that is at a place at rest, in the entity's frame (m), before the transform's scale. By default 0.
+/// A function of a particle's position at rest, in the entity's frame (m), before the transform's scale. The default
+/// returns 0.
 #[derive(Clone)]
 pub struct RestFunction(Arc<dyn Fn(Vec3) -> f32 + Send + Sync>);
 
 impl RestFunction {
-    /// What `of` says of each place.
+    /// Wraps a function of the position at rest.
     pub fn new(of: impl Fn(Vec3) -> f32 + Send + Sync + 'static) -> Self {
         Self(Arc::new(of))
     }
@@ -85,7 +86,7 @@ impl From<f32> for ClothPaint {
 }
 
 impl ClothPaint {
-    /// A channel of the vertex colours, 0 for red and 3 for alpha, times a scale.
+    /// A channel of the vertex colours times a scale: 0 for red, 3 for alpha.
     pub fn color(channel: usize, scale: f32) -> Self {
         Self::attribute("Vertex_Color", channel, scale)
     }
@@ -99,17 +100,17 @@ impl ClothPaint {
         }
     }
 
-    /// What `of` says of each particle's place at rest, in the entity's frame (m), before the transform's scale.
+    /// A function of each particle's position at rest, in the entity's frame (m), before the transform's scale.
     pub fn at_rest(of: impl Fn(Vec3) -> f32 + Send + Sync + 'static) -> Self {
         Self::AtRest(RestFunction::new(of))
     }
 
-    /// One number for each vertex of the mesh, or for each particle of a grid.
+    /// One value for each vertex of the mesh, or for each particle of a grid.
     pub fn vertices(values: impl IntoIterator<Item = f32>) -> Self {
         Self::Vertices(values.into_iter().collect())
     }
 
-    /// The number of each particle of `surface`, none of which may be NaN or negative. An error calls them `quantity`.
+    /// The value of each particle of `surface`, none of them NaN or negative. Errors name them by `quantity`.
     ///
     /// # Errors
     /// [`ClothError::Quantity`] for the first that is NaN or negative; [`ClothError::NoSuchPaint`];
@@ -127,7 +128,7 @@ impl ClothPaint {
                 scale,
             } => attribute(surface, name, *channel)?
                 .iter()
-                // An infinite scale leaves what is not painted 0.
+                // 0 stays 0 under an infinite scale.
                 .map(|value| {
                     let value = value[*channel];
                     if value == 0.0 { 0.0 } else { value * scale }
@@ -175,7 +176,7 @@ fn of_vertices(surface: &Surface, values: &[f32]) -> Result<Vec<f32>, ClothError
     for (vertex, value) in values.iter().enumerate() {
         if let Some(particle) = surface.particle_of_vertex(vertex) {
             let known = &mut of_particles[particle];
-            // NaN stays to be found.
+            // Keeps NaN, so that it is found.
             *known = if *known > *value { *known } else { *value };
         }
     }

@@ -12,11 +12,10 @@ use super::{ClothError, ClothGrid, ClothMaterial, Layout, Link, Surface, Threads
 
 pub use spring::{Spring, SpringKind};
 
-/// A cloth's springs, sorted by colour: no two springs of one colour share a particle, so that their order makes
-/// no difference and many are solved at once.
+/// A cloth's springs, sorted by colour. No two springs of one colour share a particle, so that they can be solved in
+/// parallel and in any order.
 ///
-/// The order is the solver's stability, too: colour by colour over the whole cloth holds at every size, row by
-/// row blows up.
+/// The order of the sweep also makes the solver stable: colour by colour is stable at every size, row by row diverges.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone, PartialEq)]
@@ -24,12 +23,12 @@ pub struct Springs {
     storage: SpringStorage,
 }
 
-/// Where the springs are.
+/// Storage of springs.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum SpringStorage {
-    /// Along the rows, columns and diagonals of a grid. Nothing is stored a spring.
+    /// Springs along the rows, columns and diagonals of a grid, with no memory for each spring.
     Grid(ClothGrid, Compliances),
-    /// Anywhere.
+    /// Springs between arbitrary particles.
     List(Arc<SpringList>),
 }
 
@@ -39,12 +38,12 @@ impl Default for SpringStorage {
     }
 }
 
-/// Springs anywhere, colour by colour.
+/// Springs between arbitrary particles, colour by colour.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct SpringList {
     pub springs: Vec<Spring>,
     pub colours: Vec<Range<usize>>,
-    /// Those that are solved together; the others are swept colour by colour before.
+    /// Springs that are solved together, after the sweep over the others.
     pub threads: Threads,
 }
 
@@ -58,14 +57,14 @@ impl SpringList {
         }
     }
 
-    /// Adds springs between `particles` particles, in colours of their own. Each gets the first that neither of its ends
-    /// has yet. Returns the place of each.
+    /// Adds springs between `particles` particles, in colours of their own. Each takes the first colour that is free at
+    /// both of its ends. Returns the index of each.
     fn add(&mut self, springs: &[Spring], particles: usize) -> Vec<u32> {
         let mut taken: Vec<u64> = vec![0; particles];
         let mut colour_of = Vec::with_capacity(springs.len());
         for (index, spring) in springs.iter().enumerate() {
             let [a, b] = spring.ends.map(|end| end as usize);
-            // A particle with more than 63 springs puts the rest into colours of one spring each.
+            // Beyond 63 springs at a particle, each further spring gets its own colour.
             let free = (!(taken[a] | taken[b])).trailing_zeros().min(63);
             let colour = if free < 63 {
                 taken[a] |= 1 << free;
@@ -91,7 +90,7 @@ impl SpringList {
     }
 }
 
-/// Compliance of a square patch by each kind of spring (m/N); infinite for no such springs.
+/// Compliance of a square patch for each kind of spring (m/N); infinite for none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Compliances {
     pub structural: f32,
@@ -99,8 +98,8 @@ pub(crate) struct Compliances {
 }
 
 impl Compliances {
-    /// Of a strip that a spring from (row, column), with this step and length, stands for, on a border half as
-    /// wide: compliance × length ⁄ width. `None` if there are no such springs.
+    /// Compliance of the spring from (row, column) with this step: that of its strip, compliance × length ⁄ width. A
+    /// strip on a border is half as wide. `None` if there are no such springs.
     pub fn of_strip(
         &self,
         grid: &ClothGrid,
@@ -125,8 +124,8 @@ impl Compliances {
     }
 }
 
-/// The springs of a grid, colour by colour: rows down and columns across from one end to the other, and which
-/// of them. Both diagonals of a pair of rows come before those of the next pair.
+/// The springs of a grid, colour by colour: rows down and columns across from one end to the other, and the parity.
+/// Both diagonals of a pair of rows come before those of the next pair.
 const GRID_COLOURS: [((u32, i32), u32); 8] = [
     ((0, 1), 0),
     ((0, 1), 1),
@@ -139,9 +138,8 @@ const GRID_COLOURS: [((u32, i32), u32); 8] = [
 ];
 
 impl Springs {
-    /// Structural and shear springs of `grid`. A strip's compliance follows from its length over its
-    /// width ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are
-    /// left out.
+    /// Structural and shear springs of `grid`. A strip's compliance follows from its length and width
+    /// ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are left out.
     pub fn of_grid(grid: &ClothGrid, material: &ClothMaterial) -> Self {
         let compliances = Compliances {
             structural: material.stretch_compliance,
@@ -152,12 +150,13 @@ impl Springs {
         }
     }
 
-    /// Any springs between `particles` particles. Each gets the first colour that neither of its ends has yet: fewer than twice as many colours as springs meet in one particle, while that are 31 or fewer; of
-    /// more than 63 each further spring is a colour by itself.
+    /// Springs between any of `particles` particles. Each takes the first colour that is free at both of its ends. With
+    /// at most 31 springs at each particle, there are fewer than twice as many colours as springs at one particle.
+    /// Beyond 63 springs at a particle, each further spring gets its own colour.
     ///
     /// # Errors
-    /// [`ClothError::BadSpring`] for the first that has an end too many or twice, or a rest length or
-    /// compliance out of range.
+    /// [`ClothError::BadSpring`] for the first that does not join two different particles, or whose rest length or
+    /// compliance is out of range.
     pub fn of_list(springs: &[Spring], particles: usize) -> Result<Self, ClothError> {
         for (index, spring) in springs.iter().enumerate() {
             let [a, b] = spring.ends.map(|end| end as usize);
@@ -181,11 +180,11 @@ impl Springs {
         })
     }
 
-    /// The springs of a surface: those of its [grid](Self::of_grid), if it was made from one.
+    /// The springs of a surface. For a surface made from a grid, [those of the grid](Self::of_grid).
     ///
-    /// Those of a mesh run along its edges, of the stretch compliance. Edges run in all directions, so they resist shear as well;
-    /// where the material's shear compliance is less than its stretch compliance, springs across each edge, between the corners
-    /// that face each other there, add what is lacking.
+    /// Those of a mesh run along its edges, with the stretch compliance. Edges run in all directions, so they resist
+    /// shear as well. If the material's shear compliance is below its stretch compliance, springs across each edge,
+    /// between the two opposite corners, add the difference.
     pub fn of_surface(surface: &Surface, material: &ClothMaterial) -> Self {
         if let Some(grid) = surface.as_grid() {
             return Self::of_grid(grid, material);
@@ -204,7 +203,7 @@ impl Springs {
             SpringKind::Shear | SpringKind::Bend => across,
         };
         let mut list = SpringList::default();
-        // Those along edges come last: what is stiffer has the last word.
+        // Springs along edges come last: the stiffest springs are solved last.
         let [_, places] = [SpringKind::Bend, SpringKind::Structural].map(|kind| {
             let links = surface.links().iter().filter(|link| link.kind == kind);
             let springs: Vec<Spring> = links
@@ -219,7 +218,7 @@ impl Springs {
             list.add(&springs, surface.len())
         });
         let is_edge = |link: &&Link| link.kind == SpringKind::Structural;
-        // Whoever gives no stretch springs has no threads.
+        // Without stretch springs there are no threads.
         if places.len() == surface.links().iter().filter(is_edge).count() {
             list.threads = surface.threads().renamed(|edge| places[edge as usize]);
         }
@@ -228,7 +227,7 @@ impl Springs {
         }
     }
 
-    /// Calls `visit` with each spring and the number of its colour, in the order in which they are swept.
+    /// Calls `visit` with each spring and the index of its colour, in the order of the sweep.
     pub fn for_each(&self, mut visit: impl FnMut(usize, Spring)) {
         match &self.storage {
             SpringStorage::Grid(grid, compliances) => {
@@ -254,7 +253,7 @@ impl Springs {
         }
     }
 
-    /// All springs, in the order in which they are swept.
+    /// All springs, in the order of the sweep.
     pub fn to_vec(&self) -> Vec<Spring> {
         let mut springs = Vec::with_capacity(self.len());
         self.for_each(|_, spring| springs.push(spring));
@@ -280,7 +279,7 @@ impl Springs {
         }
     }
 
-    /// Whether there is no spring, as before the first tick.
+    /// Whether there are no springs, as before the first tick.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -297,13 +296,13 @@ impl Springs {
         }
     }
 
-    /// Where they are, for the solver.
+    /// The storage, for the solver.
     pub(crate) fn storage(&self) -> &SpringStorage {
         &self.storage
     }
 }
 
-/// Which colour of its step a grid's spring from `cell` has.
+/// The colour, among those of its step, of a grid's spring from `cell`.
 fn part_of((down, across): (u32, i32), (row, column): (u32, u32), strip: u32) -> u32 {
     if let Some(group) = row.checked_div(down) {
         return group % 2;

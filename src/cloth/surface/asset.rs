@@ -12,7 +12,7 @@ use bevy::{
 use super::{JointWeights, TriangleMesh, VertexAttribute};
 use crate::cloth::ClothError;
 
-/// Attributes that a surface has in other ways, or that mean nothing to it.
+/// Attributes that a surface stores in other ways or does not use.
 const OTHERS: [MeshVertexAttribute; 7] = [
     Mesh::ATTRIBUTE_POSITION,
     Mesh::ATTRIBUTE_NORMAL,
@@ -24,13 +24,14 @@ const OTHERS: [MeshVertexAttribute; 7] = [
 ];
 
 impl TriangleMesh {
-    /// The triangles of an asset: of a list or a strip, with indices of either width or without any.
+    /// Reads the triangles of a mesh asset: a triangle list or strip, with 16-bit, 32-bit or no indices.
     ///
     /// # Errors
-    /// [`ClothError::MeshNotReadable`] of a mesh that is in the render world only; [`ClothError::MeshTopology`] of lines or
-    /// points; [`ClothError::MeshWithoutPositions`]; [`ClothError::MeshIndexCount`] if indices are left over.
+    /// [`ClothError::MeshNotReadable`] for a mesh that is only in the render world; [`ClothError::MeshTopology`] for
+    /// lines or points; [`ClothError::MeshWithoutPositions`]; [`ClothError::MeshIndexCount`] for an incomplete
+    /// triangle.
     pub fn of_asset(mesh: &Mesh) -> Result<Self, ClothError> {
-        // It would be gone as soon as the renderer takes it.
+        // The renderer would soon take its vertices.
         if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
             return Err(ClothError::MeshNotReadable);
         }
@@ -71,10 +72,10 @@ impl TriangleMesh {
     }
 }
 
-/// What moves each vertex of a skinned mesh; `None` of one that has no joint indices and weights.
+/// The joints and weights of each vertex of a skinned mesh; `None` for a mesh without joint indices and weights.
 ///
 /// # Errors
-/// [`ClothError::MeshNotReadable`] of a mesh that is in the render world only.
+/// [`ClothError::MeshNotReadable`] for a mesh that is only in the render world.
 pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, ClothError> {
     let read = |attribute: MeshVertexAttribute| match mesh.try_attribute_option(attribute) {
         Ok(values) => Ok(values),
@@ -121,7 +122,7 @@ fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> 
         }
         PrimitiveTopology::TriangleStrip => {
             let triangles = indices.array_windows::<3>().enumerate();
-            // Every second one runs the other way round.
+            // Every second triangle of a strip has the opposite winding order.
             let turned = |(index, &[a, b, c]): (usize, &[u32; 3])| {
                 if index % 2 == 0 { [a, b, c] } else { [b, a, c] }
             };
@@ -133,7 +134,7 @@ fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> 
     }
 }
 
-/// Up to four numbers for each vertex, if they are numbers of a kind that artists paint.
+/// Up to four numbers for each vertex, for numeric formats.
 fn numbers(values: &VertexAttributeValues) -> Option<Vec<[f32; 4]>> {
     fn filled<const N: usize>(values: &[[f32; N]]) -> Vec<[f32; 4]> {
         let fill =

@@ -1,7 +1,7 @@
-//! How a fine mesh hangs on a coarse surface.
+//! Binds a fine mesh to a coarse surface.
 //!
-//! Each vertex is bound to the nearest point of the surface at rest, which lies in a face of the corners *a*, *b*, *c* with
-//! the barycentric coordinates *u*, *v*, *w*. There it has a frame of its own:
+//! Each vertex is bound to the nearest point of the surface at rest. That point lies in a face with the corners *a*,
+//! *b*, *c*, at the barycentric coordinates *u*, *v*, *w*. It has its own frame:
 //!
 //! ```text
 //! N = normalised (u N_a + v N_b + w N_c)                              the interpolated normal
@@ -9,10 +9,10 @@
 //! B = N × T
 //! ```
 //!
-//! What the vertex is away from its point, its normal and its tangent are kept in that frame. Where the surface has moved, the
-//! frame is made again from where the particles are, and all three are taken along by it, as by a rotation: what is at right angles stays
-//! so. *N* is continuous over the edges of faces, so a fine mesh looks smooth on a coarse cloth. (Known as wrap
-//! deformers; the frame is the usual one of tangent space.)
+//! The vertex's offset from its point, its normal and its tangent are stored in that frame. When the surface moves, the
+//! frame is computed again from the particles' positions, and it rotates all three along: right angles stay right
+//! angles. *N* is continuous over the edges of faces, so a fine mesh looks smooth on a coarse cloth. (This is a wrap
+//! deformer with the usual tangent-space frame.)
 
 use bevy::math::Vec3;
 use parry3d::{query::PointQueryWithLocation, shape::TriMesh};
@@ -23,10 +23,10 @@ use super::{
 };
 use crate::cloth::{ClothError, FARTHEST, LANES};
 
-/// What of a tangent has to lie in the surface, for the frame to follow it.
+/// The least tangential part of a tangent, as a fraction, for the frame to follow it.
 const LEAST_ALONG: f32 = 0.1;
 
-/// A mesh that is bound to a surface: where its vertices are follows from where the particles are.
+/// A mesh bound to a surface: its vertices follow the particles.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct SurfaceBinding {
     eights: Vec<Eight>,
@@ -35,12 +35,13 @@ pub struct SurfaceBinding {
 }
 
 impl SurfaceBinding {
-    /// Binds vertices, given in the surface's frame (m), to a surface at rest. There may be no tangents, else as many as
-    /// vertices; as many normals.
+    /// Binds vertices, given in the surface's frame (m), to a surface at rest. There is one normal for each vertex, and
+    /// one tangent for each vertex or none at all.
     ///
     /// # Errors
-    /// [`ClothError::VertexNotFinite`] for the first that is not; [`ClothError::BoundTooFar`] if one is farther from the surface than that
-    /// measures from one end to the other; [`ClothError::MeshWithoutArea`] of a surface without faces.
+    /// [`ClothError::VertexNotFinite`] for the first vertex that is not finite. [`ClothError::BoundTooFar`] for a
+    /// vertex farther from the surface than the surface's diagonal. [`ClothError::MeshWithoutArea`] for a surface
+    /// without faces.
     pub fn new(
         surface: &Surface,
         positions: &[Vec3],
@@ -104,12 +105,12 @@ impl SurfaceBinding {
         })
     }
 
-    /// How many vertices there are.
+    /// Number of vertices.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there is none.
+    /// Whether there are no vertices.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -119,9 +120,9 @@ impl SurfaceBinding {
         self.has_tangents
     }
 
-    /// Writes where the vertices are (m), their normals and the first three numbers of their tangents, while the particles are at
-    /// `particles` (m) and [`Surface::normals_at`] are the `around` there: both as many as the surface has particles. Normals and tangents
-    /// are as long as they were at rest. Nothing is written beyond the end of what is too short, nor tangents where there are none.
+    /// Writes the vertices' positions (m), normals and tangents (x, y and z). `particles` are the positions of the
+    /// surface's particles (m), and `around` their [`normals`](Surface::normals_at). Normals and tangents keep their
+    /// lengths at rest. A slice that is too short is filled to its end. Without tangents, none are written.
     pub fn write(
         &self,
         particles: &[Vec3],
@@ -141,8 +142,8 @@ impl SurfaceBinding {
     }
 }
 
-/// How much of each of a face's edges from its first corner there is in the part of a vector that lies in the face, unless
-/// next to nothing of it does.
+/// Coordinates of a vector's tangential part along a face's two edges from its first corner. `None` if that part is
+/// almost zero.
 fn along([a, b, c]: [Vec3; 3], vector: Vec3) -> Option<[f32; 2]> {
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac).try_normalize()?;

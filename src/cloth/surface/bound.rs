@@ -1,14 +1,15 @@
-//! Vertices that are bound to faces, eight at a time.
+//! Vertices bound to faces, eight at a time.
 
 use bevy::math::Vec3;
 use multiversion::multiversion;
 
 use crate::cloth::{LANES, Lanes};
 
-/// A normal or a direction whose square is not in between has been lost in rounding (m²): a face that is crushed or folded up.
+/// Valid range of a normal's or direction's squared length (m²). Outside it, rounding has destroyed the vector: the
+/// face is crushed or folded.
 const SQUARES: std::ops::Range<f32> = 1.0e-24..1.0e24;
 
-/// A vertex that is bound to a face.
+/// A vertex bound to a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bound {
     pub corners: [u32; 3],
@@ -16,11 +17,11 @@ pub(super) struct Bound {
     pub weights: [f32; 3],
     /// α and β.
     pub along: [f32; 2],
-    /// From its point to the vertex, its normal and its tangent, in its frame.
+    /// The offset from its point to the vertex, its normal and its tangent, in its frame.
     pub inside: [Vec3; 3],
 }
 
-/// Eight of them, number by number. Those beyond the last are as if they were the first.
+/// Eight bound vertices, as a structure of arrays. Unused lanes repeat the first vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Eight {
     corners: [[u32; LANES]; 3],
@@ -30,7 +31,7 @@ pub(super) struct Eight {
 }
 
 impl Eight {
-    /// Of up to eight, and of one at least.
+    /// From one to eight vertices.
     pub fn of(bound: &[Bound]) -> Self {
         let each = |lane: usize| bound.get(lane).unwrap_or(&bound[0]);
         let lanes = |of: &dyn Fn(&Bound) -> f32| std::array::from_fn(|lane| of(each(lane)));
@@ -44,7 +45,7 @@ impl Eight {
         }
     }
 
-    /// One of them.
+    /// The vertex of a lane.
     pub fn lane(&self, lane: usize) -> Bound {
         let inside = |vector: usize| Vec3::from(self.inside[vector].map(|axis| axis[lane]));
         Bound {
@@ -56,19 +57,19 @@ impl Eight {
     }
 }
 
-/// Where a vertex's point is, and its frame.
+/// The position and frame of a vertex's point.
 pub(super) struct Frame {
     pub point: Vec3,
     axes: [Vec3; 3],
 }
 
 impl Frame {
-    /// Of a vertex between particles, with their normals.
+    /// The frame between three particles, from their normals.
     pub fn new(places: [Vec3; 3], normals: [Vec3; 3], weights: [f32; 3], along: [f32; 2]) -> Self {
         let blend = |[a, b, c]: [Vec3; 3]| a * weights[0] + b * weights[1] + c * weights[2];
         let [ab, ac] = [places[1] - places[0], places[2] - places[0]];
         let is_known = |vector: &Vec3| SQUARES.contains(&vector.length_squared());
-        // Opposite normals cancel out in a face that is folded up: its own is left.
+        // Opposite normals cancel in a folded face: then its own normal is used.
         let normal = Some(blend(normals)).filter(is_known).map(Vec3::normalize);
         let normal = normal.unwrap_or_else(|| ab.cross(ac).normalize_or(Vec3::Y));
         let direction = ab * along[0] + ac * along[1];
@@ -81,19 +82,19 @@ impl Frame {
         }
     }
 
-    /// A vector that is given in the frame.
+    /// Transforms a vector from the frame.
     fn out(&self, inside: Vec3) -> Vec3 {
         self.axes[0] * inside.x + self.axes[1] * inside.y + self.axes[2] * inside.z
     }
 
-    /// A vector as the frame has it.
+    /// Transforms a vector into the frame.
     pub fn inside(&self, out: Vec3) -> Vec3 {
         Vec3::from(self.axes.map(|axis| axis.dot(out)))
     }
 }
 
-/// Writes where vertices are, their normals, and the first three numbers of their tangents, as far as there is room: while particles
-/// and their normals are where `around` says.
+/// Writes the vertices' positions, normals and tangents (x, y and z), as far as there is room. `around` are the
+/// particles' positions and normals.
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
 pub(super) fn write_eights(
     eights: &[Eight],
@@ -103,7 +104,7 @@ pub(super) fn write_eights(
     tangents: &mut [[f32; 4]],
 ) {
     for (index, eight) in eights.iter().enumerate() {
-        // Of each corner its place and its normal.
+        // The position and the normal of each corner.
         let mut at = [[[[0.0; LANES]; 3]; 3]; 2];
         for (at, around) in at.iter_mut().zip(around) {
             for (at, corners) in at.iter_mut().zip(&eight.corners) {
@@ -177,7 +178,7 @@ pub(super) fn write_eights(
     }
 }
 
-/// One vertex, its normal and its tangent, of a face that has been crushed.
+/// The vertex, normal and tangent in a crushed face.
 #[cold]
 #[inline(never)]
 fn one(bound: &Bound, [places, normals]: [&[Vec3]; 2]) -> [Vec3; 3] {

@@ -1,9 +1,9 @@
-//! How stiff the springs along edges have to be for the surface to give alike in all directions.
+//! Calibrates the springs along edges, so that the surface stretches alike in all directions.
 //!
-//! Springs that each stand for the area of their faces are right on average over all directions, and up to a tenth off on a
-//! mesh that is not quite regular: where its edges favour a direction it is too stiff along that and too soft across, and
-//! particles that are not in the middle of their neighbours give way. Both are measured around each particle, and each
-//! spring is corrected by what the surface gives in its direction.
+//! Springs that represent the area of their faces have the right mean stiffness. On an irregular mesh they are up to a
+//! tenth off: too stiff along the preferred direction of the edges, and too soft across it. Particles that are not in
+//! the middle of their neighbours add compliance. Both effects are measured around each particle, and each spring is
+//! corrected by the measured compliance in its direction.
 
 use bevy::math::{DMat2, DMat3, DVec2, DVec3, Vec3};
 
@@ -13,31 +13,32 @@ use crate::cloth::SpringKind;
 /// More passes would fit the springs around one particle at the cost of others: eight are worse than none.
 const PASSES: usize = 2;
 
-/// What a spring is corrected by in a pass, at least and at most.
+/// The smallest and largest factor of a spring's correction in a pass.
 const LIMITS: [f64; 2] = [0.3, 3.0];
 
-/// How a surface gives around a particle, in its tangent plane. A direction n counts as (nx², ny², nx ny), as strain does.
+/// The compliance of a surface around a particle, in its tangent plane. Like strain, a direction n counts as (nx², ny²,
+/// nx ny).
 #[derive(Debug, Clone, Copy)]
 struct Star {
-    /// What springs resist if all particles go along with the strain.
+    /// The springs' stiffness if all particles follow the strain.
     affine: DMat3,
-    /// What of that is lost since the particle goes where its springs pull it.
+    /// The stiffness lost because the springs move the particle.
     lost: DMat3,
-    /// The area that the springs stand for (m²).
+    /// The area that the springs represent (m²).
     area: f64,
 }
 
-/// Corrects the springs along edges. `normals` are those of the particles, of length 1; `is_border` says which particles are
-/// at a border, where there is only a part of a star.
+/// Corrects the springs along edges. `normals` are the particles' normals, of length 1. `is_border` marks particles on
+/// a border, whose star is incomplete.
 pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_border: &[bool]) {
-    // Those along edges come last.
+    // Springs along edges come last.
     let first = links.partition_point(|link| link.kind != SpringKind::Structural);
     let links = &mut links[first..];
     let edges = links.iter().enumerate();
     let graph = Graph::new(rest.len(), edges.map(|(at, link)| (link.ends, at as f32)));
     let frames: Vec<Frame> = normals.iter().map(|normal| Frame::new(*normal)).collect();
     let square = |link: &Link| f64::from(link.rest_length).powi(2);
-    // Stiffness × length² of a patch's springs, before and after: what they stand for (m²).
+    // Stiffness × length² of a patch's springs, before and after: the area that they represent (m²).
     let areas: Vec<f64> = links
         .iter()
         .map(|link| square(link) / f64::from(link.slenderness))
@@ -90,7 +91,7 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
                 let direction = strain(frames[particle].direction(rest[b] - rest[a]));
                 Some(direction.dot(compliances[particle]? * direction))
             };
-            // Without a whole star near, nothing is known.
+            // Without a complete star nearby, there is no estimate.
             let known = [given(a), given(b)].into_iter().flatten();
             let (count, sum) =
                 known.fold((0.0, 0.0), |(count, sum), given| (count + 1.0, sum + given));
@@ -114,13 +115,14 @@ impl Frame {
         Self([a, b, normal])
     }
 
-    /// A direction of the surface, unfolded into the plane, of length 1.
+    /// A direction on the surface, unfolded into the plane, of length 1.
     fn direction(&self, way: Vec3) -> DVec2 {
         let Self([a, b, _]) = self;
         DVec2::new(f64::from(way.dot(*a)), f64::from(way.dot(*b))).normalize_or_zero()
     }
 
-    /// Cosine and sine of the angle of another's first axis in this one, unfolded along the line between the planes.
+    /// Cosine and sine of the angle of another frame's first axis in this one, unfolded along the line between the
+    /// planes.
     fn angle_to(&self, other: &Self) -> DVec2 {
         if self.0 == other.0 {
             return DVec2::X;
@@ -136,11 +138,11 @@ fn strain(direction: DVec2) -> DVec3 {
     DVec3::new(x * x, y * y, x * y)
 }
 
-/// All that is known of the springs around a particle.
+/// Sums over the springs around a particle.
 #[derive(Debug)]
 struct Springs {
     affine: DMat3,
-    /// What holds the particle in its place, and what pulls it out of it by strain: two rows.
+    /// The stiffness that holds the particle, and the pull of strain on it: two rows.
     holding: DMat2,
     pulling: [DVec3; 2],
     area: f64,
@@ -154,7 +156,7 @@ impl Springs {
         area: 0.0,
     };
 
-    /// Adds one in a direction, of a length (m), with the areas that it stands for (m²).
+    /// Adds a spring in a direction, of a length (m), with the areas that it represents (m²).
     fn add(&mut self, direction: DVec2, length: f64, corrected: f64, area: f64) {
         let strain = strain(direction);
         let outer = DMat3::from_cols(strain * strain.x, strain * strain.y, strain * strain.z);
@@ -191,7 +193,7 @@ impl Star {
         area: 0.0,
     };
 
-    /// Adds another, whose plane is turned by an angle of this cosine and sine.
+    /// Adds another star, whose plane is rotated by an angle of this cosine and sine.
     fn add(&mut self, other: &Self, angle: DVec2) {
         self.area += other.area;
         if angle == DVec2::X {
@@ -210,7 +212,7 @@ impl Star {
         self.lost += turn * other.lost * back;
     }
 
-    /// What a patch gives, in parts of what it should.
+    /// The compliance of a patch, relative to the intended one.
     fn compliance(&self) -> Option<DMat3> {
         let inverse = (self.affine * (1.0 / self.area)).inverse();
         let compliance = inverse + inverse * (self.lost * (1.0 / self.area)) * inverse;

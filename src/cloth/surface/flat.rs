@@ -1,22 +1,21 @@
-//! Surfaces that are flat and convex.
+//! Flat and convex surfaces.
 
 use bevy::math::{DVec2, DVec3, Vec3};
 
-/// How far a particle of a flat surface may be off its plane, and how much larger than the surface its convex hull may be,
-/// as parts of its size.
+/// Relative tolerances of a flat surface: a particle's distance from the plane, and the excess area of the convex hull.
 const FLAT: f64 = 1.0e-5;
 
 /// A surface in its plane, if it is flat and convex.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Flat {
-    /// Where each particle is in the plane (m).
+    /// Position of each particle in the plane (m).
     pub places: Vec<DVec2>,
     /// Whether stretch springs run along the plane's axes only, as threads.
     pub has_threads: bool,
 }
 
 impl Flat {
-    /// From one particle to another in the plane (m).
+    /// Vector from one particle to another in the plane (m).
     pub fn between(&self, a: usize, b: usize) -> [f32; 2] {
         (self.places[a] - self.places[b])
             .abs()
@@ -24,9 +23,9 @@ impl Flat {
             .map(|way| way as f32)
     }
 
-    /// The plane of particles at `rest` (m) with faces of an `area` in all (m²), if they lie in one and there is neither a
-    /// hole nor a bay, nor a slit, a fold or a second piece in it: all faces face one side, the convex hull has the same area,
-    /// and all that is on a border is on the hull.
+    /// The plane of particles at `rest` (m) with faces of a total `area` (m²), if they are flat and convex. There may
+    /// be no hole, bay, slit, fold or second piece: all faces face one side, the convex hull has the same area, and
+    /// every border particle is on the hull.
     pub fn find(rest: &[Vec3], faces: &[[u32; 3]], is_border: &[bool], area: f32) -> Option<Self> {
         let at = |particle: u32| rest[particle as usize].as_dvec3();
         let normal_of = |&[a, b, c]: &[u32; 3]| (at(b) - at(a)).cross(at(c) - at(a));
@@ -70,7 +69,7 @@ impl Flat {
     }
 }
 
-/// The convex hull, closed: its lower and then its upper chain (Andrew 1979).
+/// The convex hull as a closed polygon: its lower chain, then its upper chain (Andrew 1979).
 fn hull(places: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));

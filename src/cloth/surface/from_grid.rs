@@ -35,7 +35,7 @@ impl Surface {
                 diagonal: grid.diagonal(),
                 area: (sides.as_vec2() * spacing).element_product(),
                 particles_across: grid.columns().min(grid.rows()) as usize,
-                // Without shear springs, along both sides of a cell.
+                // Without shear springs, a path follows both sides of a cell.
                 face_reach: spacing.element_sum(),
                 longest_spring: spacing.length(),
                 max_faces: 6,

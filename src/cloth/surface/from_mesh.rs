@@ -1,4 +1,4 @@
-//! A surface made from triangles: vertices in the same place become one particle.
+//! Surfaces made from triangles: vertices at the same position become one particle.
 
 use std::sync::OnceLock;
 
@@ -13,28 +13,29 @@ use super::{
 };
 use crate::cloth::{ClothError, FARTHEST, SpringKind};
 
-/// The most particles that a cloth from a mesh may have: more could not move in real time.
+/// The most particles that a cloth from a mesh may have: more could not run in real time.
 pub const MAX_MESH_PARTICLES: usize = 1 << 18;
 
-/// Stands for a vertex that is no particle.
+/// Marks a vertex without a particle.
 const NO_PARTICLE: u32 = u32::MAX;
 
-/// A particle with less than this part of the mean area stands for none.
+/// A particle whose share is less than this fraction of the mean area is dropped.
 const NEGLIGIBLE: f32 = 1.0e-6;
 
 impl Surface {
-    /// The surface of a mesh under a transform's `scale`. Vertices no farther apart than `weld` (m, before the scale) are
-    /// one particle.
+    /// Makes the surface of a mesh under a transform's `scale`. Vertices no farther apart than `weld` (m, before the
+    /// scale) become one particle.
     ///
-    /// Left out are triangles without an area, all but the first between the same three particles, and vertices of no other
-    /// triangle. Several pieces are one cloth; an edge may have any number of faces.
+    /// Triangles without an area are left out, and so are all but the first of several triangles between the same three
+    /// particles. Vertices without a remaining triangle are left out, too. Several pieces form one cloth, and an edge
+    /// may have any number of faces.
     ///
     /// # Errors
-    /// What is wrong, with the vertex or triangle at fault.
+    /// The first error found, with the vertex or triangle at fault.
     pub fn of_mesh(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<Self, ClothError> {
         check(mesh, weld, scale)?;
         let places: Vec<Vec3> = mesh.positions.iter().map(|place| *place * scale).collect();
-        // What is nearer than this has no length that could be measured.
+        // A shorter length could not be measured.
         let weld = weld.max(1.0e-9 / scale.abs().min_element());
         let mut welded = Welded::new(mesh, weld, &places);
         welded.check_count()?;
@@ -53,13 +54,13 @@ fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> 
         range,
     )?;
     let vertices = mesh.positions.len();
-    // A few vertices a particle are usual; what is far beyond is not even welded.
+    // A particle usually has a few vertices; far too many are rejected before welding.
     if vertices > 8 * MAX_MESH_PARTICLES {
         return Err(ClothError::MeshTooLarge {
             particles: vertices,
         });
     }
-    // Not by the largest element, which leaves NaN out.
+    // Not by the largest element, which ignores NaN.
     let is_measurable = |place: &Vec3| (*place * scale).abs().cmplt(Vec3::splat(FARTHEST)).all();
     if let Some(vertex) = mesh
         .positions
@@ -83,13 +84,13 @@ fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> 
     Ok(())
 }
 
-/// Vertices in the same place as one particle, on the way to a surface.
+/// Welded vertices, on the way to a surface.
 struct Welded {
     rest: Vec<Vec3>,
     /// The particle of each vertex.
     particle_of: Vec<u32>,
     faces: Vec<[u32; 3]>,
-    /// The sum of the vertices' normals at each particle; empty without any.
+    /// The sum of the vertices' normals at each particle; empty without normals.
     normals: Vec<Vec3>,
     pieces: usize,
 }
@@ -121,7 +122,7 @@ impl Welded {
         }
     }
 
-    /// Whether there are no more particles than a cloth may have.
+    /// Checks that there are no more particles than a cloth may have.
     fn check_count(&self) -> Result<(), ClothError> {
         let mut is_corner = vec![false; self.rest.len()];
         self.faces
@@ -135,7 +136,7 @@ impl Welded {
         Ok(())
     }
 
-    /// Takes out faces without an area, and particles that stand for none, with their faces.
+    /// Drops faces without an area, and particles without a share of the area, with their faces.
     fn drop_what_has_no_area(&mut self, triangles: usize) -> Result<(), ClothError> {
         self.faces.retain(|face| has_area(*face, &self.rest));
         loop {
@@ -145,7 +146,7 @@ impl Welded {
             let before = self.faces.len();
             self.faces
                 .retain(|face| face.iter().all(|corner| stands_for_some(*corner)));
-            // What is measured in a cloth has to be more than rounding.
+            // Lengths in a cloth have to exceed rounding errors.
             if self.faces.is_empty() || mean < 1.0e-18 {
                 return Err(ClothError::MeshWithoutArea { triangles });
             }
@@ -155,7 +156,7 @@ impl Welded {
         }
     }
 
-    /// The area that each particle stands for, a third of each of its faces, and their sum (m²).
+    /// Each particle's share of the area, a third of each of its faces, and the total (m²).
     fn areas(&self) -> (Vec<f32>, f32) {
         let mut areas = vec![0.0; self.rest.len()];
         let mut total = 0.0_f64;
@@ -169,7 +170,7 @@ impl Welded {
         (areas, total as f32)
     }
 
-    /// Numbers the particles that are corners of a face so that neighbours are near each other in memory.
+    /// Numbers the particles that are corners of a face, so that neighbours are near each other in memory.
     fn arrange(&mut self) {
         let mut edges: Vec<[u32; 2]> = self.faces.iter().flat_map(|face| sides(*face)).collect();
         edges.sort_unstable();
@@ -201,7 +202,7 @@ impl Welded {
     }
 
     fn surface(mut self, mesh: &TriangleMesh, scale: Vec3) -> Surface {
-        // As in the asset, whatever the scale mirrors.
+        // As in the asset, without the mirroring of the scale.
         let unscaled: Vec<Vec3> = self.rest.iter().map(|place| *place / scale).collect();
         self.faces.sort_by_key(first_corner);
         let sides = sides_of(&self.faces);
@@ -278,7 +279,7 @@ impl Welded {
     }
 }
 
-/// What each particle has of its vertices' values.
+/// Merges the vertices' values into one for each particle.
 fn merged<T: Copy + Default>(
     values: &[T],
     particle_of: &[u32],
@@ -297,7 +298,7 @@ fn merged<T: Copy + Default>(
         .collect()
 }
 
-/// Each particle's normal, of length 1: of its faces, by their areas.
+/// Each particle's normal, of length 1: the mean of its faces' normals, weighted by area.
 fn normals(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; rest.len()];
     for face in faces {
@@ -312,7 +313,7 @@ fn normals(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Vec3> {
         .collect()
 }
 
-/// Which particles are at an edge that does not have two faces.
+/// Marks particles at an edge that does not have two faces.
 fn borders(sides: &[Side], particles: usize) -> Vec<bool> {
     let mut is_border = vec![false; particles];
     for faces in sides
@@ -331,7 +332,7 @@ fn first_corner(face: &[u32; 3]) -> u32 {
     face[0].min(face[1]).min(face[2])
 }
 
-/// Takes out all but the first of faces between the same three particles.
+/// Drops all but the first of several faces between the same three particles.
 fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
     let sorted = |face: &[u32; 3]| {
         let mut corners = *face;
@@ -350,7 +351,7 @@ fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
     faces.retain(|_| is_first.next().unwrap_or(false));
 }
 
-/// How many faces meet in one particle at most.
+/// The largest number of faces at one particle.
 fn max_faces(faces: &[[u32; 3]], particles: usize) -> usize {
     let mut counts = vec![0; particles];
     faces

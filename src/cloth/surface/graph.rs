@@ -1,17 +1,17 @@
-//! What is next to what on a surface.
+//! Neighbours on a surface.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-/// Neighbours of each particle, ascending, and how far away they are at rest (m).
+/// Neighbours of each particle, ascending, and their distances at rest (m).
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Graph {
-    /// Where each particle's begin; one more than there are particles.
+    /// First neighbour of each particle; one more entry than particles.
     first: Vec<u32>,
     neighbours: Vec<(u32, f32)>,
 }
 
 impl Graph {
-    /// Of edges between two particles, with their lengths (m); each once.
+    /// The graph of edges between two particles, with their lengths (m); each edge once.
     pub fn new(particles: usize, edges: impl Iterator<Item = ([u32; 2], f32)> + Clone) -> Self {
         let mut first = vec![0; particles + 1];
         for end in edges.clone().flat_map(|(ends, _)| ends) {
@@ -40,15 +40,15 @@ impl Graph {
         self.first.len().saturating_sub(1)
     }
 
-    /// The neighbours of a particle, and how far away each is (m).
+    /// The neighbours of a particle, and their distances (m).
     #[inline]
     pub fn of(&self, particle: u32) -> &[(u32, f32)] {
         let particle = particle as usize;
         &self.neighbours[self.first[particle] as usize..self.first[particle + 1] as usize]
     }
 
-    /// How far it is along edges from each particle to the nearest source (m), infinite where no path leads; and which
-    /// source that is, by its place among them (Dijkstra 1959).
+    /// For each particle, the distance along edges to the nearest source (m), infinite without a path, and the index of
+    /// that source (Dijkstra 1959).
     pub fn distances(&self, sources: impl Iterator<Item = u32>) -> Vec<(f32, u32)> {
         let mut found = vec![(f32::INFINITY, u32::MAX); self.len()];
         let mut heap = BinaryHeap::new();
@@ -56,7 +56,7 @@ impl Graph {
             found[source as usize] = (0.0, place as u32);
             heap.push(Reverse((0, source)));
         }
-        // Bits of floats that are not negative are in the order of the floats.
+        // Bits of non-negative floats sort like the floats.
         while let Some(Reverse((bits, particle))) = heap.pop() {
             let (distance, source) = found[particle as usize];
             if f32::from_bits(bits) > distance {
@@ -73,8 +73,8 @@ impl Graph {
         found
     }
 
-    /// An order in which neighbours are near each other in memory: breadth first, from a particle that is far from the
-    /// others of its piece, those with few neighbours first (Cuthill and `McKee` 1969).
+    /// An order in which neighbours are near each other in memory. Breadth first from a particle at the far end of its
+    /// piece, particles with few neighbours first (Cuthill and `McKee` 1969).
     pub fn order(&self) -> Vec<u32> {
         let mut order: Vec<u32> = Vec::with_capacity(self.len());
         let mut is_placed = vec![false; self.len()];
@@ -84,7 +84,7 @@ impl Graph {
             if is_placed[start as usize] {
                 continue;
             }
-            // What is reached last from anywhere is far from the others.
+            // The particle reached last is at the far end.
             queue.clear();
             queue.push(start);
             last_seen[start as usize] = start;
@@ -116,8 +116,8 @@ impl Graph {
         order
     }
 
-    /// Into how many pieces the particles of an `order` fall that no edge joins: each begins where a particle has no neighbour
-    /// before it.
+    /// Number of connected pieces of the particles in an `order`: a piece begins at each particle without an earlier
+    /// neighbour.
     pub fn pieces(&self, order: &[u32]) -> usize {
         let mut is_before = vec![false; self.len()];
         let begins = |particle: &&u32| {

@@ -1,18 +1,18 @@
-//! What a surface that is a grid has, made when it is asked for.
+//! Lazily computed properties of a grid's surface.
 
 use bevy::math::{DVec2, Vec2};
 
 use super::{Faces, Flat, Graph};
 use crate::cloth::ClothGrid;
 
-/// From (0, 0) in particle (0, 0) to (1, 1) in the last.
+/// From (0, 0) at particle (0, 0) to (1, 1) at the last one.
 pub(super) fn uvs(grid: &ClothGrid) -> Vec<Vec2> {
     let last = Vec2::new((grid.columns() - 1) as f32, (grid.rows() - 1) as f32);
     let uv = |(row, column): (u32, u32)| Vec2::new(column as f32, row as f32) / last;
     grid.cells().map(uv).collect()
 }
 
-/// Two faces a cell, for which its first particle stands.
+/// Two faces for each cell, owned by its first particle.
 pub(super) fn faces(grid: &ClothGrid) -> Faces {
     let begins_cell =
         |(row, column): (u32, u32)| row + 1 < grid.rows() && column + 1 < grid.columns();
@@ -39,7 +39,7 @@ pub(super) fn graph(grid: &ClothGrid) -> Graph {
     Graph::new(grid.len(), edges.into_iter())
 }
 
-/// Along its columns and rows, from particle (0, 0).
+/// The plane along its columns and rows, from particle (0, 0).
 pub(super) fn flat(grid: &ClothGrid) -> Flat {
     let spacing = grid.spacing().as_dvec2();
     let place = |(row, column): (u32, u32)| DVec2::new(f64::from(column), f64::from(row)) * spacing;

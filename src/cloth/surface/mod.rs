@@ -1,7 +1,7 @@
-//! The surface that a cloth is: what does not change while it moves, whatever it was made from.
+//! The surface of a cloth at rest. It does not change while the cloth moves.
 //!
-//! A grid is one way to make one, a triangle mesh another. Solver, hierarchy, contact and drawing see a surface; only what
-//! makes one, and pins that name rows and columns, ask whether it is a grid.
+//! A surface is made from a grid or from a triangle mesh. Solver, hierarchy, contact and rendering use only the
+//! surface. Only the code that makes one, and pins by rows and columns, ask whether it is a grid.
 
 #[cfg(feature = "mesh")]
 mod asset;
@@ -44,28 +44,28 @@ pub(crate) use springs::Link;
 pub(crate) use threads::Threads;
 pub(crate) use triangles::JointWeights;
 
-/// A cloth's surface at rest: its particles, the triangles between them, their areas, what is next to what. In the cloth's
-/// own frame, in metres, with the transform's scale multiplied in.
+/// A cloth's surface at rest: its particles, the triangles between them, their areas and neighbours. It is in the
+/// cloth's own frame, in metres, with the transform's scale applied.
 ///
-/// It never changes, so that cloths made alike share one.
+/// It never changes, so that equal cloths share one.
 #[derive(Clone)]
 pub struct Surface {
     rest: Vec<Vec3>,
     areas: Vec<f32>,
-    /// One for all of a flat surface, else one for each particle.
+    /// One normal for a flat surface, else one for each particle.
     normals: Vec<Vec3>,
-    /// The particle of each vertex that it was made from; `None` where each vertex is its own.
+    /// The particle of each vertex of the mesh; `None` if each vertex is its own particle.
     particle_of_vertex: Option<Vec<u32>>,
     attributes: Vec<VertexAttribute>,
-    /// The springs of a mesh; a grid's follow from its rows and columns.
+    /// The springs of a mesh. Those of a grid follow from its rows and columns.
     links: Vec<Link>,
-    /// Of a mesh, which particles are at an edge that does not have two faces.
+    /// On a mesh, marks particles at an edge that does not have two faces.
     is_border: Vec<bool>,
     scale: Vec3,
     spacing: Spacing,
     extent: Extent,
     grid: Option<ClothGrid>,
-    // Made when they are asked for: a cloth that touches nothing needs none of them.
+    // Computed lazily: a cloth without contacts needs none of them.
     uvs: OnceLock<Vec<Vec2>>,
     faces: OnceLock<Faces>,
     graph: OnceLock<Graph>,
@@ -73,34 +73,34 @@ pub struct Surface {
     flat: OnceLock<Option<Flat>>,
 }
 
-/// Lengths of stretch springs at rest (m).
+/// Rest lengths of the stretch springs (m).
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Spacing {
-    /// Of the shortest.
+    /// The shortest (m).
     pub shortest: f32,
-    /// Of the one in the middle; on a grid, the smaller of its two.
+    /// The median (m); on a grid, the smaller of the two.
     pub typical: f32,
-    /// Of the longest.
+    /// The longest (m).
     pub longest: f32,
 }
 
-/// How large a surface is.
+/// The size of a surface.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 struct Extent {
-    /// From one end to the other at rest (m).
+    /// Diagonal of the bounding box at rest (m).
     pub diagonal: f32,
-    /// All of it (m²).
+    /// Total area (m²).
     pub area: f32,
-    /// Particles side by side where it is narrow.
+    /// Number of particles across its narrow side.
     pub particles_across: usize,
-    /// From a particle to the farthest corner of the faces that it stands for, along stretch springs at most (m).
+    /// Largest distance from a particle to a corner of its faces, along stretch springs (m).
     pub face_reach: f32,
-    /// Of the springs between neighbours the longest, shear springs too (m).
+    /// Rest length of the longest spring between neighbours, including shear springs (m).
     pub longest_spring: f32,
-    /// Faces that meet in one particle, at most.
+    /// Largest number of faces at one particle.
     pub max_faces: usize,
-    /// How many pieces there are that no edge joins.
+    /// Number of connected pieces.
     pub pieces: usize,
 }
 
@@ -110,51 +110,50 @@ impl Surface {
         self.rest.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
         self.rest.is_empty()
     }
 
-    /// Where each particle is at rest (m).
+    /// Position of each particle at rest (m).
     pub fn rest_positions(&self) -> &[Vec3] {
         &self.rest
     }
 
-    /// The part of the surface that a particle stands for (m²).
+    /// A particle's share of the surface's area (m²).
     pub fn area_of(&self, particle: usize) -> f32 {
         self.areas[particle]
     }
 
-    /// The part of the surface that each particle stands for (m²).
+    /// Each particle's share of the surface's area (m²).
     pub(crate) fn areas(&self) -> &[f32] {
         &self.areas
     }
 
-    /// Area of all of it (m²).
+    /// Total area (m²).
     pub fn area(&self) -> f32 {
         self.extent.area
     }
 
-    /// The side that the surface faces at a particle at rest, of length 1.
+    /// The surface's normal at a particle at rest, of length 1.
     pub fn normal_of(&self, particle: usize) -> Vec3 {
         let index = if self.normals.len() == 1 { 0 } else { particle };
         self.normals[index]
     }
 
-    /// Triangles, as particle indices, counter-clockwise seen from where the surface faces.
+    /// Triangles, as particle indices, counter-clockwise seen from the front.
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.faces().all()
     }
 
-    /// How many vertices it was made from.
+    /// Number of vertices that the surface was made from.
     pub fn vertices(&self) -> usize {
         self.particle_of_vertex
             .as_ref()
             .map_or(self.len(), Vec::len)
     }
 
-    /// The particle of a vertex that the surface was made from. None of a vertex that is no part of a triangle with an
-    /// area.
+    /// The particle of a vertex that the surface was made from. `None` if no triangle with an area uses the vertex.
     pub fn particle_of_vertex(&self, vertex: usize) -> Option<usize> {
         let particle = match &self.particle_of_vertex {
             None => vertex,
@@ -163,32 +162,32 @@ impl Surface {
         (particle < self.len()).then_some(particle)
     }
 
-    /// Lengths of its stretch springs at rest.
+    /// Rest lengths of its stretch springs.
     pub fn spacing(&self) -> Spacing {
         self.spacing
     }
 
-    /// From one end to the other at rest (m).
+    /// The diagonal of the surface at rest (m).
     pub fn diagonal(&self) -> f32 {
         self.extent.diagonal
     }
 
-    /// The rows and columns of a surface that was made from a grid.
+    /// The grid that the surface was made from, if any.
     pub fn as_grid(&self) -> Option<&ClothGrid> {
         self.grid.as_ref()
     }
 
-    /// Whether it encloses a volume: a mesh of which each edge has two faces.
+    /// Whether the surface encloses a volume: it is a mesh with two faces at each edge.
     pub fn is_closed(&self) -> bool {
         !self.is_border.is_empty() && !self.is_border.contains(&true)
     }
 
-    /// Particles side by side where it is narrow.
+    /// Number of particles across its narrow side.
     pub(crate) fn particles_across(&self) -> usize {
         self.extent.particles_across
     }
 
-    /// Particles side by side where it is long: of a mesh, as many as a square of its diagonal would have.
+    /// Number of particles along its long side. For a mesh, that of a square with its diagonal.
     pub fn particles_along(&self) -> usize {
         match &self.grid {
             Some(grid) => grid.columns().max(grid.rows()) as usize,
@@ -199,37 +198,37 @@ impl Surface {
         }
     }
 
-    /// From a particle to the farthest corner of the faces that it stands for, along stretch springs at most (m).
+    /// Largest distance from a particle to a corner of its faces, along stretch springs (m).
     pub(crate) fn face_reach(&self) -> f32 {
         self.extent.face_reach
     }
 
-    /// Of the springs between neighbours the longest, shear springs too (m).
+    /// Rest length of the longest spring between neighbours, including shear springs (m).
     pub(crate) fn longest_spring(&self) -> f32 {
         self.extent.longest_spring
     }
 
-    /// Faces that meet in one particle, at most.
+    /// Largest number of faces at one particle.
     pub(crate) fn max_faces(&self) -> usize {
         self.extent.max_faces
     }
 
-    /// The transform's scale that is in it.
+    /// The transform's scale, already applied.
     pub(crate) fn scale(&self) -> Vec3 {
         self.scale
     }
 
-    /// What its vertices carry besides their places.
+    /// The vertices' attributes besides their positions.
     pub(crate) fn attributes(&self) -> &[VertexAttribute] {
         &self.attributes
     }
 
-    /// The springs of a mesh; none of a grid.
+    /// The springs of a mesh; empty for a grid.
     pub(crate) fn links(&self) -> &[Link] {
         &self.links
     }
 
-    /// Texture coordinates of each particle; empty where there are none.
+    /// Texture coordinates of each particle; empty if there are none.
     pub fn uvs(&self) -> &[Vec2] {
         self.uvs.get_or_init(|| {
             let grid = self.grid.as_ref();
@@ -237,7 +236,7 @@ impl Surface {
         })
     }
 
-    /// Its faces, by the particles that stand for them.
+    /// Its faces, by their owners.
     pub(crate) fn faces(&self) -> &Faces {
         self.faces.get_or_init(|| {
             let grid = self.grid.as_ref();
@@ -245,7 +244,7 @@ impl Surface {
         })
     }
 
-    /// What is next to what.
+    /// Neighbours of each particle.
     pub(crate) fn graph(&self) -> &Graph {
         self.graph.get_or_init(|| match &self.grid {
             Some(grid) => grid::graph(grid),
@@ -257,7 +256,7 @@ impl Surface {
         })
     }
 
-    /// The threads of a mesh, along its structural links, which are numbered from the first of them.
+    /// The threads of a mesh along its structural links. Their indices count from the first structural link.
     pub(crate) fn threads(&self) -> &Threads {
         self.threads.get_or_init(|| {
             let links = self.links.iter();
@@ -269,7 +268,7 @@ impl Surface {
         })
     }
 
-    /// Its plane, if it is flat and convex: then the shortest path between two particles is a straight line.
+    /// Its plane, if it is flat and convex. The shortest path between two particles is then a straight line.
     pub(crate) fn flat(&self) -> Option<&Flat> {
         let flat = self.flat.get_or_init(|| match &self.grid {
             Some(grid) => Some(grid::flat(grid)),
@@ -286,7 +285,7 @@ impl Surface {
 }
 
 impl Default for Surface {
-    /// Of no particles.
+    /// A surface without particles.
     fn default() -> Self {
         Self {
             rest: Vec::new(),
@@ -318,7 +317,7 @@ impl fmt::Debug for Surface {
     }
 }
 
-/// How the particles of a surface are named in messages: its rows and columns, or how many there are.
+/// Writes the size of a surface for messages: its columns and rows, or its particles and vertices.
 impl fmt::Display for Surface {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.grid {

@@ -1,18 +1,19 @@
-//! Normals of a surface that has moved.
+//! Normals of a moved surface.
 
 use bevy::math::Vec3;
 
 use super::Surface;
 
 impl Surface {
-    /// The normal at each particle where the particles are at `positions`: the mean of its faces' normals, by their areas, of
-    /// length 1. Where they cancel out it is the one at rest. `normals` become as many as there are positions.
+    /// Computes the normal at each particle, of length 1, for particles at `positions`: the mean of its faces' normals,
+    /// weighted by area. Where they cancel out, it is the normal at rest. `normals` is resized to the number of
+    /// positions.
     pub fn normals_at(&self, positions: &[Vec3], normals: &mut Vec<Vec3>) {
         normals.clear();
         normals.resize(positions.len(), Vec3::ZERO);
         for face in self.triangles() {
             let [a, b, c] = face.map(|corner| positions[corner as usize]);
-            // Of twice its area: the larger a face is, the more it says.
+            // Its length is twice the area: larger faces weigh more.
             let normal = (b - a).cross(c - a);
             face.iter()
                 .for_each(|corner| normals[*corner as usize] += normal);

@@ -1,20 +1,20 @@
-//! Which side of each face is its front.
+//! Consistent winding order of the faces.
 
 use bevy::math::Vec3;
 
 use super::springs::Side;
 
-/// Stands for a side without a face beyond it, or with several.
+/// Marks a side with no face beyond it, or with several.
 const NONE: u32 = u32::MAX;
 
-/// Turns faces so that neighbours across an edge of two face the same side, piece by piece; each piece then faces the side
-/// that `normals` of its corners are on, if there are any, else that of its first face. What cannot be turned so, as a
-/// Möbius strip, keeps an edge where it faces both. `sides` are those of the faces.
+/// Flips faces so that two neighbours across an edge face the same side, piece by piece. Each piece then faces the side
+/// of its corners' `normals`, or without any that of its first face. A piece that cannot be oriented, such as a Möbius
+/// strip, keeps an inconsistent edge. `sides` are the sides of the faces.
 pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], normals: &[Vec3]) {
-    // The face beyond the side that faces each corner.
+    // The face beyond the side opposite each corner.
     let mut beyond = vec![[NONE; 3]; faces.len()];
     for pair in sides.chunk_by(|a, b| a.ends == b.ends) {
-        // Where three faces or more meet none is the other side of another.
+        // Where three or more faces meet, no face continues another.
         let [one, other] = pair else {
             continue;
         };
@@ -49,7 +49,7 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
                 }
                 let other = other as usize;
                 let [a, b] = [before[index][(at + 1) % 3], before[index][(at + 2) % 3]];
-                // Faces of one side run along their common edge in opposite directions.
+                // Two faces of one orientation run along their common edge in opposite directions.
                 let runs = |face: [u32; 3]| edges(face).contains(&[a, b]);
                 if runs(faces[index]) == runs(faces[other]) {
                     faces[other].swap(1, 2);

@@ -4,13 +4,13 @@ use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::Graph;
 
-/// Shortest paths along the edges of a graph (Dijkstra 1959), with memory that is used again and again.
+/// Shortest paths along the edges of a graph (Dijkstra 1959), with reused memory.
 #[derive(Debug)]
 pub(crate) struct ShortestPaths<'a> {
     graph: &'a Graph,
-    /// Of each particle, in which search it was reached, and how far away (m).
+    /// For each particle, the search that reached it last, and its distance (m).
     reached: Vec<(u32, f64)>,
-    /// Of each particle, the search in which it was wanted.
+    /// For each particle, the search whose target it was last.
     wanted: Vec<u32>,
     search: u32,
     heap: BinaryHeap<Reverse<(u64, u32)>>,
@@ -27,8 +27,8 @@ impl<'a> ShortestPaths<'a> {
         }
     }
 
-    /// Finds the paths from `start` to all of `patch`. Returns the last particle of it that is reached and how far away
-    /// that is (m); `None` if one is out of reach.
+    /// Finds the paths from `start` to all of `patch`. Returns the particle of it that is reached last and its distance
+    /// (m); `None` if one is unreachable.
     fn search(&mut self, start: u32, patch: &[u32]) -> Option<(u32, f64)> {
         self.search += 1;
         let search = self.search;
@@ -39,7 +39,7 @@ impl<'a> ShortestPaths<'a> {
         self.heap.clear();
         self.heap.push(Reverse((0, start)));
         self.reached[start as usize] = (search, 0.0);
-        // Bits of floats that are not negative are in the order of the floats.
+        // Bits of non-negative floats sort like the floats.
         while let Some(Reverse((bits, particle))) = self.heap.pop() {
             let distance = f64::from_bits(bits);
             let at = particle as usize;
@@ -65,7 +65,7 @@ impl<'a> ShortestPaths<'a> {
         None
     }
 
-    /// The distance from `start` to the farthest of `patch` (m), rounded up; infinite if one is out of reach.
+    /// The distance from `start` to the farthest particle of `patch` (m), rounded up; infinite if one is unreachable.
     pub fn farthest(&mut self, start: u32, patch: &[u32]) -> f32 {
         match self.search(start, patch) {
             Some((_, distance)) if distance > 0.0 => (distance as f32).next_up(),
@@ -74,8 +74,8 @@ impl<'a> ShortestPaths<'a> {
         }
     }
 
-    /// The particle of `patch` that is farthest from `start`, and how far each of them is (m), in their order; infinite
-    /// out of reach. What is out of reach is farthest.
+    /// Writes the distance of each particle of `patch` from `start` (m), in order, infinite if unreachable. Returns the
+    /// farthest particle; unreachable ones count as farthest.
     pub fn distances(&mut self, start: u32, patch: &[u32], distances: &mut Vec<f64>) -> u32 {
         let last = self.search(start, patch);
         let (reached, search) = (&self.reached, self.search);

@@ -1,10 +1,10 @@
-//! Threads of a mesh: paths along its edges that go straight on, as rows, columns and diagonals of a grid do.
+//! Threads of a mesh: paths along its edges that go straight on, like the rows, columns and diagonals of a grid.
 //!
-//! What one spring pulls with reaches the others of its thread at once, since they are solved together. At each particle the
-//! edges that continue each other best are joined first; what is left over, or alone, is on no thread.
+//! The springs of a thread are solved together, so that the pull of one reaches the others at once. At each particle,
+//! the pairs of edges that best continue each other are joined first. Edges that remain are on no thread.
 //!
-//! "Straight on" is meant on the surface, unfolded there: edges are seen from the side that the surface faces at their
-//! particle, so that a line around a cylinder is straight.
+//! "Straight on" is meant on the surface: edges are projected along the normal at their particle, so that a line around
+//! a cylinder is straight.
 
 #[cfg(test)]
 mod tests;
@@ -14,32 +14,32 @@ use bevy::math::{Vec2, Vec3};
 /// The cosine of the smallest angle between two edges that continue each other: 135°.
 const STRAIGHT: f32 = -std::f32::consts::FRAC_1_SQRT_2;
 
-/// As many colours as a particle's mask has bits.
+/// Number of bits in a particle's mask.
 const MAX_COLOURS: u32 = 64;
 
-/// Stands for no edge.
+/// Marks the absence of an edge.
 const NONE: u32 = u32::MAX;
 
-/// A path along edges that meets no particle twice.
+/// A path along edges that visits no particle twice.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Thread {
-    /// The particle that it begins at.
+    /// Its first particle.
     pub first: u32,
     /// Two or more edges, or the springs along them.
     pub edges: Vec<u32>,
 }
 
-/// The threads of a surface, sorted by colour: no two of one colour share a particle, so that they are solved side by side. In
-/// a colour longer ones are first.
+/// The threads of a surface, sorted by colour. No two of one colour share a particle, so that they are solved in
+/// parallel. Within a colour, longer threads come first.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub(crate) struct Threads {
-    /// Colour by colour.
+    /// The threads of each colour.
     pub colours: Vec<Vec<Thread>>,
 }
 
 impl Threads {
-    /// Finds them along `edges`, between particles with these places at rest (m) and normals of length 1. No two edges have
-    /// the same ends.
+    /// Finds the threads along `edges`, between particles with these positions at rest (m) and normals of length 1. No
+    /// two edges have the same ends.
     pub fn trace(edges: &[[u32; 2]], rest: &[Vec3], normals: impl Fn(u32) -> Vec3) -> Self {
         let next = continuations(edges, rest, normals);
         let mut walk = Walk {
@@ -49,7 +49,7 @@ impl Threads {
             seen: vec![NONE; rest.len()],
             threads: Vec::new(),
         };
-        // Open paths from their ends; what is left then is closed.
+        // First open paths, from their ends; the remaining paths are closed.
         for (edge, ends) in next.iter().enumerate() {
             for (end, &after) in ends.iter().enumerate() {
                 if after == NONE {
@@ -67,12 +67,12 @@ impl Threads {
         }
     }
 
-    /// All of them.
+    /// All threads.
     pub fn iter(&self) -> impl Iterator<Item = &Thread> {
         self.colours.iter().flatten()
     }
 
-    /// The same with other numbers for the edges.
+    /// The same threads with other edge indices.
     pub fn renamed(&self, name: impl Fn(u32) -> u32) -> Self {
         let mut threads = self.clone();
         for thread in threads.colours.iter_mut().flatten() {
@@ -128,19 +128,19 @@ fn continuations(
     next
 }
 
-/// What is found on the way along edges.
+/// State of the walk along edges.
 struct Walk<'a> {
     edges: &'a [[u32; 2]],
     next: &'a [[u32; 2]],
     is_passed: Vec<bool>,
-    /// The last thread that came by each particle.
+    /// The last thread that visited each particle.
     seen: Vec<u32>,
     threads: Vec<Thread>,
 }
 
 impl Walk<'_> {
-    /// Goes from one end of an edge to its other, and on, until there is no edge that has not been passed. Where it meets
-    /// itself a new thread begins.
+    /// Walks from one end of an edge to the other, and on, until no unvisited edge follows. Where the path meets
+    /// itself, a new thread begins.
     fn from(&mut self, mut edge: u32, mut end: usize) {
         let mut thread = NONE;
         while edge != NONE && !std::mem::replace(&mut self.is_passed[edge as usize], true) {
@@ -165,8 +165,8 @@ impl Walk<'_> {
     }
 }
 
-/// Gives each thread the first colour that none of its particles has, the longest first. What there is no colour for is on no
-/// thread.
+/// Gives each thread, longest first, the first colour that is free at all of its particles. Without a free colour, its
+/// edges are on no thread.
 fn colours(mut threads: Vec<Thread>, edges: &[[u32; 2]], particles: usize) -> Vec<Vec<Thread>> {
     threads.sort_by_key(|thread| std::cmp::Reverse(thread.edges.len()));
     let mut taken: Vec<u64> = vec![0; particles];

@@ -1,24 +1,24 @@
-//! What a surface that is no grid is made from.
+//! Triangles to make a surface from.
 
 use bevy::math::{Vec2, Vec3};
 
-/// The triangles that a surface is made from.
+/// Triangles to make a [`Surface`](super::Surface) from.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct TriangleMesh {
-    /// Vertices (m), before the transform's scale.
+    /// Positions of the vertices (m), before the transform's scale.
     pub positions: Vec<Vec3>,
-    /// Three vertices each, in either order.
+    /// Three vertices each, in either winding order.
     pub triangles: Vec<[u32; 3]>,
-    /// Normals of the vertices: they say which side is the front. May be empty.
+    /// Normals of the vertices, which define the front. May be empty.
     pub normals: Vec<Vec3>,
     /// Texture coordinates of the vertices. May be empty.
     pub uvs: Vec<Vec2>,
-    /// What else the vertices carry, for pins to ask for.
+    /// Further vertex attributes, for pins and paint.
     pub attributes: Vec<VertexAttribute>,
 }
 
-/// Numbers that the vertices of a mesh carry, and then the particles of a cloth: for a particle of several vertices the
-/// largest of theirs.
+/// A vertex attribute of a mesh, converted to the particles of a cloth: a particle of several vertices takes their
+/// largest value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VertexAttribute {
     name: String,
@@ -26,7 +26,7 @@ pub struct VertexAttribute {
 }
 
 impl VertexAttribute {
-    /// With up to four channels for each vertex; those that it does not have are 0.
+    /// An attribute with up to four channels for each vertex; unused channels are 0.
     pub fn new(name: impl Into<String>, values: Vec<[f32; 4]>) -> Self {
         Self {
             name: name.into(),
@@ -34,12 +34,12 @@ impl VertexAttribute {
         }
     }
 
-    /// What it is called.
+    /// The name of the attribute.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What some are called, for a message.
+    /// The names of attributes, for a message.
     pub(crate) fn names(attributes: &[Self]) -> String {
         let names: Vec<&str> = attributes.iter().map(Self::name).collect();
         if names.is_empty() {
@@ -49,13 +49,13 @@ impl VertexAttribute {
         }
     }
 
-    /// Four numbers for each.
+    /// Four values for each vertex.
     pub fn values(&self) -> &[[f32; 4]] {
         &self.values
     }
 }
 
-/// The joints that move a vertex, and by how much each.
+/// The joints that move a vertex, and their weights.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(crate) struct JointWeights {
     pub joints: [u16; 4],

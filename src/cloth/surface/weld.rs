@@ -1,15 +1,15 @@
-//! Which vertices are in the same place.
+//! Finds vertices at the same position.
 
 use bevy::{math::Vec3, platform::collections::HashMap};
 
-/// The first vertex of each place, and the place of each vertex: the first that is no farther than `weld`.
+/// The first vertex at each position, and the position of each vertex: the first within `weld`.
 pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>) {
-    // Cells are so large that most vertices need only their own.
+    // With cells this large, most vertices need only their own cell.
     let size = 8.0 * weld;
-    // −0 is 0.
+    // −0 becomes 0.
     let cell = |place: Vec3| -> [u32; 3] {
         if weld > 0.0 {
-            // Far from the origin neighbouring cells may be one number: more to compare with, and nothing missed.
+            // Far from the origin, neighbouring cells may coincide: this adds comparisons and misses nothing.
             ((place / size).floor() + Vec3::ZERO)
                 .to_array()
                 .map(f32::to_bits)
@@ -17,7 +17,7 @@ pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
             (place + Vec3::ZERO).to_array().map(f32::to_bits)
         }
     };
-    // The last place in each cell, and the one before it.
+    // The last position in each cell, and the one before it.
     let mut cells: HashMap<[u32; 3], u32> = HashMap::default();
     let mut before: Vec<Option<u32>> = Vec::new();
     cells.reserve(positions.len());
@@ -40,7 +40,7 @@ pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
             let of_cell =
                 std::iter::successors(cells.get(&cell(near)).copied(), |at| before[*at as usize]);
             for known in of_cell.filter(is_same) {
-                // Of several the earliest, so that the order of cells does not matter.
+                // The earliest of several, so that the order of cells does not matter.
                 found = Some(found.map_or(known, |found: u32| found.min(known)));
             }
             if corner == 0 && cell(low) == cell(high) {

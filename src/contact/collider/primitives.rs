@@ -1,4 +1,4 @@
-//! From Bevy's primitives.
+//! Conversions from Bevy's primitives.
 
 use bevy::math::{
     Vec2, Vec3,
@@ -50,7 +50,7 @@ impl From<Cone> for ClothCollider {
     }
 }
 
-/// The convex hull of two circles of 48 points.
+/// Becomes the convex hull of two circles of 48 points.
 impl From<ConicalFrustum> for ClothCollider {
     fn from(frustum: ConicalFrustum) -> Self {
         let ring = |radius: f32, height: f32| {
@@ -72,14 +72,14 @@ impl From<Tetrahedron> for ClothCollider {
     }
 }
 
-/// A sheet with two sides.
+/// Becomes a sheet with two sides.
 impl From<Triangle3d> for ClothCollider {
     fn from(triangle: Triangle3d) -> Self {
         Self::trimesh(triangle.vertices, [[0, 1, 2]])
     }
 }
 
-/// All below it.
+/// Becomes the half-space below it.
 impl From<InfinitePlane3d> for ClothCollider {
     fn from(plane: InfinitePlane3d) -> Self {
         let normal = Vec3::from(plane.normal);
@@ -90,7 +90,7 @@ impl From<InfinitePlane3d> for ClothCollider {
     }
 }
 
-/// A box as long as it is extruded.
+/// Becomes a box.
 impl From<Extrusion<Rectangle>> for ClothCollider {
     fn from(extrusion: Extrusion<Rectangle>) -> Self {
         Self::Cuboid {

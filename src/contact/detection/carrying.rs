@@ -1,4 +1,4 @@
-//! Bodies that are carried while springs are solved.
+//! Carries bodies while springs are solved.
 
 use super::{Detection, send_on};
 use crate::{
@@ -8,14 +8,14 @@ use crate::{
 };
 
 impl Detection {
-    /// The particles that carry a body as the tick ends, if this collider is one and was near.
+    /// The particles that carry a body at the end of the tick, if this collider is dynamic and was near.
     pub(crate) fn carriers(&self, id: usize) -> &[Carrier] {
         let body = self.bodies.iter().find(|body| body.id == id);
         body.map_or(&[], |body| body.carriers.as_slice())
     }
 
-    /// How many times as heavy as the particles of the threads by which it hangs the heaviest body is that particles carry, as far as
-    /// they have held it in a tick in which it falls by so much (m/s); 0 if they carry none.
+    /// Largest ratio of a carried body's mass to that of the threads that hold it, times the fraction of its weight
+    /// that they hold. `fall` is the velocity that gravity adds in a tick (m/s). 0 if nothing is carried.
     pub(crate) fn load_ratio(&self, fall: f32) -> f32 {
         let ratio = |body: &Body| {
             let held = body.change().velocity.length();
@@ -24,7 +24,8 @@ impl Detection {
         self.bodies.iter().map(ratio).fold(0.0, f32::max)
     }
 
-    /// Begins a tick of so many sub-steps with the particles that carried a body as the last one ended, those of each collider's number.
+    /// Begins a tick of some sub-steps with the particles that carried each collider's body at the end of the last
+    /// tick.
     pub(crate) fn recall<C: Iterator<Item = Carrier>>(
         &mut self,
         particles: &mut ClothParticles,
@@ -37,7 +38,7 @@ impl Detection {
         self.lend(particles, SubStep::first_of(substeps));
     }
 
-    /// Has particles carry what they were just pushed by, in the coming sub-step.
+    /// Makes particles carry the bodies that have just pushed them, in the coming sub-step.
     pub(super) fn lend(&mut self, particles: &mut ClothParticles, coming: SubStep) {
         particles.loads_mut().clear();
         for index in 0..self.bodies.len() {
@@ -50,7 +51,7 @@ impl Detection {
         }
     }
 
-    /// Gives bodies what the sub-step that has just ended gave to what particles carried. Returns whether any was moved.
+    /// Applies the impulses of the last sub-step to the carried bodies. Returns whether any moved.
     pub(super) fn take_back(&mut self, particles: &mut ClothParticles, substep: SubStep) -> bool {
         if !particles.has_loads() {
             return false;

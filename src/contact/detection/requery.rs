@@ -1,4 +1,4 @@
-//! When candidates may be missing, and how they are searched for again.
+//! Repeats the search when candidates may be missing.
 
 use bevy::math::Vec3;
 
@@ -9,11 +9,11 @@ use crate::{
     solver::SubStep,
 };
 
-/// How often a sub-step measures how far particles have moved, before it searches again.
+/// Number of measurements of the particles' displacements in a sub-step, before a new search.
 const MAX_MEASURED: u32 = 2;
 
 impl Detection {
-    /// Begins the tick again, from the same particles: for one that is done again.
+    /// Begins the same tick again, from the same particles.
     pub fn restart(&mut self) {
         self.shapes.clear();
         self.shapes.memories.restart();
@@ -28,7 +28,7 @@ impl Detection {
             let way = body.restart();
             send_on(&mut self.touches, &mut self.colliders, body.id, &way);
         }
-        // What was searched for on the way was found where the particles were then.
+        // Later searches used the particles' positions of that time.
         self.moved = if self.requeries > 0 {
             f32::INFINITY
         } else {
@@ -41,15 +41,15 @@ impl Detection {
         self.has_origin = true;
     }
 
-    /// Whether particles have moved so far that candidates may be missing. The sum of all moves says so first; it counts
-    /// every jitter, so what it says is measured.
+    /// Whether particles have moved so far that candidates may be missing. The sum of all moves is checked first; it
+    /// includes all jitter, so the displacement is then measured.
     pub(super) fn is_outrun(&mut self, particles: &ClothParticles) -> bool {
-        // NaN is no less.
+        // Also true for NaN.
         let is_beyond = |moved: f32, margin: f32| moved > margin || moved.is_nan();
         if !is_beyond(self.moved + self.deviation, self.margin) {
             return false;
         }
-        // Searching again widens the margin: cheaper than to measure for every push.
+        // A new search widens the margin: that is cheaper than a measurement for every push.
         if self.has_origin && self.measured < MAX_MEASURED {
             self.measured += 1;
             self.moved = particles.farthest_from(&self.origin);
@@ -57,8 +57,7 @@ impl Detection {
         is_beyond(self.moved + self.deviation, self.margin)
     }
 
-    /// Searches for the candidates of all colliders again, among the particles as they are when so many sub-steps
-    /// have passed.
+    /// Repeats the search for all colliders after a number of sub-steps, with the current particles.
     pub(super) fn search(
         &mut self,
         particles: &ClothParticles,
@@ -66,16 +65,16 @@ impl Detection {
         passed: u32,
     ) {
         if self.colliders.is_empty() {
-            // There is nothing to miss.
+            // Nothing can be missed.
             self.margin = f32::INFINITY;
             return;
         }
         self.requeries += 1;
-        // Twice as much as did not suffice: a tick has few of these, however wild it is.
+        // Twice the margin that was too small: so a tick has few repetitions, however violent it is.
         let finite = |length: f32| if length.is_finite() { length } else { 0.0 };
         let moved_now = finite(self.moved_now);
         self.margin = 2.0 * finite(self.moved).max(moved_now).max(self.margin);
-        // The way of this sub-step lies behind.
+        // The motion of this sub-step has already happened.
         self.moved = moved_now;
         self.remember(particles);
         self.deviation = 0.0;
@@ -104,7 +103,7 @@ impl Detection {
             {
                 found.scan(particles, &probe);
             }
-            // What was looked at stays, so that nothing that touched is forgotten.
+            // Tested particles stay candidates, so that no contact is forgotten.
             let found = found.candidates().iter().copied();
             let mut all: Vec<u32> = self.kept.particles(*id).chain(found).collect();
             all.sort_unstable();
@@ -116,7 +115,7 @@ impl Detection {
         self.kept.give_back(&self.touches, &mut self.candidates);
     }
 
-    /// Takes into account that something else has pushed particles, by at most this far (m).
+    /// Takes pushes by anything else into account, of at most this distance (m).
     pub fn note_push(&mut self, farthest: f32) {
         self.moved += farthest;
         self.moved_now += farthest;
@@ -124,13 +123,13 @@ impl Detection {
         self.shapes.travelled += farthest;
     }
 
-    /// Forgets all that is known of edges.
+    /// Clears the memory of edges.
     #[cfg(test)]
     pub(in crate::contact) fn forget_edges(&mut self) {
         self.shapes.forget_edges();
     }
 
-    /// How far colliders have pushed any particle in the last sub-step, at most (m).
+    /// Largest push of any particle by colliders in the last sub-step (m).
     pub(crate) fn farthest_push(&self, substep: SubStep) -> f32 {
         self.moved_now - substep.farthest_move
     }

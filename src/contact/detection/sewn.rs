@@ -1,10 +1,10 @@
-//! Triangles that hang by a pin right at a collider.
+//! Triangles pinned to a collider.
 
 use crate::{cloth::ClothParticles, contact::MovingCollider};
 
-/// Whether a triangle was pinned to something inside of a collider, or less than a radius of the particles (m) before it, as the tick
-/// began, of which so many sub-steps have passed; or is pinned all around. It can't be brought out: who tried would push what hangs there in
-/// every sub-step.
+/// Whether a triangle hangs from a pin inside a collider or within a particle's radius (m) of it at the beginning of
+/// the tick, some sub-steps ago, or all of its corners are pinned. Such a triangle cannot be pushed out: the attempt
+/// would push the hanging cloth in every sub-step.
 pub(super) fn is_sewn_on(
     face: &[u32; 3],
     collider: &MovingCollider,
@@ -14,7 +14,7 @@ pub(super) fn is_sewn_on(
     let is_pinned = |corner: &&u32| particles.is_pinned(**corner as usize) == Some(true);
     let is_near = |corner: &u32| {
         let index = *corner as usize;
-        // A pin goes evenly.
+        // A pin moves uniformly.
         let moved = particles.displacement(index).unwrap_or_default();
         let began = particles.position_at(index) - moved * passed as f32;
         collider.nearest(0.0, began).distance < particle_radius

@@ -1,4 +1,4 @@
-//! The push of one triangle.
+//! Pushes one triangle.
 
 use bevy::math::Vec3;
 
@@ -14,7 +14,7 @@ use crate::{
 };
 
 impl Pushed<'_> {
-    /// Pushes one triangle, which a particle of a contact block stands for.
+    /// Pushes one triangle of a particle of a contact block.
     pub(super) fn push_one(
         &mut self,
         particles: &mut ClothParticles,
@@ -52,8 +52,8 @@ impl Pushed<'_> {
         }
     }
 
-    /// Pushes a triangle's nearest point out, by moving its corners as much as they have a part in it, and mass allows.
-    /// Returns how far the farthest has moved (m).
+    /// Pushes a triangle's nearest point out. Moves its corners by their weights in it and their inverse masses.
+    /// Returns the largest displacement (m).
     fn push_point(
         &mut self,
         particles: &mut ClothParticles,
@@ -65,7 +65,7 @@ impl Pushed<'_> {
         let (weights, normal) = (touch.weights, touch.normal);
         let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
         let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
-        // One that hardly has a part, beside pins, can't make up for them: it would be thrown away.
+        // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
         let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
         if mobility == 0.0 {
             return 0.0;
@@ -90,9 +90,9 @@ impl Pushed<'_> {
         farthest
     }
 
-    /// Pushes each corner of a triangle that was hit on its way in front of the surface's plane there, which keeps all of
-    /// it on its side. Its point alone is not enough: a corner that has hardly a part in it would stay behind, and the
-    /// triangle would turn out of a fast collider's way. Returns how far the farthest has moved (m).
+    /// Pushes each corner of a triangle that was hit on its way in front of the surface's plane there, so that all of
+    /// it stays on its side. Its point alone is not enough: a corner with a tiny weight would stay behind, and the
+    /// triangle would turn out of a fast collider's way. Returns the largest displacement (m).
     fn push_corners(
         &mut self,
         particles: &mut ClothParticles,
@@ -117,14 +117,14 @@ impl Pushed<'_> {
                 relative: corners.displacements[corner] - surface,
             };
             let [momentum, _] = contact.stopped_and_out(push_out);
-            // All of it, at once: what is left behind would be passed by.
+            // All of it at once: the collider would pass a triangle left behind.
             let push = [normal * depth, normal * momentum];
             farthest = farthest.max(self.move_corner(particles, corners, corner, push, motion));
         }
         farthest
     }
 
-    /// Moves a corner by a part of its push that is a way, and by one that is momentum, too (m). Returns how far.
+    /// Moves a corner by a fraction of its push, as displacement and as momentum (m). Returns the distance.
     fn move_corner(
         &mut self,
         particles: &mut ClothParticles,

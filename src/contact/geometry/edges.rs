@@ -1,4 +1,4 @@
-//! The sharp edges of a shape: where it may come through a triangle of the cloth whose corners are all outside.
+//! The sharp edges of a shape: they may pass through a triangle of the cloth whose corners are all outside.
 
 use bevy::math::Vec3;
 use parry3d::{
@@ -7,21 +7,21 @@ use parry3d::{
     query::PointQuery,
 };
 
-/// Faces at a smaller angle than this have no edge between them (sine).
+/// Below this angle (sine), two faces have no edge between them.
 const SHARP: f32 = 1.0e-3;
 
-/// An edge of a shape, or the middle line of a round part of one.
+/// An edge of a shape, or the axis of a rounded part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::contact) struct SharpEdge {
     /// Its ends (m).
     pub ends: [Vec3; 2],
-    /// Between the normals of the faces beside it, of length 1; 0 where there is no inner side.
+    /// Direction between the normals of the adjacent faces, of length 1; 0 without an inner side.
     pub outward: Vec3,
-    /// How far around the line the shape reaches (m).
+    /// Radius of the shape around the line (m).
     pub radius: f32,
 }
 
-/// The edges of a shape, in a tree.
+/// The edges of a shape in a tree.
 #[derive(Debug, Clone)]
 pub(super) struct SharpEdges {
     edges: Vec<SharpEdge>,
@@ -29,7 +29,7 @@ pub(super) struct SharpEdges {
 }
 
 impl SharpEdge {
-    /// The corners of the box around it (m).
+    /// Its bounding box (m).
     #[inline]
     pub fn corners(&self) -> [Vec3; 2] {
         let [a, b] = self.ends;
@@ -42,12 +42,12 @@ impl SharpEdge {
         Aabb::new(lower, upper)
     }
 
-    /// How far a point is from it (m), negative inside.
+    /// Distance of a point from it (m), negative inside.
     pub fn distance(&self, point: Vec3) -> f32 {
         let [a, b] = self.ends;
         let (offset, along) = (point - a, b - a);
         let t = (offset.dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        // A line of no length is its first end.
+        // A line of zero length is its first end.
         let nearest = if t > 0.0 { along * t } else { Vec3::ZERO };
         offset.distance(nearest) - self.radius
     }
@@ -62,7 +62,7 @@ impl SharpEdges {
         }
     }
 
-    /// One of them.
+    /// The edge with an index.
     #[inline]
     pub fn get(&self, index: u32) -> &SharpEdge {
         &self.edges[index as usize]
@@ -72,7 +72,7 @@ impl SharpEdges {
         &self.edges
     }
 
-    /// Hands out those whose boxes come into a box, with their numbers: always in the same order.
+    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order.
     pub fn near(&self, [lower, upper]: [Vec3; 2], mut visit: impl FnMut(u32, &SharpEdge)) {
         let around = Aabb::new(lower, upper);
         for edge in self.tree.intersect_aabb(&around) {
@@ -80,7 +80,7 @@ impl SharpEdges {
         }
     }
 
-    /// How far the nearest is (m); infinite if there is none within so far.
+    /// Distance of the nearest edge (m); infinite if none is within the given distance.
     pub fn distance(&self, point: Vec3, within: f32) -> f32 {
         self.tree
             .find_best(
@@ -101,7 +101,7 @@ struct Side {
     face: u32,
 }
 
-/// The sides of all triangles of a mesh, those of one edge one after the other.
+/// The sides of all triangles of a mesh, sorted by edge.
 pub(super) struct MeshEdges(Vec<Side>);
 
 impl MeshEdges {
@@ -125,13 +125,13 @@ impl MeshEdges {
         self.0.chunk_by(|a, b| a.vertices == b.vertices)
     }
 
-    /// Whether the mesh encloses something: each edge has two triangles, which go through it in opposite directions.
+    /// Whether the mesh is closed: each edge has two triangles of opposite directions.
     pub fn are_closed(&self) -> bool {
         self.edges()
             .all(|sides| matches!(sides, [a, b] if a.is_forward != b.is_forward))
     }
 
-    /// Those that are sharp; of a mesh with an inner side, only those that stick out.
+    /// The sharp edges; only convex ones for a mesh with an inner side.
     pub fn sharp(
         &self,
         vertices: &[Vec3],
@@ -153,7 +153,7 @@ impl MeshEdges {
                 })
             };
             let [a, b] = sides else {
-                // A rim, or where several sheets meet.
+                // A border, or an edge where several sheets meet.
                 return edge(Vec3::ZERO);
             };
             let mut normals = [normal(a.face), normal(b.face)];
@@ -161,14 +161,14 @@ impl MeshEdges {
                 normals[1] = -normals[1];
             }
             let across = normals[0].cross(normals[1]);
-            // One of two faces turned onto each other is no flat one.
+            // Two faces folded onto each other are not flat.
             if across.length() < SHARP && normals[0].dot(normals[1]) > 0.0 {
                 return None;
             }
             if !has_inside {
                 return edge(Vec3::ZERO);
             }
-            // The other face of what sticks out lies behind this one.
+            // At a convex edge, the other face lies behind this one.
             let beyond = corners(b.face).map(|corner| normals[0].dot(corner - ends[0]));
             let sticks_out = beyond.iter().sum::<f32>() < 0.0;
             let outward = (normals[0] + normals[1]).normalize_or_zero();

@@ -1,4 +1,4 @@
-//! From positions and triangles to a mesh that is welded, oriented and has its edges.
+//! Builds a mesh from positions and triangles: welded, oriented and with its edges.
 
 use bevy::math::{DVec3, Vec3};
 use parry3d::shape::{TriMesh, TriMeshFlags};
@@ -9,13 +9,13 @@ use super::{
 };
 use crate::cloth::{ClothError, FARTHEST};
 
-/// A mesh, what is inside of it, and its sharp edges.
+/// A mesh, its inside, and its sharp edges.
 pub(in crate::contact) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
 
-/// Whether all vertices can be measured with.
+/// Checks that all vertices are finite and in range.
 ///
 /// # Errors
-/// [`ClothError::VertexNotFinite`] names the first that can't.
+/// [`ClothError::VertexNotFinite`] for the first invalid one.
 pub(in crate::contact) fn check_vertices(vertices: &[Vec3]) -> Result<(), ClothError> {
     let is_beyond = |vertex: &Vec3| !(vertex.is_finite() && vertex.abs().max_element() < FARTHEST);
     match vertices.iter().position(is_beyond) {
@@ -27,10 +27,10 @@ pub(in crate::contact) fn check_vertices(vertices: &[Vec3]) -> Result<(), ClothE
     }
 }
 
-/// A mesh of triangles, which encloses what it has inside if it is closed. Turned inside out, it is turned back.
+/// A mesh of triangles, solid if it is closed. An inside-out mesh is flipped.
 ///
 /// # Errors
-/// Of a vertex that is not finite or missing, and if no triangle has an area.
+/// For a vertex that is not finite or missing, and if no triangle has an area.
 pub(in crate::contact) fn build(
     mut vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
@@ -50,7 +50,7 @@ pub(in crate::contact) fn build(
             vertices: vertices.len(),
         });
     }
-    // Equal vertices become one: −0 and 0 are.
+    // Merges equal vertices: −0 equals 0.
     vertices.iter_mut().for_each(|vertex| *vertex += Vec3::ZERO);
     let area: f32 = triangles
         .iter()
@@ -81,16 +81,16 @@ pub(in crate::contact) fn build(
         mesh.reverse();
     }
     if sides != MeshSides::Open {
-        // Only a mesh whose topology is asked for can be refused.
+        // Parry refuses a mesh only if its topology is requested.
         let _ = mesh.set_flags(welded | TriMeshFlags::ORIENTED);
     }
     let sharp = edges.sharp(mesh.vertices(), mesh.indices(), sides != MeshSides::Open);
     Ok((mesh, sides, sharp))
 }
 
-/// The volume that a closed mesh encloses (m³), negative if it is inside out.
+/// The volume of a closed mesh (m³), negative if it is inside out.
 pub(in crate::contact) fn volume(mesh: &TriMesh) -> f64 {
-    // Seen from the middle of it, as it may be far from the origin.
+    // Relative to its middle, as it may be far from the origin.
     let middle = mesh.local_aabb().center().as_dvec3();
     let parts = mesh.indices().iter().map(|triangle| {
         let [a, b, c]: [DVec3; 3] =

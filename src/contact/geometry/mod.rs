@@ -1,4 +1,4 @@
-//! Shapes that are more than a formula: solids, meshes, and several of them at once.
+//! Complex shapes: solids, meshes, and compounds.
 
 mod edges;
 mod mesh;
@@ -15,8 +15,8 @@ pub(super) use parts::{Parts, turn_up};
 use super::nearest::Nearest;
 use solid::Solid;
 
-/// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with all that is worked
-/// out once for it. Clones share it; two are equal if they are clones of one.
+/// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with precomputed
+/// data. Clones share the data. Two geometries are equal if they are clones of each other.
 #[derive(Reflect, Debug, Clone)]
 #[reflect(opaque, Debug, Clone, PartialEq)]
 pub struct ColliderGeometry(Arc<Geometry>);
@@ -29,18 +29,18 @@ impl PartialEq for ColliderGeometry {
 
 #[derive(Debug)]
 struct Geometry {
-    /// What particles are tested against.
+    /// Solids for tests against particles.
     solids: Vec<Solid>,
-    /// What triangles are tested against besides.
+    /// Edges for tests against triangles.
     edges: SharpEdges,
-    /// The corners of the box around it (m).
+    /// Bounding box (m).
     bounds: [Vec3; 2],
-    /// How deep a point may get without being nearer to the other side, at least (m).
+    /// Smallest depth at which a point can be nearer to the other side (m).
     thickness: f32,
 }
 
 impl ColliderGeometry {
-    /// Made of parts, of which there is at least one.
+    /// Builds it from one or more parts.
     pub(super) fn of(parts: Parts) -> Self {
         let Parts { solids, edges } = parts;
         let bounds = solids
@@ -58,17 +58,17 @@ impl ColliderGeometry {
         }))
     }
 
-    /// The corners of the box around it (m).
+    /// The minimum and maximum corners of its bounding box (m).
     pub fn bounds(&self) -> [Vec3; 2] {
         self.0.bounds
     }
 
-    /// How many triangles its meshes have.
+    /// Number of triangles of its meshes.
     pub fn triangles(&self) -> usize {
         self.0.solids.iter().map(Solid::triangles).sum()
     }
 
-    /// Whether any of it is an open mesh, which has two sides.
+    /// Whether any part is an open mesh, which has two sides.
     pub fn is_two_sided(&self) -> bool {
         self.0.solids.iter().any(Solid::is_open)
     }
@@ -77,7 +77,7 @@ impl ColliderGeometry {
         self.0.thickness
     }
 
-    /// Its parts, to be put into another.
+    /// Its parts, for another geometry.
     pub(super) fn parts(&self) -> Parts {
         Parts {
             solids: self.0.solids.clone(),
@@ -85,7 +85,7 @@ impl ColliderGeometry {
         }
     }
 
-    /// How a point lies to it: the deepest, or nearest, of its solids. NaN of a point that is not finite.
+    /// The surface nearest to a point, of the deepest or nearest solid. NaN for a point that is not finite.
     pub(super) fn nearest(&self, point: Vec3) -> Nearest {
         let mut found = Nearest {
             distance: f32::MAX,
@@ -111,12 +111,12 @@ impl ColliderGeometry {
         *self.0.edges.get(index)
     }
 
-    /// Hands out the edges whose boxes come into a box, with their numbers: always in the same order.
+    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order.
     pub(super) fn edges_near(&self, [lower, upper]: [Vec3; 2], visit: impl FnMut(u32, &SharpEdge)) {
         self.0.edges.near([lower, upper], visit);
     }
 
-    /// How far the nearest edge is (m); infinite if there is none within so far.
+    /// Distance of the nearest edge (m); infinite if none is within the given distance.
     pub(super) fn edge_distance(&self, point: Vec3, within: f32) -> f32 {
         self.0.edges.distance(point, within)
     }

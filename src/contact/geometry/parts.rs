@@ -1,4 +1,4 @@
-//! What a shape of parry's, or several, come to for cloth.
+//! Converts shapes of parry into parts of a geometry.
 
 use std::sync::Arc;
 
@@ -15,11 +15,11 @@ use super::{
 };
 use crate::cloth::ClothError;
 
-/// Into how many flat sides what is round is cut for triangles of the cloth: its edges lie on it, and its flat sides at
+/// Number of flat sides of a round shape for tests against triangles. Its edges lie on the shape, and its flat sides at
 /// most 0.2 % of the radius below.
 const SIDES: u32 = 48;
 
-/// The solids and the edges of a shape, while it is made.
+/// The solids and the edges of a shape under construction.
 #[derive(Debug, Default, Clone)]
 pub(in crate::contact) struct Parts {
     pub(super) solids: Vec<Solid>,
@@ -29,10 +29,10 @@ pub(in crate::contact) struct Parts {
 type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
 
 impl Parts {
-    /// Adds triangles, as they are or with all below them.
+    /// Adds triangles as a mesh, or as ground with everything below.
     ///
     /// # Errors
-    /// If they make no mesh.
+    /// If they do not form a mesh.
     pub fn add_mesh(
         &mut self,
         pose: Pose,
@@ -47,7 +47,7 @@ impl Parts {
 
     fn add_built(&mut self, pose: Pose, mesh: Arc<TriMesh>, sides: MeshSides) {
         let bounds = mesh.aabb(&pose);
-        // The ground is searched for as deep as it is wide, for what has got below it.
+        // The ground reaches as deep as it is wide, for particles that have got below it.
         let extents = bounds.extents();
         let below = match sides {
             MeshSides::Ground => Vec3::Y * extents.x.max(extents.z),
@@ -60,10 +60,10 @@ impl Parts {
         });
     }
 
-    /// Adds a hull of a mesh of a convex shape, which is closed.
+    /// Adds the closed mesh of a convex shape.
     ///
     /// # Errors
-    /// [`ClothError::FlatHull`] if it encloses nothing.
+    /// [`ClothError::FlatHull`] if it has no volume.
     fn add_hull(&mut self, pose: Pose, triangles: Triangles) -> Result<(), ClothError> {
         let points = triangles.0.len();
         let (mesh, sides, edges) = mesh::build(triangles.0, triangles.1, false)?;
@@ -92,7 +92,7 @@ impl Parts {
         self.add_hull(Pose::IDENTITY, hull)
     }
 
-    /// Adds what parry finds the nearest point of, with the edges of triangles that lie on it.
+    /// Adds a shape whose nearest point parry computes, with the edges of triangles on it.
     fn add_convex(&mut self, pose: Pose, shape: SharedShape) {
         let bounds = shape.compute_aabb(&pose);
         self.solids.push(Solid {
@@ -102,7 +102,7 @@ impl Parts {
         });
     }
 
-    /// A convex shape, by triangles on it or in it and how far it reaches around those (m).
+    /// A convex shape, given by triangles on it or in it, and its radius around those (m).
     fn add_round(
         &mut self,
         pose: Pose,
@@ -139,7 +139,7 @@ impl Parts {
         self.add(Pose::IDENTITY, &SharedShape::cylinder(half_height, radius))
     }
 
-    /// Adds a cone along the y axis, its tip up, or down.
+    /// Adds a cone along the y axis with its tip up or down.
     pub fn add_cone(
         &mut self,
         half_height: f32,
@@ -151,7 +151,7 @@ impl Parts {
         self.add(pose, &SharedShape::cone(half_height, radius))
     }
 
-    /// Adds other parts in a pose.
+    /// Adds other parts with a pose.
     pub fn add_parts(&mut self, pose: Pose, parts: Self) {
         let Self { solids, edges } = parts;
         self.add_edges(pose, &edges, 0.0);
@@ -164,11 +164,11 @@ impl Parts {
         }
     }
 
-    /// Adds a shape of parry's in a pose.
+    /// Adds a shape of parry with a pose.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchShape`] of lines, of a half-space among others, and of what is not parry's; what is wrong with
-    /// its triangles.
+    /// [`ClothError::NoSuchShape`] for lines, for a half-space in a compound, and for custom shapes; errors of its
+    /// triangles.
     pub fn add(&mut self, pose: Pose, shared: &SharedShape) -> Result<(), ClothError> {
         let shape = shared.clone();
         match shared.as_typed_shape() {
@@ -255,7 +255,7 @@ pub(in crate::contact) fn turn_up(vertices: &[Vec3], triangles: &mut [[u32; 3]])
     }
 }
 
-/// Whether points lie in one plane, or nearly: to 10⁻⁵ of how far they are apart.
+/// Whether points lie in one plane, with a tolerance of 10⁻⁵ of their extent.
 fn are_flat(points: &[Vec3]) -> bool {
     let Some(&first) = points.first() else {
         return true;

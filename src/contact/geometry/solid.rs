@@ -1,4 +1,4 @@
-//! A part of a geometry, and how a point lies to it.
+//! A part of a geometry, and its nearest point.
 
 use std::sync::Arc;
 
@@ -11,38 +11,38 @@ use parry3d::{
 
 use crate::contact::nearest::Nearest;
 
-/// Half of the thickness of a two-sided mesh (m): without any, what lies exactly on it would be on neither side.
+/// Half of the thickness of a two-sided mesh (m): without it, a point exactly on the mesh would have no side.
 pub(in crate::contact) const HALF_SHEET: f32 = 0.0005;
 
-/// A part that particles are tested against.
+/// A part for tests against particles.
 #[derive(Debug, Clone)]
 pub(in crate::contact) struct Solid {
     pub pose: Pose,
-    /// The corners of the box around it, in the frame of the whole (m).
+    /// Bounding box in the frame of the whole (m).
     pub bounds: [Vec3; 2],
     pub kind: SolidKind,
 }
 
 #[derive(Debug, Clone)]
 pub(in crate::contact) enum SolidKind {
-    /// What parry knows the nearest point of by a formula, or by its support.
+    /// A convex shape, whose nearest point parry computes.
     Convex(SharedShape),
     Mesh(Arc<TriMesh>, MeshSides),
 }
 
-/// What is inside of a mesh.
+/// The inside of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::contact) enum MeshSides {
-    /// All that it encloses: it has an outer side only.
+    /// Its volume: it has an outer side only.
     Closed,
     /// Nothing: it is open, and has two sides.
     Open,
-    /// All below it.
+    /// Everything below it.
     Ground,
 }
 
 impl Solid {
-    /// How many triangles it has, if it is a mesh.
+    /// Number of triangles, if it is a mesh.
     pub fn triangles(&self) -> usize {
         match &self.kind {
             SolidKind::Convex(_) => 0,
@@ -54,7 +54,7 @@ impl Solid {
         matches!(&self.kind, SolidKind::Mesh(_, MeshSides::Open))
     }
 
-    /// How deep a point may get without being nearer to the other side, at least (m).
+    /// Smallest depth at which a point can be nearer to the other side (m).
     pub fn thickness(&self) -> f32 {
         match &self.kind {
             SolidKind::Convex(shape) => shape.ccd_thickness(),
@@ -63,7 +63,7 @@ impl Solid {
         }
     }
 
-    /// How a point lies to it.
+    /// The surface nearest to a point.
     pub fn nearest(&self, point: Vec3) -> Nearest {
         let local = self.pose.inverse_transform_point(point);
         let mut nearest = match &self.kind {
@@ -85,7 +85,7 @@ fn nearest_of_mesh(mesh: &TriMesh, sides: MeshSides, point: Vec3) -> Nearest {
     let is_inside = match sides {
         MeshSides::Closed => projection.is_inside,
         MeshSides::Open => false,
-        // Beside it nothing is below it.
+        // Outside its extent, nothing is below it.
         MeshSides::Ground => {
             let beside = point.clamp(bounds.mins, bounds.maxs).with_y(point.y);
             projection.is_inside && beside == point
@@ -99,11 +99,12 @@ fn nearest_of_mesh(mesh: &TriMesh, sides: MeshSides, point: Vec3) -> Nearest {
     nearest
 }
 
-/// How a point lies to a surface whose nearest point is known. `fallback` is the normal of what lies on it.
+/// The [`Nearest`] of a point to a surface whose nearest point is known. `fallback` is the normal of a point on the
+/// surface.
 fn towards(point: Vec3, surface: Vec3, is_inside: bool, fallback: Vec3) -> Nearest {
     let offset = point - surface;
     let distance = offset.length();
-    // What is nearer than this is all rounding.
+    // A shorter distance is only rounding.
     if distance <= 1.0e-6 * point.length().max(1.0e-3) {
         return Nearest {
             distance: 0.0,

@@ -1,8 +1,8 @@
-//! Bounds of places, and of the directions in which a surface runs.
+//! Bounds of positions, and of the tangents of a surface.
 
 use bevy::math::{Vec2, Vec3A};
 
-/// A box along the axes (m).
+/// An axis-aligned box (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bounds {
     pub min: Vec3A,
@@ -10,7 +10,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Around nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self {
         min: Vec3A::INFINITY,
         max: Vec3A::NEG_INFINITY,
@@ -37,18 +37,19 @@ impl Bounds {
         }
     }
 
-    /// From one box to the other (m), 0 if they meet.
+    /// Distance between two boxes (m), 0 if they overlap.
     pub fn distance(&self, other: &Self) -> f32 {
         let gap = (self.min - other.max).max(other.min - self.max);
         gap.max(Vec3A::ZERO).length()
     }
 }
 
-/// Between which vectors the rows and the columns of a patch of a grid run, for each metre at rest.
+/// Bounds of the tangents of a patch of a grid, along rows and columns, per metre at rest.
 ///
 /// # The proof that a patch does not touch itself
-/// A patch of rows × columns is convex at rest, so the straight line between two of its points u and v stays in it. Along it the
-/// surface runs by its tangents F = (∂x/∂across, ∂x/∂down), which are all within ε of their middle F₀:
+/// A patch of rows × columns is convex at rest, so the straight line between two of its points u and v stays in it.
+/// Along that line the surface follows its tangents F = (∂x/∂across, ∂x/∂down), which are all within ε of their middle
+/// F₀:
 ///
 /// ```text
 ///   x(u) − x(v) = ∫ F (u − v) dt
@@ -56,8 +57,8 @@ impl Bounds {
 ///   |x(u) − x(v)| ≥ (σ − ε) |u − v|          σ: smallest singular value of F₀
 /// ```
 ///
-/// So no two points come nearer to each other than [σ − ε](Self::unfolded) times what they are apart at rest. Unlike a cone of
-/// normals, which says nothing of a patch whose outline crosses itself, this loses nothing.
+/// So the distance of any two points is at least [σ − ε](Self::unfolded) times that at rest. A cone of normals says
+/// nothing about a patch whose outline crosses itself; this bound covers that, too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tangents {
     across: Bounds,
@@ -65,7 +66,7 @@ pub(super) struct Tangents {
 }
 
 impl Tangents {
-    /// Of nothing.
+    /// Bounds of nothing.
     pub const EMPTY: Self = Self {
         across: Bounds::EMPTY,
         down: Bounds::EMPTY,
@@ -78,7 +79,7 @@ impl Tangents {
         }
     }
 
-    /// Of a cell: of the two rows' edges and of the two columns'.
+    /// The tangents of a cell: those of its two rows' edges and of its two columns'.
     pub fn of_cell([a, b, c, d]: [Vec3A; 4], per_metre: Vec2) -> Self {
         Self {
             across: Bounds::at((b - a) * per_metre.x).with((d - c) * per_metre.x),
@@ -86,14 +87,14 @@ impl Tangents {
         }
     }
 
-    /// Between bounds of both, for each metre at rest.
+    /// From bounds of both, per metre at rest.
     pub fn between(across: Bounds, down: Bounds) -> Self {
         Self { across, down }
     }
 
-    /// σ − ε: a lower bound of the distance of any two points over that at rest; 0 or less where they may meet.
+    /// σ − ε: a lower bound of the ratio of any two points' distance to that at rest; 0 or less where they may meet.
     pub fn unfolded(&self) -> f32 {
-        // Of nothing, too.
+        // Also for bounds of nothing.
         if !(self.across.min.cmple(self.across.max).all()
             && self.down.min.cmple(self.down.max).all())
         {
@@ -115,5 +116,5 @@ impl Tangents {
     }
 }
 
-/// More than what rounding adds.
+/// More than the rounding errors.
 const ROUNDING: f32 = 1.0e-5;

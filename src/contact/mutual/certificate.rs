@@ -1,30 +1,32 @@
-//! The proof, in each sub-step, that no features have passed through each other; and what is done where it can't be given.
+//! Proves in each sub-step that no features have passed through each other, and corrects those without a proof.
 //!
-//! When nearest points of two features are found, there is a plane between them, across the line that joins them, with all of one
-//! feature on one side and all of the other on the other. Particles move along straight lines, so if all of them are on the same
-//! sides of a plane of that direction as a sub-step ends, they were so all along, and the features have not met. The same direction
-//! then does for the next sub-step, until nearest points are found anew. Features that were farther from each other than any two
-//! particles have come nearer since have such a plane without being looked at. Where that is so of all vertices with faces and of all
-//! edges with edges, no two triangles intersect.
+//! The nearest points of two features define a separating plane across the line between them, with one feature on
+//! either side. Particles move along straight lines. So if all of them are on the same sides of a plane with that
+//! normal at the end of a sub-step, they were so all along, and the features have not met. The same normal serves in
+//! the next sub-step, until nearest points are found again.
+//!
+//! Features that were farther apart than the approach of any two particles since have such a plane without a test. If
+//! that holds for all vertices with faces and all edges with edges, no two triangles intersect.
 
 use bevy::math::Vec3A;
 
 use super::{members::Members, pair::NearPair};
 
-/// Of the thickness, and of the distance as the sub-step began, what has to be left between features.
+/// Smallest gap left between features, as a fraction of the thickness and of the distance at the beginning of the
+/// sub-step.
 pub(super) const LEFT_OF_THICKNESS: f32 = 0.05;
 const LEFT_OF_DISTANCE: f32 = 0.25;
 
-/// How often those that would pass are pushed apart, before they are made to move as one.
+/// Number of pushes on features that would pass, before they are made to move as one.
 const PUSHES: u32 = 8;
 
-/// How often zones are made larger, at most.
+/// Largest number of enlargements of zones.
 const ZONES: u32 = 24;
 
-/// Nearer than that as a sub-step begins (m), features have met before, and no plane is between them.
+/// Below this distance at the beginning of a sub-step (m), features have met before, and no plane separates them.
 const MET: f32 = 1.0e-7;
 
-/// Particles that move as one.
+/// Sets of particles that move as one.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Zones {
@@ -32,7 +34,7 @@ pub(super) struct Zones {
     sums: Vec<Sum>,
 }
 
-/// Of a zone.
+/// Sums over a zone.
 #[derive(Debug, Default, Clone, Copy)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Sum {
@@ -44,7 +46,8 @@ struct Sum {
 }
 
 impl Zones {
-    /// Has no pair pass through itself of those that can have met: all that were found when they were no nearer to it than `nearer` (m).
+    /// Stops pairs from passing through each other. Checks those that can have met: their distance when they were found
+    /// was at most `nearer` (m).
     pub fn certify(&mut self, pairs: &[NearPair], nearer: f32, members: &mut Members) {
         let mut has_zones = false;
         for round in 0..PUSHES + ZONES {
@@ -98,7 +101,7 @@ impl Zones {
         }
     }
 
-    /// Has each zone move from where it was by the mean of its motions, which keeps its momentum; or as its pins do.
+    /// Moves each zone from its start by the mean of its motions, which conserves momentum, or with its pins.
     fn move_as_one(&mut self, members: &mut Members) {
         let count = members.len() as u32;
         self.sums.clear();
@@ -138,7 +141,7 @@ impl Zones {
     }
 }
 
-/// How much two features lack of having a plane between them (m), if they do.
+/// The missing distance to a plane between two features (m), if there is none.
 #[inline]
 fn lack(pair: &NearPair, members: &Members) -> Option<f32> {
     let distance = pair.distance;
@@ -147,11 +150,11 @@ fn lack(pair: &NearPair, members: &Members) -> Option<f32> {
     }
     let wanted = (LEFT_OF_THICKNESS * pair.thickness).min(LEFT_OF_DISTANCE * distance);
     let left = pair.clearance(members.states(pair.members));
-    // NaN is no lack.
+    // NaN is not a lack.
     (left < wanted).then_some(2.0 * wanted - left)
 }
 
-/// Pushes those two particles apart, one of each feature, that are farthest beyond the plane.
+/// Pushes apart the two particles, one of each feature, that are farthest beyond the plane.
 fn part(pair: &NearPair, lack: f32, members: &mut Members) {
     let normal = pair.normal;
     let states = members.states(pair.members);

@@ -1,10 +1,10 @@
-//! How cloths touch each other, as pairs were searched for.
+//! The contact settings for which pairs were found.
 
 use bevy::math::Isometry3d;
 
 use super::{participant::Participant, settings::ClothSelfCollision};
 
-/// What pairs were searched for, besides where particles are.
+/// The inputs of a search for pairs besides the particles' positions.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Circumstances {
@@ -13,7 +13,7 @@ pub(super) struct Circumstances {
 }
 
 impl Circumstances {
-    /// Takes over how these cloths touch. Returns whether they did so before.
+    /// Updates the settings of these cloths. Returns whether they are unchanged.
     pub fn renew(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) -> bool {
         let of = || {
             let each = cloths.iter();

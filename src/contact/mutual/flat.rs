@@ -1,4 +1,4 @@
-//! A quick look at a whole cloth: whether it is bent so little that it can't touch itself.
+//! A quick test of a whole cloth: whether it is too flat to touch itself.
 
 use bevy::math::{Vec2, Vec3A};
 use multiversion::multiversion;
@@ -6,13 +6,13 @@ use multiversion::multiversion;
 use super::bounds::{Bounds, Tangents};
 use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, View, X, Y, Z};
 
-/// The smallest and the largest of what eight lanes have seen, of x, y and z.
+/// Minimum and maximum of eight lanes, of x, y and z.
 type Extremes = [[Lanes; 3]; 2];
 
 const NONE: Extremes = [[[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]];
 
-/// Which lanes of a row of a grid hold particles, and which of these have right neighbours: 0 there, elsewhere NaN, which is no
-/// extreme.
+/// Masks of the lanes of a grid's row that hold particles, and of those with right neighbours: 0 there, NaN elsewhere,
+/// which is never an extreme.
 #[derive(Debug, Default)]
 pub(super) struct Masks {
     is_there: Vec<Lanes>,
@@ -36,7 +36,7 @@ impl Masks {
     }
 }
 
-/// Between which vectors all rows and columns of a grid run, where its particles are.
+/// Bounds of the tangents of all rows and columns of a grid, at the particles' current positions.
 pub(super) fn tangents_of_all(
     particles: &ClothParticles,
     masks: &Masks,
@@ -81,7 +81,7 @@ fn extremes(blocks: &[Block], masks: &Masks, across: &mut Extremes, down: &mut E
     }
 }
 
-/// Notes the differences of eight pairs of particles.
+/// Adds the differences of eight pairs of particles.
 #[inline(always)]
 fn note(from: &View, to: &View, mask: &Lanes, [min, max]: &mut Extremes) {
     for (axis, (min, max)) in [X, Y, Z].into_iter().zip(min.iter_mut().zip(max)) {

@@ -1,7 +1,7 @@
-//! What holds layers that lie on each other, between the sub-steps in which their pairs are gone through.
+//! Holds resting layers between the sub-steps in which their pairs are tested.
 //!
-//! What rests is pushed by the same in every sub-step: by what carries its weight. So each particle is held by the mean of its last
-//! pushes, as far as that stops it: of its motion, what goes against them is taken away.
+//! A resting layer gets the same push in every sub-step: the one that carries its weight. So each particle is held by
+//! the mean of its last pushes, as far as that stops it: the part of its motion against them is removed.
 //!
 //! ```text
 //!   d: mean change of the displacement m by the last pushes
@@ -9,8 +9,8 @@
 //!   |m + s d|² = m² − s d² (2 (−m·d / d²) − s) ≤ m²
 //! ```
 //!
-//! So this takes energy from each particle, or none, whatever has become of the contact since. Momentum
-//! is not kept: so only what rests on something is held.
+//! So this never adds energy to a particle, even if the contact has ended since. It does not conserve momentum, and is
+//! therefore used only for particles that rest on something.
 
 use bevy::math::Vec3;
 use multiversion::multiversion;
@@ -18,17 +18,17 @@ use multiversion::multiversion;
 use super::{origin::Origin, participant::Participant};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X};
 
-/// The mean of the last pushes of each particle of some cloths, each in its own frame, block by block (m a sub-step).
+/// The mean of the last pushes of each particle of some cloths, each in its own frame, block by block (m per sub-step).
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Hold {
     cloths: Vec<Vec<[Lanes; 3]>>,
 }
 
-/// So many times the mean of its last pushes holds a particle at most.
+/// Largest hold of a particle, in means of its last pushes.
 const MOST: f32 = 4.0;
 
-/// How far anything moved, squared, lane by lane (m²).
+/// Largest displacement squared, lane by lane (m²).
 #[derive(Debug, Default, Clone, Copy)]
 struct Farthest {
     push: Lanes,
@@ -36,7 +36,7 @@ struct Farthest {
 }
 
 impl Hold {
-    /// Nothing of these is held.
+    /// Clears the holds of these cloths.
     pub fn clear(&mut self, cloths: &[Participant]) {
         self.cloths.resize_with(cloths.len(), Vec::new);
         for (pushes, cloth) in self.cloths.iter_mut().zip(cloths) {
@@ -45,15 +45,15 @@ impl Hold {
         }
     }
 
-    /// Has a particle of a cloth be held by this mean of its last pushes, in its frame (m a sub-step).
+    /// Sets the mean of a particle's last pushes, in its cloth's frame (m per sub-step).
     pub fn set(&mut self, cloth: usize, Slot { block, lane }: Slot, push: Vec3) {
         for (axis, push) in self.cloths[cloth][block].iter_mut().zip(push.to_array()) {
             axis[lane] = push;
         }
     }
 
-    /// Holds all that was pushed, and marks the cloths of which any was. Returns the farthest that anything was pushed, and by how
-    /// much any two particles can have come nearer to each other since they were where `passed` says, at most (m).
+    /// Holds everything that was pushed, and marks the affected cloths. Returns the largest push, and the largest
+    /// approach of any two particles since `passed` (m).
     pub fn apply(
         &self,
         cloths: &mut [Participant],
@@ -92,7 +92,7 @@ fn hold(
             let [x, y, z] = [push[0][l], push[1][l], push[2][l]];
             let against = -(view[DX + l] * x + view[DY + l] * y + view[DZ + l] * z);
             let square = x * x + y * y + z * z;
-            // Of what was not pushed, 0.
+            // 0 for particles that were not pushed.
             let s = against / square.max(f32::MIN_POSITIVE);
             let s = if s > 0.0 { s } else { 0.0 };
             part[l] = if s < MOST { s } else { MOST };
@@ -115,7 +115,7 @@ fn hold(
             } else {
                 farthest.push[l]
             };
-            // What is nowhere is not farther.
+            // NaN is never the farthest.
             farthest.way[l] = if way > farthest.way[l] {
                 way
             } else {

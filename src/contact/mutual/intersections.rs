@@ -1,11 +1,11 @@
-//! How many triangles of cloths pass through each other: by brute force, in f64.
+//! Counts intersecting triangles of cloths: by brute force, in f64.
 
 use bevy::math::{DVec3, Vec3};
 
 use crate::cloth::Surface;
 
-/// Pairs of triangles that intersect, of surfaces whose particles are at these places (m), all in one frame. Triangles of one
-/// surface that have a particle in common do not count. What a test or a chart asks for: it takes milliseconds.
+/// Counts pairs of intersecting triangles, for surfaces whose particles are at these positions (m) in a common frame.
+/// Triangles of one surface that share a particle do not count. For tests and charts: it takes milliseconds.
 pub fn intersections(cloths: &[(&Surface, Vec<Vec3>)]) -> usize {
     let mut triangles: Vec<Triangle> = cloths
         .iter()
@@ -56,7 +56,7 @@ impl Triangle {
         a.max(b).max(c)
     }
 
-    /// Whether a particle is a corner of both.
+    /// Whether both share a corner.
     fn is_beside(&self, other: &Self) -> bool {
         let own = &self.particles;
         self.cloth == other.cloth && own.iter().any(|corner| other.particles.contains(corner))

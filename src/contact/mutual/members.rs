@@ -1,30 +1,30 @@
-//! The particles of all pairs, side by side.
+//! The particles of all pairs, in one array.
 
 use bevy::math::{Vec3, Vec3A};
 
 use super::{hold::Hold, participant::Participant};
 use crate::cloth::Slot;
 
-/// The particles that some pair names, whichever cloth they are of, in the common frame: what is done in each sub-step reads
-/// nothing else.
+/// The particles of all pairs, from any cloth, in the common frame. Each sub-step reads only these.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Members {
     of: Vec<Member>,
-    /// How they move in the sub-step.
+    /// Their states in the sub-step.
     pub states: Vec<State>,
-    /// Where they were before colliders pushed them in the sub-step (m), if that was noted.
+    /// Their positions before colliders pushed them in the sub-step (m), if noted.
     before_colliders: Vec<Vec3A>,
-    /// Places and motions as they were gathered, to find what has been changed.
+    /// Their positions and motions at the beginning, to find changes.
     gathered: Vec<[Vec3A; 2]>,
-    /// How far each has travelled since it became one, besides what all have in common, and where it was when that was measured (m).
+    /// The distance that each has travelled since it was added, without the common motion, and its position at the
+    /// measurement (m).
     travelled: Vec<f32>,
     measured: Vec<Vec3A>,
-    /// How the motion of each was changed by pushes of late (m a sub-step).
+    /// Mean change of each particle's motion by its last pushes (m per sub-step).
     held: Vec<Vec3A>,
 }
 
-/// Of the mean of pushes, the latest one's part: which of those that touch anything take the weight varies from one to the next.
+/// Weight of the latest push in the mean. The particles that carry a layer's weight vary from one sub-step to the next.
 const LATEST: f32 = 0.3;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,13 +38,13 @@ struct Member {
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct State {
-    /// Where it is (m).
+    /// Position (m).
     pub place: Vec3A,
-    /// Where it was as the sub-step began (m).
+    /// Position at the beginning of the sub-step (m).
     pub start: Vec3A,
-    /// What the sub-step moved it by, as far as it is motion (m).
+    /// Displacement in the sub-step that counts as motion (m).
     pub moved: Vec3A,
-    /// Which way a collider pushed it in the sub-step, of length 1; 0 if none did. Against that it does not give way.
+    /// Direction of a collider's push in the sub-step, of length 1; 0 without one. The particle cannot move against it.
     pub support: Vec3A,
     /// Inverse mass (1/kg).
     pub inverse_mass: f32,
@@ -66,12 +66,13 @@ impl Members {
         self.of.len()
     }
 
-    /// Where one was as the sub-step began (m).
+    /// Position of a member at the beginning of the sub-step (m).
     pub fn start(&self, member: u32) -> Vec3 {
         self.states[member as usize].start.into()
     }
 
-    /// Adds a particle of a cloth that was there as the sub-step began (m), and may have been a member before. Returns its place.
+    /// Adds a particle of a cloth with its position at the beginning of the sub-step (m). It may be `known` from
+    /// before. Returns its index.
     pub fn add(&mut self, cloth: u32, slot: Slot, start: Vec3, known: Option<(&Self, u32)>) -> u32 {
         let start = start.into();
         self.of.push(Member { cloth, slot });
@@ -86,14 +87,14 @@ impl Members {
         self.of.len() as u32 - 1
     }
 
-    /// Takes where they are for where the coming sub-step begins.
+    /// Sets the start of the coming sub-step to the current positions.
     pub fn begin(&mut self, cloths: &[Participant]) {
         for (state, member) in self.states.iter_mut().zip(&self.of) {
             state.start = cloths[member.cloth as usize].place(member.slot).into();
         }
     }
 
-    /// Notes where they are before colliders push them.
+    /// Notes their positions before colliders push them.
     pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
         self.before_colliders.clear();
         let each = self.of.iter();
@@ -102,7 +103,7 @@ impl Members {
         self.before_colliders.extend(places);
     }
 
-    /// Takes over where particles are now.
+    /// Reads the particles' current positions.
     pub fn gather(&mut self, cloths: &[Participant]) {
         let is_noted = self.before_colliders.len() == self.len();
         self.gathered.clear();
@@ -117,7 +118,7 @@ impl Members {
             } else {
                 block.inverse_mass(lane)
             };
-            // Supports that were not noted are as they were.
+            // Without a note, supports stay the same.
             if is_noted {
                 let push = state.place - self.before_colliders[index];
                 state.is_supported = push != Vec3A::ZERO;
@@ -130,8 +131,8 @@ impl Members {
         self.before_colliders.clear();
     }
 
-    /// Gives the particles back what was changed, and begins the next sub-step there. Marks the cloths of which any was, and notes by
-    /// what they are held.
+    /// Writes changes back to the particles, and begins the next sub-step there. Marks the affected cloths, and updates
+    /// their holds.
     pub fn scatter(&mut self, cloths: &mut [Participant], is_pushed: &mut [bool], hold: &mut Hold) {
         let each = self.of.iter().zip(&mut self.states).zip(&mut self.held);
         for (((member, state), held), &[was, moved_by]) in each.zip(&self.gathered) {
@@ -163,20 +164,20 @@ impl Members {
         of.map(|member| &self.states[member as usize])
     }
 
-    /// Likewise, where they were as the sub-step began (m).
+    /// Their positions at the beginning of the sub-step (m).
     #[inline]
     pub fn starts(&self, of: [u32; 4]) -> [Vec3; 4] {
         of.map(|member| self.start(member))
     }
 
-    /// How far the four particles of a pair have travelled, all together, when that was last measured (m).
+    /// Total distance that the four particles of a pair have travelled up to the last measurement (m).
     #[inline]
     pub fn travelled(&self, of: [u32; 4]) -> f32 {
         let [a, b, c, d] = of.map(|member| self.travelled[member as usize]);
         a + b + c + d
     }
 
-    /// Measures how far each has travelled up to where the sub-step begins.
+    /// Measures the distance that each has travelled up to the beginning of the sub-step.
     pub fn note_travel(&mut self) {
         let from: Vec3A = self.measured.iter().sum();
         let to: Vec3A = self.states.iter().map(|state| state.start).sum();
@@ -188,7 +189,7 @@ impl Members {
         }
     }
 
-    /// Whether none moved farther than this (m), and some are held by a collider or a pin.
+    /// Whether none moved farther than this (m), and a collider or a pin holds some.
     pub fn are_resting(&self, farthest: f32) -> bool {
         let square = farthest * farthest;
         let is_slow = |state: &State| state.moved.length_squared() <= square;
@@ -198,7 +199,7 @@ impl Members {
             && self.states.iter().all(is_slow)
     }
 
-    /// How far the one that was pushed farthest has been pushed since all were gathered (m).
+    /// Largest push of any member since all were read (m).
     pub fn farthest_push(&self) -> f32 {
         let each = self.states.iter().zip(&self.gathered);
         let squares = each.map(|(state, [was, _])| (state.place - *was).length_squared());

@@ -1,11 +1,12 @@
 //! Contact of cloth with cloth: with itself, and with others.
 //!
-//! Layers are kept a thickness apart by pairs of features, vertex with face and edge with edge. A search through the trees finds
-//! those that may come near each other, with a margin; until particles have moved as far as that, each sub-step looks at these
-//! alone. A patch that is not bent far is passed over whole, by [a bound that is proved](bounds::Tangents). At the end of each
-//! sub-step pairs are pushed apart, in proportion to inverse masses and with friction, and then [a plane](certificate) between
-//! each two proves that nothing has passed through. Where all is slow this is done in some sub-steps only, and particles are
-//! [held](hold) in between, while none can have come near enough to pass.
+//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart. A search through the trees finds
+//! pairs that may come near each other, with a margin. Until particles have moved by that margin, each sub-step tests
+//! only these pairs. A nearly flat patch is skipped entirely, by [a proven bound](bounds::Tangents).
+//!
+//! At the end of each sub-step, pairs are pushed apart in proportion to their inverse masses, with friction. Then [a
+//! plane](certificate) between each pair proves that nothing has passed through. If everything is slow, this is done
+//! only in some sub-steps, and particles are [held](hold) in between, while none can have come near enough to pass.
 
 mod bounds;
 mod certificate;
@@ -37,28 +38,28 @@ pub(crate) use participant::Participant;
 pub use settings::ClothSelfCollision;
 pub(crate) use sheet::Sheet;
 
-/// How often in a sub-step what has been pushed is compared with what was too far away before.
+/// Number of rounds in a sub-step in which pushed features are compared with those that were too far away.
 const ROUNDS: u32 = 4;
 
-/// As long as no two features are near each other, particles are looked at again in this many sub-steps at most, and before they
-/// may have come, as fast as lately, this part of the way that is free.
+/// While no two features are near each other, the longest wait between tests in sub-steps, and the largest fraction of
+/// the free distance that particles may use up at their recent speed.
 const LONGEST_WAIT: u32 = 16;
 const PART_OF_WAY: f32 = 0.5;
 
-/// For each particle a tick looks at so many nodes and pairs of features at most, in searches and in going through what was found; and at
-/// so many however many particles there are.
+/// Work limits of a tick for each particle and in total: nodes and pairs of features, in searches and in the tests of
+/// pairs.
 const MOST_WORK: usize = 1 << 17;
 const MOST_WORK_OF_ALL: usize = 1 << 28;
 
-/// As long as particles come nearer to each other by less than this part of the thickness, those that are pushed are held by the
-/// mean of their last pushes in this many sub-steps at most.
+/// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
+/// of their last pushes, for this many sub-steps at most.
 const HELD: f32 = 0.1;
 const LONGEST_HOLD: u32 = 3;
 
-/// Only what rests on something is held: what holds it takes momentum, from slower motion than this (m/s).
+/// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
 const RESTING_SPEED: f32 = 0.25;
 
-/// Contact of cloths with themselves and with each other, from tick to tick. May be dropped at any time.
+/// Contact of cloths with themselves and with each other, from tick to tick. Can be dropped at any time.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MutualContact {
@@ -67,59 +68,60 @@ pub(crate) struct MutualContact {
     search: Search,
     pairs: Vec<Pair>,
     members: Members,
-    /// Which member each particle of each cloth is, if any.
+    /// The member of each particle of each cloth, if any.
     member_of: Vec<Vec<u32>>,
-    /// The last pair that names each member as its vertex, if any.
+    /// The last pair with each member as its vertex, if any.
     last_of: Vec<u32>,
-    /// The same before the last search.
+    /// The members before the last search.
     members_before: Members,
     member_of_before: Vec<Vec<u32>>,
-    /// Where all particles were at the last search, and how much nearer to each other any two may come before the next (m).
+    /// Positions of all particles at the last search, and the largest approach of any two before the next (m).
     origin: Origin,
     margin: f32,
-    /// How much nearer to each other any two may have come by now, at most (m).
+    /// Largest approach of any two so far (m).
     nearer: f32,
     is_searched: bool,
     near: NearPairs,
     zones: Zones,
-    /// For how many sub-steps nothing has to be looked at, and since how many nothing was.
+    /// Number of sub-steps left without a test, and number since the last test.
     wait: u32,
     waited: u32,
-    /// How much nearer to each other any two may come in a sub-step by what colliders have pushed them since, and may have come (m).
+    /// Largest approach of any two in a sub-step by colliders' pushes since, and in total (m).
     pushed_pace: f32,
     pushed: f32,
-    /// What particles are held by meanwhile.
+    /// The pushes that hold particles between tests.
     hold: Hold,
-    /// How much nearer to each other any two may come while they are held (m).
+    /// Largest approach of any two while they are held (m).
     free: f32,
-    /// Where all particles were when layers were last kept apart, or were known to be: as the sub-step began, mostly.
+    /// Positions of all particles when layers were last kept apart, or known to be: usually at the beginning of the
+    /// sub-step.
     passed: Origin,
     searches: u32,
     has_touched: bool,
-    /// What may be looked at in the rest of the tick.
+    /// Work left in the tick.
     work: usize,
-    /// Whether there was too much to look at: nothing is kept apart until another search comes to its end.
+    /// Whether there was too much work: nothing is kept apart until a search completes.
     is_lost: bool,
-    /// In how many sub-steps of the tick that was so.
+    /// Number of sub-steps of the tick in which that was so.
     lost: u32,
 }
 
-/// Where particles that become members were last known to be apart.
+/// Positions at which new members were last known to be apart.
 #[derive(Debug, Clone, Copy)]
 enum Starts {
-    /// Where they are: what is under way has been looked at.
+    /// Their current positions: the motion up to there has been tested.
     Here,
-    /// When layers were last known to be apart.
+    /// The positions when layers were last known to be apart.
     Passed,
 }
 
 impl MutualContact {
-    /// Forgets what was found: the particles are others, or somewhere else.
+    /// Forgets all pairs: the particles are others, or have jumped.
     pub fn forget(&mut self) {
         self.is_searched = false;
     }
 
-    /// Begins a tick of these cloths, of which `meets` says which two of them touch.
+    /// Begins a tick of these cloths. `meets` returns whether two of them may touch.
     pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
         self.searches = 0;
         self.has_touched = false;
@@ -136,7 +138,7 @@ impl MutualContact {
                 self.near.pass(approach);
             }
         } else {
-            // Particles of other cloths, perhaps, or as they were elsewhere.
+            // Particles of other cloths, or after a jump.
             self.near.forget();
             self.members.clear();
             self.member_of.clear();
@@ -159,7 +161,7 @@ impl MutualContact {
         }
     }
 
-    /// How often in the tick features were searched for.
+    /// Number of searches for features in the tick.
     pub fn searches(&self) -> u32 {
         self.searches
     }
@@ -169,43 +171,45 @@ impl MutualContact {
         self.has_touched
     }
 
-    /// In how many sub-steps of the tick nothing was kept apart: what is so fast, so thick or so crowded takes too long to search.
+    /// Number of sub-steps of the tick in which nothing was kept apart, because the cloth was too fast, too thick or
+    /// too crowded to search in time.
     pub fn lost(&self) -> u32 {
         self.lost
     }
 
-    /// Pairs of features that may come near each other, as found last.
+    /// Number of pairs of features that may come near each other, from the last search.
     pub fn pairs(&self) -> usize {
         self.pairs.len()
     }
 
-    /// Pairs of features that were looked at in the last sub-step.
+    /// Number of pairs of features tested in the last sub-step.
     #[cfg(test)]
     pub fn near(&self) -> usize {
         self.near.contacts.len()
     }
 
-    /// Notes where particles are in a sub-step before colliders push them: against that they do not give way.
+    /// Notes the particles' positions in a sub-step before colliders push them. Particles cannot move against these
+    /// pushes.
     pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
         if !self.pairs.is_empty() && self.waited >= self.wait {
             self.members.note_before_colliders(cloths);
         }
     }
 
-    /// Notes how far colliders have pushed any particle in a sub-step (m), of cloths of which nothing is looked at for a while: what was
-    /// pushed goes on as it was pushed.
+    /// Adds the largest push of any particle by colliders in a sub-step without tests (m): pushed particles keep that
+    /// motion.
     pub fn note_push(&mut self, farthest: f32) {
         self.pushed_pace += 2.0 * farthest;
         self.pushed += self.pushed_pace;
-        // NaN is looked at.
+        // False for NaN.
         let is_less = self.nearer + self.pushed < PART_OF_WAY * self.margin;
         if self.pairs.is_empty() && !is_less && !self.is_lost {
             self.wait = 0;
         }
     }
 
-    /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s). Says of each cloth whether any of it was pushed.
-    /// Returns the farthest that anything was pushed (m).
+    /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s). Marks the cloths that were pushed.
+    /// Returns the largest push (m).
     pub fn respond(
         &mut self,
         cloths: &mut [Participant],
@@ -232,7 +236,7 @@ impl MutualContact {
         if self.is_lost {
             self.search(cloths, &meets, 0.0, Starts::Here);
         } else if self.nearer > self.margin {
-            // Some may have met on the way to here.
+            // Some may have met on the way.
             if self.pairs.is_empty() {
                 match self.waited {
                     1 => self.passed.set_to_start(cloths),
@@ -248,7 +252,7 @@ impl MutualContact {
         if self.pairs.is_empty() {
             let pace = (self.nearer - before).max(0.0) / self.waited as f32;
             (self.wait, self.waited) = (self.free_substeps(pace), 0);
-            // Better from here than on the way.
+            // A search from here is better than one on the way.
             if self.nearer + pace > self.margin {
                 self.search(cloths, &meets, 0.0, Starts::Here);
             }
@@ -257,7 +261,7 @@ impl MutualContact {
         let waited = std::mem::take(&mut self.waited);
         self.members.gather(cloths);
         let thinnest = thinnest(cloths);
-        // How much nearer any two have come, in the sub-step and since near pairs were found.
+        // The approach of any two in the sub-step, and since near pairs were found.
         let in_substep = self.passed.approach(cloths);
         let mut since = self.near.approach(cloths).unwrap_or(in_substep);
         let mut pushed = 0.0;
@@ -291,7 +295,7 @@ impl MutualContact {
             } else {
                 break;
             }
-            // What was pushed has come nearer to others.
+            // Pushed features have come nearer to others.
             let farther = 2.0 * self.members.farthest_push();
             if round > 0 && farther <= pushed {
                 break;
@@ -307,7 +311,7 @@ impl MutualContact {
             .spare()
             .min(self.margin - self.nearer - pushed)
             .min(HELD * thinnest);
-        // What is left of it where they are held.
+        // The remaining pace of held particles.
         let pace = self.passed.approach(cloths) / waited as f32;
         self.passed.set(cloths);
         self.wait = match self.members.are_resting(RESTING_SPEED * dt) {
@@ -316,17 +320,17 @@ impl MutualContact {
         };
         self.near.renew_ahead_of(pace, thinnest);
         let in_substep = in_substep + pushed;
-        // Better from here than on the way.
+        // A search from here is better than one on the way.
         if self.nearer + in_substep > self.margin {
             self.search(cloths, &meets, 0.0, Starts::Here);
         }
         0.5 * pushed + held
     }
 
-    /// For how many sub-steps particles that come nearer to each other by `pace` (m) in each have far to go.
+    /// Number of sub-steps without a test, for particles that approach each other by `pace` (m) in each.
     fn free_substeps(&self, pace: f32) -> u32 {
         let free = PART_OF_WAY * (self.margin - self.nearer);
-        // At no pace, or one that is not finite, too.
+        // Also for no pace, or one that is not finite.
         ((free / pace) as u32).min(LONGEST_WAIT)
     }
 }

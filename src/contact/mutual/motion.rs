@@ -1,16 +1,16 @@
-//! What all cloths together say of a search: how thin they are, how they move, and how flat they are.
+//! Thickness, motion and flatness of all cloths together.
 
 use bevy::math::Vec3;
 
 use super::participant::Participant;
 
-/// The smallest thickness of any (m).
+/// The smallest thickness (m).
 pub(super) fn thinnest(cloths: &[Participant]) -> f32 {
     let each = cloths.iter().map(|cloth| cloth.settings.thickness);
     each.fold(f32::INFINITY, f32::min)
 }
 
-/// By how much any two particles come nearer to each other in a sub-step as long as the last, at most (m).
+/// Largest approach of any two particles in a sub-step as long as the last (m).
 pub(super) fn relative_motion(cloths: &[Participant]) -> f32 {
     let each = || {
         cloths.iter().flat_map(|cloth| {
@@ -29,8 +29,8 @@ pub(super) fn relative_motion(cloths: &[Participant]) -> f32 {
     2.0 * squares.fold(0.0, f32::max).sqrt()
 }
 
-/// By how much any two points of a cloth that is alone may come nearer to each other until it touches itself (m), as far as its
-/// tangents say so; none if they don't.
+/// Largest approach of any two points of a single cloth before it can touch itself (m), from its tangents; `None` if
+/// they give no bound.
 pub(super) fn room_in_flat(cloths: &[Participant]) -> Option<f32> {
     let [cloth] = cloths else {
         return None;

@@ -1,4 +1,4 @@
-//! Which of all pairs have to be looked at in a sub-step, and which of these may be left out.
+//! The pairs that have to be tested in a sub-step.
 
 use super::{
     certificate::LEFT_OF_THICKNESS,
@@ -8,38 +8,37 @@ use super::{
     participant::Participant,
 };
 
-/// By how much of the smallest thickness particles may come nearer to each other before nearest points are found anew: so far
-/// their normals and weights stand for what they were.
+/// Approach of particles, as a fraction of the smallest thickness, before nearest points are found again. Until then,
+/// their normals and weights are reused.
 const FRESH: f32 = 0.1;
 
-/// For so many sub-steps they should.
+/// Number of sub-steps that they should last.
 const AHEAD: f32 = 8.0;
 
-/// By how much of the smallest thickness particles may come nearer to each other before all pairs are gone through again.
+/// Approach of particles, as a fraction of the smallest thickness, before all pairs are listed again.
 const SLACK: f32 = 0.25;
 
-/// Pairs that are near each other, until particles have come nearer to each other by a little.
+/// Pairs that are near each other, until particles have approached each other a little.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NearPairs {
     listed: Vec<u32>,
     found: Vec<u32>,
-    /// Those that may come nearer to each other than their thickness.
+    /// Pairs that may come nearer than their thickness.
     pub contacts: Vec<NearPair>,
-    /// Those of them that came much nearer, in the last sub-step.
+    /// Those that came much nearer in the last sub-step.
     pub too_near: Vec<u32>,
-    /// How near any two of them were to passing through each other when they were found (m).
+    /// Smallest gap of any pair when they were found, before it passes through (m).
     closest: f32,
-    /// Where all particles were when contacts were found; how much nearer to each other any two may come from there, and can have
-    /// come up to where the sub-step began (m).
+    /// Positions of all particles when contacts were found. The allowed approach from there, and the approach up to the
+    /// beginning of the sub-step (m).
     origin: Origin,
     room: f32,
     used: f32,
-    /// How much nearer to each other any two particles can have come when the list has to be made anew, and by the time contacts
-    /// were found last (m).
+    /// Approach at which the list has to be made again, and the approach when contacts were last found (m).
     until: f32,
     odometer: f32,
-    /// Counts sub-steps: where they begin is the same when nearest points are found more than once in one.
+    /// Counts sub-steps: nearest points at the beginning of one are the same if they are found more than once.
     substep: u32,
     is_listed: bool,
     is_found: bool,
@@ -47,52 +46,52 @@ pub(super) struct NearPairs {
 }
 
 impl NearPairs {
-    /// Forgets them: the pairs are others.
+    /// Forgets everything for other pairs.
     pub fn forget(&mut self) {
         self.listed.clear();
         self.contacts.clear();
         (self.odometer, self.is_listed, self.is_found) = (0.0, false, false);
     }
 
-    /// How much nearer to each other any two particles can have come since contacts were found (m); none if they are not.
+    /// Largest approach of any two particles since contacts were found (m); `None` before that.
     pub fn approach(&self, cloths: &[Participant]) -> Option<f32> {
         self.is_found.then(|| self.origin.approach(cloths))
     }
 
-    /// Whether they are still all that are near when any two particles can have come nearer to each other by this much since they
-    /// were found (m).
+    /// Whether the contacts still include all near pairs after this approach (m).
     pub fn covers(&self, approach: f32) -> bool {
         self.is_found && !self.is_used_up && approach <= self.room
     }
 
-    /// Of those that were found no nearer than this to each other (m), none can have passed through another in the sub-step, since
-    /// which began any two particles can have come nearer by `approach` since they were found (m).
+    /// The approach in the sub-step (m), if any pair can have passed through. `approach` is that of any two particles
+    /// since contacts were found (m). Pairs found at a larger distance cannot have passed.
     pub fn may_meet_within(&self, approach: f32) -> Option<f32> {
         let nearer = approach.max(self.used);
         (self.closest <= nearer).then_some(nearer)
     }
 
-    /// How much nearer to each other any two particles may still come before some may be near that are not known to be, or may have
-    /// passed through each other (m).
+    /// Remaining approach of any two particles before unknown pairs may be near, or may have passed through each other
+    /// (m).
     pub fn spare(&self) -> f32 {
         self.room.min(self.closest) - self.used
     }
 
-    /// Has them be found anew before the next sub-step, if they will soon have to be, with particles that come nearer to each other by
-    /// `pace` (m) in each.
+    /// Makes the next sub-step find contacts again if they would soon be used up, at a `pace` of approach (m per
+    /// sub-step).
     pub fn renew_ahead_of(&mut self, pace: f32, thinnest: f32) {
         let wanted = AHEAD * pace;
         self.is_used_up = self.spare() < wanted && 2.0 * wanted < FRESH * thinnest;
     }
 
-    /// The sub-step ends, and any two particles can have come nearer to each other by `approach` since contacts were found (m).
+    /// Ends the sub-step. `approach` is that of any two particles since contacts were found (m).
     pub fn pass(&mut self, approach: f32) {
         self.used = approach;
         self.substep = (self.substep + 1) % NOBODY;
     }
 
-    /// Finds those that may touch before any two particles have come nearer to each other by `approach` (m) and a little of the
-    /// thickness, with their nearest points where the sub-step began. The last pair of each vertex with a face begins its list.
+    /// Finds the pairs that may touch within an `approach` (m) and a little of the thickness, with their nearest points
+    /// at the beginning of the sub-step. Each vertex has a linked list of its pairs with faces, which begins with the
+    /// last.
     pub fn find(
         &mut self,
         pairs: &mut [Pair],
@@ -110,7 +109,7 @@ impl NearPairs {
             self.list(pairs, members, thinnest);
         }
         self.found.clear();
-        // Each of four particles travels half as far as two come nearer to each other.
+        // Each of four particles travels half of the approach.
         for &index in &self.listed {
             let pair = &mut pairs[index as usize];
             let travelled = members.travelled(pair.members);
@@ -139,11 +138,11 @@ impl NearPairs {
             let is_left_out = if pair.split == VERTEX_AND_FACE {
                 is_implied(pairs, last_of[pair.members[0] as usize], index)
             } else {
-                // Ends of edges are vertices, which are kept away from faces by more.
+                // Ends of edges are vertices, which faces keep farther away.
                 let mut weights = pair.nearest.weights.iter();
                 !weights.all(|weight| weight.abs() > 0.0 && weight.abs() < 1.0)
             };
-            // Whatever may be passed through has to be certain.
+            // Pairs that may pass through must be tested.
             if !is_left_out || left <= self.room {
                 self.contacts.push(NearPair {
                     is_pushed: !is_left_out,
@@ -153,7 +152,7 @@ impl NearPairs {
         }
     }
 
-    /// Goes through all pairs for those that may touch before particles have come nearer to each other by a little.
+    /// Lists all pairs that may touch after a small approach.
     fn list(&mut self, pairs: &mut [Pair], members: &Members, thinnest: f32) {
         self.is_listed = true;
         let slack = (SLACK * thinnest).max(0.5 * self.room);
@@ -161,7 +160,7 @@ impl NearPairs {
         let ahead = self.room + 2.0 * slack;
         self.listed.clear();
         for (index, pair) in pairs.iter_mut().enumerate() {
-            // What is not listed is not near.
+            // Unlisted pairs are not near.
             pair.is_near = false;
             if pair.far_until <= members.travelled(pair.members) + ahead {
                 self.listed.push(index as u32);
@@ -170,8 +169,7 @@ impl NearPairs {
     }
 }
 
-/// Whether a vertex is kept away from a face by keeping it away from another one, which is nearer: the face's nearest point is on
-/// its edge, and that is the other's edge too.
+/// Whether a nearer face already keeps a vertex away from a face: the nearest point is on an edge of both faces.
 fn is_implied(pairs: &[Pair], last: u32, index: u32) -> bool {
     let pair = &pairs[index as usize];
     let nearest = &pair.nearest;

@@ -1,11 +1,11 @@
-//! Where particles were, to see how far they have come since.
+//! Earlier positions of particles, to measure their approach since.
 
 use bevy::math::Vec3;
 
 use super::participant::Participant;
 use crate::cloth::{DX, LANES, Lanes, Slot, X, Y, Z};
 
-/// Where all particles of some cloths were, each in its own frame, block by block (m). What is no particle is nowhere (NaN).
+/// Earlier positions of all particles of some cloths, each in its own frame, block by block (m). Empty lanes are NaN.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Origin {
@@ -13,22 +13,22 @@ pub(super) struct Origin {
 }
 
 impl Origin {
-    /// Takes over where they are.
+    /// Stores the current positions.
     pub fn set(&mut self, cloths: &[Participant]) {
         self.set_back(cloths, 0.0);
     }
 
-    /// Takes over where they were as the sub-step began that they have just gone through.
+    /// Stores the positions at the beginning of the last sub-step.
     pub fn set_to_start(&mut self, cloths: &[Participant]) {
         self.set_back(cloths, 1.0);
     }
 
-    /// Takes over another one.
+    /// Copies another one.
     pub fn copy_from(&mut self, other: &Self) {
         self.cloths.clone_from(&other.cloths);
     }
 
-    /// Takes over where they were this part of their last sub-step ago.
+    /// Stores the positions at a fraction of the last sub-step ago.
     fn set_back(&mut self, cloths: &[Participant], part: f32) {
         self.cloths.resize_with(cloths.len(), Vec::new);
         for (places, cloth) in self.cloths.iter_mut().zip(cloths) {
@@ -50,14 +50,14 @@ impl Origin {
         }
     }
 
-    /// Where a particle of a cloth was, in that cloth's frame (m).
+    /// Position of a particle in its cloth's frame (m).
     pub fn place(&self, cloth: usize, slot: Slot) -> Vec3 {
         self.cloths[cloth][slot.block]
             .map(|axis| axis[slot.lane])
             .into()
     }
 
-    /// Whether it is one of as many particles.
+    /// Whether the numbers of particles match.
     pub fn is_of(&self, cloths: &[Participant]) -> bool {
         let sizes = |(places, cloth): (&Vec<_>, &Participant)| {
             places.len() == cloth.particles.blocks().len()
@@ -65,12 +65,12 @@ impl Origin {
         self.cloths.len() == cloths.len() && self.cloths.iter().zip(cloths).all(sizes)
     }
 
-    /// Where all particles of a cloth were, block by block (m).
+    /// Positions of all particles of a cloth, block by block (m).
     pub fn places(&self, cloth: usize) -> &[[Lanes; 3]] {
         &self.cloths[cloth]
     }
 
-    /// What one particle has come since, in the common frame (m): what all have in common does not bring them nearer to each other.
+    /// Displacement of one particle since, in the common frame (m): common motion does not change distances.
     pub fn drift(&self, cloths: &[Participant]) -> Vec3 {
         match (self.cloths.first(), cloths.first()) {
             (Some(places), Some(cloth)) => {
@@ -84,7 +84,7 @@ impl Origin {
         }
     }
 
-    /// By how much any two of the particles can have come nearer to each other since, at most (m).
+    /// Largest approach of any two particles since (m).
     pub fn approach(&self, cloths: &[Participant]) -> f32 {
         let drift = self.drift(cloths);
         let mut farthest = [0.0_f32; LANES];
@@ -97,7 +97,7 @@ impl Origin {
                     let y = view[Y + l] - place[1][l] - drift.y;
                     let z = view[Z + l] - place[2][l] - drift.z;
                     let square = x * x + y * y + z * z;
-                    // What is nowhere is not farther.
+                    // NaN is never the farthest.
                     farthest[l] = if square > farthest[l] {
                         square
                     } else {

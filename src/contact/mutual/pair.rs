@@ -1,29 +1,30 @@
-//! Two features that may come near each other.
+//! Pairs of features that may come near each other.
 
 use bevy::math::{Vec3, Vec3A};
 
 use super::members::State;
 use crate::contact::triangle::{at, nearest_of_segments, nearest_to_point};
 
-/// A vertex and a face, or two edges: of one cloth or of two.
+/// A vertex and a face, or two edges, of one cloth or of two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pair {
-    /// The vertex and the face's corners, or the two ends of each edge: places among the [`Members`](super::members::Members).
+    /// The vertex and the face's corners, or the two ends of each edge: indices of
+    /// [`Members`](super::members::Members).
     pub members: [u32; 4],
-    /// Of the four, how many are of the first feature.
+    /// Number of the four that belong to the first feature.
     pub split: usize,
-    /// How near the features may come (m).
+    /// Distance at which the features touch (m).
     pub thickness: f32,
     /// Coulomb's μ.
     pub friction: f32,
-    /// The pair before this one of the same vertex with another face; or [`NOBODY`].
+    /// The previous pair of the same vertex with another face; or [`NOBODY`].
     pub before: u32,
-    /// How far its particles have travelled, all together, when they can first be that near (m).
+    /// Total distance that its particles have to travel before it can touch (m).
     pub far_until: f32,
-    /// Whether they were near each other when they were last looked at.
+    /// Whether it was near in the last test.
     pub is_near: bool,
-    /// How the nearest points were when they were last found, and in which sub-step that was; or [`NOBODY`].
+    /// The nearest points when they were last found, and the sub-step; or [`NOBODY`].
     pub nearest: Nearest,
     pub found_in: u32,
 }
@@ -32,23 +33,23 @@ pub(super) struct Pair {
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Nearest {
-    /// Parts of the four particles in the vector from the second feature's point to the first's.
+    /// Weights of the four particles in the vector from the second feature's point to the first's.
     pub weights: [f32; 4],
-    /// Along that vector, of length 1; 0 where the points are the same.
+    /// Direction of that vector, of length 1; 0 if the points coincide.
     pub normal: Vec3,
-    /// Between the points (m).
+    /// Distance between the points (m).
     pub distance: f32,
 }
 
 /// No member, no pair.
 pub(super) const NOBODY: u32 = u32::MAX;
-/// The vertices of a face count as the second feature.
+/// Split of a vertex and a face: the face's vertices belong to the second feature.
 pub(super) const VERTEX_AND_FACE: usize = 1;
-/// Two ends are the first edge's.
+/// Split of two edges.
 pub(super) const TWO_EDGES: usize = 2;
 
 impl Nearest {
-    /// Of four particles, so many of which are the first feature.
+    /// The nearest points of four particles; the first `split` are the first feature.
     #[inline]
     pub fn of(split: usize, [a, b, c, d]: [Vec3; 4]) -> Self {
         let weights = if split == VERTEX_AND_FACE {
@@ -73,20 +74,22 @@ impl Nearest {
     }
 }
 
-/// Two features that are near each other, with all that keeping them apart takes.
+/// Two near features, with the data to keep them apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NearPair {
-    /// As the [`Pair`]'s.
+    /// As in [`Pair`].
     pub members: [u32; 4],
     pub split: usize,
     pub thickness: f32,
     pub friction: f32,
-    /// As they were found: how far their nearest points were apart (m), along which way, and the parts of the four in that.
+    /// The distance of their nearest points when they were found (m), its direction, and the weights of the four
+    /// particles.
     pub distance: f32,
     pub normal: Vec3A,
     pub weights: [f32; 4],
-    /// Whether they are kept a thickness apart; if not, others keep them apart, and they have not to pass through each other.
+    /// Whether they are kept a thickness apart. Otherwise other pairs keep them apart, and they only must not pass
+    /// through each other.
     pub is_pushed: bool,
 }
 
@@ -104,13 +107,12 @@ impl NearPair {
         }
     }
 
-    /// How much nearer they may come until `part` of their thickness is left between them (m).
+    /// Approach until `part` of their thickness is left (m).
     pub fn until_met(&self, part: f32) -> f32 {
         self.distance - part * self.thickness
     }
 
-    /// How far all of the first feature is from all of the second along the normal (m): as long as it is positive, a plane is
-    /// between them.
+    /// Gap between the two features along the normal (m): while it is positive, a plane separates them.
     #[inline]
     pub fn clearance(&self, states: [&State; 4]) -> f32 {
         let [a, b, c, d] = states.map(|state| self.normal.dot(state.place));
@@ -126,12 +128,12 @@ fn combined([p, q, r, s]: [f32; 4], [a, b, c, d]: [Vec3; 4]) -> Vec3 {
     a * p + b * q + c * r + d * s
 }
 
-/// The distance between a vertex and a face, squared (m²).
+/// Squared distance between a vertex and a face (m²).
 pub(super) fn vertex_to_face(vertex: Vec3, face: [Vec3; 3]) -> f32 {
     at(face, nearest_to_point(face, vertex)).distance_squared(vertex)
 }
 
-/// The distance between two edges, squared (m²).
+/// Squared distance between two edges (m²).
 pub(super) fn edge_to_edge(first: [Vec3; 2], second: [Vec3; 2]) -> f32 {
     let (s, t) = nearest_of_segments(first, second);
     first[0]

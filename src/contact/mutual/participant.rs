@@ -1,4 +1,4 @@
-//! A cloth that may touch itself or others.
+//! Cloths that may touch themselves or others.
 
 use std::sync::Arc;
 
@@ -7,23 +7,23 @@ use bevy::math::{Isometry3d, Vec3};
 use super::{settings::ClothSelfCollision, sheet::Sheet};
 use crate::cloth::{ClothParticles, Slot};
 
-/// A cloth with what it is searched by, among those that are moved together.
+/// A cloth and its search structure, among cloths that are simulated together.
 #[derive(Debug)]
 pub(crate) struct Participant<'a> {
     /// Its particles.
     pub particles: &'a mut ClothParticles,
-    /// What it is searched by.
+    /// Its search structure.
     pub sheet: &'a Arc<Sheet>,
-    /// From its frame to the one that all have in common; `None` where they are the same.
+    /// Transform from its frame to the common one; `None` if they are the same.
     pub to_common: Option<Isometry3d>,
-    /// How it touches.
+    /// Its contact settings.
     pub settings: ClothSelfCollision,
-    /// Whether nothing moves it, as of a cloth that sleeps.
+    /// Whether nothing moves it, as for a sleeping cloth.
     pub is_fixed: bool,
 }
 
 impl<'a> Participant<'a> {
-    /// One that meets nothing but itself.
+    /// A cloth that touches only itself.
     pub fn alone(
         particles: &'a mut ClothParticles,
         sheet: &'a Arc<Sheet>,
@@ -38,7 +38,7 @@ impl<'a> Participant<'a> {
         }
     }
 
-    /// A point of its frame in the common one (m).
+    /// Transforms a point to the common frame (m).
     #[inline]
     pub(super) fn point(&self, point: Vec3) -> Vec3 {
         match self.to_common {
@@ -47,7 +47,7 @@ impl<'a> Participant<'a> {
         }
     }
 
-    /// A vector of its frame in the common one.
+    /// Transforms a vector to the common frame.
     #[inline]
     pub(super) fn vector(&self, vector: Vec3) -> Vec3 {
         match self.to_common {
@@ -56,7 +56,7 @@ impl<'a> Participant<'a> {
         }
     }
 
-    /// A vector of the common frame in its own.
+    /// Transforms a vector of the common frame to its own.
     #[inline]
     pub(super) fn own_vector(&self, vector: Vec3) -> Vec3 {
         match self.to_common {
@@ -65,7 +65,7 @@ impl<'a> Participant<'a> {
         }
     }
 
-    /// Where a particle is, in the common frame (m).
+    /// Position of a particle in the common frame (m).
     pub(super) fn place(&self, Slot { block, lane }: Slot) -> Vec3 {
         self.point(self.particles.blocks()[block].position(lane))
     }

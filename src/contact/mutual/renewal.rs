@@ -1,4 +1,4 @@
-//! Pairs of features, found again.
+//! Repeats the search for pairs of features.
 
 use super::{
     LONGEST_WAIT, MutualContact, Starts,
@@ -7,10 +7,10 @@ use super::{
     participant::Participant,
 };
 
-/// How many sub-steps as fast as this one a search should last.
+/// Number of sub-steps at the current speed that a search should last.
 const SUBSTEPS: f32 = 8.0;
 
-/// The margin of a search, at least and, unless things are faster than that, at most: as a part of the shortest spacing.
+/// Smallest margin of a search, and the largest unless the motion needs more, as a fraction of the shortest spacing.
 const MARGINS: [f32; 2] = [0.05, 0.25];
 
 impl MutualContact {
@@ -24,8 +24,8 @@ impl MutualContact {
         self.member_of.clear();
     }
 
-    /// Searches for all pairs that may come near each other before any two particles have come nearer by a margin, besides those
-    /// that may have met while they came nearer by `missed` (m).
+    /// Searches for all pairs that may come near each other within an approach of the margin. Adds those that may have
+    /// met during an approach of `missed` (m).
     pub(super) fn search(
         &mut self,
         cloths: &[Participant],
@@ -61,7 +61,7 @@ impl MutualContact {
         }
         let (search, work) = (&mut self.search, &mut self.work);
         if !search.find(cloths, &meets, self.margin + missed, work) {
-            // What has passed through meanwhile is not to be had: what is near now may be.
+            // Features that have passed through meanwhile cannot be found; those that are near now can.
             if missed == 0.0 || !search.find(cloths, &meets, self.margin, work) {
                 self.lose();
                 return;

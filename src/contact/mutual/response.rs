@@ -1,35 +1,35 @@
-//! What keeps layers apart at the end of a sub-step.
+//! Keeps layers apart at the end of a sub-step.
 
 use bevy::math::Vec3A;
 
 use super::{members::Members, pair::NearPair};
 
-/// How fast layers that were too near each other as the sub-step began part again, at most (m/s). So much is motion: in a pile it is
-/// what carries those above.
+/// Largest release speed of layers that were too near at the beginning of the sub-step (m/s). It counts as motion: in a
+/// pile it carries the layers above.
 const RELEASE: f32 = 0.25;
 
-/// By how much of their thickness those that touch may be nearer than that without being pushed for it: they are stopped, no more.
-/// So layers that rest go on touching where they tremble by less.
+/// Tolerated overlap of touching layers, as a fraction of their thickness: within it they are stopped, but not pushed.
+/// So resting layers stay in contact while they tremble by less.
 const RESTING: f32 = 0.02;
 
-/// And by how much, until what is left of older overlaps is released.
+/// Tolerated rest of older overlaps, as a fraction of their thickness.
 const LEFT: f32 = 0.04;
 
-/// Of the thickness, what is always kept of it at once: so much no sub-step may leave for the next.
+/// Fraction of the thickness that is restored at once, in the same sub-step.
 const KEPT: f32 = 0.3;
 
-/// Pairs are gone through once more where they are still nearer than this part of their thickness, if they were nearer than that
-/// other part: what was not is hardly pushed so far.
+/// Pairs are pushed again if they are still nearer than the first fraction of their thickness. Only pairs that were
+/// nearer than the second fraction before are tested: others are hardly pushed that far.
 const AGAIN: f32 = 0.5;
 const LISTED: f32 = 0.75;
 
-/// In how many parts pairs are gone through in turns: neighbours have particles in common, and the next would wait for the last.
+/// Number of interleaved groups of pairs: neighbouring pairs share particles, and would have to wait for each other.
 const APART: usize = 4;
 
-/// Of the mobility of a pair, what colliders have to leave of it.
+/// Smallest fraction of a pair's mobility that colliders must leave.
 const LEAST_FREE: f32 = 0.01;
 
-/// Keeps those that are near each other apart. Lists those that were much too near. Returns whether any touched.
+/// Pushes near pairs apart. Lists those that were much too near. Returns whether any touched.
 pub(super) fn push(
     pairs: &[NearPair],
     listed: &mut Vec<u32>,
@@ -58,9 +58,8 @@ pub(super) fn push(
     has_touched
 }
 
-/// Pushes two features apart that are nearer than `floor` (m), and slows them against each other by Coulomb's law. What both came
-/// towards each other in the sub-step is what velocity has to lose; an older overlap gives no more of it than is slow. Returns
-/// how far they were apart, if they touch (m).
+/// Pushes two features apart that are nearer than `floor` (m), with Coulomb friction. Velocity loses the approach of
+/// the sub-step; the release of an older overlap adds only a slow velocity. Returns their distance if they touch (m).
 #[inline]
 fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Option<f32> {
     let NearPair {
@@ -82,7 +81,7 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
     if free == 0.0 {
         return None;
     }
-    // What a collider holds from behind moves along its surface alone.
+    // A particle with a collider behind it moves only along the collider's surface.
     let (mut along, mut mobility) = ([0.0; 4], free);
     if states.iter().any(|state| state.is_supported) {
         for (index, (state, weight)) in states.into_iter().zip(weights).enumerate() {
@@ -98,7 +97,7 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
         }
     }
     let depth = pair.thickness - gap;
-    // Of the way, and of velocity, what brought them nearer.
+    // The approaching part of the displacement and of the velocity.
     let motion = combined(states.map(|state| state.moved));
     let nearing = -normal.dot(motion);
     let start = combined(states.map(|state| state.start));

@@ -1,4 +1,4 @@
-//! Which features of cloths may come near each other.
+//! Searches for features of cloths that may come near each other.
 
 use bevy::math::{Vec3, Vec3A};
 
@@ -9,19 +9,21 @@ use super::{
     sheet::Sheet,
 };
 
-/// Of the thickness, how near edges may come to each other. Layers that lie flat on each other are kept apart by their vertices
-/// and faces; that edges cross between these shows where both bend, and asks for no more than that they do not pass.
+/// Distance of edges, as a fraction of the thickness. Vertices and faces keep flat layers apart. Edges that cross
+/// between them show where both bend, and only must not pass.
 const EDGES: f32 = 0.5;
 
-/// A part of its distance at rest, which no pair of one cloth is kept farther apart than.
+/// Largest distance that a pair of one cloth is kept apart, as a fraction of its distance at rest.
 const OF_REST: f32 = 0.5;
 
-/// For each particle a search looks at so many nodes and pairs of features, and finds so many pairs, at most. What runs into itself at
-/// 5 m/s needs a ninth of that, and the worst at 20 m/s, ten sheets in a stack, two thirds (`cargo run --example lab -- self`).
+/// Limits of a search for each particle: nodes and pairs of features tested, and pairs found. A cloth that runs into
+/// itself at 5 m/s needs a ninth of that. The worst case, ten stacked sheets at 20 m/s, needs two thirds
+/// (`cargo run --example lab -- self`).
 const MOST_LOOKS: usize = 4_096;
 const MOST_PAIRS: usize = 2_048;
 
-/// So many pairs at most however many particles there are: 300 MB of them. But at least so many for each particle: heaps at rest have 50.
+/// Largest number of pairs in total: 300 MB of them. At least the second number for each particle: heaps at rest have
+/// 50.
 const MOST_OF_ALL: usize = 1 << 21;
 const LEAST_OF_EACH: usize = 128;
 
@@ -31,13 +33,13 @@ pub(super) struct Found {
     /// The cloths of the first feature and of the second.
     pub cloths: [u32; 2],
     pub particles: [u32; 4],
-    /// Of the four, how many are of the first feature.
+    /// Number of the four that belong to the first feature.
     pub split: usize,
-    /// How near they may come (m).
+    /// Distance at which they touch (m).
     pub thickness: f32,
 }
 
-/// What one cloth is searched by.
+/// The search structure of one cloth.
 #[derive(Debug, Default, Clone)]
 struct Searched {
     places: Vec<Vec3A>,
@@ -45,14 +47,14 @@ struct Searched {
     tangents: Vec<Tangents>,
 }
 
-/// A search through the trees of cloths, for features that are near each other. What it works in is kept.
+/// A search through the trees of cloths for near features. Its memory is reused.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Search {
     cloths: Vec<Searched>,
     pub found: Vec<Found>,
 }
 
-/// What is found, and how much more may be.
+/// The results, and the remaining limits.
 struct Finds<'a> {
     found: &'a mut Vec<Found>,
     looks: usize,
@@ -61,7 +63,7 @@ struct Finds<'a> {
 }
 
 impl Finds<'_> {
-    /// Whether so many more may be looked at.
+    /// Whether the limits allow this many more tests.
     fn may_look(&mut self, at: usize) -> bool {
         self.is_over |= at > self.looks;
         self.looks = self.looks.saturating_sub(at);
@@ -76,19 +78,19 @@ impl Finds<'_> {
     }
 }
 
-/// Two cloths, or one twice, as they are searched.
+/// Two cloths, or one cloth twice, during a search.
 struct Between<'a> {
     cloths: [usize; 2],
     sheets: [&'a Sheet; 2],
     searched: [&'a Searched; 2],
-    /// How near features may come (m), and how much farther away they are looked for.
+    /// Distance at which features touch (m), and the margin.
     thickness: f32,
     margin: f32,
 }
 
 impl Search {
-    /// Finds all pairs of features that are nearer to each other than their thickness and a `margin` (m). Their order depends on
-    /// the trees alone. Looks at as much as there is of `work`, and takes that from it; says whether it was enough.
+    /// Finds all pairs of features nearer to each other than their thickness and a `margin` (m), in an order that
+    /// depends only on the trees. Subtracts its tests from `work`, and returns whether that was enough.
     pub fn find(
         &mut self,
         participants: &[Participant],
@@ -154,7 +156,7 @@ impl Between<'_> {
         self.cloths[0] == self.cloths[1]
     }
 
-    /// Looks at two nodes of the same level, and what is below them.
+    /// Tests two nodes of the same level, and their descendants.
     fn descend(&self, a: u32, b: u32, found: &mut Finds) {
         if !found.may_look(1) || self.is_far(a, b) {
             return;
@@ -185,7 +187,7 @@ impl Between<'_> {
         }
     }
 
-    /// Whether no feature of two nodes can be as near as is looked for.
+    /// Whether all features of two nodes are too far apart.
     fn is_far(&self, a: u32, b: u32) -> bool {
         let reach = self.thickness + self.margin;
         let [first, second] = self.searched;
@@ -206,7 +208,7 @@ impl Between<'_> {
         })
     }
 
-    /// Compares the features that two particles stand for.
+    /// Compares the features that two particles own.
     fn compare(&self, a: u32, b: u32, found: &mut Finds) {
         let [first, second] = self.cloths;
         let [one, other] = self.sheets;
@@ -226,7 +228,7 @@ impl Between<'_> {
         self.searched[side].places[particle as usize].into()
     }
 
-    /// How near two features of one cloth may come, which at rest are this far apart (m).
+    /// Distance at which two features of one cloth touch, from their squared distance at rest.
     fn allowed(&self, thickness: f32, rest_square: impl Fn() -> f32) -> f32 {
         if self.is_one_cloth() && self.sheets[0].closest() * OF_REST < thickness {
             thickness.min(rest_square().sqrt() * OF_REST)

@@ -1,4 +1,4 @@
-//! How a cloth touches cloth.
+//! Settings for contact of cloth with cloth.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -7,15 +7,15 @@ use bevy::{
 
 use crate::cloth::{ClothError, Surface};
 
-/// Of the shortest spacing, how thick a cloth may be at most: what is thicker would push its own neighbours.
+/// Largest thickness, as a fraction of the shortest spacing: a thicker cloth would push its own neighbours.
 const MAX_OF_SPACING: f32 = 0.5;
 
-/// On a cloth: it touches itself, and each other cloth that has this too, unless their layers say otherwise. Without it cloth
-/// passes through cloth, and costs nothing.
+/// Makes a cloth collide with itself, and with every other cloth that has this component, unless their layers exclude
+/// it. Without it, cloth passes through cloth, at no cost.
 ///
-/// Layers are kept a thickness apart, from middle to middle, by vertices against faces and by edges against edges, each as heavy
-/// as it is; friction acts between them by Coulomb's law. Between two cloths the mean of their thicknesses counts, and the
-/// geometric mean of their friction.
+/// Layers are kept a thickness apart, measured between their middles. Vertices collide with faces, and edges with
+/// edges, each with its own mass. Friction between them follows Coulomb's law. Between two cloths, the mean of their
+/// thicknesses and the geometric mean of their friction coefficients count.
 ///
 /// ```
 /// use bevy_drape::prelude::*;
@@ -30,12 +30,12 @@ const MAX_OF_SPACING: f32 = 0.5;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSelfCollision {
-    /// How far the middles of two layers are kept apart (m): more than 0, and at most half of the shortest spacing at rest. Thick cloth
-    /// is safer at high speeds; 5 mm by default. Layers that rest on each other may be nearer by a twenty-fifth.
+    /// Distance between the middles of two layers (m): positive, and at most half of the shortest spacing at rest; 5 mm
+    /// by default. Thick cloth is safer at high speeds. Resting layers may be up to a twenty-fifth closer.
     pub thickness: f32,
-    /// Coulomb's μ between layers, 0 or more.
+    /// Coulomb's μ between layers, zero or more.
     pub friction: f32,
-    /// Whether it touches itself; if not, it touches others alone.
+    /// Whether the cloth collides with itself; otherwise it collides only with others.
     pub with_itself: bool,
 }
 
@@ -50,7 +50,7 @@ impl Default for ClothSelfCollision {
 }
 
 impl ClothSelfCollision {
-    /// With layers kept so far apart (m).
+    /// The default settings with this thickness (m).
     pub fn of_thickness(thickness: f32) -> Self {
         Self {
             thickness,
@@ -61,13 +61,13 @@ impl ClothSelfCollision {
     /// Checks all values against the surface of the cloth.
     ///
     /// # Errors
-    /// A thickness that is not positive; [`ClothError::TooThick`] for more than half of the shortest spacing; friction that is
-    /// negative or not finite.
+    /// [`ClothError::Quantity`] for a thickness that is not positive, or a friction that is negative or not finite;
+    /// [`ClothError::TooThick`] for more than half of the shortest spacing.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         let thickness = ClothError::check(
             self.thickness,
             |thickness| thickness > 0.0 && thickness.is_finite(),
-            "the thickness for contact of cloth with cloth (m)",
+            "the thickness of self-colliding cloth (m)",
             "positive",
         )?;
         let shortest = surface.spacing().shortest;

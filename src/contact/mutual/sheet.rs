@@ -1,4 +1,4 @@
-//! What a surface is searched by for contact with itself and with others.
+//! The search structure of a surface, for contact with itself and with others.
 
 use std::sync::Arc;
 
@@ -13,19 +13,19 @@ use crate::{
     hierarchy::QuadTree,
 };
 
-/// A surface with its edges and the nodes of its tree, as contact of cloth with cloth goes through them. It depends on the rest
-/// shape alone, is made once, and is shared.
+/// A surface with its edges and the nodes of its tree, for contact of cloth with cloth. It depends only on the rest
+/// shape, is built once, and is shared.
 #[derive(Debug, Default)]
 pub(crate) struct Sheet {
     surface: Arc<Surface>,
-    /// Edges of faces, each stood for by one particle.
+    /// Edges of faces, each owned by one particle.
     edges: Vec<[u32; 2]>,
-    /// Where each particle's begin; one more than there are particles.
+    /// First edge of each particle; one more entry than particles.
     first_edge: Vec<u32>,
     nodes: Vec<Node>,
     /// Bounds of each node's faces at rest (m).
     rest: Vec<Bounds>,
-    /// Of a grid, how its nodes lie on each level.
+    /// For a grid, the layout of its nodes on each level.
     lattice: Vec<Lattice>,
     closest: f32,
     masks: Masks,
@@ -59,14 +59,14 @@ struct Lattice {
 }
 
 impl Sheet {
-    /// Of a surface with its tree.
+    /// Builds it from a surface and its tree.
     ///
     /// # Panics
-    /// If the tree is another surface's.
+    /// If the tree belongs to another surface.
     pub fn new(surface: &Arc<Surface>, tree: &QuadTree) -> Self {
         assert!(
             tree.validate(surface.len()).is_ok(),
-            "the surface's own tree"
+            "the tree belongs to another surface"
         );
         let mut seen = HashSet::new();
         let (mut edges, mut first_edge) = (Vec::new(), vec![0]);
@@ -128,8 +128,8 @@ impl Sheet {
         &self.surface
     }
 
-    /// On a grid, the smallest distance at rest between two features that have no particle in common (m): from a corner of a cell
-    /// to its diagonal. 0 of a mesh.
+    /// For a grid, the smallest distance at rest between two features without a common particle (m): from a corner of a
+    /// cell to its diagonal. 0 for a mesh.
     pub(super) fn closest(&self) -> f32 {
         self.closest
     }
@@ -138,12 +138,12 @@ impl Sheet {
         &self.nodes[node as usize]
     }
 
-    /// Faces that a particle stands for.
+    /// Faces that a particle owns.
     pub(super) fn faces_of(&self, particle: u32) -> &[[u32; 3]] {
         self.surface.faces().of(particle)
     }
 
-    /// Edges that a particle stands for.
+    /// Edges that a particle owns.
     pub(super) fn edges_of(&self, particle: u32) -> &[[u32; 2]] {
         let particle = particle as usize;
         &self.edges[self.first_edge[particle] as usize..self.first_edge[particle + 1] as usize]
@@ -154,7 +154,7 @@ impl Sheet {
         self.rest[a as usize].distance(&self.rest[b as usize])
     }
 
-    /// On a grid, the nodes of the smallest rectangle of nodes around two of one level, if they are near each other.
+    /// For a grid, the nodes of the smallest rectangle around two nodes of one level, if they are near each other.
     pub(super) fn around(&self, a: u32, b: u32) -> Option<impl Iterator<Item = u32> + use<>> {
         let Lattice { first, columns } =
             *self.lattice.get(self.nodes[a as usize].level as usize)?;
@@ -166,7 +166,7 @@ impl Sheet {
         is_near.then(|| (top..=bottom).flat_map(node))
     }
 
-    /// Bounds of each node's faces, where the particles are at `positions` (m).
+    /// Computes the bounds of each node's faces, for particles at `positions` (m).
     pub(super) fn bounds(&self, positions: &[Vec3A], bounds: &mut Vec<Bounds>) {
         bounds.clear();
         bounds.resize(self.nodes.len(), Bounds::EMPTY);
@@ -187,7 +187,7 @@ impl Sheet {
         }
     }
 
-    /// Tangents of each node of a grid, where the particles are at `positions` (m); none of a mesh.
+    /// Computes the tangents of each node of a grid, for particles at `positions` (m); none for a mesh.
     pub(super) fn tangents(&self, positions: &[Vec3A], tangents: &mut Vec<Tangents>) {
         tangents.clear();
         let Some(grid) = self.surface.as_grid() else {
@@ -198,7 +198,7 @@ impl Sheet {
         for (index, node) in self.nodes.iter().enumerate().rev() {
             tangents[index] = if node.is_leaf() {
                 let at = node.particle as usize;
-                // The last of a row or column begins no cell.
+                // The last particle of a row or column begins no cell.
                 let is_cell = at % columns + 1 < columns && at + columns < positions.len();
                 if is_cell {
                     let corners = [at, at + 1, at + columns, at + columns + 1];
@@ -215,12 +215,12 @@ impl Sheet {
         }
     }
 
-    /// Between which vectors all rows and columns run; `None` of a mesh.
+    /// Bounds of the tangents of all rows and columns; `None` for a mesh.
     pub(super) fn tangents_of_all(&self, particles: &ClothParticles) -> Option<Tangents> {
         let grid = self.surface.as_grid()?;
         Some(tangents_of_all(particles, &self.masks, grid.spacing()))
     }
 }
 
-/// Nodes whose rows and columns are farther from each other are not looked at together.
+/// Nodes whose rows or columns are farther apart are not combined.
 const MAX_APART: u32 = 2;

@@ -109,7 +109,7 @@ impl Tree for GridTree {
             BoundRule::Refit => descend(self, particles, probe, found, |level, at, _, _| {
                 stored(bounds, self, particles, level, at).may_reach(probe, reach)
             }),
-            // The paper's volumes are as large as they are, whatever the particles in them.
+            // The paper's volumes ignore the particles' radius.
             BoundRule::Paper => descend(self, particles, probe, found, |level, at, _, _| {
                 stored(bounds, self, particles, level, at).may_reach(probe, probe.radius)
             }),
@@ -117,13 +117,13 @@ impl Tree for GridTree {
     }
 }
 
-/// Where the particle in the middle of a node is (m).
+/// Position of a node's middle particle (m).
 #[inline(always)]
 fn middle(particles: &ClothParticles, rows: &Part, columns: &Part) -> Vec3 {
     particles.blocks()[(rows.block + columns.block) as usize].position(columns.lane as usize)
 }
 
-/// The volume of a node that `Paper` or `Refit` has computed.
+/// The volume of a node computed by `Paper` or `Refit`.
 #[inline(always)]
 fn stored<V: Volume>(
     bounds: &Bounds<V>,
@@ -169,7 +169,7 @@ fn rebuild_paper<V: Volume>(bounds: &mut Bounds<V>, tree: &GridTree, particles: 
     }
 }
 
-/// Looks at the root, and then, level by level, at the children of whatever touches.
+/// Tests the root, and then, level by level, the children of each touching node.
 fn descend(
     tree: &GridTree,
     particles: &ClothParticles,

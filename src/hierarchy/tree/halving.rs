@@ -1,4 +1,4 @@
-//! The tree of a grid: how rows and columns are halved on each level. Nothing is stored a node.
+//! The tree of a grid: rows and columns halved on each level, without stored nodes.
 
 use std::ops::Range;
 
@@ -6,40 +6,40 @@ use bevy::math::Vec2;
 
 use crate::cloth::{ClothGrid, Layout};
 
-/// Some rows, or some columns, of one level.
+/// A range of rows or columns on one level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// The first, and one past the last.
     pub span: Range<u32>,
-    /// Where the part would end if the cloth had as many columns as its blocks have room for.
+    /// End of the part if all lanes of the cloth's blocks were columns.
     pub full_end: u32,
-    /// The one in the middle: never nearer to the end than to the start.
+    /// The middle one: never nearer to the end than to the start.
     pub middle: u32,
-    /// From the middle to the end.
+    /// Distance from the middle to the end.
     pub half: u32,
     /// 1 if `half` is less than the largest of the level, else 0.
     pub is_short: u8,
-    /// The parts that it is halved into, on the next level; none on the last.
+    /// Its two halves on the next level; empty on the last.
     pub children: Range<u32>,
-    /// Of rows, the middle's first block; of columns, the middle's block in its row.
+    /// For rows, the middle's first block; for columns, the middle's block in its row.
     pub block: u32,
-    /// Of columns, the middle's lane.
+    /// For columns, the middle's lane.
     pub lane: u32,
-    /// Of columns, the part's place in its strip, where a strip holds several.
+    /// For columns, the index of the part in its strip, if a strip holds several.
     pub in_strip: u32,
 }
 
-/// How rows and columns are halved on one level. A node is one part of either.
+/// The rows and columns of one level. A node is one part of each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
     pub rows: Vec<Part>,
     pub columns: Vec<Part>,
     /// Index of its first node.
     pub first: u32,
-    /// Length of the shortest way along the springs at rest from the middle of a node to its farthest corner (m), by
-    /// whether its rows and its columns are short.
+    /// Largest distance along the springs at rest from the middle of a node to a corner (m), indexed by whether its
+    /// rows and columns are short.
     pub rest_radius: [[f32; 2]; 2],
-    /// Parts in a strip of columns, the unit in which eight lanes are worked on; 0 where a part has several strips.
+    /// Number of parts in a strip of columns, which eight lanes process together; 0 if a part has several strips.
     pub parts_in_strip: u32,
 }
 
@@ -48,7 +48,7 @@ impl Level {
         self.first + row * self.columns.len() as u32 + column
     }
 
-    /// Of a node, for which way the springs lead at rest, no less than it is (m).
+    /// The rest radius of a node (m), rounded up.
     #[inline(always)]
     pub fn rest_radius(&self, rows: &Part, columns: &Part) -> f32 {
         self.rest_radius[usize::from(rows.is_short & 1)][usize::from(columns.is_short & 1)]
@@ -138,7 +138,7 @@ impl GridTree {
         self.spacing.max_element()
     }
 
-    /// The parts that a node of `level` is made of.
+    /// The parts of a node of `level`.
     pub fn parts(&self, level: usize, node: u32) -> (u32, u32) {
         let level = &self.levels[level];
         let columns = level.columns.len() as u32;
@@ -149,8 +149,8 @@ impl GridTree {
     }
 }
 
-/// `full` rows or columns halved level by level, of which only the first `count` are there. Units are split from each
-/// other before they are halved, and all units alike: so that eight lanes hold eight nodes of one level.
+/// Halves `full` rows or columns level by level; only the first `count` exist. Units are separated before they are
+/// halved, and all units are halved alike, so that eight lanes hold eight nodes of one level.
 fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
     let part = |full: Range<u32>| {
         let span = full.start..full.end.min(count);
@@ -169,7 +169,7 @@ fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
     };
     let mut levels = vec![vec![part(0..full)]];
     loop {
-        let above = levels.last_mut().expect("the whole");
+        let above = levels.last_mut().expect("at least one level");
         // The first is the largest.
         let largest = above[0].full_end;
         if largest == 1 {
@@ -192,7 +192,7 @@ fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
     }
 }
 
-/// Marks the short ones, and says how far the others reach and these.
+/// Marks the short parts, and returns the half lengths of the others and of these.
 fn shorten(parts: &mut [Part]) -> [u32; 2] {
     let longest = parts.iter().map(|part| part.half).max().unwrap_or(0);
     for part in parts {
@@ -201,8 +201,7 @@ fn shorten(parts: &mut [Part]) -> [u32; 2] {
     [longest, longest.saturating_sub(1)]
 }
 
-/// Length of the shortest way along the springs at rest between two particles that number of columns and rows apart
-/// (m).
+/// Length of the shortest path along the springs at rest between two particles, some columns and rows apart (m).
 fn rest_distance(spacing: Vec2, across: u32, down: u32, diagonals: bool) -> f32 {
     let diagonal = if diagonals { across.min(down) } else { 0 };
     let (across, down) = (across - diagonal, down - diagonal);

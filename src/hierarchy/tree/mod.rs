@@ -1,4 +1,4 @@
-//! The quad-tree: which particles each node holds.
+//! The quadtree: the particles of each node.
 
 mod grid;
 mod halving;
@@ -28,26 +28,26 @@ pub use node::Node;
 
 pub(super) use halving::{GridTree, Level, Part};
 
-/// A tree over the particles of a cloth: each node's patch is split into up to four, down to one particle a
-/// leaf. It depends on the rest shape alone, is made once, and is shared by its clones.
+/// A tree over the particles of a cloth. Each node's patch is split into up to four, down to one particle in each leaf.
+/// It depends only on the rest shape, is built once, and is shared by its clones.
 ///
-/// Nodes are numbered level by level from the root, 0. A grid's tree stores no nodes at all, just how its rows and
-/// its columns are halved on each level.
+/// Nodes are numbered level by level from the root, 0. A grid's tree stores no nodes, only the halves of its rows and
+/// columns on each level.
 #[derive(Reflect, Debug, Clone)]
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone)]
 pub struct QuadTree(Arc<dyn Tree>);
 
 impl Default for QuadTree {
-    /// Of no particles.
+    /// A tree without particles.
     fn default() -> Self {
         Self(Arc::new(NetworkTree::default()))
     }
 }
 
 impl QuadTree {
-    /// Over a surface: of a [grid](Self::of_grid) by rows and columns, of a mesh by patches. `diagonals` says whether shear
-    /// springs run along the diagonals of a grid.
+    /// Builds the tree of a surface: of a [grid](Self::of_grid) by rows and columns, of a mesh by patches. `diagonals`
+    /// states whether shear springs run along the diagonals of a grid.
     pub fn of_surface(surface: &Surface, diagonals: bool) -> Self {
         match surface.as_grid() {
             Some(grid) => Self::of_grid(grid, diagonals),
@@ -58,18 +58,19 @@ impl QuadTree {
         }
     }
 
-    /// Over `grid`, by halving its rows and columns. `diagonals` says whether shear springs run along them:
-    /// distances along the springs are shorter then.
+    /// Builds the tree of a grid, by halving its rows and columns. `diagonals` states whether shear springs run along
+    /// the diagonals, which shortens distances along the springs.
     pub fn of_grid(grid: &ClothGrid, diagonals: bool) -> Self {
         Self(Arc::new(GridTree::new(grid, diagonals)))
     }
 
-    /// Over any particles: `rest` are their positions at rest (m), `springs` what joins them, of which bend springs don't
-    /// count as paths. Takes O(n log² n) time.
+    /// Builds a tree over any particles: `rest` are their positions at rest (m), and `springs` join them. Bend springs
+    /// are not paths. Takes O(n log² n) time.
     ///
     /// # Errors
-    /// [`ClothError::BadSpring`] for the first with an end that is no particle, or with a rest length that is not from
-    /// 10⁻⁹ to 10¹² m: what has no length at rest says nothing of how far it stretches; [`ClothError::ParticleNotFinite`] for a position that is not.
+    /// [`ClothError::BadSpring`] for the first spring that does not join two particles, or whose rest length is not
+    /// from 10⁻⁹ to 10¹² m. The stretch of a spring without a length is undefined.
+    /// [`ClothError::ParticleNotFinite`] for a position that is not finite.
     pub fn of_network(rest: &[Vec3], springs: &[Spring]) -> Result<Self, ClothError> {
         if let Some(index) = rest.iter().position(|position| !position.is_finite()) {
             return Err(ClothError::ParticleNotFinite {
@@ -90,7 +91,7 @@ impl QuadTree {
                 particles: rest.len(),
             });
         }
-        // What a bend spring allows is not measured.
+        // The stretch of bend springs is not measured.
         let paths = springs
             .iter()
             .filter(|spring| spring.kind != SpringKind::Bend);
@@ -106,32 +107,32 @@ impl QuadTree {
         self.levels().last().map_or(0, |level| level.end as usize)
     }
 
-    /// Whether there is no node.
+    /// Whether there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The nodes of each level, the root's first. All leaves are on the last; a patch of one particle further up has
-    /// itself as its only child.
+    /// The nodes of each level, the root's first. All leaves are on the last level; above it, a patch of one particle
+    /// has itself as its only child.
     pub fn levels(&self) -> &[Range<u32>] {
         self.0.levels()
     }
 
-    /// The level that a node is on, 0 for the root.
+    /// The level of a node, 0 for the root.
     pub fn level_of(&self, node: u32) -> usize {
         self.levels().partition_point(|level| level.end <= node)
     }
 
-    /// A node.
+    /// The node with an index.
     ///
     /// # Panics
-    /// If there are not that many.
+    /// If the index is out of range.
     pub fn node(&self, node: u32) -> Node {
         self.0.node(self.level_of(node), node)
     }
 
-    /// A sphere around all of its particles' centres, without touching more than one of them for each piece of the cloth:
-    /// the root's rest shape at a stretch ([`Stretch::bound`](crate::solver::Stretch)).
+    /// A sphere around all particle centres, from the root's rest shape at a stretch
+    /// ([`Stretch::bound`](crate::solver::Stretch)). It reads only one particle for each piece of the cloth.
     pub fn root_sphere(&self, particles: &ClothParticles, stretch: f32) -> BoundingSphere {
         let none = BoundingSphere::new(Vec3::ZERO, 0.0);
         if !self.matches(particles) {
@@ -148,12 +149,12 @@ impl QuadTree {
         };
         tops.fold(first, |around, sphere| {
             let merged = around.merge(&sphere);
-            // More than the rounding of a merge.
+            // More than the rounding error of a merge.
             BoundingSphere::new(merged.center, merged.radius() * (1.0 + 1.0e-5))
         })
     }
 
-    /// Of a grid, how the nodes of each level lie in rows: the first of them, and how many a row has.
+    /// For a grid, the layout of each level's nodes: the first node, and the number in a row.
     pub(crate) fn lattice(&self) -> Option<Vec<(u32, u32)>> {
         let levels = self.levels().iter().enumerate();
         levels
@@ -161,7 +162,7 @@ impl QuadTree {
             .collect()
     }
 
-    /// Indices of the particles that a node holds.
+    /// Indices of a node's particles.
     pub fn particles_of(&self, node: u32) -> Vec<u32> {
         let level = self.level_of(node);
         let mut nodes = vec![node];
@@ -177,12 +178,12 @@ impl QuadTree {
             .collect()
     }
 
-    /// Nodes and columns: what says which volumes are whose.
+    /// Numbers of nodes and columns, which identify the volumes of a tree.
     pub(super) fn size(&self) -> [usize; 2] {
         [self.len(), self.0.layout().columns as usize]
     }
 
-    /// Whether the tree is one of `particles`: as many, laid out alike.
+    /// Whether the tree belongs to `particles`: the same number and layout.
     pub fn matches(&self, particles: &ClothParticles) -> bool {
         self.0.layout() == particles.layout()
     }
@@ -191,10 +192,11 @@ impl QuadTree {
         &*self.0
     }
 
-    /// Whether each node's children part its patch among them and each of this many particles is in one leaf.
+    /// Checks that each node's children divide its patch, and that each of `particles` particles is in exactly one
+    /// leaf.
     ///
     /// # Errors
-    /// A sentence that names the node at fault.
+    /// A message that names the node at fault.
     pub fn validate(&self, particles: usize) -> Result<(), String> {
         let last = self.levels().len().saturating_sub(1);
         let mut parent_of = vec![None; self.len()];
@@ -214,7 +216,7 @@ impl QuadTree {
                     let is_below = self.levels()[level + 1].contains(&child);
                     if !is_below || parent_of[child as usize].replace(index).is_some() {
                         return Err(format!(
-                            "node {child} is not node {index}'s alone, a level below"
+                            "node {child} is not a child of node {index} alone, one level below"
                         ));
                     }
                 }

@@ -1,4 +1,4 @@
-//! The tree of particles anywhere: patches split along the surface at rest, each node stored.
+//! The tree of arbitrary particles: patches split along the surface at rest, with stored nodes.
 
 use std::ops::Range;
 
@@ -15,18 +15,18 @@ use crate::{
     },
 };
 
-/// From this many times on that its radius along the surface is its radius through space, a patch is folded: its halves are
-/// split along the surface. A path along edges is up to √2 times as long as a straight one on a flat patch.
+/// From this ratio of its radius along the surface to that through space on, a patch is folded: its halves are split
+/// along the surface. On a flat patch, a path along edges is up to √2 times as long as a straight line.
 const FOLDED: f32 = 1.5;
 
-/// A tree over particles joined in any way.
+/// A tree over arbitrarily connected particles.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct NetworkTree {
-    /// Of the particles: one row.
+    /// Layout of the particles: one row.
     layout: Layout,
     nodes: Vec<NetworkNode>,
     ranges: Vec<Range<u32>>,
-    /// The uppermost nodes with a finite radius.
+    /// The topmost nodes with a finite radius.
     tops: Vec<u32>,
 }
 
@@ -34,13 +34,13 @@ pub struct NetworkTree {
 struct NetworkNode {
     middle: u32,
     rest_radius: f32,
-    /// Where the middle lies.
+    /// Slot of the middle particle.
     slot: Slot,
     children: Range<u32>,
 }
 
 impl NetworkTree {
-    /// Over particles at `rest` (m), with paths along the edges of `graph`.
+    /// Builds a tree over particles at `rest` (m), with paths along the edges of `graph`.
     pub fn new(rest: &[Vec3], graph: &Graph) -> Self {
         let layout = Layout::new(rest.len() as u32, 1);
         let mut tree = Self {
@@ -98,7 +98,7 @@ impl NetworkTree {
         }
     }
 
-    /// Bottom up. Children come after their parents, so one way backwards does it.
+    /// Bottom up. Children come after their parents, so one backward pass suffices.
     fn refit<V: Volume>(&self, bounds: &mut Bounds<V>, particles: &ClothParticles) {
         bounds
             .nodes
@@ -167,7 +167,7 @@ impl Tree for NetworkTree {
         stretch: f32,
     ) {
         each!(volumes, bounds => {
-            // The paper's Figure 4 is of a grid.
+            // The paper's Figure 4 is for grids.
             bounds.rule = if rule == BoundRule::Paper { BoundRule::RestShape } else { rule };
             bounds.growth = growth(stretch);
             if rule == BoundRule::Refit {
@@ -197,7 +197,7 @@ impl Tree for NetworkTree {
             queue.clear();
             queue.push([0, 1, 0, 0]);
             let mut next = 0;
-            // Children are put behind what is still to be looked at: level by level.
+            // Children are appended to the queue: level by level.
             while let Some(&[first, end, ..]) = queue.get(next) {
                 next += 1;
                 for index in first..end {
@@ -224,20 +224,20 @@ fn position(particles: &ClothParticles, slot: Slot) -> Vec3 {
     particles.blocks()[slot.block].position(slot.lane)
 }
 
-/// Parts patches.
+/// Divides patches.
 struct Splitter<'a> {
     rest: &'a [Vec3],
-    /// The particles, each patch's side by side.
+    /// The particles, grouped by patch.
     order: Vec<u32>,
     paths: ShortestPaths<'a>,
     distances: Vec<f64>,
-    /// What the particles of a patch are sorted by.
+    /// Sort keys of a patch's particles.
     keys: Vec<f32>,
 }
 
 impl Splitter<'_> {
-    /// The particle in the middle of a patch, nearest to its centroid, and the largest distance along the surface from there
-    /// to one of the patch (m).
+    /// The middle particle of a patch, nearest to its centroid, and the largest distance along the surface from it to
+    /// another one of the patch (m).
     fn measure(&mut self, patch: Range<usize>) -> (u32, f32) {
         let members = &self.order[patch];
         let at = |particle: u32| self.rest[particle as usize].as_dvec3();
@@ -266,7 +266,7 @@ impl Splitter<'_> {
         rest_radius > FOLDED * low.distance(high) / 2.0
     }
 
-    /// The corners of a box around a patch.
+    /// The bounding box of a patch.
     fn corners(&self, patch: Range<usize>) -> [Vec3; 2] {
         let places = self.order[patch]
             .iter()
@@ -276,9 +276,9 @@ impl Splitter<'_> {
         })
     }
 
-    /// Halves a patch: one that is not folded along its longest extent, any other by which of two ends is nearer along the
-    /// surface, so that few halves have two sides of a fold. As halves are of equal
-    /// numbers, a few particles of the other side may be left in one.
+    /// Halves a patch. A patch that is not folded is halved along its longest extent. A folded one is halved by the
+    /// nearer of two ends along the surface, so that few halves have two sides of a fold. As halves are of equal size,
+    /// one may keep a few particles of the other side.
     fn bisect(
         &mut self,
         patch: Range<usize>,
@@ -296,7 +296,7 @@ impl Splitter<'_> {
                 }
             }
             let keys = &self.keys;
-            // Ties by index, so that the tree is the same everywhere.
+            // Ties by index, so that the tree is the same on all machines.
             self.order[patch.clone()].select_nth_unstable_by(half, |a, b| {
                 keys[*a as usize]
                     .total_cmp(&keys[*b as usize])
@@ -310,7 +310,7 @@ impl Splitter<'_> {
         parts.into_iter().filter(|part| !part.is_empty())
     }
 
-    /// Keys that tell which of two ends of a patch is nearer; pieces that no path joins are told apart by them, too.
+    /// Computes keys for the nearer of two ends of a patch; they separate disconnected pieces, too.
     fn sort_by_ends(&mut self, patch: Range<usize>) {
         let members = &self.order[patch];
         let one = self
@@ -323,7 +323,7 @@ impl Splitter<'_> {
         self.paths.distances(other, members, &mut self.distances);
         for (&particle, &distance) in members.iter().zip(&self.distances) {
             let key = &mut self.keys[particle as usize];
-            // Out of reach of both is neither's.
+            // Particles that reach neither end belong to neither.
             let nearer = *key - distance as f32;
             *key = if nearer.is_nan() { 0.0 } else { nearer };
         }

@@ -7,10 +7,10 @@ use bevy::reflect::Reflect;
 pub struct Node {
     /// Its level, 0 for the root.
     pub level: usize,
-    /// Index of the patch's middle particle; of a leaf, its only one.
+    /// Index of the patch's middle particle; for a leaf, its only one.
     pub middle: u32,
-    /// Largest distance at rest, along the springs, from the middle particle to one of the patch (m). Infinite
-    /// where no way along the springs leads there.
+    /// Largest distance at rest, along the springs, from the middle particle to another one of the patch (m). Infinite
+    /// without a path.
     pub rest_radius: f32,
     pub(super) children: [u32; 4],
     pub(super) child_count: u8,
@@ -22,7 +22,7 @@ impl Node {
         self.child_count == 0
     }
 
-    /// Indices of its one to four children; none of a leaf.
+    /// Indices of its one to four children; empty for a leaf.
     pub fn children(&self) -> &[u32] {
         &self.children[..usize::from(self.child_count)]
     }

@@ -1,4 +1,4 @@
-//! What every kind of tree can do.
+//! The interface of all trees.
 
 use std::{fmt::Debug, ops::Range};
 
@@ -8,7 +8,7 @@ use crate::{
     hierarchy::{BoundRule, NodeVolume, Probe, found::Found, stored::Volumes},
 };
 
-/// A tree over a cloth's particles, made once for a surface.
+/// A tree over a cloth's particles, built once for a surface.
 pub(crate) trait Tree: Debug + Send + Sync {
     /// The nodes of each level, the root's first.
     fn levels(&self) -> &[Range<u32>];
@@ -16,18 +16,18 @@ pub(crate) trait Tree: Debug + Send + Sync {
     /// A node of a level.
     fn node(&self, level: usize, node: u32) -> Node;
 
-    /// Nodes side by side on a level, where all of its nodes lie in rows and columns.
+    /// Number of nodes in a row of a level, if all of its nodes lie in rows and columns.
     fn columns(&self, _level: usize) -> Option<u32> {
         None
     }
 
-    /// How the particles lie that it was made for.
+    /// The layout of its particles.
     fn layout(&self) -> Layout;
 
-    /// Nodes that hold all particles between them: the root, unless no path leads from it to all of them.
+    /// Nodes that together contain all particles: the root, unless no path leads from it to all of them.
     fn tops(&self) -> &[u32];
 
-    /// Brings the volumes up to date with the particles.
+    /// Updates the volumes for the particles.
     fn rebuild(
         &self,
         volumes: &mut Volumes,
@@ -39,7 +39,7 @@ pub(crate) trait Tree: Debug + Send + Sync {
     /// The volume of a node around its particles' centres.
     fn volume(&self, volumes: &Volumes, particles: &ClothParticles, node: u32) -> NodeVolume;
 
-    /// Adds what a probe meets to what was found.
+    /// Appends the particles that a probe meets.
     fn search(
         &self,
         volumes: &Volumes,

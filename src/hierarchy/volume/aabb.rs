@@ -1,4 +1,4 @@
-//! Boxes along the axes of the cloth's frame.
+//! Axis-aligned boxes in the cloth's frame.
 
 use bevy::math::{
     DVec3, Vec3, Vec3A,
@@ -22,7 +22,7 @@ impl Volume for Aabb3d {
 
     #[inline(always)]
     fn around(centre: Vec3, radius: f32) -> Self {
-        // A coordinate's own rounding, as the radius is taken from it and added to it. None without a radius.
+        // The rounding error of a coordinate, from subtracting and adding the radius. None without a radius.
         let half = if radius > 0.0 {
             Vec3::splat(radius) + centre.abs() * f32::EPSILON
         } else {
@@ -51,7 +51,7 @@ impl Volume for Aabb3d {
                 slabs::may_reach_half_space(point, normal, self.min.into(), self.max.into(), reach)
             }
             Core::Segment([start, end]) => {
-                // A ball around the segment as well: of a collider that moves less than it is large, that is the tighter.
+                // A ball around the segment as well: it is tighter for a collider that moves less than its size.
                 let ball = Probe::ball(
                     start.midpoint(end),
                     reach + start.distance(end) / 2.0 * ROUNDING,
@@ -130,15 +130,13 @@ fn slabs_may_reach(aabb: &Aabb3d, probe: &Probe, reach: f32) -> bool {
     slabs::may_reach([0, 1, 2].into_iter().map(slab), probe, reach, size)
 }
 
-/// What begins so far into a block.
+/// Eight numbers of a block from an offset on.
 #[inline(always)]
 pub(super) fn coordinates(view: &View, from: usize) -> &Lane {
-    view[from..]
-        .first_chunk()
-        .expect("three times eight of them")
+    view[from..].first_chunk().expect("24 numbers")
 }
 
-/// From where to where four reach along an axis.
+/// The union of four intervals along an axis.
 #[inline(always)]
 pub(super) fn unite_slab(children: [(&Lane, &Lane); 4], low: &mut Lane, high: &mut Lane) {
     let [a, b, c, d] = children;
@@ -148,13 +146,13 @@ pub(super) fn unite_slab(children: [(&Lane, &Lane); 4], low: &mut Lane, high: &m
     }
 }
 
-/// As one instruction does it.
+/// Compiles to one instruction.
 #[inline(always)]
 pub(super) fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// As one instruction does it.
+/// Compiles to one instruction.
 #[inline(always)]
 pub(super) fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

@@ -1,4 +1,4 @@
-//! What every kind of bounding volume can do.
+//! The interface of all bounding volumes.
 
 use std::fmt::Debug;
 
@@ -9,43 +9,42 @@ use crate::{
     hierarchy::Probe,
 };
 
-/// What the tree asks of a bounding volume. It bounds the centres of particles; their radius is in the reach of
-/// whatever is tested against it.
+/// A bounding volume of a tree. It bounds the centres of particles; tests against it add their radius to the reach.
 pub(crate) trait Volume: Copy + Debug + PartialEq + Send + Sync + 'static {
-    /// Eight of them, lane by lane, so that one instruction works on eight nodes.
+    /// Eight volumes, lane by lane, so that one instruction works on eight nodes.
     type Lanes: Copy + Debug + PartialEq + Send + Sync + 'static;
 
-    /// Eight that have not been computed yet.
+    /// Eight volumes that have not been computed yet.
     const UNSET: Self::Lanes;
 
-    /// Around the ball of `radius` around `centre` (m).
+    /// Around the ball with `radius` at `centre` (m).
     fn around(centre: Vec3, radius: f32) -> Self;
 
-    /// Around four, of which some may be the same. Of a patch of a grid they come row by row.
+    /// Around four volumes, of which some may be the same. Those of a grid's patch come row by row.
     fn unite(children: [&Self; 4]) -> Self;
 
-    /// Whether the volume may be within `reach` (m) of the probe's core. Never says no where it is.
+    /// Whether the volume may be within `reach` (m) of the probe's core. Never false if it is.
     fn may_reach(&self, probe: &Probe, reach: f32) -> bool;
 
-    /// Whether a ball around `centre` (m) is inside, in `f64`, up to the rounding of lengths of `scale` (m).
+    /// Whether it contains a ball at `centre` (m), in `f64`, up to the rounding errors of lengths of `scale` (m).
     fn holds(&self, centre: DVec3, radius: f64) -> bool;
 
-    /// Whether another volume is inside, up to rounding.
+    /// Whether it contains another volume, up to rounding errors.
     fn holds_volume(&self, other: &Self) -> bool;
 
-    /// Grown by `radius` (m): around the whole of particles of that radius.
+    /// Inflated by `radius` (m): around particles including their radius.
     fn inflated(&self, radius: f32) -> Self;
 
     /// Around four particles in each lane.
     fn of_particles(children: [&View; 4], into: &mut Self::Lanes);
 
-    /// Around four in each lane.
+    /// Around four volumes in each lane.
     fn unite_lanes(children: [&Self::Lanes; 4], into: &mut Self::Lanes);
 
-    /// The one in a lane.
+    /// The volume of a lane.
     fn lane(lanes: &Self::Lanes, lane: usize) -> Self;
 
-    /// Puts one into a lane.
+    /// Sets the volume of a lane.
     fn set_lane(lanes: &mut Self::Lanes, lane: usize, volume: Self);
 }
 

@@ -1,4 +1,4 @@
-//! Polytopes between pairs of parallel planes whose directions are the same for all: k-DOPs (Klosowski et al. 1998).
+//! k-DOPs (Klosowski et al. 1998): polytopes between pairs of parallel planes with fixed directions.
 
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
 
@@ -12,7 +12,7 @@ use crate::{
     hierarchy::{Core, Probe},
 };
 
-/// Across the faces of a cube, its corners, its edges.
+/// Normals of the faces, corners and edges of a cube.
 const AXES: [[f32; 3]; 13] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
@@ -42,18 +42,18 @@ impl<const N: usize> KDop<N> {
         std::array::from_fn(|at| Vec3::from(Self::axis(at)))
     }
 
-    /// An 18-DOP cuts edges and leaves corners.
+    /// An 18-DOP cuts edges and keeps corners.
     #[inline(always)]
     const fn axis(at: usize) -> [f32; 3] {
         AXES[if N == 9 && at >= 3 { at + 4 } else { at }]
     }
 
-    /// From where to where it reaches along each axis: the minimum and maximum products with it (m).
+    /// Its extent along each axis: the axis, and the minimum and maximum of the dot product with it (m).
     pub fn slabs(&self) -> impl Iterator<Item = (Vec3, f32, f32)> + '_ {
         (0..N).map(|at| (Self::axis(at).into(), self.low[at], self.high[at]))
     }
 
-    /// The corners of each face, in order; faces of fewer than three are left out.
+    /// The corners of each face, in order; faces with fewer than three are left out.
     pub fn faces(&self) -> Vec<Vec<Vec3>> {
         let planes = || {
             self.slabs()
@@ -66,7 +66,7 @@ impl<const N: usize> KDop<N> {
             .fold(0.0_f32, |most, each| most.max(each.abs()));
         let slack = extent * 1.0e-5;
         let face = |(normal, distance): (Vec3, f32)| {
-            // A square of the plane that is larger than all, cut by every other plane.
+            // A square of the plane larger than everything, cut by every other plane.
             let (u, v) = (normal / normal.length()).any_orthonormal_pair();
             let middle = normal * (distance / normal.length_squared());
             let size = 4.0 * extent + 1.0;
@@ -91,7 +91,7 @@ impl<const N: usize> KDop<N> {
     }
 }
 
-/// The part of a convex polygon that is behind a plane (Sutherland and Hodgman 1974).
+/// The part of a convex polygon behind a plane (Sutherland and Hodgman 1974).
 fn cut(corners: &[Vec3], normal: Vec3, distance: f32) -> Vec<Vec3> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (index, &corner) in corners.iter().enumerate() {
@@ -108,7 +108,7 @@ fn cut(corners: &[Vec3], normal: Vec3, distance: f32) -> Vec<Vec3> {
 }
 
 impl<const N: usize> Volume for KDop<N> {
-    /// Minimum and maximum products.
+    /// Minimum and maximum of the dot products.
     type Lanes = [[Lane; N]; 2];
 
     const UNSET: Self::Lanes = [[[0.0; LANES]; N]; 2];
@@ -145,7 +145,7 @@ impl<const N: usize> Volume for KDop<N> {
 
     #[inline(always)]
     fn may_reach(&self, probe: &Probe, reach: f32) -> bool {
-        // Its first three pairs of planes are a box, whose test is the tighter near its edges.
+        // Its first three pairs of planes form a box, whose test is tighter near its edges.
         let corner = |side: &[f32; N]| Vec3A::new(side[0], side[1], side[2]);
         let aabb = Aabb3d {
             min: corner(&self.low),

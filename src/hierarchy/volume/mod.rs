@@ -1,4 +1,4 @@
-//! Bounding volumes: what each node of a tree may be wrapped in.
+//! Bounding volumes of a tree's nodes.
 
 mod aabb;
 mod bounding;
@@ -17,7 +17,7 @@ pub use kdop::KDop;
 pub use node_volume::NodeVolume;
 pub use obb::Obb;
 
-/// A kind of bounding volume.
+/// A type of bounding volume.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
@@ -25,15 +25,15 @@ pub enum BoundingVolume {
     /// A sphere.
     #[default]
     Sphere,
-    /// A box along the axes of the cloth's frame.
+    /// An axis-aligned box in the cloth's frame.
     Aabb,
-    /// A box along axes of its own.
+    /// An oriented box.
     Obb,
-    /// Between seven pairs of parallel planes: a box without its corners.
+    /// A 14-DOP, between seven pairs of parallel planes: a box with its corners cut off.
     KDop14,
-    /// Between nine pairs: a box without its edges.
+    /// An 18-DOP, between nine pairs: a box with its edges cut off.
     KDop18,
-    /// Between thirteen pairs: a box without either.
+    /// A 26-DOP, between thirteen pairs: a box with its corners and edges cut off.
     KDop26,
 }
 

@@ -1,4 +1,4 @@
-//! The bounding volume of a node, of whichever kind.
+//! The bounding volume of a node, of any type.
 
 use bevy::{
     math::{
@@ -10,22 +10,22 @@ use bevy::{
 
 use super::{Volume, kdop::KDop, obb::Obb};
 
-/// The bounding volume of a node, around the whole of its particles.
+/// The bounding volume of a node, around its particles including their radius.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(opaque)]
 #[non_exhaustive]
 pub enum NodeVolume {
     /// A sphere.
     Sphere(BoundingSphere),
-    /// A box along the axes.
+    /// An axis-aligned box.
     Aabb(Aabb3d),
-    /// A box along axes of its own.
+    /// An oriented box.
     Obb(Obb),
-    /// Between 7 pairs of planes.
+    /// A 14-DOP, between 7 pairs of planes.
     KDop14(KDop<7>),
-    /// Between 9 pairs of planes.
+    /// An 18-DOP, between 9 pairs of planes.
     KDop18(KDop<9>),
-    /// Between 13 pairs of planes.
+    /// A 26-DOP, between 13 pairs of planes.
     KDop26(KDop<13>),
 }
 
@@ -66,7 +66,7 @@ impl From<KDop<13>> for NodeVolume {
 }
 
 impl NodeVolume {
-    /// Grown by `radius` (m): around the whole of particles of that radius.
+    /// Inflated by `radius` (m): around particles including their radius.
     pub(in crate::hierarchy) fn inflated(&self, radius: f32) -> Self {
         match self {
             Self::Sphere(volume) => volume.inflated(radius).into(),
@@ -78,7 +78,7 @@ impl NodeVolume {
         }
     }
 
-    /// Whether a point is inside, in `f64`, up to rounding.
+    /// Whether it contains a point, in `f64`, up to rounding errors.
     pub(in crate::hierarchy) fn holds(&self, point: Vec3) -> bool {
         let point = point.as_dvec3();
         match self {
@@ -91,7 +91,7 @@ impl NodeVolume {
         }
     }
 
-    /// Whether another one of the same kind is inside, up to rounding.
+    /// Whether it contains another volume of the same type, up to rounding errors.
     pub(in crate::hierarchy) fn holds_volume(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Sphere(volume), Self::Sphere(other)) => volume.holds_volume(other),

@@ -1,4 +1,4 @@
-//! Boxes along axes of their own.
+//! Oriented boxes.
 
 use bevy::math::{DVec3, Mat3, Vec3};
 
@@ -11,14 +11,14 @@ use crate::{
     hierarchy::{Core, Probe, probe::ROUNDING},
 };
 
-/// A box along axes of its own: along a patch's rows, its columns, and across it.
+/// An oriented box: along a patch's rows and columns, and across it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Obb {
     /// Its middle (m).
     pub centre: Vec3,
-    /// Its axes, of length 1 up to rounding.
+    /// Its axes, of length 1 up to rounding errors.
     pub axes: Mat3,
-    /// Half of its lengths along them (m).
+    /// Half of its side lengths along them (m).
     pub half_size: Vec3,
 }
 
@@ -29,7 +29,7 @@ impl Obb {
         half_size: Vec3::ZERO,
     };
 
-    /// How far it reaches from its middle along `axis`, times the axis' length (m).
+    /// Its extent from the middle along `axis`, times the axis' length (m).
     #[inline(always)]
     fn reach_along(&self, axis: Vec3) -> f32 {
         let Mat3 {
@@ -42,7 +42,7 @@ impl Obb {
             .dot(self.half_size)
     }
 
-    /// Length (m) to whose rounding its sides are exact.
+    /// Length (m) that determines the rounding errors of its sides.
     fn size(&self) -> f32 {
         self.centre.abs().max_element() + self.half_size.max_element()
     }
@@ -71,14 +71,14 @@ impl Obb {
     }
 }
 
-/// Axes along the rows and columns of a patch whose quarters have these middles, row by row. `None` where they are
-/// one point or on one line. Square to each other up to rounding, as boxes that hold their children need it.
+/// Axes along the rows and columns of a patch whose quarters have these middles, row by row. `None` if they coincide or
+/// lie on one line. Orthogonal up to rounding errors, because boxes that contain their children need it.
 fn axes_of([a, b, c, d]: [Vec3; 4]) -> Option<Mat3> {
     let (across, down) = ((b - a) + (d - c), (c - a) + (d - b));
     let x = across.try_normalize()?;
     let z = x.cross(down).try_normalize()?;
-    // Of a patch that is nearly a line the product is mostly rounding, and may lean along x: projected once more it is
-    // square, unless it is all rounding.
+    // For a patch that is almost a line, the product is mostly rounding errors and may lean along x. A second
+    // projection makes it orthogonal, unless it is only rounding errors.
     let lean = x.dot(z);
     let z = if lean.abs() < 0.5 {
         (z - x * lean).normalize()
@@ -89,7 +89,7 @@ fn axes_of([a, b, c, d]: [Vec3; 4]) -> Option<Mat3> {
 }
 
 impl Volume for Obb {
-    /// One by one: eight at once gain nothing where each has its own axes.
+    /// One by one: eight at once gain nothing because each has its own axes.
     type Lanes = [Self; LANES];
 
     const UNSET: Self::Lanes = [Self::UNSET; LANES];
@@ -105,7 +105,7 @@ impl Volume for Obb {
 
     fn unite(children: [&Self; 4]) -> Self {
         let axes = axes_of(children.map(|child| child.centre)).unwrap_or(children[0].axes);
-        // Measured from the first child, so that what is far from the origin loses nothing.
+        // Relative to the first child, so that positions far from the origin lose no precision.
         let origin = children[0].centre;
         let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
         for child in children {
@@ -119,7 +119,7 @@ impl Volume for Obb {
         }
         let centre = origin + axes * low.midpoint(high);
         let size = (high - low).max_element();
-        // The middle is rounded to its coordinates, everything else to the box's size.
+        // The middle is rounded by its coordinates, everything else by the box's size.
         let rounding = size * 2.0e-6 + centre.abs().max_element() * 8.0 * f32::EPSILON;
         Self {
             centre,
@@ -142,7 +142,7 @@ impl Volume for Obb {
                 offset.dot(normal) - self.reach_along(normal) <= reach * ROUNDING + slack
             }
             Core::Segment([start, end]) => {
-                // A ball around the segment as well: of a collider that moves less than it is large, that is the tighter.
+                // A ball around the segment as well: it is tighter for a collider that moves less than its size.
                 let ball = Probe::ball(
                     start.midpoint(end),
                     reach + start.distance(end) / 2.0 * ROUNDING,
@@ -157,7 +157,7 @@ impl Volume for Obb {
     fn holds(&self, centre: DVec3, radius: f64) -> bool {
         let offset = centre - self.centre.as_dvec3();
         let local = self.axes.as_dmat3().transpose() * offset;
-        // Its axes are of length 1 up to rounding, and so is what is measured along them.
+        // Its axes have length 1 up to rounding errors, and so have measurements along them.
         let rounding = f64::from(self.half_size.max_element()) * 1.0e-6;
         (local.abs() + radius)
             .cmple(self.half_size.as_dvec3() + rounding)

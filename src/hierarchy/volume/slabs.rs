@@ -1,10 +1,10 @@
-//! What volumes between pairs of parallel planes have in common.
+//! Tests of volumes between pairs of parallel planes.
 
 use bevy::math::Vec3;
 
 use crate::hierarchy::{Core, Probe, probe::ROUNDING};
 
-/// Along an axis, from where to where a volume reaches: projections on the axis, which need not be of length 1.
+/// The interval of a volume along an axis: projections on the axis, whose length need not be 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slab {
     pub axis: Vec3,
@@ -12,11 +12,11 @@ pub struct Slab {
     pub high: f32,
 }
 
-/// Whether a volume between `slabs` may be within `reach` (m) of the probe's core: a core whose distance from one
-/// slab is larger is not, whatever the others say. `size` is the largest coordinate (m) to be rounded.
+/// Whether a volume between `slabs` may be within `reach` (m) of the probe's core: false if the core's distance from
+/// any slab is larger. `size` is the largest coordinate (m), for rounding errors.
 pub fn may_reach(slabs: impl Iterator<Item = Slab>, probe: &Probe, reach: f32, size: f32) -> bool {
     let reach = reach * ROUNDING + probe.core.size() * 1.0e-5 + size * 8.0 * f32::EPSILON;
-    // Which part of a segment is between all pairs of planes seen so far.
+    // The part of a segment between all pairs of planes so far.
     let (mut from, mut to) = (0.0_f32, 1.0_f32);
     for Slab { axis, low, high } in slabs {
         let reach = reach * axis.length();
@@ -29,7 +29,7 @@ pub fn may_reach(slabs: impl Iterator<Item = Slab>, probe: &Probe, reach: f32, s
                     return false;
                 }
             } else {
-                // A part of the segment of 1e-5 is in `reach` already.
+                // A fraction of 1e-5 of the segment is already included in `reach`.
                 from = from.max(enter.min(leave) - 1.0e-5);
                 to = to.min(enter.max(leave) + 1.0e-5);
                 if from > to {
@@ -46,7 +46,7 @@ pub fn may_reach(slabs: impl Iterator<Item = Slab>, probe: &Probe, reach: f32, s
     true
 }
 
-/// Whether what reaches from `low` to `high` in the frame's coordinates may be within `reach` of a half-space.
+/// Whether a box from `low` to `high` in the frame's coordinates may be within `reach` of a half-space.
 pub fn may_reach_half_space(point: Vec3, normal: Vec3, low: Vec3, high: Vec3, reach: f32) -> bool {
     let nearest = Vec3::select(normal.cmplt(Vec3::ZERO), high, low);
     let offset = nearest - point;

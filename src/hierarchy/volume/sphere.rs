@@ -11,7 +11,7 @@ use crate::{
     hierarchy::{Probe, probe::ROUNDING},
 };
 
-/// What a radius grows by on each level, beyond the rounding of its own sum and root.
+/// Growth factor of a radius on each level, beyond the rounding error of its own sum and root.
 const LEVEL_ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 impl Volume for BoundingSphere {
