@@ -95,13 +95,13 @@ impl ClothBody {
         ClothError::check(
             self.centre_of_mass.length(),
             f32::is_finite,
-            "how far the body's centre of mass is from its entity (m)",
+            "the distance of the body's centre of mass from its entity (m)",
             "finite",
         )?;
         ClothError::check(
             self.axes.length(),
             |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
-            "the length of the quaternion that turns the body's axes",
+            "the length of the quaternion of the body's axes",
             "positive and finite",
         )?;
         let mass = ClothError::check(

@@ -188,7 +188,7 @@ impl Plugin for ClothPlugin {
         }
         if !app.world().contains_resource::<Time>() {
             error!(
-                "no cloth moves: there is no clock. Add Bevy's `TimePlugin`, which is among `MinimalPlugins` and `DefaultPlugins`"
+                "cloth does not move: there is no clock. Add Bevy's `TimePlugin`, which `MinimalPlugins` and `DefaultPlugins` include"
             );
         }
     }

@@ -1,7 +1,7 @@
 //! One sub-step over a grid: all stages, each a few rows behind the one before, in one pass down the rows.
 //!
-//! That gives to the last bit what one stage after the other over the whole cloth would, since a stage takes a
-//! row only when the stage before is done with it and its neighbours; but the rows stay in the first cache.
+//! The result is the same, to the last bit, as of one stage after the other over the whole cloth. A stage takes a row
+//! only when the stage before is done with it and its neighbours. But the rows stay in the first cache.
 
 use super::{
     Stretch,

@@ -24,14 +24,14 @@ pub(crate) struct StartedTick {
     next: u32,
     /// Whether springs push by their forces.
     is_explicit: bool,
-    /// What the cloth's energy was, where it is watched.
+    /// The cloth's energy as the tick began, if it is watched.
     watched: Option<Energy>,
     spin: Option<Spin>,
     drift: Drift,
     is_pushed: bool,
     /// The stretch, where it was measured on the way.
     measured: Option<Stretch>,
-    /// What the material gave, likewise.
+    /// The stretch of the material, likewise.
     material: f32,
     /// Frequency of ripples (rad/s).
     ripple: f32,
@@ -63,7 +63,7 @@ impl Solver {
     /// Begins a tick of `particles`. What follows are its [sub-steps](Self::substep), and its [end](Self::end).
     ///
     /// # Panics
-    /// If the particles are others than those that the solver was made for.
+    /// If the solver was made for other particles.
     pub(crate) fn begin(
         &mut self,
         particles: &mut ClothParticles,
@@ -102,7 +102,7 @@ impl Solver {
             particles.zero_pin_displacements();
             return tick;
         }
-        // What a wind does is no excess, and not known here.
+        // The work of a wind is no excess, and not known here.
         if self.air.is_none() {
             tick.watched = Energy::watched(particles, dt, step.acceleration);
         }
@@ -111,7 +111,7 @@ impl Solver {
         if step.order == TimeOrder::First {
             particles.past_mut().forget(0);
         }
-        // What else turns the cloth, or carries it in another way, is not known here.
+        // Other causes that turn the cloth are not known here.
         if self.air.is_none() {
             let [drift, _] = tick.drift.follow(particles.blocks());
             tick.spin = Spin::of(particles, &step, pins, drift);
@@ -308,7 +308,7 @@ impl Solver {
             ..measured.unwrap_or_else(|| self.measure(particles))
         };
         let is_still = pins.iter().all(|pin| pin.from == pin.to);
-        // What the material gives comes back by itself, and what pushes or carries a cloth gives it energy.
+        // The stretch of the material comes back by itself, and pushes and carriers give a cloth energy.
         let given = step.material_stretch.max(stretch.material);
         let is_unsolved = stretch.structural > 2.0 * given;
         if let Some(before) = tick.watched

@@ -1,5 +1,5 @@
-//! The springs of a grid, thread by thread: in one band, or in several, of blocks side by side where threads lead from row to row,
-//! of rows where they lead within them.
+//! The springs of a grid, thread by thread, in one band or several. A band consists of blocks side by side for threads
+//! from row to row, and of rows for threads within rows.
 
 use std::ops::Range;
 
