@@ -98,8 +98,8 @@ pub(super) struct Awaited {
 }
 
 impl Awaited {
-    /// Those that moved in the last tick, or of which anything has changed since, their ancestors included.
-    /// Besides those, the list of what is still on its way, to be filled for the next tick.
+    /// The colliders that moved in the last tick, or that have changed since, including changes of their ancestors.
+    /// Also returns the list of colliders in motion, to fill for the next tick.
     pub fn find(&mut self, changes: &mut Changes) -> (&[Entity], &mut Vec<Entity>) {
         self.now.clear();
         self.now.append(&mut self.moving);

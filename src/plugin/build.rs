@@ -78,7 +78,7 @@ pub(super) fn build(
     Ok(build)
 }
 
-/// Whether what was built is that cloth, whatever its pins and material.
+/// Whether the built data belongs to that cloth, whatever its pins and material.
 fn is_built(wanted: &Wanted, built: &mut ClothBuilt) -> bool {
     let (Some(from), Some(recipe)) = (&mut built.from, &built.shared.recipe) else {
         return false;
@@ -126,7 +126,7 @@ fn build_new(
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
     // not.
     let (build, new) = if state.resumes {
-        // As a snapshot says, with what is pinned and attached.
+        // The particles are those of a snapshot, with its pins and attachments.
         check_count(particles, surface)?;
         (Build::Kept, None)
     } else if let Some(resampled) = resampled(wanted, &shared, particles, built)? {

@@ -53,7 +53,7 @@ pub struct ClothBuilt {
     pub(super) pins_version: u32,
 }
 
-/// What a cloth was built from, besides the recipe of its surface.
+/// The inputs of a cloth, besides the recipe of its surface.
 #[derive(Debug, Clone)]
 pub(super) struct BuiltFrom {
     pub unevenness: f32,
@@ -150,7 +150,7 @@ impl ClothBuilt {
         }
     }
 
-    /// Takes over what particles weigh that somebody else wrote, and which of them are pinned.
+    /// Takes over masses and pins of particles that the game wrote.
     pub(super) fn weigh(&mut self, particles: &ClothParticles) {
         self.masses = particles.free_masses();
         if !pinned(particles).eq(self.pinned.iter().copied()) {

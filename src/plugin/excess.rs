@@ -19,7 +19,7 @@ pub(super) struct Excess {
 }
 
 impl Excess {
-    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether it is to be reported.
+    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether to report it.
     pub fn observe(&mut self, limit: ClothLimit, quantity: Option<f32>) -> bool {
         let Some(quantity) = quantity else {
             self.ticks = 0;

@@ -169,7 +169,7 @@ impl Islands {
         span
     }
 
-    /// Makes islands of those that are not alone. One of the same cloths as before knows what it found.
+    /// Makes islands of cloths that are not alone. An island of the same cloths as before keeps its contacts.
     fn collect(&mut self) {
         self.island_of.clear();
         self.island_of.resize(self.spans.len(), NONE);
@@ -202,7 +202,7 @@ impl Islands {
     }
 }
 
-/// Wakes all cloths of an island of which one moves.
+/// Wakes all cloths of an island in which one moves.
 fn wake(island: &mut Island, cloths: &mut Neighbours) {
     let mut is_moving = false;
     for cloth in cloths.iter_many(&island.cloths) {
@@ -224,7 +224,7 @@ fn wake(island: &mut Island, cloths: &mut Neighbours) {
 }
 
 impl NeighbourItem<'_, '_> {
-    /// Has a cloth that was prepared as one that sleeps take part as one that is awake.
+    /// Wakes a cloth that was prepared as a sleeping one.
     fn wake(&mut self) {
         self.state.rest.disturb();
         self.state.rests_on.clear();

@@ -43,7 +43,7 @@ pub(super) struct LodState {
     left: u32,
     /// Number of ticks that the last move took.
     moved_by: u32,
-    /// How far a particle may have got in that by itself (m).
+    /// Largest distance that a particle may have moved in that by itself (m).
     pub reach: f32,
     /// Ticks since it was last moved, and ticks from then until it is moved again, over which the move is drawn.
     pub since: u32,
@@ -218,7 +218,7 @@ mod tests {
         }
     }
 
-    /// What rests at a lower rate is looked at in each tick, and drawn as it is.
+    /// A cloth at rest is looked at in each tick, even at a lower rate, and drawn as it is.
     #[test]
     fn what_rests_is_not_cut() {
         let mut state = LodState::default();

@@ -47,7 +47,7 @@ struct Colliders<'a, 'w, 's> {
 }
 
 impl Colliders<'_, '_, '_> {
-    /// The colliders that may come within `reach` of a point of the world (m), and that may touch what is in some layers.
+    /// The colliders that may come within `reach` of a point of the world (m), and whose layers match.
     fn near(
         &self,
         point: Vec3,
@@ -60,7 +60,7 @@ impl Colliders<'_, '_, '_> {
         })
     }
 
-    /// How a collider moves, if it may touch what is in some layers.
+    /// The motion of a collider, if its layers match.
     fn get(&self, entity: Entity, layers: ClothLayers) -> Option<&ColliderMotion> {
         let (motion, others) = self.all.get(entity).ok()?;
         let others = others.copied().unwrap_or_default();

@@ -188,7 +188,7 @@ impl IntegratingItem<'_, '_> {
             .tree()
             .root_sphere(&self.particles, self.state.stretch.bound);
         let count = step.substeps as f32;
-        // Of those that come to the ball around the cloth, a capsule's turn counted.
+        // The colliders that reach the ball around the cloth; a capsule's rotation counts.
         let around = root.radius() + self.scratch.reach;
         let travels = self.scratch.near.iter().filter_map(|(_, collider)| {
             let core = Core::Segment([collider.from.translation.into(), collider.to]);

@@ -10,8 +10,8 @@ use bevy::math::{DVec3, Vec3};
 
 use crate::cloth::{Block, ClothParticles, Earlier, LANES, Lanes, W};
 
-/// Ticks after a change to shorter sub-steps in which no energy is gained, and after each in which more than this part of the motion
-/// came back. What was left stretched comes back within a few; all that fell, stopped by one pin, takes longer.
+/// Ticks after a change to shorter sub-steps in which no energy is gained, and after each in which more than this part
+/// of the motion came back. Unsolved stretch comes back within a few; after a fall that one pin stops, it takes longer.
 const WATCHED_TICKS: u32 = 20;
 const RETURNING: f64 = 0.01;
 

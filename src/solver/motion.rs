@@ -26,11 +26,11 @@ pub(crate) struct MotionConstraints {
     balls: Vec<Balls>,
     /// None, or as many.
     backstops: Vec<Balls>,
-    /// How far anything of it moves in the tick, at most (m).
+    /// Largest displacement of any of its centres in the tick (m).
     travel: f32,
 }
 
-/// Eight balls that go along straight lines in the tick: where they begin, and how far they go (m).
+/// Eight balls that move along straight lines in the tick: their starts and their displacements (m).
 #[derive(Debug, Clone, Copy)]
 struct Balls {
     from: [Lanes; 3],
@@ -76,7 +76,7 @@ impl Balls {
     }
 }
 
-/// A particle's ball, and what it stays out of, as a sub-step ends.
+/// A particle's ball and its backstop, as a sub-step ends.
 #[derive(Debug, Clone, Copy)]
 struct Allowed {
     centre: Vec3,
@@ -169,12 +169,13 @@ impl MotionConstraints {
         self.travel = self.travel.max(from.distance(to));
     }
 
-    /// How far anything of it moves in the tick, at most (m).
+    /// Largest displacement of any of its centres in the tick (m).
     pub fn travel(&self) -> f32 {
         self.travel
     }
 
-    /// Moves particles to where they may be as a sub-step ends, and notes how far they went. Returns whether any was moved.
+    /// Moves particles to allowed positions as a sub-step ends, and notes the largest displacement. Returns whether any
+    /// was moved.
     pub fn hold(&self, particles: &mut ClothParticles, substep: &mut SubStep) -> bool {
         let part = substep.end();
         let mut is_moved = false;

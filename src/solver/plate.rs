@@ -107,7 +107,8 @@ pub(super) fn plate_moments(
     }
 }
 
-/// How far a force moves particles: that of twice their own moments less those beside them, and of the four cells around them.
+/// The displacement of particles by the forces of twice their own moments, less those beside them, and of the four
+/// cells around them.
 #[inline(always)]
 fn pushed(
     weight: &Lanes,

@@ -119,7 +119,7 @@ pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
     }
 }
 
-/// What the air does in a sub-step: its weight (s²), and one over its length (1/s).
+/// Parameters of the air in a sub-step: its weight (s²), and one over its length (1/s).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Breath {
     pub weight: f32,

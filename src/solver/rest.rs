@@ -9,12 +9,12 @@ const REACH: f32 = 1.0e-3;
 const LARGEST_REACH: f32 = 5.0e-3;
 
 /// How long it has to stay so near (s): half a swing, √(g/L) × 2.405/2 being the angular frequency of a sheet of length
-/// L that hangs by its upper edge. What swings by more than one and a half times as far to either side leaves its place in
-/// that time, wherever it is in its swing: in half a swing it gets two thirds of its amplitude away at least.
+/// L that hangs by its upper edge. A cloth that swings by more than one and a half times as far to either side leaves
+/// its place in that time, from any phase: in half a swing it moves by at least two thirds of its amplitude.
 const HALF_SWING: f32 = 2.61;
 const PATIENCE: [f32; 2] = [0.5, 20.0];
 
-/// How long what moves is not looked at (s).
+/// Pause between comparisons of a cloth that moves (s).
 const PAUSE: f32 = 0.125;
 
 /// Layers of cloth that lie on each other settle for minutes, by less than a person sees. They rest when they have not come
@@ -32,9 +32,9 @@ const WITHOUT_GRAVITY: f32 = 2.5;
 #[derive(Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rest {
-    /// Where the particles were when they were last seen to move; as they sleep, if they do.
+    /// Positions of the particles when they were last seen to move; the sleeping particles, if they sleep.
     origin: ClothParticles,
-    /// How long until they are looked at again, after they have moved (s): who moves is not copied in each tick.
+    /// Time until the next comparison after a motion (s): the particles of a moving cloth are not copied in each tick.
     wait: f32,
     /// For how long they have been near it (s).
     calm: f32,

@@ -11,10 +11,10 @@ use bevy::math::Vec3;
 use super::{PinMotion, TickStep};
 use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
 
-/// How far pins may be beside the line, in metres for each metre along it.
+/// Largest distance of pins from the line, in metres per metre along it.
 const STRAIGHT: f32 = 1.0e-3;
 
-/// How far a cloth is turned back in a tick at most (rad).
+/// Largest angle by which a cloth is turned back in a tick (rad).
 const LARGEST_TURN: f32 = 0.01;
 
 /// The rotation of a cloth around the line of its pins.
@@ -23,10 +23,10 @@ pub(super) struct Spin {
     /// A point of the line as the tick begins, and the direction of the line, of length 1.
     origin: Vec3,
     axis: Vec3,
-    /// How far the line moves in the tick, and in a sub-step (m).
+    /// Displacement of the line in the tick, and in a sub-step (m).
     shift: Vec3,
     way: Vec3,
-    /// How far it moves in a sub-step relative to what damping is relative to (m).
+    /// Its displacement in a sub-step, relative to the damping frame (m).
     against: Vec3,
     substeps: u32,
     /// As the tick begins.

@@ -17,8 +17,8 @@ const TIGHT: f32 = 0.8;
 const CALM_TICKS: u32 = 3;
 const FEWER: f32 = 0.9;
 
-/// More than ripples or loads ask for, so that what grows a little changes nothing; the part of them that asks for less, if it does for
-/// so many ticks; and so many times what the particles need at most.
+/// Margin over the needs of ripples or loads, so that a small growth changes nothing; the fraction of them below which
+/// a need counts as less, and the ticks in which it has to; and the largest multiples of the particles' need.
 const MARGIN: f32 = 1.05;
 const SLACKER: f32 = 0.75;
 const SLACK_TICKS: u32 = 30;
@@ -132,7 +132,7 @@ impl Demand {
         }
     }
 
-    /// With so many where nothing asks for more, and so many times as many at most.
+    /// At least `needed` sub-steps, and at most `times` as many.
     fn needed(self, needed: u32, times: u32) -> u32 {
         let most = needed.saturating_mul(times).min(MAX_SUBSTEPS);
         needed.max((self.substeps as u32).min(most))
@@ -157,7 +157,7 @@ impl Control {
                 substeps
             }
             Substepping::Adaptive { max_substeps, .. } => {
-                // With fewer much is left unsolved, which comes back in the change to more.
+                // Fewer sub-steps would leave much unsolved, which comes back in the change to more.
                 let fewest = self.asked(needed).min(max_substeps) as f32;
                 self.substeps = self.substeps.clamp(fewest, max_substeps as f32).ceil();
                 self.spent = 0.0;
@@ -193,7 +193,7 @@ impl Control {
         // Solved threads stretch less with more than the square of the sub-steps: the cube is a cautious guess.
         let substeps = self.substeps;
         let wanted = |stretch: f32| substeps * (stretch / (AIM * tolerance)).cbrt();
-        // What the material gives at its tension no sub-steps take away.
+        // Sub-steps can't remove the stretch of the material at its tension.
         let unsolved = found - stretch.material.min(found);
         self.is_beyond = found > tolerance;
         if self.is_beyond && unsolved > AIM * tolerance {
@@ -209,7 +209,7 @@ impl Control {
             }
             self.substeps = more.min(max);
         }
-        // What it grew by in this tick it may grow by in the next.
+        // Its growth in this tick may repeat in the next.
         let foreseen = unsolved + (unsolved - self.before).max(0.0);
         if foreseen > TIGHT * tolerance {
             self.substeps = wanted(foreseen).clamp(self.substeps, self.substeps * 2.0);

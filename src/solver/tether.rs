@@ -294,8 +294,9 @@ fn by_block<T: Copy>(
     values
 }
 
-/// For each particle the place of the nearest pin at rest among `pinned`: each takes the nearest of what its neighbours know,
-/// from the first to the last and back (after Danielsson 1980, whose distances are off by a fraction of a spacing at worst).
+/// For each particle the index in `pinned` of the nearest pin at rest: each takes the nearest among its neighbours'
+/// pins, from the first to the last and back (after Danielsson 1980, whose distances are off by a fraction of a spacing
+/// at worst).
 fn nearest_pins(flat: &Flat, graph: &Graph, pinned: &[u32]) -> Vec<u32> {
     const UNKNOWN: u32 = u32::MAX;
     let mut nearest = vec![UNKNOWN; graph.len()];

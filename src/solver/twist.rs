@@ -23,7 +23,7 @@ pub(super) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Trio]) {
     }
 }
 
-/// The moment of a cell (kg m), and what is left of a row's force.
+/// The moment of a cell (kg m), and the remainder of a row's force.
 #[inline(always)]
 fn forward(
     [own, next]: [&Lanes; 2],
@@ -69,7 +69,7 @@ pub(super) fn twist_forward(
     }
 }
 
-/// By how much a row's differences change, given by how much the next row's do.
+/// Change of a row's differences, given that of the next row's.
 #[inline(always)]
 fn backward(solved: &Lanes, inverse: &Lanes, lower: &Lanes, next: &Lanes) -> Lanes {
     let mut out = [0.0; LANES];

@@ -55,7 +55,7 @@ pub(super) fn add_meshes(
             }
             continue;
         }
-        // What the entity drew before the plugin's own mesh.
+        // The mesh that the entity drew before the plugin's own.
         let known = drawn.and_then(|drawn| drawn.replaced.clone());
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });

@@ -87,7 +87,7 @@ struct RenderMeshState {
     bound: Option<Bound>,
 }
 
-/// What a mesh is bound to.
+/// The cloth that a mesh is bound to, and the binding.
 #[derive(Debug)]
 struct Bound {
     cloth: Entity,
@@ -152,7 +152,7 @@ struct Binding {
     fault: Option<&'static ClothFault>,
 }
 
-/// What a mesh is bound to.
+/// The cloth that a mesh is bound to, and the binding.
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct Driving {

@@ -15,7 +15,7 @@ use bevy::{
 use super::{super::ClothMesh, id::Source};
 use crate::cloth::{Cloth, ClothError, ClothShape, Skinning, Surface, TriangleMesh, skin_of_asset};
 
-/// How often meshes have been changed since they were loaded; those that never were are not in it.
+/// The number of changes of each mesh since it was loaded; unchanged meshes are not in it.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
 
@@ -102,7 +102,7 @@ impl Sources<'_, '_> {
     /// The triangles of a mesh that has been loaded.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the mesh.
     pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, ClothError> {
         let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
         TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)
@@ -128,7 +128,7 @@ impl Sources<'_, '_> {
     /// The surface of a cloth.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the mesh.
     pub fn surface(
         &self,
         cloth: &Cloth,

@@ -24,7 +24,7 @@ use crate::{
 pub(crate) struct SharedMeshes(Mutex<HashMap<(Source, MeshCollider), ClothCollider>>);
 
 impl SharedMeshes {
-    /// Those that any collider has been made of, until nobody has them any more.
+    /// The meshes that colliders have been made from, as long as they are used.
     pub fn meshes(&mut self) -> impl Iterator<Item = AssetId<Mesh>> {
         let shared = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
         shared.keys().map(|(source, _)| source.mesh)

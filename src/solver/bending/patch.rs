@@ -50,7 +50,7 @@ pub(super) fn faces_beside(faces: &[[u32; 3]]) -> Vec<[Option<u32>; 3]> {
 
 /// A face and those beside it.
 pub(super) struct Patch {
-    /// Its corners, and what is beyond its edges; where there is nothing, a corner once more, with zeros.
+    /// Its corners, and the corners beyond its edges; where there is none, a corner again, with zeros.
     pub particles: [u32; 6],
     /// Contribution of each particle's position to `κ_xx`, `κ_yy` and `√2 κ_xy` (1/m²).
     pub curvature: [[f64; 6]; 3],

@@ -15,7 +15,8 @@ use crate::{
     },
 };
 
-/// Where A is below this, forces push: what bends fastest, a ripple from particle to particle, gets at most a fifth too much.
+/// Forces push where A is below this: the fastest bending mode, a ripple from particle to particle, gets at most a
+/// fifth too much.
 pub(super) const LIMIT: f32 = 0.2;
 
 /// Rows of each end that differ from those further inside.

@@ -71,7 +71,7 @@ pub(super) struct ThreadBending {
     none: (Vec<Trio>, Vec<Factor>),
 }
 
-/// Weights that take turns: a method that starts otherwise than it goes on has three.
+/// Weights that take turns: a method with a different start has three.
 const WEIGHTS: usize = 3;
 
 const NOTHING: [Lanes; 3] = [[0.0; LANES]; 3];

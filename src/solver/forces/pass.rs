@@ -112,7 +112,7 @@ fn force(a: &View, b: &View, stiffness: f32, inverse_rest_square: f32, l: usize)
     [share * x, share * y, share * z]
 }
 
-/// What is known of the block before: the forces on the own block, and on the one below that.
+/// Results of the block before: the forces on the own block, and on the block below it.
 type Carried = [Force; 2];
 
 /// The particles that the springs of a block lead to.
@@ -156,7 +156,7 @@ fn act(
     carries
 }
 
-/// Adds what acts on the lanes to the right of those that it is known of.
+/// Adds forces, shifted one lane to the right.
 #[inline(always)]
 fn add_shifted(to: &mut Force, force: &Force) {
     for (to, [a, b, c, d, e, f, g, _]) in to.iter_mut().zip(force) {
@@ -260,8 +260,8 @@ fn push(row: &mut [Block], forces: &[Force], kick: &Kick) {
     }
 }
 
-/// Has the springs' forces, and a pull on all, act on the particles of some rows, and moves them. `around` are the rows before
-/// and behind them, of no blocks at the ends of the grid. Raises `moved` to the squares of displacements (m²).
+/// Applies the springs' forces, and a pull on all, to the particles of some rows, and moves them. `around` are the rows
+/// before and behind them, of no blocks at the ends of the grid. Raises `moved` to the squares of displacements (m²).
 #[inline(always)]
 pub(crate) fn kick(
     blocks: &mut [Block],

@@ -9,7 +9,7 @@ use crate::{
 /// Number of sub-steps of forces that cost as much as one in which threads are solved.
 const CHEAPER: u32 = 2;
 
-/// What a quotient may be off by.
+/// Possible rounding of a quotient.
 const ROUNDING: f32 = 1.0 + 1.0e-6;
 
 /// With more damping, particles hardly keep any displacement to which bending could add.

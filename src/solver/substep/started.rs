@@ -48,7 +48,8 @@ impl StartedTick {
         self.step.seconds / self.substeps() as f32
     }
 
-    /// To be called after a sub-step at whose end particles were pushed: their past says nothing of what follows.
+    /// Call this after a sub-step at whose end particles were pushed: their past does not predict their motion any
+    /// more.
     pub(crate) fn note_push(&mut self, particles: &mut ClothParticles) {
         self.is_pushed = true;
         self.measured = None;
@@ -60,7 +61,7 @@ impl StartedTick {
 }
 
 impl Solver {
-    /// Begins a tick of `particles`. What follows are its [sub-steps](Self::substep), and its [end](Self::end).
+    /// Begins a tick of `particles`. Then call its [sub-steps](Self::substep), and its [end](Self::end).
     ///
     /// # Panics
     /// If the solver was made for other particles.
@@ -137,8 +138,8 @@ impl Solver {
         }
     }
 
-    /// Moves `particles` by the next sub-step; `None` where there is none left. Whoever then pushes any
-    /// [says so](StartedTick::note_push).
+    /// Moves `particles` by the next sub-step; `None` if there is none left. A caller that then pushes any calls
+    /// [`note_push`](StartedTick::note_push).
     pub(crate) fn substep(
         &mut self,
         particles: &mut ClothParticles,
@@ -243,7 +244,7 @@ impl Solver {
         Some(substep)
     }
 
-    /// The next sub-step of a tick of forces. What would follow the last ends it.
+    /// The next sub-step of a tick of forces. The call after the last one ends the tick.
     fn substep_by_forces(
         &mut self,
         particles: &mut ClothParticles,

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::cloth::{DX, DY, DZ, LANES, Lanes, View, W};
 
-/// Eliminates the springs before. With `CROSSES`, what it finds is moved by a lane to the right.
+/// Eliminates the springs before. With `CROSSES`, the result is moved by a lane to the right.
 #[inline(always)]
 fn eliminate<const CROSSES: bool, const DAMPED: bool>(
     [a, b]: [&View; 2],
@@ -57,8 +57,8 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool>(
     }
 }
 
-/// Solves for the multipliers, given those behind them, and moves the particles in between. With `CROSSES`, what is for the springs
-/// before is moved by a lane to the left.
+/// Solves for the multipliers, given those behind them, and moves the particles in between. With `CROSSES`, the results
+/// for the springs before are moved by a lane to the left.
 #[inline(always)]
 fn substitute<const CROSSES: bool>(b: &mut View, link: &mut Link, behind: &mut Behind) {
     let mut lane_behind = [0.0; 4];

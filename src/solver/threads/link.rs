@@ -21,7 +21,7 @@ const STRAINED: f32 = 0.2;
 pub(crate) struct Link {
     /// From its first to its second particle, in rest lengths.
     pub way: [Lanes; 3],
-    /// Which part of its multiplier the spring before it is to be given.
+    /// The fraction of its multiplier that is passed to the spring before it.
     pub share: Lanes,
     /// Right side, eliminated; after the backward pass the multiplier (m kg).
     pub right: Lanes,
@@ -63,7 +63,7 @@ impl Before {
 pub(crate) struct Behind {
     /// Its pull (m kg).
     pub pull: [Lanes; 3],
-    /// Its multiplier, as much as the spring before it is to be given (m kg).
+    /// The part of its multiplier for the spring before it (m kg).
     pub given: Lanes,
 }
 
@@ -200,7 +200,8 @@ pub(super) fn way(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
     })
 }
 
-/// Raises `largest` to the squares of what springs give at their pull (m²), of rows of them as long as `softness`.
+/// Raises `largest` to the squares of the springs' elongations at their pull (m²), for rows of them as long as
+/// `softness`.
 #[inline(always)]
 pub(crate) fn measure_given(links: &[Link], softness: &[Lanes], largest: &mut Lanes) {
     for row in links.chunks_exact(softness.len()) {

@@ -21,7 +21,7 @@ pub(super) const GROUP: usize = 8;
 pub(crate) struct RowScratch {
     /// Row by row, block by block.
     links: Vec<Link>,
-    /// For each of them what it takes of what the first spring of its strip takes from the strip before.
+    /// For each of them, its share of what the first spring of its strip takes from the strip before.
     spikes: Vec<Lanes>,
     strip: Strip,
     ends: Ends,
@@ -87,9 +87,9 @@ impl Reduced {
 #[repr(C, align(32))]
 struct Strip {
     before: Before,
-    /// What the spring has to do with the last of the strip before, as a part of what the strip's first spring has.
+    /// Coupling of the spring to the last one of the strip before, as a fraction of that of the strip's first spring.
     off: Lanes,
-    /// What that one has to take over into its diagonal and its right side, likewise.
+    /// Contribution to the diagonal and the right side of that one, likewise.
     to_diagonal: Lanes,
     to_right: Lanes,
 }
@@ -114,7 +114,7 @@ struct Ends {
     last: [Wide; 3],
     to_diagonal: Wide,
     to_right: Wide,
-    /// What the first has to do with the last of the strip before; then what it takes from that one's multiplier.
+    /// Coupling of the first to the last of the strip before; then its share of that one's multiplier.
     off: Wide,
     /// Pull of the last ones (m kg).
     pull: [Wide; 3],
@@ -333,7 +333,7 @@ pub(crate) struct RowThreads<'a> {
     /// For the first and the last of them: whether it is on the grid's border.
     pub is_border: [bool; 2],
     pub scratch: &'a mut RowScratch,
-    /// To be raised to the squares of what springs give at their tension (m²).
+    /// Raised to the squares of the springs' elongations at their tension (m²).
     pub given: Option<&'a mut Lanes>,
 }
 
