@@ -97,7 +97,7 @@ impl From<String> for ClothTarget {
 }
 
 impl ClothAttachments {
-    /// Attaches the particles of each pin to an entity, given by itself or by its `Name`.
+    /// Attaches the particles of each pin to an entity, given by its id or by its `Name`.
     pub fn new<T: Into<ClothTarget>>(attachments: impl IntoIterator<Item = (Pin, T)>) -> Self {
         let attach = |(pin, target): (Pin, T)| ClothAttachment {
             pin,

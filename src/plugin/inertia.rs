@@ -22,8 +22,8 @@ use super::{
 };
 use crate::cloth::ClothError;
 
-/// The share of an entity's own motion that cloths feel which are below it in the hierarchy, or attached below it. Add
-/// it to a character, so that a cape does not fly off a sprinting hero. Without it, cloths feel all of the motion.
+/// How strongly cloths below an entity in the hierarchy, or attached below it, feel its motion. Add it to a character,
+/// so that a cape does not fly off a sprinting hero. Without it, cloths feel all of the motion.
 ///
 /// The rest of the motion carries the cloths along as if they were one rigid body with the entity, without giving them
 /// speed. With a share of 0.3, cloth behaves as on a wearer who accelerates at 0.3 of the rate. Colliders are met where

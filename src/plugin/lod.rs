@@ -100,7 +100,8 @@ pub struct ClothLod {
     pub level: Option<ClothLodLevel>,
     /// Distances (m), ascending, each with the level from there on. Nearer than the first, the level is `Full`.
     pub distances: Vec<(f32, ClothLodLevel)>,
-    /// The finest level while the cloth is hidden by Bevy's visibility, its own or an ancestor's. `Off` by default.
+    /// The level while the cloth is hidden by Bevy's visibility, its own or an ancestor's, unless its other level is
+    /// coarser. `Off` by default.
     pub hidden: ClothLodLevel,
     /// A cloth returns to a finer level only once it is nearer than the distance by this fraction of it, from 0 to less
     /// than 1. So it does not switch back and forth.

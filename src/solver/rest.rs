@@ -17,8 +17,8 @@ const PATIENCE: [f32; 2] = [0.5, 20.0];
 /// Pause between comparisons of a cloth that moves (s).
 const PAUSE: f32 = 0.125;
 
-/// Layers of cloth that lie on each other settle for minutes, by less than a person sees. They rest when they have not come
-/// farther than that (m) in so long (s): a third as fast as bodies that Jolt lets sleep.
+/// Layers of cloth that lie on each other settle for minutes, by less than a person sees. They rest when they have
+/// moved by less than this distance (m) in this time (s): a third of the speed at which Jolt lets bodies sleep.
 const REACH_OF_LAYERS: f32 = 5.0e-3;
 const PATIENCE_OF_LAYERS: f32 = 0.5;
 
@@ -26,7 +26,7 @@ const PATIENCE_OF_LAYERS: f32 = 0.5;
 const WITHOUT_GRAVITY: f32 = 2.5;
 
 /// Detects rest as an observer would see it. A cloth is at rest once no particle has moved by more than a thousandth of
-/// the cloth's diagonal, and at most 5 mm, for half a swing. That is the half period of a hanging sheet as long as the
+/// the cloth's diagonal, capped at 5 mm, for half a swing. That is the half period of a hanging sheet as long as the
 /// diagonal (1.3 s for 2.3 m on Earth), from 0.5 to 20 s. Speeds do not count: a cloth that trembles in place is at
 /// rest.
 #[derive(Debug, Default, Clone, PartialEq)]

@@ -50,14 +50,14 @@ pub struct Solver {
     air: Option<Box<Airflow>>,
     tethers: Tethers,
     anchors: Anchors,
-    /// Of damping along springs (s).
+    /// Decay time of damping along springs (s).
     retardation: f32,
     bands: usize,
     simd_level: SimdLevel,
 }
 
 impl Default for Solver {
-    /// Of no springs.
+    /// A solver without springs.
     fn default() -> Self {
         Self::of(Layout::default(), Box::<ListSweep>::default())
     }

@@ -152,8 +152,8 @@ impl Tethers {
     /// Tethers from the particles of a surface to the pinned ones among them. The particles must be those of the
     /// surface.
     ///
-    /// The length of a tether is that of the shortest path between both particles at rest, times the stretch of the
-    /// material. That is its stretch under four times the weight of the whole cloth hung by its pins, with an
+    /// The length of a tether is that of the shortest path between both particles at rest, lengthened by the stretch of
+    /// the material. That is its stretch under four times the weight of the whole cloth hung by its pins, with an
     /// `acceleration` (m/s²) of at least 9.81. If threads can shear, the tether may be as long as the path along the
     /// threads.
     ///
