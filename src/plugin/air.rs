@@ -15,14 +15,14 @@ use crate::{
     solver::{Air, AirMemory, ClothPressure, FILLING, Solver},
 };
 
-/// What a cloth was last moved in, in the world.
+/// The air in which a cloth was last moved, in the world.
 #[derive(Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct KnownAir {
     breeze: Option<Breeze>,
     pressure: Option<ClothPressure>,
     zones: Vec<PlacedZone>,
-    /// What the last tick was left with.
+    /// The solver's memory of the last tick.
     pub memory: AirMemory,
 }
 
@@ -35,8 +35,8 @@ impl MapEntities for KnownAir {
 }
 
 impl KnownAir {
-    /// Whether a cloth that holds this pressure meets the same air as before in `ball`, whose middle and radius (m) are around it, and
-    /// air that stays the same at that.
+    /// Whether a cloth with this pressure meets the same air as before, and whether that air is steady. `ball` is a
+    /// ball around the cloth: centre and radius (m).
     pub fn is_still(
         &self,
         breeze: Option<&Breeze>,
@@ -62,7 +62,7 @@ impl KnownAir {
         is_same && self.breeze.as_ref() == known && !(feels && breeze.is_turbulent())
     }
 
-    /// Takes over what a cloth meets in `ball`.
+    /// Takes over the air that a cloth meets in `ball`.
     pub fn renew(
         &mut self,
         breeze: Option<Breeze>,
@@ -79,14 +79,14 @@ impl KnownAir {
         self.pressure = pressure;
     }
 
-    /// Has been shifted with the world's origin; `placed` says where a zone is now.
+    /// Shifts it with the world's origin; `placed` gives the current place of a zone.
     pub fn shift(&mut self, shift: Shift, placed: impl Fn(Entity) -> Option<PlacedZone>) {
         for zone in &mut self.zones {
             *zone = zone.shifted(shift, placed(zone.entity));
         }
     }
 
-    /// Has a cloth be moved in it.
+    /// Sets this air in the solver of a cloth.
     pub fn set(
         &self,
         solver: &mut Solver,
@@ -96,7 +96,7 @@ impl KnownAir {
         field: &WindField,
     ) {
         let to_cloth = frame.isometry().rotation.inverse();
-        // What has no density does nothing.
+        // Air without density does nothing.
         let Some(breeze) = self.breeze.filter(|breeze| breeze.density > 0.0) else {
             let pressure = self.pressure;
             let nothing = Air {
@@ -124,13 +124,13 @@ impl KnownAir {
         }
     }
 
-    /// How fast the air may make a cloth that is as fast as `speed` (m/s) faster, at most (m/s²): wind in one tick of `seconds` not beyond
-    /// what it goes itself, and gas not beyond the speed at which it fills.
+    /// Largest acceleration that the air may give a cloth with this largest `speed` (m/s²). Within one tick of
+    /// `seconds`, wind does not accelerate it beyond the wind's speed, and gas not beyond the speed at which it fills.
     pub fn acceleration(&self, material: &ClothMaterial, speed: f32, seconds: f32) -> f32 {
         let inside = match self.pressure {
             Some(ClothPressure::Gauge(pressure)) => pressure.abs() / material.areal_density,
             Some(ClothPressure::Gas { .. }) if seconds > 0.0 => FILLING / seconds,
-            // In no time gas fills nothing.
+            // Gas fills nothing in zero time.
             None | Some(ClothPressure::Gas { .. }) => 0.0,
         };
         let Some(breeze) = &self.breeze else {

@@ -1,4 +1,4 @@
-//! Finds what pins are attached to, and has them follow it.
+//! Finds the targets of attachments, and makes pins follow them.
 
 use bevy::{
     ecs::{
@@ -22,7 +22,7 @@ use crate::{
     solver::PinMotion,
 };
 
-/// Where entities are, and how they are called.
+/// Transforms and names of entities.
 #[derive(SystemParam)]
 pub(super) struct Targets<'w, 's> {
     pub transforms: TransformHelper<'w, 's>,
@@ -62,11 +62,11 @@ impl Targets<'_, '_> {
             })
     }
 
-    /// Finds where the targets of attachments are; `known` are those of the last tick.
+    /// Finds the places of the targets of attachments; `known` are the attachments of the last tick.
     ///
     /// # Errors
-    /// [`ClothError::NoTarget`] for one that does not exist, has no transform, or is scaled to nothing, and
-    /// [`ClothError::NoTargetNamed`]; what is wrong with a pin.
+    /// [`ClothError::NoTarget`] for a target that does not exist, has no transform, or is scaled to zero;
+    /// [`ClothError::NoTargetNamed`]; or the error of a pin.
     pub fn find(
         &self,
         attachments: &[ClothAttachment],
@@ -76,7 +76,7 @@ impl Targets<'_, '_> {
         places: &mut Vec<Affine3A>,
     ) -> Result<(), ClothError> {
         places.clear();
-        // What is known was valid.
+        // Known attachments were valid.
         if attachments != known {
             attachments
                 .iter()
@@ -102,8 +102,8 @@ impl Targets<'_, '_> {
     }
 }
 
-/// Has attached particles move to where their targets take them in this tick, by `motions`. A teleport, from the frame that
-/// the cloth had before, takes them there at once, and the others along.
+/// Moves attached particles with their targets in this tick, by `motions`. A teleport moves them at once, from the
+/// frame that the cloth had before, and the other particles with them.
 pub(super) fn follow_targets(
     wanted: &[ClothAttachment],
     places: &[Affine3A],
@@ -114,14 +114,14 @@ pub(super) fn follow_targets(
     state: &mut ClothState,
     motions: &mut Vec<PinMotion>,
 ) {
-    // What a snapshot says may be attached to more than the game says.
+    // A snapshot may hold attachments that the game does not have.
     let is_free = state.attachments.is_empty() && state.attached.is_empty();
     if wanted.is_empty() && is_free {
         return;
     }
     if state.attachments != wanted || wanted.is_empty() {
         attach(wanted, places, frame, particles, built, state);
-        // What was released is not carried along.
+        // Released particles are not carried along.
         let is_held =
             |motion: &PinMotion| particles.inverse_mass(motion.particle as usize) == Some(0.0);
         motions.retain(is_held);
@@ -154,7 +154,7 @@ pub(super) fn follow_targets(
     }
 }
 
-/// Takes over other attachments. Those that stay keep their offsets; what is released gets its mass back.
+/// Takes over changed attachments. Attachments that stay keep their offsets; released particles get their mass back.
 fn attach(
     wanted: &[ClothAttachment],
     places: &[Affine3A],

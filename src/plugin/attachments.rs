@@ -12,14 +12,17 @@ use bevy::{
 
 use crate::cloth::Pin;
 
-/// Pins of a cloth that follow other entities by their global transforms, moving smoothly over the sub-steps of a
-/// tick: a flag on a pole that sways, a cape on shoulders.
+/// Pins of a cloth that follow other entities by their global transforms: a flag on a swaying pole, a cape on
+/// shoulders. They move smoothly over the sub-steps of a tick.
 ///
-/// Each particle keeps the offset that it has when it is attached; scaled and turned with its target. Attached
-/// particles are pinned besides those of [`Pins`](crate::cloth::Pins). Move targets before
-/// [`ClothSystems::Prepare`](super::ClothSystems). May change at any time: what is no longer attached is released. A
-/// predicate is known by itself: set it again as a clone, since another one is another attachment. Before a target is
-/// despawned take the attachment off, and the cloth falls; otherwise it stays where it is, with a fault.
+/// Each attached particle keeps the offset from its target that it has when it is attached, scaled and rotated with the
+/// target. Attached particles are pinned in addition to those of [`Pins`](crate::cloth::Pins). Move targets before
+/// [`ClothSystems::Prepare`](super::ClothSystems). The component may change at any time: the plugin releases what is no
+/// longer attached. Remove an attachment before its target is despawned, and the cloth falls. Otherwise the cloth stops
+/// where it is, with a [`ClothFault`](super::ClothFault).
+///
+/// A predicate (a closure) is compared by identity: clone it when you set the component again, because another closure
+/// counts as another attachment.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -28,7 +31,7 @@ use crate::cloth::Pin;
 /// fn setup(mut commands: Commands) {
 ///     let pole = commands.spawn(Transform::from_xyz(0.0, 2.0, 0.0)).id();
 ///     commands.spawn((Cloth::default(), Pins::none(), ClothAttachments::new([(Pin::Column(0), pole)])));
-///     // By name, as of a bone in a model.
+///     // By name, such as that of a bone in a model.
 ///     let shoulders = ClothAttachments::new([(Pin::color(0, 0.5), "shoulders")]);
 ///     commands.spawn((Cloth::mesh(), shoulders));
 /// }
@@ -43,25 +46,25 @@ pub struct ClothAttachments(#[entities] Vec<ClothAttachment>);
 pub struct ClothAttachment {
     /// The particles.
     pub pin: Pin,
-    /// What they follow.
+    /// The entity that they follow.
     #[entities]
     pub target: ClothTarget,
 }
 
-/// What pins follow.
+/// The entity that pins follow.
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothTarget {
     /// An entity.
     Entity(Entity),
-    /// The entity of this `Name`, as a scene or a modelling program gave it; of several the one that was
-    /// spawned first. While there is none the cloth stands still, with a fault.
+    /// The entity with this `Name`, for instance from a scene or a modelling program; if several have it, the one
+    /// spawned first. While there is none, the cloth stands still, with a fault.
     Named(String),
 }
 
 impl Default for ClothTarget {
-    /// What has an empty `Name`: nothing, as long as nobody says what.
+    /// An empty `Name`, which matches nothing until you set it.
     fn default() -> Self {
         Self::Named(String::new())
     }
@@ -94,7 +97,7 @@ impl From<String> for ClothTarget {
 }
 
 impl ClothAttachments {
-    /// Each pin's particles follow its entity, or the one of a name.
+    /// Attaches the particles of each pin to an entity, given by its id or by its `Name`.
     pub fn new<T: Into<ClothTarget>>(attachments: impl IntoIterator<Item = (Pin, T)>) -> Self {
         let attach = |(pin, target): (Pin, T)| ClothAttachment {
             pin,
@@ -103,24 +106,26 @@ impl ClothAttachments {
         Self(attachments.into_iter().map(attach).collect())
     }
 
-    /// What is attached to what.
+    /// The attachments.
     pub(super) fn as_slice(&self) -> &[ClothAttachment] {
         &self.0
     }
 
-    /// What is attached to what.
+    /// The attachments.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &ClothAttachment> {
         self.0.iter()
     }
 }
 
-/// Insert this beside a new transform to have a cloth be there at once: it keeps its shape and its velocities, as
-/// seen from its entity, from its first attachment's target where it has one, or particle by particle from the pose of a
-/// skeleton that it [follows](crate::cloth::ClothSkin), and gets none from the jump.
+/// Moves a cloth instantly: insert it together with a new transform. The cloth keeps its shape and its velocities, and
+/// gains no speed from the jump. Both are kept as seen from its entity, or from the target of its first attachment if
+/// it has one. A cloth that [follows](crate::cloth::ClothSkin) a skeleton keeps them particle by particle, as seen from
+/// the pose.
 ///
-/// On any other entity, as a character, it takes along all cloths and colliders below that, and cloths whose first attachment's
-/// target is below: none gets a speed from the jump. [`ClothInertia`](super::ClothInertia) does so by itself.
-/// Taken away in the next tick.
+/// On any other entity, such as a character, it also moves all cloths and colliders below that entity in the hierarchy,
+/// and cloths whose first attachment's target is below it. None of them gains speed from the jump.
+/// [`ClothInertia`](super::ClothInertia) does the same automatically when its entity jumps. The plugin removes the
+/// component in the next tick.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothTeleport;
@@ -130,7 +135,7 @@ pub struct ClothTeleport;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Attached {
     pub particle: u32,
-    /// Which attachment it belongs to.
+    /// The index of its attachment.
     pub attachment: usize,
     /// Where it is in the target's own frame.
     pub offset: Vec3,

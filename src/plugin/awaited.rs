@@ -1,4 +1,4 @@
-//! Which colliders are to be looked at in a tick.
+//! The colliders that are read in a tick.
 
 use bevy::ecs::{
     entity::Entity,
@@ -15,26 +15,26 @@ use bevy::transform::components::Transform;
 use super::{ClothBody, colliders::ColliderMotion};
 use crate::contact::ClothCollider;
 
-/// Where a collider's own components have changed.
+/// A change of a collider's own components.
 type OwnChange = (
     With<ColliderMotion>,
     Or<(Changed<Transform>, Changed<ClothCollider>, Changed<ChildOf>)>,
 );
 
-/// Entities that others are children of. What is disabled still has them, and carries them.
+/// A change of an entity with children. A disabled entity still has children, and carries them.
 type ParentChange = (
     With<Children>,
     Or<(Changed<Transform>, Changed<ChildOf>)>,
     Allow<Disabled>,
 );
 
-/// Colliders that something else may move.
+/// Colliders that a parent may move.
 type Carried = (With<ColliderMotion>, With<ChildOf>);
 
-/// Colliders, and what others are children of.
+/// Colliders, and entities with children.
 type Concerned = (Or<(With<ColliderMotion>, With<Children>)>, Allow<Disabled>);
 
-/// What tells which colliders have moved.
+/// The queries that tell which colliders have moved.
 #[derive(SystemParam)]
 pub(super) struct Changes<'w, 's> {
     own: Query<'w, 's, Entity, OwnChange>,
@@ -46,11 +46,11 @@ pub(super) struct Changes<'w, 's> {
     deprived: ResMut<'w, Deprived>,
 }
 
-/// Colliders, and what is above colliders, that have lost something since the last tick.
+/// Colliders, and entities above colliders, that have lost a component since the last tick.
 #[derive(Resource, Debug, Default)]
 pub(super) struct Deprived(Vec<Entity>);
 
-/// What is taken away.
+/// Removed components.
 #[derive(SystemParam)]
 pub(super) struct Removals<'w, 's> {
     bodies: RemovedComponents<'w, 's, ClothBody>,
@@ -59,8 +59,8 @@ pub(super) struct Removals<'w, 's> {
     concerned: Query<'w, 's, (), Concerned>,
 }
 
-/// Notes what colliders have lost. In each frame as well as in each tick: Bevy forgets it after two frames, in which there need
-/// not be a tick.
+/// Notes the components that colliders have lost. It runs in each frame as well as in each tick, because Bevy forgets
+/// removals after two frames, in which there may be no tick.
 pub(super) fn note_removals(mut removals: Removals, mut deprived: ResMut<Deprived>) {
     let Removals {
         bodies,
@@ -74,7 +74,7 @@ pub(super) fn note_removals(mut removals: Removals, mut deprived: ResMut<Deprive
     }
 }
 
-/// A collider that is enabled again is looked at, and has not come from where it was before.
+/// A collider that is enabled again is read, and does not move from its earlier place.
 pub(super) fn note_enabled(
     enabled: On<Remove, Disabled>,
     mut motions: Query<&mut ColliderMotion, Allow<Disabled>>,
@@ -86,20 +86,20 @@ pub(super) fn note_enabled(
     }
 }
 
-/// The colliders to be looked at in a tick.
+/// The colliders to read in a tick.
 #[derive(Debug, Default)]
 pub(super) struct Awaited {
-    /// Those to look at now, each once.
+    /// Colliders to read now, each once.
     now: Vec<Entity>,
-    /// Those on their way: in the next tick they may have arrived.
+    /// Colliders in motion: in the next tick they may have arrived.
     moving: Vec<Entity>,
-    /// What has changed of all that has children.
+    /// Entities with children that have changed.
     above: Vec<Entity>,
 }
 
 impl Awaited {
-    /// Those that moved in the last tick, or of which anything has changed since, their ancestors included.
-    /// Besides those, the list of what is still on its way, to be filled for the next tick.
+    /// The colliders that moved in the last tick, or that have changed since, including changes of their ancestors.
+    /// Also returns the list of colliders in motion, to fill for the next tick.
     pub fn find(&mut self, changes: &mut Changes) -> (&[Entity], &mut Vec<Entity>) {
         self.now.clear();
         self.now.append(&mut self.moving);
@@ -117,8 +117,8 @@ impl Awaited {
         (&self.now, &mut self.moving)
     }
 
-    /// Those below what has changed: by going up from all that are below anything, or down from all that has changed, whichever
-    /// are fewer. A skeleton's bones all change in each tick, and a level's nodes never do.
+    /// Colliders below changed entities: found upwards from all colliders with a parent, or downwards from all changed
+    /// entities, whichever are fewer. A skeleton's bones all change in each tick, and a level's nodes never do.
     fn find_carried(&mut self, changes: &Changes) {
         self.above.clear();
         self.above.extend(&changes.changed_parents);

@@ -8,14 +8,14 @@ use bevy::{
 
 use crate::{cloth::ClothError, contact::BodyMass};
 
-/// Has cloth push a [`ClothCollider`](crate::contact::ClothCollider) back: how heavy it is. Without this, nothing that cloth
-/// does moves a collider.
+/// Lets cloth push a [`ClothCollider`](crate::contact::ClothCollider) back, by giving it a mass. Without this
+/// component, cloth never moves a collider.
 ///
-/// Whatever moves the body, a physics engine or the game itself, does so before
-/// [`ClothSystems::Prepare`](super::ClothSystems). In the tick's sub-steps the body gives way to the cloth by its mass, and it
-/// is then taken from where it was sent to where the cloth has left it: that is written into its `Transform`, if it is no
-/// child of another entity. What became of its velocity is in [`ClothPush`], to be added by whoever moves it. With feature
-/// `rapier` a `ClothPushBack` on a rapier body does all of this.
+/// Move the body, by a physics engine or by your own systems, before [`ClothSystems::Prepare`](super::ClothSystems).
+/// During the sub-steps of the tick the body yields to the cloth according to its mass. Then the plugin writes the
+/// body's new place into its `Transform`, unless it is a child of another entity. The change of its velocity is in
+/// [`ClothPush`]: the code that moves the body has to add it. With the feature `rapier`, a `ClothPushBack` on a rapier
+/// body does all of this.
 ///
 /// A cloth that pushes a body does not sleep.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
@@ -24,38 +24,39 @@ use crate::{cloth::ClothError, contact::BodyMass};
 pub struct ClothBody {
     /// Mass (kg), positive.
     pub mass: f32,
-    /// Moments of inertia about the principal axes through the centre of mass (kg·m²), positive; infinite for one that can't be
-    /// turned.
+    /// Moments of inertia about the principal axes through the centre of mass (kg·m²), positive. Infinite about an axis
+    /// about which the body can't rotate.
     pub inertia: Vec3,
-    /// How the principal axes are turned against the entity's.
+    /// Rotation of the principal axes in the entity's frame.
     pub axes: Quat,
-    /// Where the centre of mass is, seen from the entity, unscaled (m).
+    /// Position of the centre of mass in the entity's frame, unscaled (m).
     pub centre_of_mass: Vec3,
-    /// Along which of the world's axes cloth does not move its centre of mass.
+    /// World axes along which cloth does not move the centre of mass.
     pub locked_translation: BVec3,
-    /// About which of the world's axes cloth does not turn it.
+    /// World axes about which cloth does not rotate the body.
     pub locked_rotation: BVec3,
 }
 
-/// What the cloths that touch a [`ClothBody`] changed of its motion in the last tick, in the world.
+/// How the cloths that touch a [`ClothBody`] changed its motion in the last tick, in the world.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothPush {
-    /// Of the velocity of its centre of mass (m/s).
+    /// Change of the velocity of its centre of mass (m/s).
     pub velocity: Vec3,
-    /// Of its angular velocity (rad/s).
+    /// Change of its angular velocity (rad/s).
     pub angular_velocity: Vec3,
 }
 
 impl Default for ClothBody {
-    /// A solid ball of 1 kg and of the default collider's radius, 1 m.
+    /// A solid ball of 1 kg with the radius of the default collider, 1 m.
     fn default() -> Self {
         Self::ball(1.0, 1.0)
     }
 }
 
 impl ClothBody {
-    /// A body of a mass (kg) and of moments of inertia about the entity's axes (kg·m²), which meet in its centre of mass.
+    /// A body with a mass (kg) and moments of inertia about the entity's axes (kg·m²). Its centre of mass is at the
+    /// entity's origin.
     pub const fn new(mass: f32, inertia: Vec3) -> Self {
         Self {
             mass,
@@ -67,17 +68,17 @@ impl ClothBody {
         }
     }
 
-    /// A solid ball of a mass (kg) and a radius (m).
+    /// A solid ball with a mass (kg) and a radius (m).
     pub const fn ball(mass: f32, radius: f32) -> Self {
         Self::new(mass, Vec3::splat(0.4 * mass * radius * radius))
     }
 
-    /// Of a motion of its centre of mass, what is not locked.
+    /// The part of a motion of its centre of mass that is not locked.
     pub(super) fn free_translation(&self, motion: Vec3) -> Vec3 {
         Vec3::select(self.locked_translation, Vec3::ZERO, motion)
     }
 
-    /// Likewise of a turn.
+    /// The same for a rotation.
     pub(super) fn free_rotation(&self, turn: Vec3) -> Vec3 {
         Vec3::select(self.locked_rotation, Vec3::ZERO, turn)
     }
@@ -85,7 +86,7 @@ impl ClothBody {
     /// Its mass where the entity is turned by `rotation`, about the entity's origin.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] of what is no mass.
+    /// [`ClothError::Quantity`] for a value that is out of range.
     pub(super) fn mass_at(&self, rotation: Quat) -> Result<BodyMass, ClothError> {
         let positive = |v: f32| v > 0.0 && v.recip().is_finite();
         for moment in self.inertia.to_array() {
@@ -94,13 +95,13 @@ impl ClothBody {
         ClothError::check(
             self.centre_of_mass.length(),
             f32::is_finite,
-            "how far the body's centre of mass is from its entity (m)",
+            "the distance of the body's centre of mass from its entity (m)",
             "finite",
         )?;
         ClothError::check(
             self.axes.length(),
             |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
-            "the length of the quaternion that turns the body's axes",
+            "the length of the quaternion of the body's axes",
             "positive and finite",
         )?;
         let mass = ClothError::check(

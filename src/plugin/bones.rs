@@ -27,8 +27,9 @@ use super::{
 };
 use crate::{cloth::ClothError, contact::ClothCollider};
 
-/// Colliders on bones below an entity, each in one line: beside a character's scene, from before it is spawned. Bones are found by
-/// their `Name`s as soon as there are any, and found again if the scene is spawned again. Each collider is a child of its bone.
+/// Colliders on the bones of a skeleton below this entity, one line for each. Add it to a character's entity; its scene
+/// need not have been spawned yet. Bones are found by their `Name`s as soon as they exist, and again when the scene is
+/// spawned again. Each collider becomes a child of its bone.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -50,27 +51,27 @@ use crate::{cloth::ClothError, contact::ClothCollider};
 #[require(BoneColliders)]
 pub struct ClothBones(Vec<ClothBone>);
 
-/// A ball around a bone's head, or a capsule from there to another bone's.
+/// A ball around a bone's head, or a capsule from there to the head of another bone.
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothBone {
-    /// The `Name` of the bone that it is a child of.
+    /// `Name` of the bone; the collider becomes its child.
     pub bone: String,
-    /// That of the bone where a capsule ends.
+    /// `Name` of the bone where a capsule ends; `None` for a ball.
     pub end: Option<String>,
-    /// Radius (m), whatever the bone's scale is as it is found.
+    /// Radius (m) in the world, whatever the scale of the bone is when it is found.
     pub radius: f32,
 }
 
 impl Default for ClothBone {
-    /// A ball of 0.1 m around what has an empty `Name`: nothing, as long as nobody says what.
+    /// A ball of 0.1 m around a bone with an empty `Name`, which matches nothing until you set it.
     fn default() -> Self {
         Self::ball("", 0.1)
     }
 }
 
 impl ClothBone {
-    /// A ball of a radius (m) around a bone's head.
+    /// A ball with a radius (m) around a bone's head.
     pub fn ball(bone: impl Into<String>, radius: f32) -> Self {
         Self {
             bone: bone.into(),
@@ -79,7 +80,8 @@ impl ClothBone {
         }
     }
 
-    /// A capsule of a radius (m) from a bone's head to another's, which it moves with the first: mostly its child.
+    /// A capsule with a radius (m) from a bone's head to that of another bone, usually its child. It moves with the
+    /// first bone.
     pub fn capsule(bone: impl Into<String>, end: impl Into<String>, radius: f32) -> Self {
         Self {
             end: Some(end.into()),
@@ -89,12 +91,12 @@ impl ClothBone {
 }
 
 impl ClothBones {
-    /// These.
+    /// Makes a collider for each of these bones.
     pub fn new(bones: impl IntoIterator<Item = ClothBone>) -> Self {
         Self(bones.into_iter().collect())
     }
 
-    /// All of them.
+    /// All bones with their colliders.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &ClothBone> {
         self.0.iter()
     }
@@ -109,8 +111,8 @@ pub(super) struct BoneColliders {
     waits: bool,
 }
 
-/// On such a collider: whose it is. Reflected and mapped, so that one in a scene, or one that was cloned along with its skeleton, is known
-/// for what it is, and gives way to a new one.
+/// On such a collider: the entity with the [`ClothBones`]. Reflected and mapped, so that a collider in a scene, or one
+/// that was cloned with its skeleton, is recognised and replaced.
 #[derive(Component, Reflect, Debug, Clone, Copy)]
 #[reflect(Component)]
 pub(super) struct BoneColliderOf(#[entities] Entity);
@@ -126,7 +128,7 @@ fn despawn_colliders(skeleton: Entity, owners: &Owners, commands: &mut Commands)
     }
 }
 
-/// Makes colliders of bones that have been found, and of those that are to be found again.
+/// Makes the colliders of bones that have been found, or found again.
 pub(super) fn make_bone_colliders(
     mut all: Query<(
         Entity,
@@ -144,7 +146,7 @@ pub(super) fn make_bone_colliders(
     for (entity, bones, mut made, fault) in &mut all {
         let are_there = made.all.len() == bones.0.len()
             && made.all.iter().all(|collider| living.contains(*collider));
-        // What was not there can have come only as something was named or got children.
+        // A missing bone can have appeared only if an entity was named or got children.
         let is_known = are_there || made.waits && renamed.is_empty();
         if is_known && !bones.is_changed() {
             continue;
@@ -170,7 +172,7 @@ pub(super) fn make_bone_colliders(
     }
 }
 
-/// What is no skeleton any more has no colliders.
+/// Removes the colliders of a skeleton that has lost its [`ClothBones`].
 pub(super) fn remove_bone_colliders(
     removed: On<Remove, ClothBones>,
     mut made: Query<&mut BoneColliders, Allow<Disabled>>,
@@ -183,7 +185,8 @@ pub(super) fn remove_bone_colliders(
     despawn_colliders(removed.entity, &owners, &mut commands);
 }
 
-/// The entities below one, and itself, by their names; of several of a name the first. `None` as long as nothing below has one.
+/// An entity and all entities below it by their names, the first of each name. `None` as long as no entity below has a
+/// name.
 fn names_below<'a>(
     root: Entity,
     named: &'a Query<(Option<&Name>, Option<&Children>), Allow<Disabled>>,
@@ -221,7 +224,7 @@ fn collider(
     };
     let (entity, place) = find(&bone.bone)?;
     let to_bone = place.affine().inverse();
-    // A radius of the world's.
+    // The radius is in the world.
     let scale = place.scale().abs().max_element();
     let scale = Vec3::splat(scale.recip());
     if !(to_bone.is_finite() && scale.is_finite()) {

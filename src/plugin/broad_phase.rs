@@ -1,4 +1,4 @@
-//! How far around a cloth anything may be touched in a tick.
+//! The region around a cloth in which it may touch anything in a tick.
 
 use bevy::math::Vec3;
 
@@ -13,8 +13,8 @@ use crate::{
     solver::PinMotion,
 };
 
-/// How far a particle may get in a tick by itself (m): by its speed and acceleration (m/s²), by what carries its neighbours'
-/// pins, and by what a spring that is stretched now gives back.
+/// Largest distance that a particle may move in a tick by itself (m): by its speed and acceleration (m/s²), by the
+/// carriers of its neighbours' pins, and by the recoil of springs that are stretched now.
 pub(super) fn reach(
     state: &ClothState,
     surface: &Surface,
@@ -28,7 +28,7 @@ pub(super) fn reach(
         + state.stretch.bound * surface.longest_spring()
 }
 
-/// How far a triangle reaches from the particle that stands for it (m), at most: along a spring or two.
+/// Largest distance of a triangle's points from the particle that stands for it (m): along a spring or two.
 pub(super) fn cover(settings: &ContactSettings, stretch: f32, surface: &Surface) -> f32 {
     match settings.narrow_phase {
         NarrowPhase::Particles => 0.0,
@@ -38,7 +38,7 @@ pub(super) fn cover(settings: &ContactSettings, stretch: f32, surface: &Surface)
     }
 }
 
-/// Says how far around the cloth anything may be touched in the tick. Nothing is near until it is found to be.
+/// Sets the region in which the cloth may touch anything in the tick. Nothing counts as near until it is found.
 pub(super) fn update_bounds(
     particles: &ClothParticles,
     frame: &ClothFrame,
@@ -71,7 +71,7 @@ pub(super) fn update_bounds(
         centre,
         radius: (root.radius() + around) * (1.0 + 1.0e-5) + centre.length() * 1.0e-5,
         takes_part: true,
-        // Its colliders stay those that it fell asleep on.
+        // It keeps the colliders that it fell asleep on.
         has_sleeping_contacts: is_asleep && !state.rests_on.is_empty(),
         is_searched: false,
         is_stale,

@@ -1,4 +1,4 @@
-//! Builds what does not exist yet or was made from other components than those present.
+//! Builds cloths that are new or whose components have changed.
 
 use bevy::{
     ecs::change_detection::{Mut, Tick},
@@ -17,7 +17,7 @@ use crate::{
     solver::{TickStep, TimeOrder},
 };
 
-/// What the game says that a cloth is. In place of components that it took away the defaults count, and no pins.
+/// The game's description of a cloth. Removed components count as their defaults, and as no pins.
 pub(super) struct Wanted<'a> {
     pub cloth: &'a Cloth,
     /// When the cloth was last changed.
@@ -30,14 +30,14 @@ pub(super) struct Wanted<'a> {
     pub scale: Vec3,
 }
 
-/// What came of building.
+/// The result of building.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Build {
     /// The particles are those of the last tick.
     Kept,
-    /// Of another resolution, and where those of the last tick were.
+    /// Of another resolution, at the places of the last tick.
     Resampled,
-    /// Others.
+    /// New particles.
     New,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn build(
         follow_changes(wanted, parts, particles, built, state)?;
         return Ok(Build::Kept);
     }
-    // What was refused once would be again: a mesh takes milliseconds to look at.
+    // Inputs that failed once are not tried again: checking a mesh takes milliseconds.
     let tried = Tried {
         changed: wanted.changed,
         source: wanted.source,
@@ -78,7 +78,7 @@ pub(super) fn build(
     Ok(build)
 }
 
-/// Whether what was built is that cloth, whatever its pins and material.
+/// Whether the built data belongs to that cloth, whatever its pins and material.
 fn is_built(wanted: &Wanted, built: &mut ClothBuilt) -> bool {
     let (Some(from), Some(recipe)) = (&mut built.from, &built.shared.recipe) else {
         return false;
@@ -126,7 +126,7 @@ fn build_new(
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
     // not.
     let (build, new) = if state.resumes {
-        // As a snapshot says, with what is pinned and attached.
+        // The particles are those of a snapshot, with its pins and attachments.
         check_count(particles, surface)?;
         (Build::Kept, None)
     } else if let Some(resampled) = resampled(wanted, &shared, particles, built)? {
@@ -154,7 +154,8 @@ fn build_new(
     Ok(build)
 }
 
-/// The particles of a cloth of the same rectangle as the one that was built, whose resolution alone has changed, where that is.
+/// The particles of a cloth of which only the resolution has changed, while the rectangle is the same; `None` for any
+/// other change.
 fn resampled(
     wanted: &Wanted,
     shared: &Shared,
@@ -171,7 +172,7 @@ fn resampled(
     }
     let mut new = ClothParticles::at_rest(surface, wanted.material)?;
     new.assign_masses(surface, wanted.material, wanted.pins)?;
-    // What is attached will be pinned where it is.
+    // Attached particles will be pinned where they are.
     for attachment in wanted.attachments {
         if attachment.pin.validate(surface).is_ok() {
             attachment.pin.for_each(surface, |index| new.pin(index));
@@ -205,7 +206,7 @@ fn scale_of(wanted: &Wanted) -> Vec3 {
 fn at_rest(wanted: &Wanted, surface: &Surface) -> Result<ClothParticles, ClothError> {
     let mut particles = ClothParticles::at_rest(surface, wanted.material)?;
     particles.assign_masses(surface, wanted.material, wanted.pins)?;
-    // What is attached will be pinned where it is.
+    // Attached particles will be pinned where they are.
     let mut is_held = vec![false; surface.len()];
     for attachment in wanted.attachments {
         if attachment.pin.validate(surface).is_ok() {

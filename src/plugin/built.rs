@@ -1,4 +1,4 @@
-//! What follows from a cloth's components.
+//! Everything that is built from a cloth's components.
 
 use std::sync::Arc;
 
@@ -15,19 +15,19 @@ use crate::{
     solver::{Solver, Tethers, material_stretch},
 };
 
-/// What a cloth's surface, springs, tree and solver are. Made from its other components, and made again where they change.
-/// Empty until the first tick. Neither scenes nor clones have it.
+/// A cloth's surface, springs, tree of bounding volumes and solver. The plugin builds them from the cloth's other
+/// components, and again when those change. Empty until the first tick. Scenes and clones don't have it.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Default, Debug)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothBuilt {
-    /// What cloths made alike have in common.
+    /// Shared by all cloths that are made alike.
     #[reflect(ignore)]
     pub(super) shared: Arc<Shared>,
-    /// What all this was made from.
+    /// The inputs from which all this was built.
     #[reflect(ignore)]
     pub(super) from: Option<BuiltFrom>,
-    /// What could not be built, and why.
+    /// The inputs from which nothing could be built, and why.
     #[reflect(ignore)]
     pub(super) refused: Option<(Tried, ClothError)>,
     #[reflect(ignore)]
@@ -35,7 +35,7 @@ pub struct ClothBuilt {
     /// Whether there are tethers, and for which acceleration (m/s²), 0 without; `None` if they have to be made again.
     #[reflect(ignore)]
     tethered: Option<(bool, f32)>,
-    /// The stretch that its material gives by itself: under the gravity of the tick, and under the largest that it has known.
+    /// The stretch of the material itself, under the gravity of the tick and under the largest gravity so far.
     #[reflect(ignore)]
     pub(super) material_stretch: f32,
     #[reflect(ignore)]
@@ -53,7 +53,7 @@ pub struct ClothBuilt {
     pub(super) pins_version: u32,
 }
 
-/// What a cloth was built from, besides the recipe of its surface.
+/// The inputs of a cloth, besides the recipe of its surface.
 #[derive(Debug, Clone)]
 pub(super) struct BuiltFrom {
     pub unevenness: f32,
@@ -63,7 +63,7 @@ pub(super) struct BuiltFrom {
     pub pins: Pins,
 }
 
-/// What a cloth was to be built from, besides the recipe of its surface.
+/// The inputs of a cloth that could not be built, besides the recipe of its surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tried {
     pub changed: Tick,
@@ -80,12 +80,12 @@ impl ClothBuilt {
         &self.shared.surface
     }
 
-    /// The springs, colour by colour.
+    /// The springs, grouped by colour.
     pub fn springs(&self) -> &Springs {
         &self.shared.springs
     }
 
-    /// The quad-tree.
+    /// The quad-tree of bounding volumes.
     pub fn tree(&self) -> &QuadTree {
         &self.shared.tree
     }
@@ -150,7 +150,7 @@ impl ClothBuilt {
         }
     }
 
-    /// Takes over what particles weigh that somebody else wrote, and which of them are pinned.
+    /// Takes over masses and pins of particles that the game wrote.
     pub(super) fn weigh(&mut self, particles: &ClothParticles) {
         self.masses = particles.free_masses();
         if !pinned(particles).eq(self.pinned.iter().copied()) {

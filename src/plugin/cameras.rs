@@ -1,4 +1,4 @@
-//! Where cameras are, and what is hidden from them.
+//! Places of cameras, and visibility.
 
 #[cfg(not(feature = "mesh"))]
 use std::marker::PhantomData;
@@ -26,7 +26,7 @@ pub(super) struct Cameras<'w, 's> {
 }
 
 impl Cameras<'_, '_> {
-    /// How far a point is from the nearest camera that is active (m), as of the last frame; `None` if none is.
+    /// Distance of a point from the nearest active camera (m), as of the last frame; `None` without an active camera.
     pub fn nearest(&self, point: Vec3) -> Option<f32> {
         #[cfg(feature = "mesh")]
         let places = self

@@ -1,4 +1,4 @@
-//! What becomes of the particles when their frame moves.
+//! Moves the particles when their frame moves.
 
 use bevy::math::{Isometry3d, Vec3};
 
@@ -8,7 +8,7 @@ use crate::{
     solver::{DampingFrame, PinMotion},
 };
 
-/// What takes a cloth from the frame that it was in to the one that it is in now, carried along or not; `None` if neither moves it.
+/// The transform from the cloth's old frame to its new one, carried along or not; `None` if it does not move.
 pub(super) fn new_from_old(
     [old, new]: [&ClothFrame; 2],
     carried: Option<&Carried>,
@@ -19,8 +19,8 @@ pub(super) fn new_from_old(
     }
 }
 
-/// Has a pin move so in the tick, instead of as it was to be moved by one of the first `carried` motions, which are in the order of the
-/// particles.
+/// Sets the motion of a pin in the tick. It replaces the pin's motion among the first `carried` ones, which are in the
+/// order of the particles.
 pub(super) fn set_motion(motions: &mut Vec<PinMotion>, carried: usize, motion: PinMotion) {
     let known = motions[..carried].binary_search_by_key(&motion.particle, |known| known.particle);
     match known {
@@ -30,7 +30,8 @@ pub(super) fn set_motion(motions: &mut Vec<PinMotion>, carried: usize, motion: P
     }
 }
 
-/// What damping is relative to: what a cloth of that many pins hangs by, in the mean of all of them; itself if it has none.
+/// The frame in which damping acts: the mean motion of the pins of a cloth with that many pins; the cloth's own motion
+/// if it has none.
 pub(super) fn carrier(pins: &[PinMotion], pinned: usize, seconds: f32) -> DampingFrame {
     if pinned == 0 {
         return DampingFrame::CentreOfMass;
@@ -42,8 +43,8 @@ pub(super) fn carrier(pins: &[PinMotion], pinned: usize, seconds: f32) -> Dampin
     DampingFrame::Moving(moved / (pinned as f32 * seconds))
 }
 
-/// The frame has moved: the particles stay where they are in the world, but for what carries them along, and their pins go along
-/// in the course of the tick.
+/// Follows a move of the frame. Particles stay where they are in the world, unless a root carries them along, and pins
+/// move with the frame in the course of the tick.
 pub(super) fn carry(
     particles: &mut ClothParticles,
     new_from_old: Isometry3d,

@@ -1,8 +1,8 @@
-//! How long something has taken.
+//! Time measurement.
 
 use bevy::platform::time::Instant;
 
-/// Since `start` (ms).
+/// Time since `start` (ms).
 pub(super) fn milliseconds_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1.0e3
 }

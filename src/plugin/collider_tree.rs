@@ -9,8 +9,8 @@ use parry3d::{
     partitioning::{Bvh, BvhBuildStrategy, BvhLeafUpdateStatus, BvhNode, BvhWorkspace},
 };
 
-/// A leaf is stored larger than its collider by this part of its size, so that what moves slowly changes the tree now and
-/// then only.
+/// A leaf is stored larger than its collider by this part of its size, so that slow colliders change the tree only now
+/// and then.
 const MARGIN: f32 = 0.1;
 
 /// Where fewer leaves than one in this many have changed, only the paths above them are refitted.
@@ -20,8 +20,8 @@ const FEW: usize = 8;
 /// them large.
 const MAX_CHANGES: usize = 16;
 
-/// What reaches beyond this (m) is kept aside, and looked at by each cloth. Less than what a collider may reach: the tree's sums of areas,
-/// of many boxes at once, stay finite.
+/// Colliders that reach beyond this (m) are kept aside, and read by each cloth. It is less than the largest reach of a
+/// collider, so that the tree's sums of areas, of many boxes at once, stay finite.
 const TREE_REACH: f32 = 1.0e9;
 
 /// The bounds of all colliders. Kept from tick to tick: a collider that does not move costs nothing.
@@ -32,7 +32,7 @@ pub(super) struct ColliderTree {
     /// By the index of the entity, which is also what the tree knows a leaf by. As long as the highest index of a collider: 40 bytes for
     /// each, about what Bevy itself keeps of an entity.
     leaves: Vec<Leaf>,
-    /// Colliders that no box holds.
+    /// Colliders without a finite box.
     unbounded: Vec<Entity>,
     /// Leaves that have changed since the tree was brought up to date.
     changed: Vec<u32>,
@@ -49,7 +49,7 @@ struct Leaf {
     is_changed: bool,
 }
 
-/// What holds a collider all along its way through the tick, in the world.
+/// The bounds of a collider along its whole path through the tick, in the world.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) enum Bounds {
     /// Nothing: there is no collider.

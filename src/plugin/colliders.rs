@@ -18,30 +18,30 @@ use crate::{
     hierarchy::Core,
 };
 
-/// How much larger a box is made, against what its corners and the collider's points are rounded by.
+/// Margin of a box against rounding of its corners and of the collider's points.
 const ROUNDING: f32 = 1.0e-5;
 
-/// A collider's way through the tick, in the world.
+/// A collider's path through the tick, in the world.
 #[derive(Component, Debug, Default)]
 pub(super) struct ColliderMotion {
-    /// Its way; `None` before the first tick.
+    /// Its path; `None` before the first tick.
     way: Option<MovingCollider>,
-    /// Where the last tick with time in it left its entity, whose frame the shape's need not be.
+    /// Place of its entity after the last tick in which time passed. The frame of the shape may be another.
     last: Option<Isometry3d>,
-    /// Middle of its way (m), and how far it is from there at most to any of the collider's points on it.
+    /// Middle of its path (m), and the largest distance from there to any of the collider's points on it.
     middle: Vec3,
     reach: f32,
-    /// Of a half-space that does not turn, its normal: what is far above it is not near.
+    /// Normal of a half-space that does not rotate: cloth far above it is not near.
     normal: Option<Vec3>,
-    /// What holds it all along its way.
+    /// Its bounds along the whole path.
     bounds: Bounds,
     /// How many cloths pushed it in the last tick, if it is a body.
     cloths: u32,
-    /// The shape and what it was built from, as a mesh of many triangles is built but once.
+    /// The shape and the inputs that it was built from, so that a mesh of many triangles is built only once.
     built: Option<BuiltShape>,
 }
 
-/// What a collider's next way depends on, besides where it is then.
+/// The inputs of a collider's next path, besides its place then.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct ColliderMemory {
@@ -49,14 +49,14 @@ pub(super) struct ColliderMemory {
     cloths: u32,
 }
 
-/// A shape, and the collider and scale that it is of.
+/// A shape, with its collider and scale.
 #[derive(Debug)]
 struct BuiltShape {
     collider: ClothCollider,
     source: Option<Source>,
     scale: Vec3,
     shape: ColliderShape,
-    /// Where the shape's frame is in the entity's.
+    /// The shape's frame in that of the entity.
     offset: Isometry3d,
 }
 
@@ -69,7 +69,7 @@ impl BuiltShape {
     }
 }
 
-/// A box around what is nearer than `radius` to a core (m).
+/// A box around all points nearer than `radius` to a core (m).
 fn bounds_of(core: &Core, radius: f32) -> Bounds {
     let [low, high] = match *core {
         Core::Point(point) => [point; 2],
@@ -95,10 +95,10 @@ fn around([low, high]: [Vec3; 2], reach: f32) -> Bounds {
 }
 
 impl ColliderMotion {
-    /// Looks where its entity is now.
+    /// Reads the current place of its entity.
     ///
     /// # Errors
-    /// What is wrong with the collider, or with where it is.
+    /// The error of the collider, or of its transform.
     pub fn follow(
         &mut self,
         collider: &ClothCollider,
@@ -178,12 +178,12 @@ impl ColliderMotion {
         }
         self.bounds = self.bounds(&way);
         self.way = Some(way);
-        // What is moved while no time passes has its way still before it.
+        // If it is moved while no time passes, the motion counts in the next tick with time.
         self.last = Some(if time_passes { place } else { last });
         Ok(())
     }
 
-    /// What holds it all along its way: two boxes where it does not turn, else the ball that its bounds are.
+    /// Its bounds along the whole path: two boxes if it does not rotate, else its bounding ball.
     fn bounds(&self, way: &MovingCollider) -> Bounds {
         if self.normal.is_some() || self.reach.is_infinite() {
             return Bounds::Unbounded;
@@ -198,7 +198,7 @@ impl ColliderMotion {
         from.union(to)
     }
 
-    /// Whether the next tick begins with another way, whether anyone moves the collider or not.
+    /// Whether the next tick has another path, even if nothing moves the collider.
     pub fn is_moving(&self) -> bool {
         self.way
             .as_ref()
@@ -210,17 +210,18 @@ impl ColliderMotion {
         self.way.as_ref().is_some_and(|way| way.body.is_some())
     }
 
-    /// How many cloths are expected to push it: each has a part of its mass.
+    /// Number of cloths that are expected to push it: each has a part of its mass.
     pub fn cloths(&self) -> u32 {
         self.cloths.max(1)
     }
 
-    /// So many cloths have pushed it in the tick.
+    /// Sets the number of cloths that pushed it in the tick.
     pub fn set_cloths(&mut self, cloths: u32) {
         self.cloths = cloths;
     }
 
-    /// Cloth has changed its motion: its next way begins where it is now. Returns how far its entity goes (m), and how that turns.
+    /// Applies a change of its motion by cloth: its next path begins where it is now. Returns the translation (m) and
+    /// rotation of its entity.
     pub fn pushed(&mut self, change: &BodyChange, body: &ClothBody) -> (Vec3, Quat) {
         let (Some(last), Some(built)) = (&mut self.last, &self.built) else {
             return (Vec3::ZERO, Quat::IDENTITY);
@@ -238,7 +239,7 @@ impl ColliderMotion {
         (gone, turned)
     }
 
-    /// What its next way depends on.
+    /// The inputs of its next path.
     pub fn memory(&self) -> ColliderMemory {
         ColliderMemory {
             last: self.last,
@@ -246,22 +247,22 @@ impl ColliderMotion {
         }
     }
 
-    /// Has its next way begin as that of another time.
+    /// Restores the inputs of its next path, from a snapshot.
     pub fn recall(&mut self, ColliderMemory { last, cloths }: ColliderMemory) {
         (self.last, self.cloths) = (last, cloths);
     }
 
-    /// Has been shifted with the world's origin, its entity being at `now`.
+    /// Shifts it with the world's origin; its entity is at `now`.
     pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>) {
         self.last = self.last.map(|last| shift.rigid(last, now));
     }
 
-    /// Wherever it is when it is looked at next, it has not come from anywhere.
+    /// Forgets its motion: wherever it is read next, its path begins there.
     pub fn stop(&mut self) {
         self.last = None;
     }
 
-    /// What holds it all along its way, as the tree of all colliders keeps it.
+    /// Its bounds along the whole path, for the tree of all colliders.
     pub fn held_by(&self) -> Bounds {
         self.bounds
     }
@@ -284,7 +285,7 @@ impl ColliderMotion {
         is_at_box && is_in_ball
     }
 
-    /// The collider's way through the tick in a cloth's frame.
+    /// The collider's path through the tick in a cloth's frame.
     pub fn seen_from(
         &self,
         frame: &ClothFrame,
@@ -306,7 +307,7 @@ impl ColliderMotion {
     }
 }
 
-/// A way that begins elsewhere: what carries a cloth along has it see a collider move the other way.
+/// A path that begins elsewhere: to a cloth that is carried along, a collider moves the opposite way.
 fn carried_along(way: MovingCollider, from: Isometry3d) -> MovingCollider {
     let end = Quat::from_scaled_axis(way.turn) * way.from.rotation;
     let turned = end * from.rotation.inverse();

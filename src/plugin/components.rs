@@ -1,4 +1,4 @@
-//! What a search leaves behind, and where a cloth may be touched.
+//! The result of a search, and the region in which a cloth may be touched.
 
 use bevy::{
     ecs::component::Component,
@@ -9,8 +9,8 @@ use bevy::{
 use super::frame::Shift;
 use crate::hierarchy::{NodeBounds, TopDownQuery};
 
-/// The bounding volumes of the last tick in which something was near, and what the search through them found. Neither
-/// scenes nor clones have it, as it is of one tick.
+/// The bounding volumes of the last tick in which a collider was near, and the result of the search through them.
+/// Scenes and clones don't have it, because it belongs to a single tick.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Default, Debug)]
 #[component(clone_behavior = Ignore)]
@@ -27,14 +27,14 @@ impl ClothSearch {
         &self.bounds
     }
 
-    /// Which nodes were visited and which touched, and the candidates.
+    /// The nodes that were visited, the nodes that touched, and the candidates.
     pub fn query(&self) -> &TopDownQuery {
         &self.query
     }
 }
 
-/// Where a cloth may be touched in the tick. Small, so that a thousand cloths which nothing comes near are passed over
-/// without a look at anything else.
+/// The region in which a cloth may be touched in the tick. It is small, so that a thousand cloths with nothing near are
+/// skipped without reading anything else.
 #[derive(Component, Debug, Default, Clone, Copy)]
 pub(super) struct BroadPhaseBounds {
     /// Around the whole of it, as far as it may get in the tick, in the world (m).

@@ -1,4 +1,4 @@
-//! Who touches whom, and the messages that say so.
+//! Contacts of cloths with colliders, and the messages about them.
 
 use bevy::{
     ecs::{
@@ -26,27 +26,29 @@ pub struct ClothContact {
     /// The collider's entity.
     #[entities]
     pub collider: Entity,
-    /// Particles that it pushed in the last tick.
+    /// Number of particles that it pushed in the last tick.
     pub particles: usize,
-    /// How deep the deepest of them was found (m), before it was pushed out.
+    /// Penetration of the deepest of them (m), before it was pushed out.
     pub deepest_penetration: f32,
-    /// Area of the cloth that was inside of the collider at the end of a sub-step, the largest of the tick (m²).
+    /// Area of the cloth inside the collider at the end of a sub-step (m²), the largest of the tick.
     pub area: f32,
-    /// ∫ depth dA over that area (m³), the largest of the tick: what the cloth had cut off from the collider, while
-    /// it is shallow.
+    /// ∫ depth dA over that area (m³), the largest of the tick. For a shallow contact it is the volume that the cloth
+    /// cuts off from the collider.
     pub volume: f32,
-    /// What the cloth gave to the collider in the last tick, in the world (N·s): the sum of its pushes, as far as they are
-    /// momentum. The collider was pushed with this over the tick's length (N), in the mean.
+    /// Impulse that the cloth gave to the collider in the last tick, in the world (N·s): the sum of its pushes, as far
+    /// as they carry momentum. Divided by the length of the tick (s), it is the mean force (N).
     pub impulse: Vec3,
-    /// Their moments about the origin of the collider's shape, in the world (N·m·s): its entity's, but for shapes that lie aside of it.
+    /// Angular impulse of these pushes about the origin of the collider's shape, in the world (N·m·s). It is the
+    /// entity's origin, except for shapes with an offset from their entity.
     pub angular_impulse: Vec3,
-    /// What the collider was tested against.
+    /// Whether the collider was tested against particles or triangles.
     pub narrow_phase: NarrowPhase,
-    /// From where to where its points are.
+    /// The range of its points.
     points: [usize; 2],
 }
 
-/// The colliders that a cloth touched in the last tick in which it moved: while it sleeps, or no time passes, they stay.
+/// The colliders that a cloth touched in the last tick in which it moved. They stay while the cloth sleeps, and while
+/// no time passes.
 #[derive(Component, Reflect, MapEntities, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, MapEntities, Default, Debug, Clone)]
@@ -71,18 +73,18 @@ impl ClothContacts {
         self.now.iter().find(|contact| contact.collider == collider)
     }
 
-    /// Whether they may be contacts of so many particles, in what somebody has read from a file.
+    /// Whether these contacts, read from a file, can belong to a cloth with that number of particles.
     pub(super) fn is_sound(&self, particles: usize) -> bool {
         (self.points.iter()).all(|point| (point.particle as usize) < particles)
     }
 
-    /// The particles near a collider that touches, each with its signed depth.
+    /// The particles near a touching collider, each with its signed depth.
     pub fn points(&self, contact: &ClothContact) -> &[ContactPoint] {
         let [first, end] = contact.points;
         self.points.get(first..end).unwrap_or_default()
     }
 
-    /// What stands still by decree touches nothing.
+    /// Forgets all contacts: a cloth that is frozen touches nothing.
     pub(super) fn clear(&mut self) {
         self.now.clear();
         self.points.clear();
@@ -128,12 +130,12 @@ impl ClothContacts {
     }
 }
 
-/// What a float can't hold, of particles that are given up, is nothing.
+/// Zero in place of an impulse that a float can't hold, from particles that are lost.
 fn finite(value: Vec3) -> Vec3 {
     if value.is_finite() { value } else { Vec3::ZERO }
 }
 
-/// A cloth and a collider have begun to touch.
+/// Sent when a cloth and a collider begin to touch.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ClothTouchStarted {
@@ -141,13 +143,13 @@ pub struct ClothTouchStarted {
     pub cloth: Entity,
     /// The collider's entity.
     pub collider: Entity,
-    /// Particles that touched in this tick.
+    /// Number of particles that touched in this tick.
     pub particles: usize,
-    /// How deep the deepest was found in this tick (m).
+    /// Deepest penetration in this tick (m).
     pub deepest_penetration: f32,
 }
 
-/// A cloth and a collider no longer touch, or one of them is gone: the entities may no longer exist.
+/// Sent when a cloth and a collider no longer touch, or when one of them is gone: the entities may no longer exist.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ClothTouchStopped {
@@ -155,9 +157,9 @@ pub struct ClothTouchStopped {
     pub cloth: Entity,
     /// The collider's entity.
     pub collider: Entity,
-    /// The largest number of particles that touched in one tick, while the touch lasted.
+    /// Largest number of particles that touched in one tick, from the start of the contact to its end.
     pub particles: usize,
-    /// How deep the deepest was found, while the touch lasted (m).
+    /// Deepest penetration from the start of the contact to its end (m).
     pub deepest_penetration: f32,
 }
 
@@ -206,7 +208,7 @@ pub(super) fn send_touch_messages(
     }
 }
 
-/// A cloth that goes takes its touches with it, and so do contacts that a game replaces, of a disabled cloth too.
+/// Ends the contacts of a cloth that is removed, and contacts that a game replaces, of a disabled cloth too.
 pub(super) fn send_stopped_messages(
     removed: On<Discard, ClothContacts>,
     contacts: Query<&ClothContacts, Allow<Disabled>>,

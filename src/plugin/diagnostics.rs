@@ -13,7 +13,7 @@ use bevy::{
 use super::{ClothState, ClothStats, ClothSystems, envelope::report_limits};
 use crate::hierarchy::{BoundRule, SearchMethod};
 
-/// Measures every tick into Bevy's `DiagnosticsStore`: times and counts added up over all cloths, and the
+/// Writes figures of every tick into Bevy's `DiagnosticsStore`: times and counts summed over all cloths, and the
 /// largest stretch among them.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothDiagnosticsPlugin {
@@ -27,38 +27,38 @@ impl Default for ClothDiagnosticsPlugin {
 }
 
 impl ClothDiagnosticsPlugin {
-    /// Time of all sub-steps a tick (ms).
+    /// Time of all sub-steps in a tick (ms).
     pub const INTEGRATE: DiagnosticPath = DiagnosticPath::const_new("cloth/integrate");
     /// Time to bring the bounding volumes up to date (ms).
     pub const REBUILD: DiagnosticPath = DiagnosticPath::const_new("cloth/rebuild");
     /// Time of the search (ms).
     pub const QUERY: DiagnosticPath = DiagnosticPath::const_new("cloth/query");
-    /// Nodes of the trees that were looked at.
+    /// Nodes of the trees that the searches visited.
     pub const NODES_VISITED: DiagnosticPath = DiagnosticPath::const_new("cloth/nodes_visited");
-    /// Particles that were tested: leaves among them, and all of a cloth that was scanned.
+    /// Particles that were tested: the leaves among the visited nodes, and all particles of a scanned cloth.
     pub const LEAF_TESTS: DiagnosticPath = DiagnosticPath::const_new("cloth/leaf_tests");
-    /// Colliders that came near a cloth, once for each.
+    /// Colliders that came near a cloth, counted once for each cloth.
     pub const COLLIDERS_NEAR: DiagnosticPath = DiagnosticPath::const_new("cloth/colliders_near");
-    /// Those of them that were tested against triangles.
+    /// Colliders near a cloth that were tested against triangles.
     pub const BY_TRIANGLES: DiagnosticPath = DiagnosticPath::const_new("cloth/by_triangles");
-    /// Cloths of which every particle was tested.
+    /// Cloths that were scanned: every particle was tested.
     pub const SCANS: DiagnosticPath = DiagnosticPath::const_new("cloth/scans");
     /// Cloths whose tree was searched by volumes that need no update.
     pub const SEARCHES: DiagnosticPath = DiagnosticPath::const_new("cloth/searches");
     /// Cloths whose tree was refitted and searched.
     pub const REFITS: DiagnosticPath = DiagnosticPath::const_new("cloth/refits");
-    /// Searches that were done again within a tick, as particles moved farther than was expected.
+    /// Searches repeated within a tick, because particles moved farther than expected.
     pub const REQUERIES: DiagnosticPath = DiagnosticPath::const_new("cloth/requeries");
     /// Particles that were pushed out of a collider.
     pub const CONTACTS: DiagnosticPath = DiagnosticPath::const_new("cloth/contacts");
-    /// Sub-steps, those included that were done again for a tolerance; none of a cloth that sleeps.
+    /// Sub-steps, including those repeated for a tolerance. A sleeping cloth has none.
     pub const SUBSTEPS: DiagnosticPath = DiagnosticPath::const_new("cloth/substeps");
     /// Cloths that sleep.
     pub const ASLEEP: DiagnosticPath = DiagnosticPath::const_new("cloth/asleep");
     /// The largest stretch of a structural spring (%).
     pub const STRETCH: DiagnosticPath = DiagnosticPath::const_new("cloth/stretch");
 
-    /// With its system in `schedule`, which must be that of [`ClothPlugin`](super::ClothPlugin).
+    /// Runs its system in `schedule`, which must be that of [`ClothPlugin`](super::ClothPlugin).
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),

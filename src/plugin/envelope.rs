@@ -16,21 +16,23 @@ use super::{
 };
 use crate::solver::ClothLimit;
 
-/// Reports are gathered for as many ticks, half a second of Bevy's 64 Hz, so that many cloths are one line of the log.
+/// Reports are gathered for this number of ticks, half a second at Bevy's 64 Hz, so that many cloths make one line of
+/// the log.
 const GATHERED: u32 = 32;
 
-/// A cloth has left the envelope in which it is simulated well, for more than an instant. It is logged as well, with the
-/// remedy: once for each limit, and again when it is ten times worse.
+/// Sent when a cloth has been outside the envelope in which it is simulated well for more than an instant. The log says
+/// so too, with the remedy: once for each limit, and again when it gets ten times worse.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ClothLimitExceeded {
     /// The cloth.
     pub cloth: Entity,
-    /// Which limit.
+    /// The limit that it exceeds.
     pub limit: ClothLimit,
-    /// The quantity: a stretch, a ratio of masses, a distance (m), a damping, a way in radii, or a number of sub-steps.
+    /// The value of the limited quantity: a stretch, a ratio of masses, a distance (m), a damping, a travel in radii,
+    /// or a number of sub-steps.
     pub quantity: f32,
-    /// Up to where it is good.
+    /// The largest value at which the cloth is simulated well.
     pub good_up_to: f32,
 }
 
@@ -39,14 +41,14 @@ pub struct ClothLimitExceeded {
 pub(super) struct Gathered {
     cloths: EntityHashSet,
     ticks: u32,
-    /// The one that is farthest beyond, with its quantity and up to where that is good.
+    /// The cloth that is farthest beyond the limit, with its quantity and the largest good value of that.
     worst: Option<(String, [f32; 2])>,
 }
 
 impl Gathered {
     fn add(&mut self, cloth: Entity, name: impl FnOnce() -> String, quantity: [f32; 2]) {
         self.cloths.insert(cloth);
-        // Of sub-steps that failed none is good.
+        // The limit of failed sub-steps is 0.
         let excess = |[quantity, good]: [f32; 2]| match good {
             0.0 => quantity,
             _ => quantity / good,
@@ -57,7 +59,7 @@ impl Gathered {
         }
     }
 
-    /// A tick has passed. Returns what is to be logged, if anything is.
+    /// Counts a tick. Returns the line to log, if there is one.
     fn line(&mut self, limit: ClothLimit) -> Option<String> {
         self.ticks += u32::from(!self.cloths.is_empty());
         if self.ticks < GATHERED {
@@ -82,13 +84,13 @@ pub(super) fn report_limits(
     mut gathered: Local<[Gathered; ClothLimit::ALL.len()]>,
 ) {
     for (name, mut state, mut scratch, mut stats) in &mut cloths {
-        // Kept as it was while it sleeps or stands still; not touched, so that nothing seems to change.
+        // Kept while the cloth sleeps or is frozen; not written, so that change detection does not see it.
         let Some(limit_inputs) = scratch.limit_inputs else {
             continue;
         };
         scratch.limit_inputs = None;
         stats.exceeded = None;
-        // That longer sub-steps stretch more was asked for.
+        // Longer sub-steps stretch more, and the level of detail asked for them.
         let is_coarse = state.lod.moved_by() > 1;
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
             if is_coarse && limit != ClothLimit::Layers {

@@ -1,32 +1,32 @@
-//! How far a cloth is beyond a limit, and for how long.
+//! The excess of a cloth over a limit, and its duration.
 
 use crate::solver::ClothLimit;
 
-/// As many ticks in a row make a report: a blow may stretch a cloth for an instant, which does no harm.
+/// Ticks in a row before a report: a blow may stretch a cloth for an instant, which does no harm.
 const TICKS: u32 = 8;
 
-/// What is this many times as large as when it was reported is reported again.
+/// A quantity that becomes this many times as large as reported is reported again.
 const WORSE: f32 = 10.0;
 
-/// How far a cloth is beyond a limit.
+/// The excess of a cloth over a limit.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Excess {
-    /// For how many ticks in a row.
+    /// Number of ticks in a row.
     ticks: u32,
     /// The quantity that was reported, 0 before that.
     reported: f32,
 }
 
 impl Excess {
-    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether it is to be reported.
+    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether to report it.
     pub fn observe(&mut self, limit: ClothLimit, quantity: Option<f32>) -> bool {
         let Some(quantity) = quantity else {
             self.ticks = 0;
             return false;
         };
         self.ticks = self.ticks.saturating_add(1);
-        // What passes through does so at once, and a tolerance is held in each tick or not at all.
+        // A collider passes through in a single tick, and a tolerance holds in each tick or not at all.
         let is_at_once = matches!(
             limit,
             ClothLimit::SmallFastCollider | ClothLimit::Tolerance | ClothLimit::Layers

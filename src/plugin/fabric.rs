@@ -2,7 +2,7 @@
 
 use bevy::{color::Color, pbr::StandardMaterial};
 
-/// A matt material that is lit and seen from both sides, as cloth wants it. Give it textures as any other:
+/// A matt material that is lit and visible from both sides, as cloth needs. Add textures as to any other:
 /// `StandardMaterial { base_color_texture: Some(image), ..fabric(Color::WHITE) }`.
 ///
 /// ```no_run

@@ -1,4 +1,4 @@
-//! What happens to bad input.
+//! Faults: cloths and colliders with bad input are left out, and logged.
 
 use bevy::{
     ecs::{
@@ -18,12 +18,13 @@ use super::{
 };
 use crate::cloth::{ClothError, ClothParticles};
 
-/// On a cloth or collider that is left out of the simulation: why. Taken away as soon as the fault is mended.
+/// On a cloth or collider that is left out of the simulation, with the reason. The plugin removes it as soon as the
+/// fault is corrected.
 #[derive(Component, Reflect, MapEntities, Debug, Clone, PartialEq)]
 #[reflect(Component, MapEntities, Debug, Clone, PartialEq)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothFault {
-    /// What is wrong.
+    /// The reason.
     #[entities]
     pub error: ClothError,
     part: Part,
@@ -56,7 +57,7 @@ impl ClothFault {
     }
 }
 
-/// Marks cloths whose particles the tick has lost.
+/// Marks cloths whose particles became invalid in the tick.
 pub(super) fn report_lost(
     cloths: Query<(Entity, &ClothState, &ClothParticles), Without<ClothFault>>,
     mut commands: Commands,
@@ -69,7 +70,7 @@ pub(super) fn report_lost(
     }
 }
 
-/// Logs each fault when it comes, not again while it lasts; those of a tick that are alike in one line.
+/// Logs each fault once, when it appears. Equal faults of one tick share a line.
 pub(super) fn log_faults(faults: Query<(Named, &ClothFault), Changed<ClothFault>>) {
     for (index, (name, fault)) in faults.iter().enumerate() {
         let is_like = |(_, other): &(NamedItem, &ClothFault)| fault.is_like(other);

@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{cloth::ClothError, contact::ClothCollider};
 
-/// What a collider is read from. A disabled one is not looked at, as it is not met.
+/// The components of a collider. Disabled colliders are not read, since cloth does not touch them.
 type Reading = (
     &'static ClothCollider,
     &'static mut ColliderMotion,
@@ -55,11 +55,11 @@ pub(super) fn prepare_colliders(
             *motion = ColliderMotion::default();
         }
         tree.set(entity, motion.held_by());
-        // What is made of an asset has to be there, and may become another.
+        // A mesh asset has to be loaded, and may change.
         if motion.is_moving() || matches!(collider, ClothCollider::Mesh(_)) {
             moving.push(entity);
         }
-        // What is on its way is no fault.
+        // A mesh that is being loaded is no fault.
         let outcome = match outcome {
             Err(ClothError::MeshLoading) => Ok(()),
             outcome => outcome,
@@ -68,7 +68,7 @@ pub(super) fn prepare_colliders(
     }
 }
 
-/// What is no collider any more is not searched for.
+/// Removes an entity that is no collider any more from the tree.
 pub(super) fn forget_collider(removed: On<Remove, ColliderMotion>, mut tree: ResMut<ColliderTree>) {
     tree.remove(removed.entity);
 }

@@ -35,7 +35,7 @@ pub(super) fn global_transform(
         })
 }
 
-/// The error of a global transform that nothing can be done with.
+/// The error of a global transform that can't be used.
 pub(super) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
     let affine: Affine3A = transform.into();
     let [x, y, z] = [0, 1, 2].map(|axis| affine.matrix3.col(axis));
@@ -44,7 +44,8 @@ pub(super) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
     }
 }
 
-/// Where things are as of now, also what is below something disabled: that does not disable its children.
+/// Global transforms as of now, including those below a disabled entity, since disabling an entity does not disable its
+/// children.
 #[derive(SystemParam)]
 pub(super) struct Places<'w, 's> {
     parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
@@ -71,8 +72,8 @@ impl Places<'_, '_> {
     }
 }
 
-/// The frame that a cloth's particles are given in: its entity's global translation and rotation as of the
-/// last tick. The scale is already in the particles, so this frame measures metres.
+/// The frame of a cloth's particles: the global translation and rotation of its entity as of the last tick. The
+/// particles already include the entity's scale, so lengths in this frame are metres.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
@@ -123,7 +124,7 @@ impl ClothFrame {
         }
     }
 
-    /// From the particles' frame to the world.
+    /// The transform from the particles' frame to the world.
     pub fn isometry(&self) -> Isometry3d {
         self.isometry
     }
@@ -134,12 +135,12 @@ impl ClothFrame {
         self.affine
     }
 
-    /// A particle's position in the world (m).
+    /// Takes a particle's position (m) to the world.
     pub fn to_world(&self, position: Vec3) -> Vec3 {
         self.isometry * position
     }
 
-    /// A point of the world in the particles' frame (m).
+    /// Takes a point of the world (m) to the particles' frame.
     pub fn from_world(&self, point: Vec3) -> Vec3 {
         self.isometry.inverse() * point
     }
@@ -151,13 +152,13 @@ impl ClothFrame {
     }
 }
 
-/// A jump of the world's origin: what the game has added to all places (m).
+/// A jump of the world's origin: the offset that the game has added to all positions (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shift(pub Vec3);
 
 impl Shift {
-    /// Where something is that was here before. If that is `now`, but for what numbers so large are rounded by, it is `now`: what has only
-    /// been shifted stands still.
+    /// The new place of something that was here before. If it differs from `now` by no more than rounding, it is `now`,
+    /// so that whatever has only been shifted stands still.
     pub fn rigid(self, was: Isometry3d, now: Option<Isometry3d>) -> Isometry3d {
         let shifted = Isometry3d {
             translation: was.translation + Vec3A::from(self.0),
@@ -170,7 +171,7 @@ impl Shift {
         now.filter(is_there).unwrap_or(shifted)
     }
 
-    /// The same of one that is scaled.
+    /// The same with a scale.
     pub fn affine(self, was: Affine3A, now: Option<Affine3A>) -> Affine3A {
         let shifted = Affine3A {
             translation: was.translation + Vec3A::from(self.0),
@@ -183,8 +184,8 @@ impl Shift {
         now.filter(is_there).unwrap_or(shifted)
     }
 
-    /// By how much numbers that are about as far from the origin as `place` may be rounded (m), before or after it: what is below
-    /// something else is placed by some sums and products, each of which rounds.
+    /// Largest rounding error of positions about as far from the origin as `place` (m), before or after the jump. The
+    /// place of a child is computed from several sums and products, each of which rounds.
     pub fn rounding(self, place: Vec3A) -> f32 {
         let size = place.abs().max_element() + self.0.abs().max_element();
         16.0 * f32::EPSILON * size
@@ -195,7 +196,7 @@ impl Shift {
     }
 }
 
-/// Where `b` is, seen from `a`: to a rounding of how far they are apart, wherever both are.
+/// The place of `b` in the frame of `a`, to a rounding of the distance between them, wherever both are.
 pub(super) fn relative(a: Isometry3d, b: Isometry3d) -> Isometry3d {
     let turn = a.rotation.inverse();
     Isometry3d::new(
@@ -204,7 +205,7 @@ pub(super) fn relative(a: Isometry3d, b: Isometry3d) -> Isometry3d {
     )
 }
 
-/// Where something is and how it is turned, its scale left out.
+/// Translation and rotation of a transform, without its scale.
 pub(super) fn rigid(affine: &Affine3A) -> Isometry3d {
     let (_, rotation, translation) = affine.to_scale_rotation_translation();
     Isometry3d::new(translation, rotation.normalize())

@@ -1,4 +1,4 @@
-//! Cloths that keep their shape and go with what carries them: frozen, and taking up their motion again.
+//! Frozen cloths, which keep their shape and move with their carrier, and the start of their motion when they thaw.
 
 use bevy::{
     ecs::{
@@ -16,8 +16,8 @@ use super::{
 };
 use crate::cloth::{ClothError, ClothParticles};
 
-/// Where that is what carries a cloth whose entity is at `frame`: its first attachment's target, where it has one, else the entity;
-/// `None` if that target has gone.
+/// Place of the carrier of a cloth whose entity is at `frame`: its first attachment's target if it has one, else the
+/// entity. `None` if that target is gone.
 fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<Isometry3d> {
     let Some(target) = state.targets.first() else {
         return Some(frame.isometry());
@@ -26,11 +26,11 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
     Some(rigid(&place.affine()))
 }
 
-/// Has a cloth stand still, and its frame go with what carries it, so that its particles keep their places in that; they lose their
-/// velocities as it begins to.
+/// Freezes a cloth: its frame moves with its carrier, and its particles keep their places in the frame. They lose their
+/// velocities when it begins.
 ///
 /// # Errors
-/// [`ClothError::Transform`], and [`ClothError::NoTarget`] for a first `attachments`' target that has gone.
+/// [`ClothError::Transform`], and [`ClothError::NoTarget`] if the target of the first of `attachments` is gone.
 pub(super) fn stand(
     entity: Entity,
     attachments: &[ClothAttachment],
@@ -51,7 +51,7 @@ pub(super) fn stand(
                     target,
                 })
             }
-            // What was taken off meanwhile falls once it moves again, and what was attached to others goes there.
+            // Released particles fall once the cloth moves again, and particles attached to other targets go there.
             _ => Ok(()),
         };
     };
@@ -80,8 +80,8 @@ pub(super) fn stand(
     Ok(())
 }
 
-/// Has a cloth that stood still, whose entity is at `now`, go on in a tick of so many `seconds`: with the velocity of what carries it, or
-/// with none if it `jumps`. Returns whether it stood still.
+/// Thaws a frozen cloth, whose entity is at `now`, in a tick of `seconds`. It gets the velocity of its carrier, or none
+/// if it `jumps`. Returns whether it was frozen.
 pub(super) fn thaw(
     targets: &Targets,
     now: ClothFrame,
@@ -99,7 +99,7 @@ pub(super) fn thaw(
         _ => Isometry3d::IDENTITY,
     };
     particles.set_body_motion(by, seconds);
-    // Where it stood, and not where it was as it froze.
+    // Its last place while frozen, not its place as it froze.
     if state.first_target.is_some() {
         state.first_target = Some(frozen.last);
     }

@@ -33,24 +33,24 @@ use crate::{
     },
 };
 
-/// How cloths' gizmos look. They show the last tick, whereas the mesh is drawn up to a tick behind it. A gizmo config
-/// group: line width and depth are those of its `GizmoConfig`.
+/// The look of the gizmos of cloths: a gizmo config group, whose `GizmoConfig` sets line width and depth. Gizmos show
+/// the last tick, whereas the mesh is drawn up to a tick behind it.
 #[derive(GizmoConfigGroup, Reflect, Debug, Clone)]
 #[reflect(Default, Debug, Clone)]
 pub struct ClothGizmos {
-    /// Draws the volumes of every cloth's finest level, those without a [`ShowClothGizmos`] too.
+    /// Draws the finest level's volumes of every cloth, even without a [`ShowClothGizmos`].
     pub draw_all: bool,
-    /// Volumes that the search did not get to: nothing touches one further up.
+    /// Volumes that the search did not reach, because nothing touches a volume above them.
     pub unvisited: Color,
-    /// Volumes that the search looked at and nothing touches: what is below them was pruned.
+    /// Volumes that the search visited and nothing touches: everything below them was pruned.
     pub untouched: Color,
     /// Volumes that a collider touches, or may touch within the tick.
     pub touching: Color,
     /// Structural springs; shear and bend springs are drawn fainter.
     pub springs: Color,
-    /// Line segments a circle.
+    /// Line segments per circle.
     pub resolution: u32,
-    /// Leaves are drawn with at least this radius, in spacings: their own is that of their particle, too small to
+    /// Smallest radius with which leaves are drawn, in spacings. Their own radius is that of a particle, too small to
     /// see.
     pub smallest: f32,
 }
@@ -69,9 +69,9 @@ impl Default for ClothGizmos {
     }
 }
 
-/// Draws the gizmos of one visible cloth, as Bevy's `ShowAabbGizmo` does an entity's box.
+/// Draws the gizmos of one visible cloth, as Bevy's `ShowAabbGizmo` draws the bounding box of an entity.
 ///
-/// Half of the cloth with its volumes, the other half as it looks in the game:
+/// Volumes on one half of the cloth, and the other half as it looks in the game:
 ///
 /// ```
 /// use bevy::math::Rect;
@@ -83,14 +83,15 @@ impl Default for ClothGizmos {
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ShowClothGizmos {
-    /// Levels of the tree whose volumes are drawn, 0 for the root; those deeper than the tree are its leaves'.
-    /// The first and the last; `None` for no volumes. They are those that the cloth's [`SearchMethod`] asks for, by default spheres.
+    /// The first and the last level of the tree whose volumes are drawn, 0 for the root. Levels deeper than the tree
+    /// are its leaves. `None` draws no volumes. The cloth's [`SearchMethod`] decides which kind of volume is drawn, by
+    /// default spheres.
     pub levels: Option<[usize; 2]>,
     /// Whether the springs are drawn.
     pub springs: bool,
-    /// The part of the cloth that is drawn, in the UV coordinates of its mesh: on a grid from (0, 0), where particle 0 is, to
-    /// (1, 1). Of a mesh without UVs it is all.
-    /// A volume is drawn if its patch's middle is inside, a spring if both ends are. All of it by default.
+    /// The part of the cloth that is drawn, in the UV coordinates of its mesh; by default all of it. On a grid they go
+    /// from (0, 0), at particle 0, to (1, 1). A mesh without UVs is drawn whole. A volume is drawn if the middle of its
+    /// patch is inside, a spring if both its ends are.
     pub region: Rect,
 }
 
@@ -123,7 +124,7 @@ impl ShowClothGizmos {
         }
     }
 
-    /// Neither volumes nor springs, for keys or a panel to switch on.
+    /// Neither volumes nor springs, for a key or a panel to switch on later.
     pub fn nothing() -> Self {
         Self {
             levels: None,
@@ -132,7 +133,7 @@ impl ShowClothGizmos {
         }
     }
 
-    /// The same of one [`region`](Self::region) alone.
+    /// Draws only this [`region`](Self::region), in UV coordinates.
     pub fn within(mut self, region: Rect) -> Self {
         self.region = region;
         self
@@ -167,7 +168,8 @@ impl Plugin for ClothGizmosPlugin {
     }
 }
 
-/// What a cloth is drawn by, kept from frame to frame: the tick's own search may have touched no volume at all.
+/// Volumes and a search of the gizmos' own, kept from frame to frame: the tick's search may have touched no volume at
+/// all.
 #[derive(Default)]
 struct Drawing {
     bounds: NodeBounds,
@@ -214,7 +216,7 @@ fn draw_cloths(
 }
 
 impl Drawing {
-    /// Finds where each volume is now, and what the search made of it.
+    /// Finds the current place of each volume, and whether it was visited or touched.
     fn search(&mut self, cloth: &DrawnItem) {
         let (tree, surface) = (cloth.built.tree(), cloth.built.surface());
         let scratch = cloth.scratch;
@@ -236,7 +238,7 @@ impl Drawing {
             cloth.search.query.states_into(tree, &mut self.states);
             return;
         }
-        // Nothing was searched, or all particles one by one: what a search would find.
+        // Where nothing was searched, or all particles were scanned: the result that a search would have.
         self.query.clear();
         let root = tree.root_sphere(cloth.particles, stretch);
         for (_, collider) in &scratch.near {
@@ -292,7 +294,7 @@ impl Drawing {
     }
 }
 
-/// Each volume as what it is.
+/// Draws each volume in its own shape.
 fn draw_volume(
     volume: &NodeVolume,
     frame: Isometry3d,
@@ -306,7 +308,7 @@ fn draw_volume(
         gizmos.cube(transform, color);
     };
     match volume {
-        // Of several pieces no volume that knows only the rest shape is around all.
+        // In a cloth of several pieces, a volume from the rest shape does not enclose all of them.
         NodeVolume::Sphere(sphere) if !sphere.radius().is_finite() => {}
         NodeVolume::Aabb(aabb) if !aabb.max.is_finite() => {}
         NodeVolume::Sphere(sphere) => {

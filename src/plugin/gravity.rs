@@ -1,4 +1,4 @@
-//! What pulls at every cloth.
+//! The gravity of all cloths.
 
 use bevy::{
     ecs::{reflect::ReflectResource, resource::Resource},
@@ -6,7 +6,8 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-/// Acceleration of every cloth (m/s²), in the world; [`ClothSettings::gravity`](crate::solver::ClothSettings::gravity) overrides it for one.
+/// Gravitational acceleration of every cloth (m/s²), in the world.
+/// [`ClothSettings::gravity`](crate::solver::ClothSettings::gravity) overrides it for a single cloth.
 #[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothGravity(pub Vec3);

@@ -1,4 +1,4 @@
-//! How much of a character's motion its cloth feels, and what jumps with it.
+//! How much of a character's motion its cloth feels, and teleports of whole characters.
 
 use bevy::{
     ecs::{
@@ -22,13 +22,13 @@ use super::{
 };
 use crate::cloth::ClothError;
 
-/// How much of an entity's own motion is felt by the cloths below it, or attached below it: beside a character's `Transform`, so that a
-/// cape does not fly off a hero who sprints. Without it they feel all of it.
+/// How strongly cloths below an entity in the hierarchy, or attached below it, feel its motion. Add it to a character,
+/// so that a cape does not fly off a sprinting hero. Without it, cloths feel all of the motion.
 ///
-/// The rest of the motion carries them along as if they were one body with the entity, without any speed from it: a share of 0.3
-/// is what a wearer feels who speeds up at 0.3 of the rate. Colliders are met where they are, at the speed that they have as
-/// seen from there. It counts for all at and below the entity, and for cloth whose first attachment's target is; of several
-/// above each other, the nearest.
+/// The rest of the motion carries the cloths along as if they were one rigid body with the entity, without giving them
+/// speed. With a share of 0.3, cloth behaves as on a wearer who accelerates at 0.3 of the rate. Colliders are met where
+/// they are, at their speed relative to the carried cloth. The component applies to all cloths at and below the entity,
+/// and to cloths whose first attachment's target is at or below it. If several apply, the nearest one counts.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -42,18 +42,20 @@ use crate::cloth::ClothError;
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(RootMotion)]
 pub struct ClothInertia {
-    /// The share of its translation that is felt, from 0 to 1.
+    /// Share of its translation that cloth feels, from 0 to 1.
     pub linear: f32,
-    /// The share of its rotation that is felt, from 0 to 1.
+    /// Share of its rotation that cloth feels, from 0 to 1.
     pub angular: f32,
-    /// If it goes farther than this in a tick (m), that is a [`ClothTeleport`], and no motion. Positive; infinity for never.
+    /// A move of more than this in one tick (m) is a [`ClothTeleport`] instead of a motion. Positive; infinity for
+    /// never.
     pub teleport_distance: f32,
-    /// Likewise if it turns farther than this (rad): it turns by π at most.
+    /// A rotation of more than this in one tick (rad) is a [`ClothTeleport`] too. Positive; π for never, as no rotation
+    /// is larger.
     pub teleport_angle: f32,
 }
 
 impl Default for ClothInertia {
-    /// All is felt; what goes 2 m in a tick jumps, and no turn does.
+    /// Cloth feels all motion. A move of more than 2 m in a tick is a teleport; no rotation is.
     fn default() -> Self {
         Self {
             linear: 1.0,
@@ -65,7 +67,7 @@ impl Default for ClothInertia {
 }
 
 impl ClothInertia {
-    /// With this share of all motion felt, from 0 to 1.
+    /// Cloth feels this share of translation and rotation, from 0 to 1.
     pub fn share(share: f32) -> Self {
         Self {
             linear: share,
@@ -74,10 +76,10 @@ impl ClothInertia {
         }
     }
 
-    /// Whether each value is in its range.
+    /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not.
+    /// [`ClothError::Quantity`] for the first value that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         for share in [self.linear, self.angular] {
             let is_share = |v: f32| (0.0..=1.0).contains(&v);
@@ -103,7 +105,7 @@ impl ClothInertia {
 pub(super) struct RootMotion {
     /// Where it was as the last tick ended.
     last: Option<Isometry3d>,
-    /// By what it carries cloths in this tick, if it does, or why it does not.
+    /// The motion that carries cloths in this tick, if there is one; `error` says why there is none.
     carried: Option<Carried>,
     error: Option<ClothError>,
 }
@@ -114,18 +116,18 @@ impl RootMotion {
         self.last
     }
 
-    /// Has been shifted with the world's origin, its entity being at `now`.
+    /// Shifts it with the world's origin; its entity is at `now`.
     pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>) {
         self.last = self.last.map(|last| shift.rigid(last, now));
     }
 
-    /// Where it was, as of another time.
+    /// Restores the place where it was, from a snapshot.
     pub fn recall(&mut self, last: Option<Isometry3d>) {
         self.last = last;
     }
 }
 
-/// What carries a cloth along as a tick begins: as a body that goes from one place to another in the world.
+/// The motion that carries a cloth along as a tick begins: that of a rigid body from one place in the world to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Carried {
     from: Isometry3d,
@@ -133,23 +135,23 @@ pub(super) struct Carried {
 }
 
 impl Carried {
-    /// What is somewhere as the tick begins, carried along and seen from a frame.
+    /// Carries a place along as the tick begins. The result is as seen from a frame.
     pub fn seen_from(&self, frame: &ClothFrame, place: Isometry3d) -> Isometry3d {
         relative(frame.isometry(), self.to) * relative(self.from, place)
     }
 
-    /// What takes back by how much something in a frame was carried.
+    /// The transform that undoes this motion in a frame.
     #[cfg(feature = "mesh")]
     pub fn undone_in(&self, frame: &ClothFrame) -> Isometry3d {
         relative(frame.isometry(), self.from) * relative(self.to, frame.isometry())
     }
 }
 
-/// What jumps in this tick, with all that is below it.
+/// Entities that teleport in this tick, with everything below them.
 #[derive(Resource, Debug, Default)]
 pub(super) struct Jumped(Vec<Entity>);
 
-/// Notes by how much each root carries what is below it, and which jump.
+/// Notes how far each root carries the cloths below it, and which roots teleport.
 pub(super) fn follow_roots(
     mut roots: Query<(Entity, &ClothInertia, &mut RootMotion)>,
     marked: Query<Entity, With<ClothTeleport>>,
@@ -175,7 +177,7 @@ pub(super) fn follow_roots(
             }
         };
         motion.error = None;
-        // What is moved while no time passes has its way still before it.
+        // If it is moved while no time passes, the motion counts in the next tick with time.
         let last = *motion.last.get_or_insert(place);
         if time.delta_secs() == 0.0 {
             continue;
@@ -198,7 +200,7 @@ pub(super) fn follow_roots(
     }
 }
 
-/// What carries things, and what jumps.
+/// The roots that carry cloths, and those that teleport.
 #[derive(SystemParam)]
 pub(super) struct Roots<'w, 's> {
     roots: Query<'w, 's, &'static RootMotion>,
@@ -207,17 +209,17 @@ pub(super) struct Roots<'w, 's> {
 }
 
 impl Roots<'_, '_> {
-    /// Whether an entity jumps, or something that it is below.
+    /// Whether an entity, or one above it, teleports.
     pub fn jumps(&self, entity: Entity) -> bool {
         let has_jumped = |entity: Entity| self.jumped.0.contains(&entity);
         !self.jumped.0.is_empty()
             && (has_jumped(entity) || self.parents.iter_ancestors(entity).any(has_jumped))
     }
 
-    /// What carries a cloth, which may be attached to something.
+    /// The motion that carries a cloth, which may be attached to an entity.
     ///
     /// # Errors
-    /// What is wrong with its root.
+    /// The error of its root.
     pub fn carry(
         &self,
         cloth: Entity,

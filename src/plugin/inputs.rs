@@ -1,4 +1,4 @@
-//! What a game asks of a cloth in a tick, checked.
+//! The game's settings of a cloth in a tick, checked.
 
 use bevy::math::Vec3;
 
@@ -9,7 +9,7 @@ use crate::{
     solver::ClothSettings,
 };
 
-/// What the game asks for. In place of components that it took away the defaults count.
+/// The game's settings. Removed components count as their defaults.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Inputs {
     pub settings: ClothSettings,
@@ -22,7 +22,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// Those of a cloth where `gravity` acts on all (m/s²).
+    /// The settings of a cloth; `gravity` is that of all cloths (m/s²).
     ///
     /// # Errors
     /// The first value that is out of range. The material is checked when it changes.

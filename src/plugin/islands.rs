@@ -67,7 +67,7 @@ pub(super) struct Neighbour {
 /// Those that touch cloth at all.
 type Neighbours<'w, 's> = Query<'w, 's, Neighbour, With<ClothSelfCollision>>;
 
-/// Finds which cloths may touch each other in the tick. What moves wakes those that sleep beside it.
+/// Finds which cloths may touch each other in the tick. A cloth that moves wakes sleeping cloths beside it.
 pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours) {
     let islands = &mut *islands;
     islands.spans.clear();
@@ -140,7 +140,7 @@ impl Islands {
         }
     }
 
-    /// Whether the boxes of two cloths meet. They are asked for once, and what has none meets all.
+    /// Whether the boxes of two cloths meet. Boxes are computed once, and a cloth without a box meets all.
     fn boxes_meet(
         &mut self,
         spans: [usize; 2],
@@ -169,7 +169,7 @@ impl Islands {
         span
     }
 
-    /// Makes islands of those that are not alone. One of the same cloths as before knows what it found.
+    /// Makes islands of cloths that are not alone. An island of the same cloths as before keeps its contacts.
     fn collect(&mut self) {
         self.island_of.clear();
         self.island_of.resize(self.spans.len(), NONE);
@@ -202,7 +202,7 @@ impl Islands {
     }
 }
 
-/// Wakes all cloths of an island of which one moves.
+/// Wakes all cloths of an island in which one moves.
 fn wake(island: &mut Island, cloths: &mut Neighbours) {
     let mut is_moving = false;
     for cloth in cloths.iter_many(&island.cloths) {
@@ -215,7 +215,7 @@ fn wake(island: &mut Island, cloths: &mut Neighbours) {
     let mut each = cloths.iter_many_mut(&island.cloths);
     while let Some(mut cloth) = each.fetch_next() {
         cloth.scratch.is_in_island = true;
-        // What it knows of itself alone is in its island's.
+        // Its contact with itself is part of its island's.
         cloth.scratch.mutual = None;
         if is_moving && cloth.state.rest.is_asleep() {
             cloth.wake();
@@ -224,7 +224,7 @@ fn wake(island: &mut Island, cloths: &mut Neighbours) {
 }
 
 impl NeighbourItem<'_, '_> {
-    /// Has a cloth that was prepared as one that sleeps take part as one that is awake.
+    /// Wakes a cloth that was prepared as a sleeping one.
     fn wake(&mut self) {
         self.state.rest.disturb();
         self.state.rests_on.clear();

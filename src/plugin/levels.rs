@@ -42,7 +42,7 @@ pub(super) struct Levelled {
     teleports: Has<ClothTeleport>,
 }
 
-/// A cloth, and the level that it is to have.
+/// A cloth, and its wanted level.
 #[derive(Debug, Clone, Copy)]
 struct Wanted {
     entity: Entity,
@@ -67,7 +67,7 @@ pub(super) struct Work {
 
 type Colliders<'w, 's> = Query<'w, 's, (&'static ColliderMotion, Option<&'static ClothLayers>)>;
 
-/// Says what becomes of each cloth in the tick. Costs nothing where no level of detail is asked for.
+/// Decides what happens to each cloth in the tick. Costs nothing if there is no level of detail.
 pub(super) fn choose_levels(
     mut cloths: Query<Levelled>,
     own: Query<(), With<ClothLod>>,
@@ -79,7 +79,7 @@ pub(super) fn choose_levels(
     mut work: Local<Work>,
 ) {
     let is_asked_for = !own.is_empty() || global.is_some();
-    // What was at another level comes back to the full one.
+    // Cloths at another level come back to the full one.
     if !is_asked_for && cloths.iter().all(|cloth| cloth.state.lod.is_full()) {
         return;
     }
@@ -128,7 +128,7 @@ pub(super) fn choose_levels(
         let Ok(mut cloth) = cloths.get_mut(own.entity) else {
             continue;
         };
-        // What sleeps costs next to nothing.
+        // Sleeping cloth costs next to nothing.
         let rests = cloth.state.rest.is_asleep();
         let lod = &mut cloth.state.lod;
         let turn = (of_group.phase, of_group.is_due, rests);
@@ -161,7 +161,7 @@ impl LevelledItem<'_, '_> {
             phase: self.entity.index_u32(),
             is_due: true,
         };
-        // What is wrong with a level of detail is said where the cloth is prepared.
+        // Errors of a level of detail are reported when the cloth is prepared.
         let lod = self.lod.or(global).filter(|lod| lod.validate().is_ok());
         // One that was not built yet, or can't be, is looked at in each tick.
         let Some((centre, radius)) = self.sphere() else {
@@ -184,7 +184,7 @@ impl LevelledItem<'_, '_> {
             }
         }
         let ticks = wanted.level.ticks().unwrap_or(1) as f32;
-        // What the acceleration does grows with the square of the time.
+        // The displacement by acceleration grows with the square of the time.
         let times = (ticks / state.moved_by() as f32).max(1.0);
         let around = self.settings.copied().unwrap_or_default().particle_radius;
         let thickness = self.self_collision.map_or(0.0, |of| of.thickness);
@@ -195,7 +195,7 @@ impl LevelledItem<'_, '_> {
     }
 }
 
-/// Has cloths that may touch each other be at the finest of their levels, and be moved in the same ticks.
+/// Gives cloths that may touch each other the finest of their levels, and moves them in the same ticks.
 fn group(wanted: &mut [Wanted], groups: &mut Islands) {
     let spans = wanted.iter().filter(|own| own.touches_cloth);
     groups.begin(spans.map(|own| Span {

@@ -1,4 +1,4 @@
-//! Level of detail: how often a cloth is moved.
+//! Level of detail: how often a cloth is simulated.
 
 use bevy::{
     ecs::{
@@ -11,33 +11,35 @@ use bevy::{
 
 use crate::cloth::ClothError;
 
-/// Ticks that one move of a cloth may stand for, at most: a quarter of a second of Bevy's 64 Hz.
+/// Largest number of ticks that a cloth may be simulated for at once: a quarter of a second at Bevy's 64 Hz.
 const MOST_TICKS: u32 = 16;
 
-/// How much of the work of a full simulation a cloth gets.
+/// How often a cloth is simulated.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothLodLevel {
-    /// It is moved in each tick.
+    /// In every tick.
     #[default]
     Full,
-    /// It is moved in each second, third … tick, from 1 to 16, by the time of as many ticks, with as many sub-steps as one tick has
-    /// otherwise: a half, a third … of the cost. It stretches more, as its sub-steps are longer, which is no
-    /// [`ClothLimitExceeded`](super::ClothLimitExceeded). What is drawn lags behind by as many ticks, and moves smoothly; its
-    /// [`ClothParticles`](crate::cloth::ClothParticles) are those of the last tick in which it was moved.
+    /// Once in this number of ticks, from 1 to 16, for the time of all of them. It takes the sub-steps of a single
+    /// tick, so 2 costs a half, and 3 a third. The cloth stretches more, because its sub-steps are longer; that is no
+    /// [`ClothLimitExceeded`](super::ClothLimitExceeded). Its mesh lags behind by this number of ticks, and moves
+    /// smoothly. Its [`ClothParticles`](crate::cloth::ClothParticles) are those of the last tick in which it was
+    /// simulated.
     Every(u32),
-    /// It keeps its shape, as seen from its entity, from its first attachment's target or from the bones of its
-    /// [`ClothSkin`](crate::cloth::ClothSkin) where it has one, and passes through colliders. Costs no more than a look at where that is,
-    /// and the skinning of the bones' pose.
+    /// Never: the cloth keeps its shape and passes through colliders. It moves rigidly with its entity or the target of
+    /// its first attachment, or follows the bones of its [`ClothSkin`](crate::cloth::ClothSkin). It costs only a look
+    /// at their transforms, and the skinning of the pose.
     Frozen,
-    /// As `Frozen`, and neither its bones are followed nor is its mesh written: hide it, by `Visibility` or Bevy's `VisibilityRange`.
+    /// Like `Frozen`, but the plugin neither follows its bones nor writes its mesh. Hide such a cloth, by `Visibility`
+    /// or Bevy's `VisibilityRange`.
     Off,
 }
 
 impl ClothLodLevel {
-    /// Of two levels the finer is less.
+    /// Order of the levels: a finer one is less.
     pub(super) fn coarseness(self) -> u32 {
         match self {
             Self::Full => 1,
@@ -47,7 +49,7 @@ impl ClothLodLevel {
         }
     }
 
-    /// In how many ticks it is moved once; `None` if in none.
+    /// The number of ticks in which it is simulated once; `None` if never.
     pub(super) fn ticks(self) -> Option<u32> {
         match self {
             Self::Full => Some(1),
@@ -57,23 +59,25 @@ impl ClothLodLevel {
     }
 }
 
-/// Level of detail of a cloth: by its distance to the nearest active camera, while it is hidden, or by hand. On a cloth; [`GlobalClothLod`] is for
-/// all cloths that have none of their own.
+/// Level of detail of a cloth: by its distance to the nearest active camera, by whether it is hidden, or by hand. Add
+/// it to a cloth; [`GlobalClothLod`] applies to all cloths without one.
 ///
-/// *Nothing jumps* when the level changes. Positions and velocities go on as they are; a cloth that freezes loses its velocity,
-/// and when it thaws it has that of what carries it: however far that has gone meanwhile, the cloth is not thrown. What is drawn passes
-/// from one level to the other within an eighth of a second. Cloths of one level are moved in different ticks, by the index of
-/// their entities, so that no tick has all of the work.
+/// *Nothing jumps* when the level changes. Positions and velocities continue. A cloth that freezes loses its velocity;
+/// when it thaws, it takes the velocity of whatever carries it. The cloth is not thrown, however far its carrier has
+/// moved meanwhile. The mesh blends from one level to the other within an eighth of a second. Cloths at the same level
+/// are simulated in different ticks, by the index of their entities, so that no tick has all of the work.
 ///
-/// *What touches.* [`Every`](ClothLodLevel::Every) lowers the rate only while nothing that moves comes near: beside a
-/// collider that moves or a [`ClothBody`](super::ClothBody), and for half a second after, the cloth is moved in each tick. Cloths with
-/// [`ClothSelfCollision`](crate::contact::ClothSelfCollision) that are near each other are all at the finest of their
-/// levels. What is frozen touches nothing, and nothing touches it: where it stands in a collider when it thaws, it is pushed out as
-/// anything that is put there. A cloth that sleeps costs next to nothing at any level.
+/// *Contact.* [`Every`](ClothLodLevel::Every) lowers the rate only while nothing that moves is near. Near a moving
+/// collider or a [`ClothBody`](super::ClothBody), and for half a second after, the cloth is simulated in every tick.
+/// Cloths with [`ClothSelfCollision`](crate::contact::ClothSelfCollision) that are near each other are all simulated at
+/// the finest of their levels. A frozen cloth touches nothing, and nothing touches it. If it is inside a collider when
+/// it thaws, it is pushed out, like any cloth that is placed there. A sleeping cloth costs next to nothing at any
+/// level.
 ///
-/// Distances are from the camera to the nearest point of a sphere around the cloth, and cameras are where the last frame had
-/// them. A cloth that is hidden is [`Off`](ClothLodLevel::Off) unless [`ClothLod::hidden`] says otherwise: without a `ClothLod` it moves on,
-/// unseen. Without an active camera, as on a server, or without the feature `mesh` neither counts: all is `Full`.
+/// Distances are measured from the camera, where the last frame had it, to the nearest point of a sphere around the
+/// cloth. A hidden cloth is [`Off`](ClothLodLevel::Off) unless [`ClothLod::hidden`] says otherwise; without a
+/// `ClothLod` it is still simulated, unseen. Without an active camera, as on a server, or without the feature `mesh`,
+/// neither distance nor visibility counts: cloths are `Full` unless their level is set by hand.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -85,27 +89,27 @@ impl ClothLodLevel {
 ///         (60.0, ClothLodLevel::Frozen),
 ///     ])));
 ///     commands.spawn(Cloth::default());
-///     // By hand; a game may change it at any time.
+///     // By hand; the game may change it at any time.
 ///     commands.spawn((Cloth::default(), ClothLod::at(ClothLodLevel::Frozen)));
 /// }
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothLod {
-    /// This level, whatever the distance; `None` goes by distance.
+    /// This level, whatever the distance; `None` chooses by distance.
     pub level: Option<ClothLodLevel>,
-    /// From which distance on (m) which level holds, ascending; `Full` before the first.
+    /// Distances (m), ascending, each with the level from there on. Nearer than the first, the level is `Full`.
     pub distances: Vec<(f32, ClothLodLevel)>,
-    /// While Bevy's visibility hides the cloth, its own or an ancestor's, its level is this one or a coarser one. `Off` unless a game says
-    /// otherwise.
+    /// The level while the cloth is hidden by Bevy's visibility, its own or an ancestor's, unless its other level is
+    /// coarser. `Off` by default.
     pub hidden: ClothLodLevel,
-    /// The part of a distance by which a cloth has to be nearer than that to leave its level again, from 0 to less than 1: so that
-    /// it does not change to and fro.
+    /// A cloth returns to a finer level only once it is nearer than the distance by this fraction of it, from 0 to less
+    /// than 1. So it does not switch back and forth.
     pub hysteresis: f32,
 }
 
 impl Default for ClothLod {
-    /// Every second tick from 25 m on, every fourth from 50 m, frozen from 100 m; a tenth of hysteresis.
+    /// Every second tick from 25 m on, every fourth from 50 m, frozen from 100 m, with a hysteresis of 0.1.
     fn default() -> Self {
         Self::by_distance([
             (25.0, ClothLodLevel::Every(2)),
@@ -116,7 +120,7 @@ impl Default for ClothLod {
 }
 
 impl ClothLod {
-    /// From each distance on (m) its level; a tenth of hysteresis.
+    /// Chooses by distance: from each distance (m) on, its level. The hysteresis is 0.1.
     pub fn by_distance(distances: impl IntoIterator<Item = (f32, ClothLodLevel)>) -> Self {
         Self {
             level: None,
@@ -126,7 +130,7 @@ impl ClothLod {
         }
     }
 
-    /// One level, hidden or not, until the game says otherwise.
+    /// Always this level, hidden or not, until the game changes it.
     pub fn at(level: ClothLodLevel) -> Self {
         Self {
             level: Some(level),
@@ -136,7 +140,7 @@ impl ClothLod {
     }
 
     /// # Errors
-    /// The first value that is out of range.
+    /// [`ClothError::Quantity`] for the first value that is out of range.
     pub(super) fn validate(&self) -> Result<(), ClothError> {
         let is_part = |part: f32| (0.0..1.0).contains(&part);
         let expected = "from 0 to less than 1";
@@ -174,7 +178,7 @@ impl ClothLod {
         Ok(())
     }
 
-    /// How many of the distances a cloth has passed that is `distance` away (m) and had passed as many `before`.
+    /// How many of the distances a cloth has passed that is `distance` away (m), if it had passed `before` of them.
     pub(super) fn passed(&self, distance: f32, before: usize) -> usize {
         let mut passed = before.min(self.distances.len());
         while self
@@ -192,8 +196,8 @@ impl ClothLod {
     }
 }
 
-/// The level of detail of all cloths without a [`ClothLod`]. Not there unless a game inserts it: then they are all at
-/// [`ClothLodLevel::Full`].
+/// Level of detail of all cloths without a [`ClothLod`]. The resource does not exist unless the game inserts it;
+/// without it they are all at [`ClothLodLevel::Full`].
 #[derive(Resource, Reflect, Debug, Default, Clone, PartialEq)]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct GlobalClothLod(pub ClothLod);

@@ -1,59 +1,60 @@
-//! At which level of detail a cloth is, and when it is moved.
+//! The current level of detail of a cloth, and when it is simulated.
 
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{frame::Shift, lod::ClothLodLevel};
 
-/// What becomes of a cloth in a tick.
+/// What happens to a cloth in a tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Turn {
-    /// It is moved.
+    /// It is simulated.
     #[default]
     Move,
-    /// It is moved in a later tick, by the time of this one too.
+    /// It is simulated in a later tick, for the time of this one too.
     Wait,
     /// It stands still.
     Stand,
 }
 
-/// Where a cloth was as it froze, and what carries it.
+/// Places of a cloth as it froze, and of its carrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Frozen {
-    /// The cloth's frame as it froze, and what carried it then.
+    /// The cloth's frame and its carrier as it froze.
     pub frame: Isometry3d,
     pub carrier: Isometry3d,
-    /// What carries it, a tick ago.
+    /// Its carrier, a tick ago.
     pub last: Isometry3d,
 }
 
-/// The level of detail that a cloth is at.
+/// The current level of detail of a cloth.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct LodState {
     pub level: ClothLodLevel,
-    /// How many distances it has passed.
+    /// Number of distances that it has passed.
     pub passed: usize,
     pub turn: Turn,
     /// The time of ticks in which it waited (s).
     pub waited: f32,
-    /// How many these are, and in how many ticks it is moved, the coming one being 1.
+    /// The number of these ticks, and the number of ticks until it is simulated, 1 for the coming one.
     pub ticks: u32,
     left: u32,
-    /// Of how many ticks the last move was.
+    /// Number of ticks that the last move took.
     moved_by: u32,
-    /// How far a particle may have got in that by itself (m).
+    /// Largest distance that a particle may have moved in that by itself (m).
     pub reach: f32,
-    /// Ticks since it was moved, and how many there are from then until it is moved again: over as many it is drawn.
+    /// Ticks since it was last moved, and ticks from then until it is moved again, over which the move is drawn.
     pub since: u32,
     span: u32,
-    /// New whenever what is drawn of it would jump.
+    /// Changes whenever its picture would jump.
     pub cuts: u32,
     pub frozen: Option<Frozen>,
-    /// For how many ticks it is kept from a lower rate: something that moves is or was near.
+    /// Remaining ticks at full rate, because something that moves is or was near.
     pub kept: u32,
-    /// Of a snapshot: middle and radius of a sphere around it, in its frame (m), as nothing is built yet where it is restored.
+    /// From a snapshot: centre and radius of a sphere around it, in its frame (m), since nothing is built yet where it
+    /// is restored.
     pub sphere: Option<(Vec3, f32)>,
 }
 
@@ -74,7 +75,7 @@ impl LodState {
         self.level == ClothLodLevel::Full && self.waited == 0.0 && self.span <= 1
     }
 
-    /// Of how many ticks the last move was.
+    /// Number of ticks that the last move took.
     pub fn moved_by(&self) -> u32 {
         self.moved_by.max(1)
     }
@@ -84,8 +85,9 @@ impl LodState {
         self.left <= 1
     }
 
-    /// Begins a tick of `seconds` at `level`: of cloths of the same level those of different `phase` are moved in different
-    /// ones. `is_due` moves it now in any case, and what `rests` is looked at in each tick: it does not move.
+    /// Begins a tick of `seconds` at `level`. Cloths of the same level and of different `phase` are moved in different
+    /// ticks. `is_due` moves it now in any case. A cloth that `rests` is looked at in each tick, since it does not
+    /// move.
     pub fn begin(
         &mut self,
         level: ClothLodLevel,
@@ -102,7 +104,7 @@ impl LodState {
             (self.waited, self.ticks) = (0.0, 0);
             return;
         };
-        // While no time passes, it goes on as it is.
+        // While no time passes, nothing changes.
         if seconds == 0.0 {
             self.level = was;
             return;
@@ -121,8 +123,8 @@ impl LodState {
         } else {
             1 + phase % ticks
         };
-        // What is moved before it is drawn where the last move left it would jump there, and what is drawn less late than before
-        // would jump ahead.
+        // A cloth that is moved before its picture has reached the last move would jump there; one whose picture is
+        // less late than before would jump ahead.
         if has_stood || self.since + 1 < self.span || self.ticks + 1 > left {
             self.cuts = self.cuts.wrapping_add(1);
         }
@@ -130,8 +132,8 @@ impl LodState {
         (self.left, self.since, self.span) = (left, 0, left);
     }
 
-    /// The part of the last move that is drawn, so many ticks after it: all of it as the next one comes, at the speed at which it
-    /// moves or, where it was by fewer ticks than there are until then, slower.
+    /// The fraction of the last move that is drawn this number of ticks after it; all of it as the next move comes. It
+    /// grows at the speed of the motion, or slower if the move took fewer ticks than there are until the next.
     #[cfg(any(feature = "mesh", test))]
     pub fn drawn_part(&self, ticks: f32) -> f32 {
         let (moved_by, span) = (self.moved_by.max(1) as f32, self.span.max(1) as f32);
@@ -139,7 +141,7 @@ impl LodState {
         skipped + (1.0 - skipped) * (ticks / span).min(1.0)
     }
 
-    /// Takes the time to be moved by in a tick of `seconds` (s), and how many ticks that is of.
+    /// Takes the time that it is moved by in a tick of `seconds` (s), and the number of ticks in that.
     pub fn take(&mut self, seconds: f32) -> (f32, u32) {
         let waited = std::mem::take(&mut self.waited);
         self.moved_by = std::mem::take(&mut self.ticks) + 1;
@@ -216,7 +218,7 @@ mod tests {
         }
     }
 
-    /// What rests at a lower rate is looked at in each tick, and drawn as it is.
+    /// A cloth at rest is looked at in each tick, even at a lower rate, and drawn as it is.
     #[test]
     fn what_rests_is_not_cut() {
         let mut state = LodState::default();

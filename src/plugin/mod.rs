@@ -1,4 +1,4 @@
-//! Floor 3: the ECS: one plugin a file, and [`DrapePlugins`] over them.
+//! Floor 3, the ECS: one plugin per file, and [`DrapePlugins`] over all of them.
 
 mod air;
 mod attach;
@@ -113,11 +113,11 @@ pub use state::ClothState;
 pub use stats::ClothStats;
 pub use wind::{ClothAir, ClothWind, ClothWindShape, ClothWindZone};
 
-/// All that a game needs: the simulation, its diagnostics and, with their features, mesh, gizmos and the
+/// Everything that a game needs: the simulation, its diagnostics and, with their features, the mesh, the gizmos and the
 /// bridge to rapier. Add it after Bevy's own plugins.
 ///
-/// The simulation runs in [`FixedUpdate`] unless [`new`](Self::new) is given another schedule. The panel of
-/// feature `egui` is a plugin of its own, `ClothPanelPlugin`.
+/// The simulation runs in [`FixedUpdate`]; [`new`](Self::new) chooses another schedule. The panel of the feature `egui`
+/// is a separate plugin, `ClothPanelPlugin`.
 #[derive(Debug, Clone, Copy)]
 pub struct DrapePlugins {
     schedule: Interned<dyn ScheduleLabel>,
@@ -130,7 +130,7 @@ impl Default for DrapePlugins {
 }
 
 impl DrapePlugins {
-    /// With the simulation in `schedule`.
+    /// Runs the simulation in `schedule`.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),

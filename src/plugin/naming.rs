@@ -5,7 +5,8 @@ use bevy::{
     reflect::Reflect,
 };
 
-/// What of an entity is at fault: it may be a cloth and a collider at once, or a mesh that a cloth drives.
+/// The part of an entity that has the fault: an entity may be a cloth and a collider at once, or a mesh that a cloth
+/// drives.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     Cloth,

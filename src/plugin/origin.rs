@@ -1,4 +1,4 @@
-//! Worlds whose origin jumps.
+//! Worlds with a floating origin.
 
 use bevy::{
     ecs::{
@@ -25,15 +25,15 @@ use super::{
 };
 use crate::cloth::ClothError;
 
-/// Has all cloths and colliders go along with a jump of the world's origin, as games make it that are larger than a float measures: call it
-/// between two ticks, once `by` (m) has been added to the `Transform`s of all that has no parent. Nothing gets a speed, a shape or a turn
-/// from it; what sleeps sleeps on, gusts and eddies are where they were in the world.
+/// Shifts all cloths and colliders with the world's origin, for games with a floating origin. Call it between two
+/// ticks, after you have added `by` (m) to the `Transform` of every entity without a parent. Nothing gains speed,
+/// deforms or rotates. Sleeping cloth sleeps on, and gusts and eddies stay where they were in the world.
 ///
-/// Only the numbers that the plugin remembers of the world change, and none of a particle: those are given in their cloth's frame. Where
-/// something is less than the rounding of such numbers away from where the jump takes it, it counts as there.
+/// Only the plugin's remembered positions in the world change. Particles don't, because they are given in their cloth's
+/// frame. An entity that is within rounding of its shifted position counts as being exactly there.
 ///
 /// # Errors
-/// [`ClothError::Quantity`] for a jump that is not finite; nothing is changed.
+/// [`ClothError::Quantity`] if `by` is not finite; nothing changes then.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -58,7 +58,7 @@ pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), ClothError> {
         let quantity = "jump of the world's origin (m)";
         ClothError::check(way, f32::is_finite, quantity, "finite")?;
     }
-    // A world without the plugin has nothing that remembers.
+    // A world without the plugin remembers nothing.
     if world.contains_resource::<WindField>() {
         let shifted = world.run_system_once_with(shift, Shift(by));
         debug_assert!(shifted.is_ok(), "all that it asks for is there");

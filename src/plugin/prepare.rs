@@ -1,5 +1,4 @@
-//! The first step of a tick: new cloths are built, every input is checked and taken over. One function after the other, each
-//! with what it needs.
+//! The first step of a tick: builds new cloths, and checks and takes over every input.
 
 mod asleep;
 mod preparing;
@@ -36,7 +35,7 @@ use super::{
 };
 use crate::cloth::{ClothError, ClothParticles};
 
-/// Prepares each cloth, or marks it with what is wrong.
+/// Prepares each cloth, or marks it with a fault.
 pub(super) fn prepare_cloths(
     mut cloths: Query<Preparing>,
     around: Surroundings,
@@ -79,7 +78,7 @@ pub(super) fn prepare_cloths(
             if sleeps_as_it_was(&cloth, &inputs, &around, &breeze, seconds) {
                 return Ok(());
             }
-            // Nothing of an earlier tick is done again.
+            // Forgets the work of an earlier tick.
             cloth.scratch.forget_tick();
             let seconds = (seconds, ticks);
             prepare(&mut cloth, &inputs, &around, breeze, &mut parts, seconds)
@@ -94,7 +93,7 @@ pub(super) fn prepare_cloths(
         if cloth.teleport.is_some() && outcome.is_ok() {
             commands.entity(cloth.entity).try_remove::<ClothTeleport>();
         }
-        // What is on its way is no fault.
+        // An asset that is being loaded is no fault.
         let outcome = match outcome {
             Err(ClothError::MeshLoading) => Ok(()),
             outcome => outcome,
@@ -118,7 +117,7 @@ fn pass(cloth: &mut PreparingItem) {
     cloth.stats.is_asleep = false;
 }
 
-/// Has the cloth keep its shape, and go with what carries it.
+/// Keeps the cloth's shape, and moves it with its carrier.
 fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), ClothError> {
     if cloth.state.written != Some(cloth.particles.last_changed()) {
         check_particles(&mut cloth.particles)?;
@@ -184,7 +183,7 @@ fn prepare(
     Ok(())
 }
 
-/// Builds what is not built yet. Returns where the cloth's entity is, and what came of it.
+/// Builds a cloth that is not built yet. Returns the place of its entity, and the result.
 fn build_cloth(
     cloth: &mut PreparingItem,
     inputs: &Inputs,
@@ -226,8 +225,8 @@ fn build_cloth(
     Ok((frame, build))
 }
 
-/// Takes over what somebody else wrote, and checks what the surface has to allow. Returns whether the particles are others than those of
-/// the last tick.
+/// Takes over particles that the game wrote, and checks settings against the surface. Returns whether the particles
+/// differ from those of the last tick.
 fn take_over(
     cloth: &mut PreparingItem,
     inputs: &Inputs,
@@ -236,14 +235,14 @@ fn take_over(
     seconds: f32,
 ) -> Result<bool, ClothError> {
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
-    // What was at fault may have been put anywhere meanwhile.
+    // A cloth with a fault may have been moved anywhere meanwhile.
     let jumps = cloth.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
     let seconds = (seconds, jumps);
     let has_stood = thaw(&around.targets, *frame, seconds, *before, particles, state);
-    // Who saves or restores particles may mark them as changed without a change.
+    // Saving or restoring particles may mark them as changed without a change.
     let was_written = has_stood
         || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
-    // What nobody wrote is what it was when it was looked at last.
+    // Particles that nothing wrote are as they were when they were last checked.
     if was_written || !state.is_valid {
         state.largest_speed = check_particles(particles)?;
     }
@@ -257,7 +256,7 @@ fn take_over(
     Ok(was_written)
 }
 
-/// Goes where the entity, the root that carries it, the pose and the targets of attachments have gone.
+/// Follows the entity, the root that carries it, the pose, and the targets of attachments.
 fn go_along(
     cloth: &mut PreparingItem,
     around: &Surroundings,
@@ -296,7 +295,7 @@ fn go_along(
         && was_built
     {
         let way = scratch.pose.farthest_from(&state.pose, new_from_old);
-        // What stood still is put to where its skeleton has gone meanwhile.
+        // A frozen cloth is put where its skeleton has moved meanwhile.
         scratch.teleports |= has_stood || way > skin.teleport_distance;
     }
     if scratch.teleports {
@@ -330,7 +329,7 @@ fn check_particles(particles: &mut Mut<ClothParticles>) -> Result<f32, ClothErro
         return Ok(survey.largest_speed);
     }
     particles.validate()?;
-    // What was not valid has been mended, but for what it left beside the particles.
+    // The particles are valid again, but invalid ones may have left values in the padding.
     particles.clear_padding();
     particles.mend_substep();
     Ok(particles.survey().largest_speed)

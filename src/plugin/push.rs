@@ -1,4 +1,4 @@
-//! What cloth does to the bodies that it touches.
+//! Pushes of cloth on the bodies that it touches.
 
 use bevy::{
     ecs::{
@@ -15,7 +15,7 @@ use bevy::{
 use super::{ClothBody, ClothPush, ClothScratch, colliders::ColliderMotion};
 use crate::contact::BodyChange;
 
-/// What may be pushed. What is no collider, or nowhere, is not: its push is nothing.
+/// The bodies that may be pushed. One without a collider or a transform is not: its push is zero.
 type Pushed = (
     Entity,
     &'static mut ClothPush,
@@ -25,8 +25,8 @@ type Pushed = (
     Has<ChildOf>,
 );
 
-/// Sums what all cloths have changed of each body's motion, and moves it to where they left it. What several cloths push is cut
-/// into equal parts, one for each, which go on together.
+/// Sums the changes of each body's motion by all cloths, and moves the body by them. A body that several cloths push is
+/// cut into equal parts, one for each cloth, which move on together.
 pub(super) fn push_bodies(
     cloths: Query<&ClothScratch>,
     mut bodies: Query<Pushed>,
@@ -62,7 +62,8 @@ pub(super) fn push_bodies(
     }
 }
 
-/// What comes of changes by so many cloths, each of which pushed a part of the body; nothing of what is no number.
+/// The total of changes by several cloths, each of which pushed a part of the body. Changes that are not finite count
+/// as zero.
 fn sum<'a>(
     changes: impl Iterator<Item = &'a BodyChange>,
     parts: u32,

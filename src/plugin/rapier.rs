@@ -1,4 +1,5 @@
-//! The bridge to rapier: it moves the colliders, and cloth meets them; with a `ClothPushBack` cloth pushes them too.
+//! The bridge to rapier: rapier moves the colliders, and cloth collides with them. With a `ClothPushBack`, cloth pushes
+//! them back.
 
 use bevy::{
     app::{App, FixedUpdate, Plugin},
@@ -21,15 +22,15 @@ use bevy_rapier3d::{geometry::Collider, plugin::PhysicsSet};
 use super::{ClothFault, ClothSystems, naming::Part, rapier_body::add_push_back};
 use crate::contact::ClothCollider;
 
-/// Makes the rapier `Collider` on the same entity a [`ClothCollider`], whatever its shape, at the scale and with the offsets
-/// that rapier uses: compounds, convex hulls, meshes and height fields too. Only lines and shapes that are not rapier's own
+/// Makes the rapier `Collider` on the same entity a [`ClothCollider`], at the scale and with the offsets that rapier
+/// uses. All shapes work, including compounds, convex hulls, meshes and height fields; only lines and custom shapes
 /// can't be touched.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct RapierClothCollider;
 
-/// Adopts rapier's colliders, and has rapier run before the cloth. `RapierPhysicsPlugin` belongs in the same
-/// schedule: `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
+/// Adopts rapier's colliders, and orders rapier before the cloth. Add `RapierPhysicsPlugin` to the same schedule:
+/// `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothRapierPlugin {
     schedule: Interned<dyn ScheduleLabel>,
@@ -42,7 +43,7 @@ impl Default for ClothRapierPlugin {
 }
 
 impl ClothRapierPlugin {
-    /// With its system in `schedule`, which must be that of [`ClothPlugin`](super::ClothPlugin).
+    /// Runs its system in `schedule`, which must be that of [`ClothPlugin`](super::ClothPlugin).
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -65,7 +66,7 @@ impl Plugin for ClothRapierPlugin {
     }
 }
 
-/// Without its marker or its rapier collider, an adopted collider is one no more.
+/// Removes the adopted collider of an entity that lost its marker or its rapier collider.
 fn release<C: Component>(
     removed: On<Remove, C>,
     adopted: Query<Option<&ClothFault>, With<RapierClothCollider>>,
@@ -93,7 +94,7 @@ fn adopt_colliders(
             continue;
         }
         let wanted = match collider.as_ball() {
-            // A ball is one of ours, to be read and changed; ours is before the transform's scale.
+            // A ball becomes a plain ball collider, which games can read and change, without the transform's scale.
             Some(ball) => {
                 let scale = transforms
                     .compute_global_transform(entity)

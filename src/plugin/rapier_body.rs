@@ -23,27 +23,35 @@ use bevy_rapier3d::{
 
 use super::{ClothBody, ClothPush, ClothSystems};
 
-/// Has cloth push a dynamic rapier body back: on the entity with the `RigidBody`, the rapier `Collider` and the
-/// [`RapierClothCollider`](super::RapierClothCollider). Rapier's mass of it becomes a [`ClothBody`], and what the cloth changes
-/// of its velocity is added to rapier's. Without this, rapier moves the body and the cloth alone gives way.
+/// Lets cloth push a dynamic rapier body back. Add it to the entity with the `RigidBody`, the rapier `Collider` and the
+/// [`RapierClothCollider`](super::RapierClothCollider). The plugin makes a [`ClothBody`] from rapier's mass, and adds
+/// the change of velocity from the cloth to rapier's velocity. Without this component, rapier moves the body and only
+/// the cloth yields.
 ///
-/// `LockedAxes` count, which are the world's: along and about those cloth does not push the body. Bodies that are not dynamic are moved by nothing, as ever.
+/// Cloth does not push the body along or about its `LockedAxes`, which are axes of the world. Cloth never pushes bodies
+/// that are not dynamic.
 ///
 /// # Heavy bodies
-/// While springs are solved, the particles beneath a body carry a part of its mass, so that light cloth holds a body hundreds of times as
-/// heavy: a square metre of cotton, 150 g, held by its edges, holds balls of up to 70 kg that drop on it by 0.2 m, without a gain of energy,
-/// and a strip of 46 g sags under rollers of 0.1 to 10 kg as deep as their weight says, within 4 % (both measured with bodies that have no engine but equations of motion). That takes more sub-steps, with the cube
-/// root of the ratio of the masses and up to eight times as many as the cloth takes alone; with
-/// [`Substepping::Automatic`](crate::solver::Substepping::Automatic), the default, it takes them by itself as long as it holds the body.
-/// With too few a heavy body stretches the cloth far, and may fall through. Very soft cloth, which is else moved by its springs' forces, is
-/// solved by threads as long as it carries a body. What cloth carries rolls on it, but hardly slides: its particles hold such a body as by
-/// friction without a limit.
+/// While springs are solved, the particles beneath a body carry a part of its mass. So light cloth holds bodies
+/// hundreds of times its weight:
+///
+/// - A square metre of cotton, 150 g, held by its edges, holds balls of up to 70 kg that drop on it by 0.2 m, without a
+///   gain of energy.
+/// - A strip of 46 g sags under rollers of 0.1 to 10 kg as deep as their weight says, within 4 %.
+///
+/// Both were measured with bodies that are moved by equations of motion alone, without a physics engine.
+///
+/// A heavy body takes more sub-steps, growing with the cube root of the ratio of the masses, up to eight times those of
+/// the cloth alone. With [`Substepping::Automatic`](crate::solver::Substepping::Automatic), the default, the cloth
+/// takes them automatically as long as it holds the body. With too few, a heavy body stretches the cloth far, and may
+/// fall through. Very soft cloth, otherwise moved by the forces of its springs, is solved by threads as long as it
+/// carries a body. A body on cloth rolls, but hardly slides: the particles hold it as if by friction without a limit.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
 #[reflect(Component, Default, Debug, Clone)]
 #[require(ReadMassProperties, Velocity)]
 pub struct ClothPushBack;
 
-/// Adds what this takes to the schedule that rapier and the cloth are in.
+/// Adds the systems for [`ClothPushBack`] to the schedule of rapier and the cloth.
 pub(super) fn add_push_back(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     app.register_type::<ClothPushBack>()
         .add_observer(release_body)
@@ -79,7 +87,7 @@ fn read_masses(
     mut commands: Commands,
 ) {
     for (entity, kind, mass, locked, known) in &mut bodies {
-        // Rapier knows the mass from its first step on.
+        // Rapier computes the mass in its first step.
         if *kind != RigidBody::Dynamic || mass.mass <= 0.0 {
             if known.is_some() {
                 commands
@@ -91,7 +99,7 @@ fn read_masses(
         let locked = locked.copied().unwrap_or(LockedAxes::empty());
         let locks =
             |axes: [LockedAxes; 3]| BVec3::from_array(axes.map(|axis| locked.contains(axis)));
-        // What rapier takes for none can't be turned.
+        // Rapier's zero stands for a body that can't be rotated.
         let moments = mass.principal_inertia;
         let inertia = Vec3::select(moments.cmpgt(Vec3::ZERO), moments, Vec3::INFINITY);
         let body = ClothBody {
@@ -123,7 +131,7 @@ fn read_masses(
     }
 }
 
-/// Adds what the cloth changed of a body's velocity to rapier's.
+/// Adds the change of velocity from the cloth to rapier's velocity.
 fn push_back(mut bodies: Query<(&ClothPush, &mut Velocity), With<ClothPushBack>>) {
     for (push, mut velocity) in &mut bodies {
         if *push != ClothPush::default() {

@@ -15,7 +15,7 @@ use crate::{
     contact::ClothCollider,
 };
 
-/// Registers all that scenes and inspectors write and that has lists in it.
+/// Registers all components with lists that scenes and inspectors write.
 pub(super) fn register_lists(app: &mut App) {
     register::<Cloth>(app);
     register::<ClothCollider>(app);
@@ -28,8 +28,9 @@ pub(super) fn register_lists(app: &mut App) {
     app.register_type::<BoneColliderOf>();
 }
 
-/// Registers a component whose lists become as long as those that are applied to them. By itself Bevy leaves what a list was longer by:
-/// a scene that pins nothing would leave the top row pinned, wherever it names the pins after the cloth.
+/// Registers a component whose lists are cut to the length of the lists that are applied to them. Bevy keeps the
+/// surplus of a longer list: a scene that pins nothing would leave the top row pinned, wherever it names the pins after
+/// the cloth.
 fn register<C>(app: &mut App)
 where
     C: Component<Mutability = Mutable> + FromReflect + TypePath + GetTypeRegistration + Clone,
@@ -57,10 +58,10 @@ where
     }
 }
 
-/// Applies a value, of which lists are taken whole.
+/// Applies a value, and takes its lists whole.
 fn apply<C: FromReflect + Clone>(component: &mut C, value: &dyn PartialReflect) {
     if let Some(own) = value.try_downcast_ref::<C>() {
-        // With code in it, which is reflected as nothing.
+        // A closure, which can't be reflected.
         *component = own.clone();
         return;
     }
@@ -68,7 +69,7 @@ fn apply<C: FromReflect + Clone>(component: &mut C, value: &dyn PartialReflect) 
     component.apply(value);
 }
 
-/// Takes from each list what it has more than that of a value.
+/// Cuts each list to the length of that of a value.
 fn shorten(own: &mut dyn PartialReflect, value: &dyn PartialReflect) {
     match (own.reflect_mut(), value.reflect_ref()) {
         (ReflectMut::List(own), ReflectRef::List(value)) => {

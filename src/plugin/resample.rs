@@ -1,10 +1,11 @@
-//! A grid that gets another resolution stays where it is.
+//! Changes of a grid's resolution: the cloth stays where it is.
 
 use bevy::math::Vec3;
 
 use crate::cloth::{ClothError, ClothGrid, ClothParticles};
 
-/// How far corners may differ, as a part of the diagonal: what a spacing that is a quotient is rounded by, and more.
+/// Largest difference of corners, as a fraction of the diagonal: more than the rounding of a spacing that is a
+/// quotient.
 const ALIKE: f32 = 1.0e-4;
 
 /// Whether two grids are the same rectangle at rest.

@@ -1,4 +1,4 @@
-//! What a cloth sleeps on.
+//! The colliders that a cloth sleeps on.
 
 use bevy::{
     ecs::entity::{Entity, EntityMapper, MapEntities},
@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::contact::{BodyMass, ColliderShape, MovingCollider};
 
-/// A collider that a cloth touched as it fell asleep, and its way then, in the cloth's frame.
+/// A collider that a cloth touched as it fell asleep, and its path then, in the cloth's frame.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RestsOn {
@@ -19,7 +19,7 @@ pub(super) struct RestsOn {
     to: Vec3,
     turn: Vec3,
     body: Option<BodyMass>,
-    /// By how much where it is may have been rounded since (m).
+    /// Possible rounding of its place since then (m).
     slack: f32,
 }
 
@@ -43,12 +43,12 @@ impl RestsOn {
         }
     }
 
-    /// What is far from the world's origin, or was, is there to a rounding (m) alone.
+    /// Adds the rounding of a place far from the world's origin (m).
     pub fn add_slack(&mut self, rounding: f32) {
         self.slack = self.slack.max(rounding);
     }
 
-    /// Whether the collider is what it was, and where it was.
+    /// Whether the collider and its place are the same as then.
     pub fn is(&self, collider: &MovingCollider) -> bool {
         let is_alike = (self.from.rotation, self.turn, self.body)
             == (collider.from.rotation, collider.turn, collider.body);

@@ -1,4 +1,4 @@
-//! What one tick's systems hand on to the next, and memory that a tick works in.
+//! Data that the systems of a tick hand on to each other, and the working memory of a tick.
 
 use bevy::{
     ecs::{
@@ -19,57 +19,57 @@ use crate::{
 
 use super::{inertia::Carried, skin::Pose};
 
-/// What is of one tick. Kept so that a tick does not allocate; it may be dropped between two ticks
-/// (`*scratch = ClothScratch::default()`) without any change of what follows, but for the last bits of layers that touch each other:
-/// where they are nearest is found anew.
+/// Data of a single tick, and working memory that is kept so that a tick does not allocate. You may drop it between two
+/// ticks (`*scratch = ClothScratch::default()`). The following ticks are the same, except for the last bits of touching
+/// layers, whose nearest points are found anew.
 #[derive(Component, Debug, Default)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothScratch {
     /// `None` for a cloth that was not prepared: nothing else of the tick happens to it then.
     pub(super) step: Option<TickStep>,
     pub(super) substepping: Substepping,
-    /// What was asked for.
+    /// The search that the game chose.
     pub(super) search: SearchMethod,
-    /// What the cloth is tested with.
+    /// The settings for contact.
     pub(super) contact_settings: ContactSettings,
     /// Pinned particles that the frame or a target carries along.
     pub(super) pins: Vec<PinMotion>,
-    /// Where the attachments' targets are, in their order.
+    /// Places of the attachments' targets, in their order.
     pub(super) targets: Vec<Affine3A>,
     /// The pose as the tick begins, in the frame that it ends with.
     pub(super) pose: Pose,
-    /// How far particles may be from it.
+    /// Largest distances of the particles from it.
     pub(super) constraints: MotionConstraints,
-    /// What carries the cloth along as the tick begins.
+    /// The motion that carries the cloth along as the tick begins.
     pub(super) carried: Option<Carried>,
-    /// Whether the cloth jumps.
+    /// Whether the cloth teleports.
     pub(super) teleports: bool,
-    /// How far a particle may get by itself (m).
+    /// Largest distance that a particle may move by itself (m).
     pub(super) reach: f32,
-    /// Colliders near the cloth, in its frame. What `detection` calls them by is their place here.
+    /// Colliders near the cloth, in its frame. `detection` refers to them by their index here.
     pub(super) near: Vec<(Entity, MovingCollider)>,
     /// Their entities, while others are looked for.
     pub(super) near_set: EntityHashSet,
     pub(super) detection: Detection,
-    /// How it touches cloth, and whether other cloths are near that it is moved with.
+    /// Its contact with cloth, and whether it is moved together with other cloths that are near.
     pub(super) self_collision: Option<ClothSelfCollision>,
     pub(super) is_in_island: bool,
     /// Contact with itself alone.
     pub(super) mutual: Option<Box<MutualContact>>,
-    /// Whether its particles are others since the last tick, or somewhere else.
+    /// Whether its particles were replaced or moved since the last tick.
     pub(super) was_put: bool,
-    /// The bodies that the cloth pushed in the tick, and what it changed of their motion, in the world.
+    /// The bodies that the cloth pushed in the tick, and the changes of their motion, in the world.
     pub(super) pushed: Vec<(Entity, BodyChange)>,
-    /// What a cloth that sleeps is searched with.
+    /// Memory for the search of a cloth that sleeps.
     pub(super) sleep_query: (NodeBounds, TopDownQuery),
-    /// The particles as the tick began, for one that is done again.
+    /// The particles as the tick began, for a tick that is repeated.
     pub(super) backup: ClothParticles,
-    /// What the tick that was just done asked of the cloth.
+    /// The quantities of the last tick that are compared with the limits.
     pub(super) limit_inputs: Option<LimitInputs>,
 }
 
 impl ClothScratch {
-    /// Forgets what was to be done in a tick.
+    /// Forgets the work that was prepared for a tick.
     pub(super) fn forget_tick(&mut self) {
         self.step = None;
         self.pins.clear();

@@ -47,7 +47,7 @@ struct Colliders<'a, 'w, 's> {
 }
 
 impl Colliders<'_, '_, '_> {
-    /// The colliders that may come within `reach` of a point of the world (m), and that may touch what is in some layers.
+    /// The colliders that may come within `reach` of a point of the world (m), and whose layers match.
     fn near(
         &self,
         point: Vec3,
@@ -60,7 +60,7 @@ impl Colliders<'_, '_, '_> {
         })
     }
 
-    /// How a collider moves, if it may touch what is in some layers.
+    /// The motion of a collider, if its layers match.
     fn get(&self, entity: Entity, layers: ClothLayers) -> Option<&ColliderMotion> {
         let (motion, others) = self.all.get(entity).ok()?;
         let others = others.copied().unwrap_or_default();
@@ -68,8 +68,8 @@ impl Colliders<'_, '_, '_> {
     }
 }
 
-/// Finds the colliders near each cloth; chooses how to search, and brings the bounding volumes up to date where that asks for
-/// it. What comes near a cloth that sleeps, or leaves it, wakes it.
+/// Finds the colliders near each cloth, chooses how to search, and updates the bounding volumes if the search needs
+/// them. A collider that comes near a sleeping cloth, or leaves it, wakes it.
 pub(super) fn rebuild_hierarchies(
     mut cloths: Query<Searching>,
     colliders: Query<Collider>,
@@ -163,7 +163,7 @@ impl SearchingItem<'_, '_> {
             carried,
             ..
         } = &mut *self.scratch;
-        // Besides by itself, a particle may get as far as a collider drags it, to others that may drag it on.
+        // Besides moving by itself, a particle may be dragged by a collider, to other colliders that may drag it on.
         let mut dragged = 0.0_f32;
         loop {
             near.clear();
@@ -181,13 +181,13 @@ impl SearchingItem<'_, '_> {
             }
             dragged = farthest;
         }
-        // Whatever the order of the tree.
+        // Independent of the order of the tree.
         near.sort_unstable_by_key(|(entity, _)| entity.index_u32());
         detection.begin(self.built.surface(), *reach + dragged);
         let near = near.len();
         self.stats.colliders_near = near;
         if near == 0 {
-            // What it slept on has gone.
+            // The collider that it slept on is gone.
             self.stats.reason = SearchReason::NothingNear;
             self.search.query.clear();
             return;
@@ -211,7 +211,7 @@ impl SearchingItem<'_, '_> {
         }
     }
 
-    /// Whether all that touched a cloth as it fell asleep still rests where it did, and nothing else has come.
+    /// Whether all colliders that touched a cloth as it fell asleep still rest in place, and no other has come.
     fn sleeps_on(&mut self, root: &BoundingSphere, colliders: &Colliders) -> bool {
         let layers = self.layers();
         let rests_on = &self.state.rests_on;

@@ -1,22 +1,22 @@
-//! What happens in a tick, and in which order.
+//! The steps of a tick, and their order.
 
 use bevy::ecs::schedule::SystemSet;
 
-/// What happens in a tick, in this order. Each runs once a tick, not once a sub-step.
+/// The steps of a tick, in this order. Each runs once per tick, not once per sub-step.
 ///
-/// Systems that move colliders or write particles belong before [`Prepare`](Self::Prepare), those that read
-/// what came of it after [`WriteBack`](Self::WriteBack).
+/// Systems that move colliders or write particles belong before [`Prepare`](Self::Prepare); systems that read the
+/// results belong after [`WriteBack`](Self::WriteBack).
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ClothSystems {
-    /// Builds new cloths, checks every input, takes over transforms, gravity and colliders.
+    /// Builds new cloths, checks every input, and reads transforms, gravity and colliders.
     Prepare,
-    /// Finds which colliders are near, chooses how to search, and brings the bounding volumes up to date.
+    /// Finds the colliders near each cloth, chooses how to search, and updates the bounding volumes.
     Rebuild,
-    /// Searches the trees from the top down, with bounds inflated by how far cloth and ball can move in the
-    /// tick: candidates.
+    /// Searches the trees from the top down for candidates: particles that a collider may touch. The bounds are
+    /// inflated by the distance that cloth and collider can move in the tick.
     Query,
-    /// All sub-steps: Verlet, one sweep over the springs, response on the candidates.
+    /// Runs all sub-steps: Verlet integration, one sweep over the springs, and collision response for the candidates.
     Integrate,
-    /// Messages and diagnostics.
+    /// Writes messages and diagnostics.
     WriteBack,
 }

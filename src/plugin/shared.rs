@@ -1,4 +1,4 @@
-//! What cloths made alike share.
+//! Data shared by cloths that are made alike.
 
 use std::sync::{Arc, OnceLock, Weak};
 
@@ -20,30 +20,30 @@ pub(super) struct Shared {
     pub surface: Arc<Surface>,
     pub springs: Springs,
     pub tree: QuadTree,
-    /// One that has moved nothing yet, for each cloth to begin with.
+    /// An unused solver, of which each cloth gets a clone.
     pub solver: Solver,
-    /// For contact of cloth with cloth: made when a cloth asks for it.
+    /// For contact of cloth with cloth: made when a cloth needs it.
     sheet: OnceLock<Arc<Sheet>>,
-    /// What moves it with joints: made when a cloth has some.
+    /// The skinning by joints: made when a cloth has joints.
     skinning: OnceLock<Skinning>,
 }
 
 impl Shared {
-    /// What contact of cloth with cloth searches.
+    /// The sheet that contact of cloth with cloth searches.
     pub fn sheet(&self) -> &Arc<Sheet> {
         self.sheet
             .get_or_init(|| Arc::new(Sheet::new(&self.surface, &self.tree)))
     }
 
-    /// What moves its particles with joints, if that has been made.
+    /// The skinning of its particles by joints, if it has been made.
     pub fn known_skinning(&self) -> Option<&Skinning> {
         self.skinning.get()
     }
 
-    /// What moves its particles with joints; `None` of what is made from no asset.
+    /// The skinning of its particles by joints; `None` if it is not made from an asset.
     ///
     /// # Errors
-    /// What `make` finds wrong with the asset.
+    /// The error that `make` finds in the asset.
     pub fn skinning(
         &self,
         make: impl FnOnce(Source, &Surface) -> Result<Skinning, ClothError>,
@@ -59,26 +59,26 @@ impl Shared {
     }
 }
 
-/// What a surface is made from.
+/// The inputs of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Recipe {
     pub shape: ClothShape,
     pub scale: Vec3,
-    /// The mesh, of one that is made from an asset.
+    /// The mesh, if it is made from an asset.
     pub source: Option<Source>,
 }
 
-/// All that is in use.
+/// All shared data in use.
 #[derive(Resource, Debug, Default)]
 pub(super) struct SharedParts {
     known: Vec<Weak<Shared>>,
 }
 
 impl SharedParts {
-    /// What a cloth of this recipe and material has in common with others: theirs, if there are any.
+    /// The shared data of cloths with this recipe and material: made by `make` if there is none yet.
     ///
     /// # Errors
-    /// What `make` finds wrong with the surface.
+    /// The error that `make` finds in the surface.
     pub fn get(
         &mut self,
         recipe: &Recipe,
@@ -124,18 +124,19 @@ impl SharedParts {
         Ok(shared)
     }
 
-    /// The same of a cloth whose material has become another.
+    /// The same for a cloth whose material has changed.
     pub fn with_material(&mut self, shared: &Arc<Shared>, material: &ClothMaterial) -> Arc<Shared> {
         let Some(recipe) = &shared.recipe else {
             return shared.clone();
         };
-        // A surface of that recipe is there: it has nothing to be refused for.
+        // A surface of that recipe exists, so it can't be refused.
         let other = self.get(recipe, material, || Ok((*shared.surface).clone()));
         other.unwrap_or_else(|_| shared.clone())
     }
 }
 
-/// What a material's solver is made for: compliances of stretch and shear (m/N), rigidity of bending (N·m).
+/// The values of a material that its solver depends on: compliances of stretch and shear (m/N), flexural rigidity
+/// (N·m).
 pub(super) fn stiffnesses(material: &ClothMaterial) -> [f32; 3] {
     [
         material.stretch_compliance,

@@ -59,7 +59,7 @@ use crate::{
     solver::{ClothPressure, ClothSettings},
 };
 
-/// Simulates every [`Cloth`]. Needs `TimePlugin` and nothing that draws.
+/// Simulates every [`Cloth`]. Needs `TimePlugin`, and no rendering.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothPlugin {
     schedule: Interned<dyn ScheduleLabel>,
@@ -72,7 +72,7 @@ impl Default for ClothPlugin {
 }
 
 impl ClothPlugin {
-    /// With its systems in `schedule`.
+    /// Runs its systems in `schedule`.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -130,7 +130,7 @@ impl Plugin for ClothPlugin {
             .add_systems(Last, note_removals);
         #[cfg(feature = "mesh")]
         app.init_resource::<SharedMeshes>();
-        // Where the schedule is that of transforms, too, cameras and what is hidden are of this frame or of the last.
+        // In the schedule of transform propagation, cameras and visibility are of this frame or of the last.
         let levels = choose_levels.ambiguous_with(TransformSystems::Propagate);
         #[cfg(feature = "mesh")]
         let levels = levels.ambiguous_with(VisibilitySystems::VisibilityPropagate);
@@ -162,7 +162,7 @@ impl Plugin for ClothPlugin {
                     .in_set(ClothSystems::Prepare),
                 rebuild_hierarchies.in_set(ClothSystems::Rebuild),
                 query_collisions.in_set(ClothSystems::Query),
-                // Where the schedule is that of transforms, too, a body is drawn where it is pushed to a frame later.
+                // In the schedule of transform propagation, a pushed body may be drawn a frame late.
                 (
                     integrate,
                     push_bodies.ambiguous_with(TransformSystems::Propagate),
@@ -188,14 +188,14 @@ impl Plugin for ClothPlugin {
         }
         if !app.world().contains_resource::<Time>() {
             error!(
-                "no cloth moves: there is no clock. Add Bevy's `TimePlugin`, which is among `MinimalPlugins` and `DefaultPlugins`"
+                "cloth does not move: there is no clock. Add Bevy's `TimePlugin`, which `MinimalPlugins` and `DefaultPlugins` include"
             );
         }
     }
 }
 
-/// What a cloth has besides what it is spawned with. Not required components: those can't be declared any more where a
-/// cloth was spawned before the plugin was added.
+/// Components that the plugin adds to a cloth. They are not required components: those can't be declared any more once
+/// a cloth was spawned before the plugin was added.
 type ClothParts = (
     ClothSettings,
     SearchMethod,
@@ -210,14 +210,14 @@ type ClothParts = (
     BroadPhaseBounds,
 );
 
-/// Gives a new cloth or collider the parts that it was not spawned with.
+/// Adds to a new cloth or collider the components that it was not spawned with.
 fn add_parts<C: Component, Parts: Bundle + Default>(added: On<Add, C>, mut commands: Commands) {
     commands
         .entity(added.entity)
         .try_insert_if_new(Parts::default());
 }
 
-/// The same for those that were there before the plugin.
+/// The same for cloths and colliders that existed before the plugin.
 fn add_parts_to_earlier<C: Component, Parts: Bundle + Default>(world: &mut World) {
     let mut earlier = world.query_filtered::<Entity, With<C>>();
     for entity in earlier.iter(world).collect::<Vec<_>>() {
@@ -225,8 +225,8 @@ fn add_parts_to_earlier<C: Component, Parts: Bundle + Default>(world: &mut World
     }
 }
 
-/// What the plugin added to a cloth goes with it; its particles and settings stay, they are the game's. What was pinned
-/// gets its mass back.
+/// Removes the plugin's components from an entity that is no cloth any more. Particles and settings stay, since they
+/// are the game's. Pinned particles get their mass back.
 fn clear_removed_cloth(
     removed: On<Remove, Cloth>,
     faults: Query<&ClothFault>,
@@ -250,7 +250,7 @@ fn clear_removed_cloth(
     ClothFault::report(&mut commands, removed.entity, known, Part::Cloth, Ok(()));
 }
 
-/// Likewise for a collider.
+/// The same for a collider.
 fn clear_removed_collider(
     removed: On<Remove, ClothCollider>,
     faults: Query<&ClothFault, Allow<Disabled>>,
@@ -263,7 +263,7 @@ fn clear_removed_collider(
     ClothFault::report(&mut commands, removed.entity, known, Part::Collider, Ok(()));
 }
 
-/// A collider that is inserted again has not come from where it was before.
+/// A collider that is inserted again does not move from its earlier place.
 fn reset_motion(inserted: On<Insert, ClothCollider>, mut motions: Query<&mut ColliderMotion>) {
     if let Ok(mut motion) = motions.get_mut(inserted.entity) {
         *motion = ColliderMotion::default();

@@ -1,4 +1,4 @@
-//! Where the triangles of a cloth or a collider from a mesh come from.
+//! The sources of triangles of cloths and colliders that are made from meshes.
 
 #[cfg(feature = "mesh")]
 mod asset;

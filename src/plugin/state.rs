@@ -1,4 +1,4 @@
-//! All that a cloth's next tick depends on, besides its public components.
+//! Everything that a cloth's next tick depends on, besides its public components.
 
 use bevy::{
     ecs::{
@@ -20,30 +20,30 @@ use crate::{
     solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
 };
 
-/// What a cloth remembers from tick to tick, besides its [`ClothParticles`](crate::cloth::ClothParticles) and its
-/// [`ClothFrame`](super::ClothFrame). The next tick depends on this, on those, on what the game says in other components, from
-/// which [`ClothBuilt`](super::ClothBuilt) follows, and on how colliders move; on nothing else.
+/// The memory of a cloth from tick to tick, besides its [`ClothParticles`](crate::cloth::ClothParticles) and its
+/// [`ClothFrame`](super::ClothFrame). The next tick depends on these three, on the game's components, from which
+/// [`ClothBuilt`](super::ClothBuilt) is built, and on the motion of colliders; on nothing else.
 #[derive(Component, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[component(map_entities)]
 pub struct ClothState {
-    /// Whether the last preparation found nothing wrong: what is not valid is neither moved nor drawn.
+    /// Whether the last preparation found no error: an invalid cloth is neither moved nor drawn.
     pub(super) is_valid: bool,
-    /// At which level of detail it is.
+    /// Its level of detail.
     pub(super) lod: LodState,
-    /// Of the coming tick's sub-steps.
+    /// Control of the coming tick's sub-steps.
     pub(super) control: Control,
     pub(super) rest: Rest,
     /// Whether layers of it, or it and other cloth, touched in the last tick.
     pub(super) touches_cloth: bool,
-    /// As of the positions present: what `RestShape` relies on.
+    /// Stretch at the current positions: `RestShape` relies on it.
     pub(super) stretch: Stretch,
     /// Speed of the fastest particle as the tick begins (m/s).
     pub(super) largest_speed: f32,
-    /// When the plugin last wrote the particles: whoever wrote them since was the game.
+    /// When the plugin last wrote the particles: a later change is the game's.
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub(super) written: Option<Tick>,
-    /// What disturbs a cloth at rest when it changes, besides what it is built from.
+    /// Inputs that wake a cloth at rest when they change, besides those that it is built from.
     pub(super) known: Option<(
         ClothSettings,
         SearchMethod,
@@ -51,32 +51,32 @@ pub struct ClothState {
         Option<ClothSelfCollision>,
         Vec3,
     )>,
-    /// Likewise the air.
+    /// The same for the air.
     pub(super) air: KnownAir,
-    /// What `attached` was made from, and the entities that it names.
+    /// The attachments from which `attached` was made, and the entities that they name.
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub(super) attachments: Vec<ClothAttachment>,
     pub(super) targets: Vec<Entity>,
     pub(super) attached: Vec<Attached>,
-    /// Where the first attachment's target was.
+    /// Last place of the first attachment's target.
     pub(super) first_target: Option<Isometry3d>,
     /// The pose that it follows, as the last tick ended.
     pub(super) pose: Pose,
-    /// The colliders that it touched as it fell asleep, each where it was then.
+    /// The colliders that it touched as it fell asleep, each with its place then.
     pub(super) rests_on: Vec<RestsOn>,
     /// The particles that carried bodies as the last tick ended.
     pub(super) carriers: Vec<(Entity, Carrier)>,
-    /// The largest gravity that it has known, as 9.81 or a doubling of that (m/s²): tethers are made for it.
+    /// The largest gravity so far, as 9.81 or a doubling of that (m/s²): tethers are made for it.
     pub(super) largest_gravity: f32,
-    /// Whether it is to go on as a snapshot says, though nothing is built yet.
+    /// Whether it continues from a snapshot, though nothing is built yet.
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub(super) resumes: bool,
-    /// How far it is beyond each limit.
+    /// Excess over each limit.
     pub(super) excess: [Excess; ClothLimit::ALL.len()],
 }
 
 impl ClothState {
-    /// Becomes what `other` is, in the memory that it has.
+    /// Copies `other` into its own memory.
     pub(super) fn copy_from(&mut self, other: &Self) {
         let Self {
             is_valid,
@@ -115,7 +115,7 @@ impl ClothState {
         (self.resumes, self.excess) = (resumes, excess);
     }
 
-    /// Whether all that it says of particles can be of these, in what somebody has read from a file.
+    /// Whether this state, read from a file, matches these particles.
     pub(super) fn is_sound(&self, particles: &ClothParticles) -> bool {
         let len = particles.len();
         let is_of_all = |count: usize| count == 0 || count == len;
@@ -133,7 +133,7 @@ impl ClothState {
                 .all(|(_, carrier)| carrier.is_in(blocks))
     }
 
-    /// Forgets what it was attached to, what it carried and what pulled at it: the particles are others.
+    /// Forgets attachments, carried bodies and gravity, because the particles have been replaced.
     pub(super) fn detach(&mut self) {
         self.largest_gravity = 0.0;
         self.carriers.clear();

@@ -17,49 +17,53 @@ use crate::{
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ClothStats {
-    /// Time of all sub-steps, the stretch measured in the last of them (ms): the solver's call.
+    /// Time of the solver (ms): all sub-steps, and measuring the stretch in the last of them.
     pub integrate_ms: f64,
-    /// Time to bring the bounding volumes up to date (ms).
+    /// Time to update the bounding volumes (ms).
     pub rebuild_ms: f64,
     /// Time of the search (ms).
     pub query_ms: f64,
-    /// How the cloth was searched: never `Auto`, unless nothing was.
+    /// How the cloth was searched. Never `Auto`, unless nothing was searched.
     pub search: SearchMethod,
-    /// Why so.
+    /// The reason for that.
     pub reason: SearchReason,
-    /// Colliders that came near the cloth.
+    /// Number of colliders that came near the cloth.
     pub colliders_near: usize,
-    /// Those of them that were tested against triangles.
+    /// Number of these colliders that were tested against triangles.
     pub by_triangles: usize,
-    /// Nodes of the tree that were looked at.
+    /// Nodes of the tree that the search visited.
     pub nodes_visited: usize,
-    /// Particles that were tested: leaves among the nodes, or all by a scan.
+    /// Particles that were tested: the leaves among the visited nodes, or all particles in a scan.
     pub leaf_tests: usize,
-    /// How often particles moved farther within the tick than was expected, and all were searched again.
+    /// Number of times that the search was repeated within the tick, because particles moved farther than expected.
     pub requeries: u32,
-    /// Particles that were pushed out of a collider, once for each; cells where it is tested against triangles.
+    /// Particles that were pushed out of a collider, counted once for each collider. Cells in place of particles for
+    /// colliders that are tested against triangles.
     pub contacts: usize,
-    /// Pairs of its features, or of its and of other cloths', that may come near each other: vertices with faces, edges with
-    /// edges. 0 without [`ClothSelfCollision`](crate::contact::ClothSelfCollision).
+    /// Pairs of features that may come near each other, within the cloth or between it and other cloths: vertices with
+    /// faces, edges with edges. 0 without [`ClothSelfCollision`](crate::contact::ClothSelfCollision).
     pub layer_pairs: usize,
-    /// How often in the tick these were searched for.
+    /// Number of searches for these pairs in the tick.
     pub layer_searches: u32,
     /// The largest stretch, at the end of the tick.
     pub stretch: Stretch,
-    /// The impulse (N s, in the world) that the air gave the cloth in the tick, by drag, lift and pressure; 0 for one that sleeps.
+    /// Impulse that the air gave the cloth in the tick by drag, lift and pressure, in the world (N s); 0 while the
+    /// cloth sleeps.
     pub air_impulse: Vec3,
-    /// What a cloth with a [`ClothPressure`](crate::solver::ClothPressure) encloses (m³), and the pressure in it over that of the outside (Pa):
-    /// of the last tick in which it was awake.
+    /// Volume that a cloth with a [`ClothPressure`](crate::solver::ClothPressure) encloses (m³), as of the last tick in
+    /// which it was awake.
     pub enclosed_volume: f32,
-    /// See [`enclosed_volume`](Self::enclosed_volume).
+    /// Pressure inside such a cloth, less that of the outside (Pa), as of the same tick as
+    /// [`enclosed_volume`](Self::enclosed_volume).
     pub gauge_pressure: f32,
-    /// Sub-steps of the tick, those included that were done again for the tolerance; 0 for a cloth that sleeps, is frozen, or waits
-    /// for a tick in which it is moved.
+    /// Sub-steps of the tick, including those repeated for the tolerance. 0 for a cloth that sleeps, is frozen, or is
+    /// not simulated in this tick because of its level of detail.
     pub substeps: u32,
-    /// The level of detail that the cloth is at.
+    /// Current level of detail of the cloth.
     pub level: ClothLodLevel,
     /// Whether the cloth sleeps.
     pub is_asleep: bool,
-    /// The first limit beyond which it is not simulated well, if it was beyond one as its last tick ended.
+    /// The first limit that the cloth exceeded as its last tick ended, if any. Beyond it, the cloth is not simulated
+    /// well.
     pub exceeded: Option<ClothLimit>,
 }

@@ -1,4 +1,4 @@
-//! How many threads work on a tick.
+//! The number of threads that work on a tick.
 
 use bevy::tasks::{ComputeTaskPool, available_parallelism};
 

@@ -55,7 +55,7 @@ pub(super) type Colliders<'w, 's> = Query<
 
 impl IntegratingItem<'_, '_> {
     pub fn integrate(&mut self, colliders: &Colliders) {
-        // Those that may touch each other have been moved.
+        // Cloths that may touch each other have been moved.
         if self.scratch.is_in_island {
             return;
         }
@@ -81,10 +81,10 @@ impl IntegratingItem<'_, '_> {
         self.finish(milliseconds_since(start));
     }
 
-    /// Takes over what came of a tick whose sub-steps took this long (ms).
+    /// Takes over the results of a tick; its sub-steps took this time (ms).
     pub(super) fn finish(&mut self, milliseconds: f64) {
         self.stats.integrate_ms = milliseconds;
-        // What is lost here is a fault before anyone sees it.
+        // Particles that are lost here are a fault before the game sees them.
         let survey = self.particles.survey();
         self.state.is_valid &= survey.is_valid;
         self.state.largest_speed = survey.largest_speed;
@@ -102,7 +102,7 @@ impl IntegratingItem<'_, '_> {
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 
-    /// What the cloth touches now, should it fall asleep.
+    /// Remembers the contacts of the cloth, in case it falls asleep.
     fn remember_contacts(&mut self) {
         let ClothScratch {
             near, detection, ..
@@ -114,7 +114,7 @@ impl IntegratingItem<'_, '_> {
         self.state.rests_on.extend(known);
     }
 
-    /// Notes what the cloth did to bodies. While it does something to one, it does not rest.
+    /// Notes the cloth's pushes on bodies. While it pushes one, it does not rest.
     fn push_bodies(&mut self) {
         let ClothScratch {
             near,
@@ -141,7 +141,7 @@ impl IntegratingItem<'_, '_> {
         }
     }
 
-    /// Does the tick, and does it again with more sub-steps while the tolerance asks for it.
+    /// Simulates the tick, and repeats it with more sub-steps while the tolerance needs them.
     fn solve(&mut self, mut step: TickStep, colliders: &Colliders) {
         let substepping = self.scratch.substepping;
         let bands = if self.particles.len() < MIN_TO_SPLIT {
@@ -180,7 +180,7 @@ impl IntegratingItem<'_, '_> {
         self.built.solver.set_air_memory(air);
     }
 
-    /// What the tick's last run of sub-steps asked of the cloth.
+    /// The quantities of the tick's last run of sub-steps that are compared with the limits.
     pub(super) fn limit_inputs(&self, step: TickStep) -> LimitInputs {
         let spacing = self.built.surface().spacing();
         let root = self
@@ -188,7 +188,7 @@ impl IntegratingItem<'_, '_> {
             .tree()
             .root_sphere(&self.particles, self.state.stretch.bound);
         let count = step.substeps as f32;
-        // Of those that come to the ball around the cloth, a capsule's turn counted.
+        // The colliders that reach the ball around the cloth; a capsule's rotation counts.
         let around = root.radius() + self.scratch.reach;
         let travels = self.scratch.near.iter().filter_map(|(_, collider)| {
             let core = Core::Segment([collider.from.translation.into(), collider.to]);
@@ -282,7 +282,7 @@ impl IntegratingItem<'_, '_> {
         stretch
     }
 
-    /// Has the particles that carried a body as the last tick ended carry it on.
+    /// Restores the bodies that particles carried as the last tick ended.
     pub(super) fn recall_carriers(&mut self, substeps: u32) {
         let ClothScratch {
             near, detection, ..
@@ -295,7 +295,7 @@ impl IntegratingItem<'_, '_> {
         });
     }
 
-    /// Begins contact of a cloth with itself, where that is asked for.
+    /// Begins contact of a cloth with itself, if it has any.
     fn begin_alone(&mut self) -> Option<(Box<MutualContact>, ClothSelfCollision)> {
         let settings = self.scratch.self_collision?;
         if !settings.with_itself {
@@ -327,7 +327,7 @@ impl IntegratingItem<'_, '_> {
         !constraints.is_empty() && constraints.hold(&mut self.particles, substep)
     }
 
-    /// Pushes it out of what it touches that is no cloth. Returns whether anything moved.
+    /// Pushes it out of colliders. Returns whether anything moved.
     pub(super) fn touch(&mut self, substep: SubStep, colliders: &Colliders) -> bool {
         let ClothScratch {
             near,
@@ -348,14 +348,14 @@ impl IntegratingItem<'_, '_> {
     }
 }
 
-/// Where a cloth sees colliders from, and which of them.
+/// The frame in which a cloth sees colliders, and its layers.
 struct Place<'a> {
     frame: &'a ClothFrame,
     carried: Option<Carried>,
     layers: ClothLayers,
 }
 
-/// Adds the colliders that were far away as the tick began: they may be near now. Who is known keeps its number.
+/// Adds the colliders that were far away as the tick began: they may be near now. Known colliders keep their number.
 fn add_far(
     near: &mut Vec<(Entity, MovingCollider)>,
     near_set: &mut EntityHashSet,

@@ -24,7 +24,8 @@ struct Member<'w, 's> {
     to_common: Option<Isometry3d>,
 }
 
-/// Does the tick of all cloths of an island, and does it again with more sub-steps while the tolerance of one asks for it.
+/// Simulates the tick of all cloths of an island, and repeats it with more sub-steps while the tolerance of one of them
+/// needs it.
 pub(super) fn integrate_together(
     island: &mut Island,
     cloths: &mut Query<Integrating>,
@@ -58,7 +59,7 @@ pub(super) fn integrate_together(
             to_common,
         });
     }
-    // All take as many sub-steps as the one that asks for most.
+    // All take the largest number of sub-steps that any of them needs.
     let mut substeps = members
         .iter()
         .filter_map(|member| member.step.map(|step| step.substeps))
@@ -101,7 +102,7 @@ pub(super) fn integrate_together(
     }
 }
 
-/// One way through the sub-steps of all. Returns how many a tolerance asks for, if these were too few.
+/// A single run through the sub-steps of all. Returns the number that a tolerance needs, if these were too few.
 fn advance(
     members: &mut [Member],
     substeps: u32,

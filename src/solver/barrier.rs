@@ -1,4 +1,4 @@
-//! What keeps the compiler to one block.
+//! Keeps the compiler to one block.
 
 /// Keeps the compiler from gathering the lanes of several blocks: a block's own are side by side.
 #[inline(always)]

@@ -3,11 +3,10 @@
 use super::barrier::one_block_at_a_time;
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, W, X};
 
-/// A displacement in a sub-step that is none (m): what is far from all that moves moves by as little as that.
+/// Smaller displacements in a sub-step count as zero (m): those of particles far from any motion.
 ///
-/// Its square, and what is left of it some springs farther, would be subnormal numbers, which machines are slow with:
-/// a second of a flat cloth of 64² particles that a ball pushes took 90 ms with them, and takes 39 ms without, in 20
-/// sub-steps a tick.
+/// Its square, and its effect some springs farther, would be subnormal numbers, which are slow. A second of a flat
+/// cloth of 64² particles that a ball pushes took 90 ms with them, and takes 39 ms without, in 20 sub-steps per tick.
 pub(super) const MIN_MOVE: f32 = 1.0e-15;
 
 /// Ends a sub-step: displacements become positions. Raises `farthest` to the largest squared displacements (m²).

@@ -1,4 +1,4 @@
-//! What damping is relative to, followed through a tick.
+//! The motion of the damping frame through a tick.
 
 use bevy::math::{DVec3, Vec3};
 
@@ -8,14 +8,14 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, W};
 /// As many blocks are summed in single precision: their sum is rounded by less than a hundred thousandth.
 const SUMMED: usize = 64;
 
-/// How far what damping is relative to moves in a sub-step.
+/// Displacement of the damping frame in a sub-step.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Drift {
     /// In the sub-step before the one to come (m).
     way: Vec3,
-    /// What it gains in a sub-step by what pulls at all particles alike (m).
+    /// Its gain in a sub-step by an acceleration of all particles (m).
     pull: Vec3,
-    /// The force of the air (N), and what one newton on a kilogram would have it gain (m).
+    /// The force of the air (N), and the gain by one newton on a kilogram (m).
     force: Vec3,
     unit: f32,
     /// Mass of all that is free (kg).
@@ -26,7 +26,7 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// In a tick that begins. What is not damped is not measured.
+    /// The drift as a tick begins. Without damping it is not measured.
     pub fn of(step: &TickStep) -> Self {
         let dt = step.seconds / step.substeps.max(1) as f32;
         match step.damped_against {
@@ -46,8 +46,8 @@ impl Drift {
         }
     }
 
-    /// In the sub-step that begins, where `blocks` hold the displacements of the one before: by how much it has moved in that one,
-    /// and what it gains in each (m).
+    /// Its displacement in the sub-step before, which `blocks` hold as the next begins, and its gain in each sub-step
+    /// (m).
     ///
     /// A centre of mass is measured once a tick, and after each push from outside: forces within a cloth do not move it.
     pub fn follow(&mut self, blocks: &[Block]) -> [Vec3; 2] {
@@ -63,7 +63,7 @@ impl Drift {
         self.force = force;
     }
 
-    /// A sub-step is done in which what pulls at all counted with this weight.
+    /// Ends a sub-step in which the common acceleration counted with this weight.
     pub fn gain(&mut self, weight: f32) {
         self.way += self.gained() * weight;
     }

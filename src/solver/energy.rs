@@ -1,21 +1,21 @@
 //! Keeps a change of the sub-step from adding energy.
 //!
-//! Springs pull back in a sub-step of Δt what they are stretched by, or a part of it where threads carry others: so what is
-//! left unsolved acts like springs as stiff as 1/Δt², and shorter sub-steps find in stiffer ones the stretch that the longer left.
-//! A sheet of 64² that five points stop in its fall gained 12 % of what its weight can do. Its stretch is as long as the
-//! sheet, so that neither a hundred sweeps nor sub-steps of first order take it away. So what comes back after such a change is
-//! measured, and the motion within the cloth is slowed down by as much as nothing gave.
+//! In a sub-step of Δt, springs pull back their stretch, or a part of it where threads carry others. So unsolved
+//! stretch acts like springs of the stiffness 1/Δt², and shorter sub-steps find the stretch of longer ones in stiffer
+//! springs. A sheet of 64² that five points stop in its fall gained 12 % of the energy that its weight can give. The
+//! stretch is as long as the sheet, so neither a hundred sweeps nor sub-steps of first order remove it. So the energy
+//! that comes back after such a change is measured, and the motion within the cloth is slowed down by the excess.
 
 use bevy::math::{DVec3, Vec3};
 
 use crate::cloth::{Block, ClothParticles, Earlier, LANES, Lanes, W};
 
-/// Ticks after a change to shorter sub-steps in which no energy is gained, and after each in which more than this part of the motion
-/// came back. What was left stretched comes back within a few; all that fell, stopped by one pin, takes longer.
+/// Ticks after a change to shorter sub-steps in which no energy is gained, and after each in which more than this part
+/// of the motion came back. Unsolved stretch comes back within a few; after a fall that one pin stops, it takes longer.
 const WATCHED_TICKS: u32 = 20;
 const RETURNING: f64 = 0.01;
 
-/// Energy of the particles (J), but for what springs hold.
+/// Energy of the particles (J), without that in springs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Energy {
     /// Kinetic, and potential under the tick's acceleration.
@@ -24,7 +24,7 @@ pub(super) struct Energy {
     inner: f64,
     /// Whether nothing is pinned.
     is_free: bool,
-    /// What was lost in the ticks before, and may come back.
+    /// Energy that was lost in the ticks before, and may come back.
     lost: f64,
 }
 
@@ -80,8 +80,8 @@ impl Energy {
         }
     }
 
-    /// Takes from `particles`, whose energy was `self` as a tick began, what they have gained in it beyond what they lost in the ticks
-    /// before, and remembers what may come back.
+    /// Takes away the energy that `particles` have gained in a tick, beyond their losses in the ticks before. `self` is
+    /// their energy as the tick began. Remembers the energy that may come back.
     pub fn limit(self, particles: &mut ClothParticles, acceleration: Vec3) {
         let now = Self::of(particles, acceleration);
         if now.total - self.total > RETURNING * now.inner {

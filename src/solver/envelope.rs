@@ -1,4 +1,4 @@
-//! The envelope in which a cloth is simulated well, and by what it may be left.
+//! The limits of the envelope in which a cloth is simulated well.
 
 use std::fmt;
 
@@ -6,31 +6,33 @@ use bevy::reflect::Reflect;
 
 use super::{Substepping, step::DAMPING_REFERENCE};
 
-/// A limit of the envelope in which a cloth is simulated well. Beyond one it stays finite and goes on, but it no longer
-/// moves as its material says. Each was measured by the lab's experiment `stability`.
+/// A limit of the envelope in which a cloth is simulated well. Beyond a limit, the simulation stays finite and
+/// continues, but the cloth no longer moves as its material should. Each limit was measured by the lab's experiment
+/// `stability`.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ClothLimit {
-    /// A spring is stretched by 15 % more than its material gives under four times the weight of the cloth: the sub-steps
-    /// do not hold it.
+    /// A spring is stretched by 15 % more than its material stretches under four times the weight of the cloth: there
+    /// are too few sub-steps.
     Stretch,
-    /// The largest number of sub-steps that the settings allow does not hold the tolerance that they ask for.
+    /// The largest number of sub-steps that the settings allow does not hold their tolerance.
     Tolerance,
-    /// The heaviest particle that is free is more than 10,000 times as heavy as the lightest, or of a mesh without tethers more than
-    /// 300 times.
+    /// The heaviest free particle is more than 10,000 times as heavy as the lightest; more than 300 times in a mesh
+    /// without tethers.
     MassRatio,
-    /// The cloth is farther from its frame's origin, its own size not counted, than single precision resolves well: 1,000 m
-    /// with 20 sub-steps in 1/60 s, half of it with twice as many, and 40,000 spacings.
+    /// The cloth is too far from its frame's origin for single precision, its own size not counted: more than 40,000
+    /// spacings, or 1,000 m with 20 sub-steps in 1/60 s. Twice the sub-steps halve that distance.
     Distance,
-    /// The cloth is damped so much that how fast motion dies away depends on the sub-steps, by more than a hundredth, of first order a tenth: above 0.979
-    /// with 20 sub-steps in 1/60 s.
+    /// The cloth is damped so strongly that the decay of its motion depends on the sub-steps, by more than a hundredth,
+    /// or a tenth in first order. The limit is a damping of 0.979 with 20 sub-steps in 1/60 s.
     Damping,
-    /// A ball or capsule thinner than half a spacing comes to the cloth by more than 6 of its radii in a sub-step: it may
-    /// get through.
+    /// A ball or capsule thinner than half a spacing approaches the cloth by more than 6 of its radii in a sub-step: it
+    /// may pass through.
     SmallFastCollider,
-    /// Layers move so fast, are so thick or so crowded that what may touch is too much to look for: nothing keeps them apart meanwhile.
-    /// For each particle a search looks at 4,096 nodes and pairs of features and finds 2,048 pairs at most, and a tick looks at 131,072;
-    /// two million pairs and 268 million looks are the most of all, but 128 pairs a particle are always allowed.
+    /// Layers are so fast, so thick or so crowded that a search for contacts would be too large: nothing keeps them
+    /// apart meanwhile. Per particle, a search visits at most 4,096 nodes and pairs of features, and finds at most
+    /// 2,048 pairs; all searches of a tick visit at most 131,072. In total the limits are two million pairs and 268
+    /// million visits, but 128 pairs per particle are always allowed.
     Layers,
 }
 
@@ -51,7 +53,7 @@ const MAX_TRAVEL: f32 = 6.0;
 const SMALL: f32 = 0.5;
 
 impl ClothLimit {
-    /// All of them.
+    /// All limits.
     pub const ALL: [Self; 7] = [
         Self::Stretch,
         Self::Tolerance,
@@ -62,14 +64,14 @@ impl ClothLimit {
         Self::Layers,
     ];
 
-    /// What brings the cloth back.
+    /// The remedy, as a part of a sentence in the log.
     pub fn remedy(self) -> &'static str {
         match self {
             Self::Stretch => {
                 "more sub-steps or a tolerance (`ClothSettings`), tethers or fewer particles; pins that start and stop gently, no farther apart than the cloth is long"
             }
             Self::Tolerance => {
-                "more sub-steps or a larger tolerance; what the material itself gives no sub-steps take away"
+                "more sub-steps or a larger tolerance; sub-steps can't remove the stretch of the material itself"
             }
             Self::MassRatio => {
                 "lighter particles, pins in their place, or tethers (`ClothSettings::tethers`)"
@@ -87,7 +89,7 @@ impl ClothLimit {
 }
 
 impl ClothLimit {
-    /// A quantity beyond it and up to where that is good, in words.
+    /// A quantity beyond the limit, and the largest good value, as text.
     pub(crate) fn figures(self, [quantity, good_up_to]: [f32; 2]) -> String {
         // Three digits say enough.
         let digits = |value: f32| match value {
@@ -117,27 +119,27 @@ impl ClothLimit {
     }
 }
 
-/// What a cloth beyond it is.
+/// The state of a cloth beyond the limit.
 impl fmt::Display for ClothLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Stretch => "overstretched",
             Self::Tolerance => "stretched beyond tolerance",
-            Self::MassRatio => "made of too different masses",
+            Self::MassRatio => "made of particles with too different masses",
             Self::Distance => "too far from its frame's origin",
             Self::Damping => "damped too much",
-            Self::SmallFastCollider => "met by too small and fast a collider",
+            Self::SmallFastCollider => "hit by too small and fast a collider",
             Self::Layers => "too fast, too thick or too crowded for its layers to be kept apart",
         })
     }
 }
 
-/// What is asked of a cloth at the end of a tick.
+/// The quantities at the end of a tick that are compared with the limits.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(crate) struct LimitInputs {
     /// The largest stretch of a structural spring.
     pub stretch: f32,
-    /// By what it is held.
+    /// The settings that hold it.
     pub substepping: Substepping,
     /// Whether it is stretched beyond its tolerance.
     pub is_beyond: bool,
@@ -147,7 +149,7 @@ pub(crate) struct LimitInputs {
     pub material_stretch: f32,
     /// The paper's D.
     pub damping: f32,
-    /// Whether tethers or the threads of a grid hold it, which what is heavy hardly stretches.
+    /// Whether tethers or the threads of a grid hold it: heavy particles hardly stretch these.
     pub holds_weight: bool,
     /// Masses of the lightest and of the heaviest particle that is free (kg).
     pub masses: [f32; 2],
@@ -167,7 +169,7 @@ impl LimitInputs {
         (radius < SMALL * spacing && radius > 0.0).then(|| travel / radius)
     }
 
-    /// A limit's quantity and up to where it is good, if it is exceeded.
+    /// A limit's quantity and its largest good value, if it is exceeded.
     pub fn exceeded(&self, limit: ClothLimit) -> Option<[f32; 2]> {
         let [lightest, heaviest] = self.masses;
         let quantity = match limit {

@@ -3,11 +3,11 @@
 //! No operation is fused or reordered from lane to lane, so every instruction set gives the same bits.
 //!
 //! # The floor
-//! A spring asks for one division and no square root ([`relax`]): 34 additions, subtractions and
-//! multiplications of eight lanes, 15 loads and 6 stores. A core that starts two or three of the former a cycle
-//! and a division of eight lanes every five cycles needs 13 to 17 cycles for eight springs, 0.6 to 0.75 ns a
-//! spring at 2.8 GHz. Memory is no limit: a sub-step reads and writes each block of 256 bytes once, 32 bytes a
-//! particle, since all stages follow each other down the rows while these are in the first cache.
+//! A spring needs one division and no square root ([`relax`]): 34 additions, subtractions and multiplications of eight
+//! lanes, 15 loads and 6 stores. A core that starts two or three of the former per cycle, and a division of eight lanes
+//! every five cycles, needs 13 to 17 cycles for eight springs. That is 0.6 to 0.75 ns per spring at 2.8 GHz. Memory is
+//! no limit: a sub-step reads and writes each block of 256 bytes once, 32 bytes per particle. All stages follow each
+//! other down the rows while these are in the first cache.
 
 use bevy::math::Vec4;
 use multiversion::{inherit_target, multiversion};
@@ -227,14 +227,14 @@ fn measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Lo
     }
 }
 
-/// Which instructions a sub-step may use. The results are the same to the last bit.
+/// The instruction set that a sub-step may use. Results are the same to the last bit.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SimdLevel {
-    /// The widest that the machine has: on x86-64 AVX2, found out as the program runs.
+    /// The widest of the machine, detected at run time: AVX2 on x86-64.
     #[default]
     Auto,
-    /// What every machine of the architecture has: on x86-64 SSE2.
+    /// The baseline of the architecture: SSE2 on x86-64.
     Baseline,
 }
 

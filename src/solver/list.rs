@@ -1,10 +1,11 @@
 //! One sub-step over springs that lie anywhere, as those of a mesh.
 //!
-//! A list without threads is swept once, colour by colour. One with threads is solved there and back: thread after thread, then
-//! the springs on none one by one, then those again from the last to the first, and the threads from the last to the first.
-//! What one such pass leaves of the springs' errors is symmetric: it has no part that swings or changes its sign
-//! (the symmetric Gauss-Seidel iteration; Saad 2003, section 4.1). That is what a motion of second order needs, which goes on
-//! from what is left: there and back it gained no energy in any mesh tried, where one way gained ten times what there was.
+//! A list without threads is swept once, colour by colour. A list with threads is solved forward and back. Forward:
+//! thread after thread, then the springs on no thread one by one. Back: these springs from last to first, then the
+//! threads from last to first. The remaining errors of the springs after such a pass are symmetric: no part of them
+//! oscillates or changes its sign (the symmetric Gauss-Seidel iteration; Saad 2003, section 4.1). A motion of second
+//! order, which continues from these errors, needs that. Forward and back, it gained no energy in any mesh tried; in
+//! one direction alone, it gained ten times the initial energy.
 
 use std::sync::Arc;
 

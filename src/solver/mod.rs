@@ -1,14 +1,20 @@
-//! Floor 1: how a cloth *moves*: threads solved exactly, and a motion of second order in time, in small sub-steps.
+//! Floor 1, the dynamics of cloth: threads are solved exactly, and motion is of second order in time, in small
+//! sub-steps.
 //!
-//! A tick is cut into sub-steps of Δt (small steps instead of many sweeps: Macklin et al. 2019). Each predicts where every
-//! particle would be by itself, by backward differences of second order or by the paper's equation (2), bends it back as a plate
-//! would, and then holds the rest lengths of the springs, which are XPBD constraints (Macklin et al. 2016): thread by thread,
-//! each solved as one system of equations.
+//! A tick is cut into sub-steps of Δt: small steps instead of many sweeps (Macklin et al. 2019). Each sub-step has
+//! three stages:
+//!
+//! 1. Predict the free motion of every particle, by backward differences of second order or by the paper's equation
+//!    (2).
+//! 2. Resist bending, like a plate.
+//! 3. Hold the rest lengths of the springs. These are XPBD constraints (Macklin et al. 2016), solved thread by thread,
+//!    each thread as one system of equations.
 //!
 //! # Threads solved exactly
-//! A thread is a chain of springs: a row, a column or a diagonal of a grid, a path of edges that go straight on in a mesh. One
-//! sweep over its springs carries a correction one spring far, so that of a thread of n particles (n − 1)² g Δt² is left in
-//! each sub-step. But the multipliers λ of all its springs together are no more than a tridiagonal system,
+//! A thread is a chain of springs: a row, a column or a diagonal of a grid, or a straight path of edges in a mesh. One
+//! sweep over its springs carries a correction by one spring only, which leaves an error of (n − 1)² g Δt² in each
+//! sub-step, for a thread of n particles. But the multipliers λ of all its springs together are the solution of a
+//! tridiagonal system:
 //!
 //! ```text
 //!   x₀ ──s₁── x₁ ──s₂── x₂ ──s₃── x₃        nᵢ: direction of spring i, Cᵢ: by how much it is too long
@@ -17,32 +23,36 @@
 //!   A λ = −C,                                Δxᵢ = wᵢ (λᵢ nᵢ − λᵢ₊₁ nᵢ₊₁)
 //! ```
 //!
-//! which elimination solves in one pass there and one back (Thomas). Pins are particles of no inverse mass w, anywhere in it.
-//! Everything is divided by lengths at rest and multiplied by lengths, so that no root is taken: two divisions a spring.
+//! Elimination solves it in one forward and one backward pass (Thomas). Pins are particles with the inverse mass w = 0,
+//! anywhere in the thread. Equations are divided by rest lengths and multiplied by lengths, so that no square root is
+//! needed: two divisions per spring.
 //!
-//! **ε.** A rigid thread that is straight between two pins has one equation too many, and the system no solution. So the diagonal
-//! is never softer than by the part ε = 10⁻³ of w, and by 0.2 of what a squared length is off: a thread between pins that are too
-//! far apart pulls with C/ε, and would throw what is off its line far beyond it. A material that gives more than that is not
-//! changed.
+//! **ε.** A rigid, straight thread between two pins has one equation too many, and its system has no solution. So the
+//! softness of a spring, on the diagonal, is at least the fraction ε = 10⁻³ of w, plus 0.2 of the relative error of the
+//! squared length. Without the second part, a thread between pins that are too far apart would pull with C/ε, and throw
+//! particles beside its line far beyond it. A material that is softer than that is not changed.
 //!
-//! **Order.** Diagonals first, then rows, then columns; what is solved last is held best. On a mesh all threads there and back:
-//! one way only, a motion of second order gains energy.
+//! **Order.** Diagonals first, then rows, then columns; the last ones are held best. On a mesh all threads are solved
+//! forward and back, because a motion of second order gains energy from one direction alone.
 //!
-//! **Cost** (64², one thread, AVX2): a spring of a diagonal costs 1.1 times one of a column, one of a row 1.3 times: its lanes are
-//! strips of one thread, and what they have to do with each other is a system of its own.
+//! **Cost** (64², one thread, AVX2): a spring of a diagonal costs 1.1 times a spring of a column, a spring of a row 1.3
+//! times. The lanes of a row are strips of one thread, and the coupling between them is a system of its own.
 //!
-//! **Soft cloth** is not solved at all where its sub-steps are shorter than 1.9/ω̂, with `ω̂² = 2 max_i w_i Σ_j k_ij`: its springs push
-//! by their forces then, in steps of velocity Verlet, for a third of the time ([`Solver::longest_explicit_substep`]). Where that takes
-//! no more than twice the sub-steps it is chosen by itself ([`Solver::needed`]).
+//! **Soft cloth** needs no solver where its sub-steps are shorter than 1.9/ω̂, with `ω̂² = 2 max_i w_i Σ_j k_ij`. Its
+//! springs act by explicit forces then, in steps of velocity Verlet, in a third of the time
+//! ([`Solver::longest_explicit_substep`]). The solver chooses this automatically where it takes at most twice the
+//! sub-steps ([`Solver::needed`]).
 //!
-//! **Damping along springs** is a force of τ/α times the speed at which a spring gets longer. It is in the same equations, taken where
-//! the sub-step ends: with κ = 1/(1 + τ/Δt), C becomes `κ C + (1 − κ)(C − C₀)` and α becomes κ α, where C₀ is C as the sub-step began.
+//! **Damping along springs** is a force of τ/α times the speed at which a spring lengthens. It is part of the same
+//! equations, at the end of the sub-step: with κ = 1/(1 + τ/Δt), C becomes `κ C + (1 − κ)(C − C₀)` and α becomes κ α,
+//! where C₀ is C as the sub-step began.
 //!
-//! **Where it fails.** Each thread is exact by itself; what one leaves to the next is not. Where all the load hangs by one corner,
-//! it passes from thread to thread, a step a sub-step: with too few of them the spring beside the pin stretches ([`needed`]). And
-//! what tension does across a thread is explicit: its shortest ripple, of ω = 2 √(2 N ⁄ ρ) ⁄ h for a membrane of tension N and
-//! spacing h, wants a sub-step below 2.2 ⁄ ω (65² of cotton under 1 % of stretch: 36 in 1/64 s), or slow modes ring too low;
-//! [`Substepping::Automatic`] sees to that on grids.
+//! **Limits.** Each thread is solved exactly, but the coupling from one thread to the next is not. A load that hangs by
+//! one corner passes from thread to thread, by one thread in each sub-step: with too few sub-steps the spring beside
+//! the pin stretches ([`needed`]). The effect of tension across a thread is explicit. The shortest ripple of a membrane
+//! of tension N and spacing h has ω = 2 √(2 N ⁄ ρ) ⁄ h, and needs a sub-step below 2.2 ⁄ ω; otherwise slow modes ring
+//! too low. For 65² of cotton under 1 % of stretch these are 36 sub-steps in 1/64 s. [`Substepping::Automatic`] takes
+//! them on grids.
 //!
 //! [`needed`]: Substepping::needed
 

@@ -1,16 +1,18 @@
-//! Where particles may be: within a ball around a place that moves, and outside of another.
+//! Motion constraints: a particle stays within a ball around a moving place, and outside another ball.
 //!
-//! Both are XPBD constraints without compliance, held after the springs of each sub-step, so that they hold exactly as it
-//! ends. What is beyond goes to the nearest point that is allowed, and its displacement by as much:
+//! Both are XPBD constraints without compliance. They are applied after the springs of each sub-step, so that they hold
+//! exactly at its end. A particle beyond its limit moves to the nearest allowed point, and its displacement changes by
+//! as much:
 //!
 //! ```text
 //!   max distance r around p:   |x − p| > r:   Δx = (p − x) (1 − r/|x − p|)
 //!   backstop R around c:       |x − c| < R:   Δx = (x − c) (R/|x − c| − 1)
 //! ```
 //!
-//! With a place at rest the first takes energy away or none: a ball is convex, and the nearest point of a convex set is no
-//! farther from where the particle was than where it went. The second is not convex, and what begins outside of a ball has
-//! come from nowhere: so a displacement, less that of the place, is never longer than it was before.
+//! Around a place at rest, the first takes energy away or none. A ball is convex, and the nearest point of a convex set
+//! is no farther from the particle's old position than its new one. The second is not convex, and a particle that
+//! begins inside such a ball was moved there by nothing. So a displacement, relative to that of the place, is never
+//! longer than before.
 
 use bevy::math::Vec3;
 
@@ -24,11 +26,11 @@ pub(crate) struct MotionConstraints {
     balls: Vec<Balls>,
     /// None, or as many.
     backstops: Vec<Balls>,
-    /// How far anything of it moves in the tick, at most (m).
+    /// Largest displacement of any of its centres in the tick (m).
     travel: f32,
 }
 
-/// Eight balls that go along straight lines in the tick: where they begin, and how far they go (m).
+/// Eight balls that move along straight lines in the tick: their starts and their displacements (m).
 #[derive(Debug, Clone, Copy)]
 struct Balls {
     from: [Lanes; 3],
@@ -74,7 +76,7 @@ impl Balls {
     }
 }
 
-/// A particle's ball, and what it stays out of, as a sub-step ends.
+/// A particle's ball and its backstop, as a sub-step ends.
 #[derive(Debug, Clone, Copy)]
 struct Allowed {
     centre: Vec3,
@@ -126,19 +128,19 @@ impl Allowed {
 }
 
 impl MotionConstraints {
-    /// Whether there are none.
+    /// Whether there are no constraints.
     pub fn is_empty(&self) -> bool {
         self.balls.is_empty()
     }
 
-    /// Has there be none.
+    /// Removes all constraints.
     pub fn clear(&mut self) {
         self.balls.clear();
         self.backstops.clear();
         self.travel = 0.0;
     }
 
-    /// Has there be one for each of `particles`, which has none yet.
+    /// Begins with a free constraint for each of `particles`.
     pub fn begin(&mut self, particles: &ClothParticles, has_backstops: bool) {
         self.clear();
         self.layout = particles.layout();
@@ -153,26 +155,27 @@ impl MotionConstraints {
         }
     }
 
-    /// Has a particle stay within `radius` (m) of a place that goes `from` there `to` in the tick.
+    /// Keeps a particle within `radius` (m) of a place that moves from `from` to `to` in the tick.
     pub fn set_ball(&mut self, particle: usize, [from, to]: [Vec3; 2], radius: f32) {
         let slot = self.layout.slot_of(particle);
         self.balls[slot.block].set(slot.lane, from, to, radius);
         self.travel = self.travel.max(from.distance(to));
     }
 
-    /// Has a particle stay out of a ball of `radius` (m), whose centre goes `from` there `to` in the tick.
+    /// Keeps a particle out of a ball of `radius` (m), whose centre moves from `from` to `to` in the tick.
     pub fn set_backstop(&mut self, particle: usize, [from, to]: [Vec3; 2], radius: f32) {
         let slot = self.layout.slot_of(particle);
         self.backstops[slot.block].set(slot.lane, from, to, radius);
         self.travel = self.travel.max(from.distance(to));
     }
 
-    /// How far anything of it moves in the tick, at most (m).
+    /// Largest displacement of any of its centres in the tick (m).
     pub fn travel(&self) -> f32 {
         self.travel
     }
 
-    /// Moves particles to where they may be as a sub-step ends, and notes how far they went. Returns whether any was moved.
+    /// Moves particles to allowed positions as a sub-step ends, and notes the largest displacement. Returns whether any
+    /// was moved.
     pub fn hold(&self, particles: &mut ClothParticles, substep: &mut SubStep) -> bool {
         let part = substep.end();
         let mut is_moved = false;

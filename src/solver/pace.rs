@@ -1,11 +1,11 @@
-//! What a sub-step is for springs.
+//! The parameters of a sub-step for springs.
 
-/// What of the sub-step the equations of springs depend on.
+/// The parameters of a sub-step in the equations of springs.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Pace {
-    /// 1/(c Δt²) (1/s²), where c Δt² is what a force is multiplied with to move a particle, besides its inverse mass.
+    /// 1/(c Δt²) (1/s²), where c Δt² w is the displacement per force of a particle with inverse mass w.
     pub inverse_weight: f32,
-    /// κ = 1/(1 + τ/Δt), with τ the time in which damping along springs lets a stretch die away (s): 1 without.
+    /// κ = 1/(1 + τ/Δt), with τ the decay time of a stretch by damping along springs (s): 1 without damping.
     pub kept: f32,
 }
 

@@ -1,8 +1,9 @@
 //! Springs that lie anywhere, four at a time.
 //!
 //! Their eight ends are in as many places, so that gathering them would cost more than solving them if each were seven
-//! numbers in seven places. For a sweep each particle is a row of its own, half a cache line. A spring then is four loads and
-//! two stores of four numbers; what it comes to is computed for four of them at once, with one division and no root.
+//! numbers in seven places. For a sweep each particle is a row of its own, half a cache line. A spring then is four
+//! loads and two stores of four numbers; the arithmetic is done for four of them at once, with one division and no
+//! root.
 //!
 //! # The floor
 //! Some thirty instructions a spring, of which eighteen move its ends: at four to five a cycle 2 ns at 3 GHz. The rows of

@@ -16,8 +16,7 @@ pub(super) type Factor = [Lanes; 3];
 pub(super) const PLACES: [usize; 3] = [X, Y, Z];
 pub(super) const MOVES: [usize; 3] = [DX, DY, DZ];
 
-/// Less than this is nothing (kg m, and m): what is far from all that moves would be subnormal numbers, which machines are slow
-/// with.
+/// Smaller values count as zero (kg m, and m): far from any motion they would be subnormal numbers, which are slow.
 pub(super) const MIN_MOMENT: f32 = 1.0e-25;
 pub(super) const MIN_MOVE: f32 = 1.0e-18;
 
@@ -76,7 +75,7 @@ fn forward(
     out
 }
 
-/// How far a particle moves, given how far the two after it do.
+/// Displacement of a particle, given those of the two after it.
 #[inline(always)]
 fn backward(
     solved: &Lanes,
@@ -250,7 +249,7 @@ pub(super) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Fa
     }
 }
 
-/// Moves the particles of up to eight rows by what was found for them, column by column.
+/// Moves the particles of up to eight rows by their solutions, column by column.
 #[inline(always)]
 pub(super) fn thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]) {
     for j in 0..strip {

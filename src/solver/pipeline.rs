@@ -1,7 +1,7 @@
 //! One sub-step over a grid: all stages, each a few rows behind the one before, in one pass down the rows.
 //!
-//! That gives to the last bit what one stage after the other over the whole cloth would, since a stage takes a
-//! row only when the stage before is done with it and its neighbours; but the rows stay in the first cache.
+//! The result is the same, to the last bit, as of one stage after the other over the whole cloth. A stage takes a row
+//! only when the stage before is done with it and its neighbours. But the rows stay in the first cache.
 
 use super::{
     Stretch,
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::cloth::{Block, ClothGrid, Compliances, Lanes, Layout};
 
-/// What is done to a group of rows at once.
+/// The work on a group of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Work {
     /// The springs within a row.
@@ -101,7 +101,7 @@ impl Span {
         }
     }
 
-    /// What can be done with rows `start..end` alone, whatever happens to the others at the same time.
+    /// The work that can be done with rows `start..end` alone, independently of the others.
     fn inside(stages: &[Stage], start: usize, end: usize, rows: usize) -> Self {
         let mut span = Self::whole(rows);
         let (mut from, mut to) = (start, end);
@@ -113,7 +113,7 @@ impl Span {
         span
     }
 
-    /// What is left to do between two neighbours.
+    /// The remaining work between two neighbours.
     fn between(before: &Self, after: &Self) -> Self {
         Self {
             from: before.to,
@@ -189,8 +189,8 @@ impl GridSweep {
         }
     }
 
-    /// One sub-step. With several `bands` of rows, each is done by a task of its own as far as it can be alone,
-    /// then what is left between them: the same operations on each particle in the same order.
+    /// One sub-step. With several `bands` of rows, each is done by a task of its own as far as it can be alone, then
+    /// the remaining work between them: the same operations on each particle in the same order.
     fn sweep(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Longest {
         let rows = self.layout.rows as usize;
         let mut longest = Longest::default();
@@ -365,5 +365,5 @@ impl Sweep for GridSweep {
     }
 }
 
-/// Fewer rows a band than this, and what is left between two bands would be more than they hold.
+/// Smallest number of rows in a band: with fewer, the work between two bands would be larger than that within them.
 const MIN_ROWS: usize = 32;

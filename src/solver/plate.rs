@@ -1,10 +1,10 @@
 //! The arithmetic of a bent grid's forces, all at once, as [`pentadiagonal`](super::pentadiagonal) and [`twist`](super::twist) solve
 //! them one by one.
 //!
-//! Along its row and its column a particle has the moment `k (x_{i−1} − 2 x_i + x_{i+1})`, and is pushed by twice its own less those
-//! of the particles beside it. A cell has the moment `k (x₀₀ − x₀₁ − x₁₀ + x₁₁)`, and pushes its corners by it, with the signs as
-//! they stand there turned round. Three stages follow each other down the rows: where the particles are, their moments, their
-//! forces. What the stages hand on stays in the caches next to the core.
+//! Along its row and its column a particle has the moment `k (x_{i−1} − 2 x_i + x_{i+1})`. It is pushed by twice its
+//! own moment, less those of the particles beside it. A cell has the moment `k (x₀₀ − x₀₁ − x₁₀ + x₁₁)`, and pushes its
+//! corners by it, with these signs reversed. Three stages follow each other down the rows: positions, moments, forces.
+//! Data between the stages stays in the caches next to the core.
 
 use super::pentadiagonal::{MIN_MOVE, MOVES, PLACES, Trio, flush};
 use crate::cloth::{Block, LANES, Lanes, W};
@@ -107,7 +107,8 @@ pub(super) fn plate_moments(
     }
 }
 
-/// How far a force moves particles: that of twice their own moments less those beside them, and of the four cells around them.
+/// The displacement of particles by the forces of twice their own moments, less those beside them, and of the four
+/// cells around them.
 #[inline(always)]
 fn pushed(
     weight: &Lanes,

@@ -1,16 +1,16 @@
-//! Where particles would be without springs: of first and of second order in time.
+//! The prediction of particles without springs, of first and of second order in time.
 //!
-//! With v kept to the part κ in a sub-step, the paper's equation (2), `x' = x + κ (x − x_prev) + a Δt²`, is the first. The
-//! second takes backward differences of second order (BDF2) for x and for v: with d₀, d₁, d₂ the last displacements,
-//! `d = d₀ + (6 (d₀ − d₁) − (d₁ − d₂))/9 + (4/9) a Δt²` where nothing is damped. What forces and springs do in a sub-step
-//! counts with a weight c then: 1 and 4/9.
+//! With v kept to the part κ in a sub-step, the paper's equation (2), `x' = x + κ (x − x_prev) + a Δt²`, is the first.
+//! The second takes backward differences of second order (BDF2) for x and for v: with d₀, d₁, d₂ the last
+//! displacements, `d = d₀ + (6 (d₀ − d₁) − (d₁ − d₂))/9 + (4/9) a Δt²` where nothing is damped. Forces and springs
+//! count with a weight c in a sub-step: 1 in first order, 4/9 in second.
 //!
-//! Damping takes from velocities relative to what carries the cloth. That is a shift of all particles alike: what they would lose if
-//! all moved as the carrier does is given back, so that they move on with it.
+//! Damping acts on velocities relative to the carrier of the cloth. This is a shift of all particles alike: the
+//! velocity that they would lose by moving with the carrier is given back, so that they move on with it.
 //!
-//! It begins with a sub-step of weight ½ from position and velocity, `d = d₀ + ½ a Δt²`; the two displacements before are
-//! what a constant acceleration would have made them. A sub-step of first order in its place would leave a velocity that is
-//! off by a Δt/2, and all that follows of first order.
+//! A motion of second order begins with a sub-step of weight ½ from position and velocity, `d = d₀ + ½ a Δt²`. The two
+//! displacements before are those of a constant acceleration. A sub-step of first order in its place would leave a
+//! velocity that is off by a Δt/2, and make everything after it of first order.
 
 use bevy::math::Vec3;
 
@@ -20,7 +20,7 @@ use super::{
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
 
-/// What a displacement becomes: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
+/// The next displacement: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Prediction {
     own: f32,
@@ -119,7 +119,7 @@ pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
     }
 }
 
-/// What the air does in a sub-step: its weight (s²), and one over its length (1/s).
+/// Parameters of the air in a sub-step: its weight (s²), and one over its length (1/s).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Breath {
     pub weight: f32,

@@ -1,40 +1,40 @@
-//! When a cloth has come to rest.
+//! Detects that a cloth has come to rest.
 
 use crate::cloth::ClothParticles;
 
-/// How far a particle of a cloth at rest is from where it was at most, in diagonals of the cloth: a pixel, where the
-/// cloth fills the screen.
+/// Largest displacement of a particle at rest, in diagonals of the cloth: a pixel if the cloth fills the screen.
 const REACH: f32 = 1.0e-3;
 
 /// And in metres: a person stands nearer to a large cloth than its size.
 const LARGEST_REACH: f32 = 5.0e-3;
 
 /// How long it has to stay so near (s): half a swing, √(g/L) × 2.405/2 being the angular frequency of a sheet of length
-/// L that hangs by its upper edge. What swings by more than one and a half times as far to either side leaves its place in
-/// that time, wherever it is in its swing: in half a swing it gets two thirds of its amplitude away at least.
+/// L that hangs by its upper edge. A cloth that swings by more than one and a half times as far to either side leaves
+/// its place in that time, from any phase: in half a swing it moves by at least two thirds of its amplitude.
 const HALF_SWING: f32 = 2.61;
 const PATIENCE: [f32; 2] = [0.5, 20.0];
 
-/// How long what moves is not looked at (s).
+/// Pause between comparisons of a cloth that moves (s).
 const PAUSE: f32 = 0.125;
 
-/// Layers of cloth that lie on each other settle for minutes, by less than a person sees. They rest when they have not come
-/// farther than that (m) in so long (s): a third as fast as bodies that Jolt lets sleep.
+/// Layers of cloth that lie on each other settle for minutes, by less than a person sees. They rest when they have
+/// moved by less than this distance (m) in this time (s): a third of the speed at which Jolt lets bodies sleep.
 const REACH_OF_LAYERS: f32 = 5.0e-3;
 const PATIENCE_OF_LAYERS: f32 = 0.5;
 
 /// Where nothing swings, as there is no gravity (s).
 const WITHOUT_GRAVITY: f32 = 2.5;
 
-/// Whether a cloth is at rest, judged by what an eye sees: no particle has moved by more than a thousandth of the cloth's
-/// diagonal, at most 5 mm, for as long as half a swing of a sheet as long as that takes (1.3 s for 2.3 m on Earth), from
-/// 0.5 to 20 s. Speeds do not count: what trembles in its place is at rest.
+/// Detects rest as an observer would see it. A cloth is at rest once no particle has moved by more than a thousandth of
+/// the cloth's diagonal, capped at 5 mm, for half a swing. That is the half period of a hanging sheet as long as the
+/// diagonal (1.3 s for 2.3 m on Earth), from 0.5 to 20 s. Speeds do not count: a cloth that trembles in place is at
+/// rest.
 #[derive(Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rest {
-    /// Where the particles were when they were last seen to move; as they sleep, if they do.
+    /// Positions of the particles when they were last seen to move; the sleeping particles, if they sleep.
     origin: ClothParticles,
-    /// How long until they are looked at again, after they have moved (s): who moves is not copied in each tick.
+    /// Time until the next comparison after a motion (s): the particles of a moving cloth are not copied in each tick.
     wait: f32,
     /// For how long they have been near it (s).
     calm: f32,
@@ -42,13 +42,13 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// Whether what somebody has read from a file can be.
+    /// Whether this state, read from a file, is valid.
     pub(crate) fn is_sound(&self) -> bool {
         self.origin.is_sound()
     }
 
-    /// Takes what a tick of this many seconds ended with, of a cloth that measures `diagonal` (m) at rest, under an
-    /// `acceleration` (m/s²), which lies on cloth or not.
+    /// Takes the particles at the end of a tick of this many seconds. The cloth measures `diagonal` (m) at rest, is
+    /// under an `acceleration` (m/s²), and lies on cloth or not.
     pub fn observe(
         &mut self,
         seconds: f32,
@@ -84,7 +84,7 @@ impl Rest {
         }
     }
 
-    /// Becomes what `other` is, in the memory that it has. Where particles that move were is nobody's concern until they are looked at
+    /// Copies `other` into its own memory. Positions of particles that move are not needed until they are compared
     /// again.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         (self.wait, self.calm) = (other.wait, other.calm);
@@ -94,12 +94,12 @@ impl Rest {
         }
     }
 
-    /// Whether it has been long enough.
+    /// Whether the cloth has been at rest for long enough to sleep.
     pub fn is_asleep(&self) -> bool {
         self.is_asleep
     }
 
-    /// Whether all particles were near their places when they were last looked at.
+    /// Whether all particles were near their places when they were last compared.
     pub fn is_calm(&self) -> bool {
         self.is_asleep || self.calm > 0.0
     }

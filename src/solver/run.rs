@@ -2,8 +2,7 @@
 
 use crate::cloth::{ClothGrid, Compliances, Lanes, Layout};
 
-/// What is added to `w_a + w_b` (1/kg): nothing to speak of, but it keeps a spring between two pins from dividing
-/// by zero.
+/// Added to `w_a + w_b` (1/kg): negligible, but it keeps a spring between two pins from dividing by zero.
 pub(super) const MIN_SOFTNESS: f32 = 1.0e-18;
 
 /// Springs that lie alike: one block of them for each block of a row.

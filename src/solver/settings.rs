@@ -1,4 +1,4 @@
-//! How a cloth is simulated.
+//! Settings of a cloth's simulation.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -12,34 +12,34 @@ use super::{
 };
 use crate::cloth::ClothError;
 
-/// How a cloth is simulated. May change at any time.
+/// Settings of a cloth's simulation. They may change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSettings {
-    /// How exactly: as many sub-steps as the cloth needs, a number of them, or as many as hold a tolerance.
+    /// The number of sub-steps, which sets accuracy and cost: automatic, fixed, or by a tolerance of stretch.
     pub substepping: Substepping,
-    /// Acceleration in the world (m/s²) for this cloth alone, instead of the resource
+    /// Gravity for this cloth alone, in the world (m/s²), in place of the resource
     /// [`ClothGravity`](crate::plugin::ClothGravity).
     pub gravity: Option<Vec3>,
-    /// Radius of each particle (m), zero or more: the distance at which the cloth lies on a collider, and the
-    /// radius of the tree's leaves. About spacing² / (4 × the ball's radius) keeps the flat triangles between
-    /// the particles from sinking into a ball.
+    /// Radius of each particle (m), zero or more: the distance at which the cloth lies on a collider, and the radius of
+    /// the tree's leaves. With about spacing² / (4 × the ball's radius), the flat triangles between particles do not
+    /// sink into a ball.
     pub particle_radius: f32,
-    /// Whether no particle may be farther from the pins than the cloth between them is long, with room for what the
-    /// material gives and 1 % more. Threads that are solved need none; a fine cloth that hangs by single points and has to do
-    /// with fewer sub-steps than it needs stretches less with them: see [`Tethers`](super::Tethers).
+    /// Whether tethers limit the distance of each particle from the pins to the length of cloth between them, with room
+    /// for the stretch of the material and 1 % more. Solved threads don't need them. They reduce the stretch of a fine
+    /// cloth that hangs by single points and runs with fewer sub-steps than it needs: see [`Tethers`](super::Tethers).
     pub tethers: bool,
-    /// How the error of its motion falls with the sub-steps: in proportion to their length squared, or, as in the paper, to
-    /// their length. Of second order, soft grids are pushed by their forces where that is stable.
+    /// Order of the motion in time: the error falls with the square of a sub-step's length, or, as in the paper, in
+    /// proportion to it. In second order, the springs of soft grids act by explicit forces where that is stable.
     pub order: TimeOrder,
-    /// Whether a cloth that has come to rest sleeps: it costs next to nothing, stays as it is to the last bit,
-    /// and wakes by a collider that moves near it, a pin that moves, a change of its components or gravity.
+    /// Whether a cloth that has come to rest sleeps. A sleeping cloth costs next to nothing, and stays as it is to the
+    /// last bit. It wakes when a collider moves near it, a pin moves, or its components or gravity change.
     pub sleeps: bool,
 }
 
 impl Default for ClothSettings {
-    /// As many sub-steps as the cloth needs, of second order, the resource's gravity, particles of 1 cm radius; sleep, and no
+    /// Automatic sub-steps, second order, the resource's gravity, particles with a radius of 1 cm, sleep, and no
     /// tethers.
     fn default() -> Self {
         Self {
@@ -54,7 +54,7 @@ impl Default for ClothSettings {
 }
 
 impl ClothSettings {
-    /// A fixed number of sub-steps a tick, all else by default.
+    /// A fixed number of sub-steps per tick, with defaults for everything else.
     pub fn substeps(substeps: u32) -> Self {
         Self {
             substepping: Substepping::Fixed(substeps),
@@ -62,8 +62,8 @@ impl ClothSettings {
         }
     }
 
-    /// A largest stretch (0.01 is one per cent) in place of sub-steps, of which a tick may have up to 100; all
-    /// else by default.
+    /// A largest stretch (0.01 is one per cent), held with up to 100 sub-steps per tick, with defaults for everything
+    /// else.
     pub fn tolerance(stretch: f32) -> Self {
         Self {
             substepping: Substepping::Adaptive {
@@ -76,10 +76,10 @@ impl ClothSettings {
 }
 
 impl ClothSettings {
-    /// Whether each value is in its range.
+    /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not.
+    /// [`ClothError::Quantity`] for the first value that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         let substeps = match self.substepping {
             Substepping::Automatic => 1,

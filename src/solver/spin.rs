@@ -1,31 +1,32 @@
 //! The angular momentum of a cloth that hangs by a vertical line, as a flag by its pole.
 //!
-//! Neither springs nor pins nor gravity turn such a cloth around that line, so that its angular momentum there is lost
-//! to damping alone, whether the line stands still or moves without turning. A sweep does turn it: what one spring corrects turns those that are corrected after it, by a torque
-//! of the order of (tension/mass)² Δt², always to the same side. Damping is all that holds against it: a limp flag of
-//! 24 × 16 particles went round its pole at 0.25 rad/s for ever with 20 sub-steps in 1/64 s, at a tenth of that with 80.
+//! Neither springs nor pins nor gravity turn such a cloth around that line. So it loses its angular momentum there to
+//! damping alone, whether the line stands still or moves without turning. But a sweep does turn it. The correction of
+//! one spring turns the springs after it, by a torque of the order of (tension/mass)² Δt², always to the same side.
+//! Only damping resists that. A limp flag of 24 × 16 particles circled its pole for ever, at 0.25 rad/s with 20
+//! sub-steps in 1/64 s, and at a tenth of that with 80.
 
 use bevy::math::Vec3;
 
 use super::{PinMotion, TickStep};
 use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
 
-/// How far pins may be beside the line, in metres for each metre along it.
+/// Largest distance of pins from the line, in metres per metre along it.
 const STRAIGHT: f32 = 1.0e-3;
 
-/// How far a cloth is turned back in a tick at most (rad).
+/// Largest angle by which a cloth is turned back in a tick (rad).
 const LARGEST_TURN: f32 = 0.01;
 
-/// What a cloth turns by around the line of its pins.
+/// The rotation of a cloth around the line of its pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spin {
     /// A point of the line as the tick begins, and the direction of the line, of length 1.
     origin: Vec3,
     axis: Vec3,
-    /// How far the line moves in the tick, and in a sub-step (m).
+    /// Displacement of the line in the tick, and in a sub-step (m).
     shift: Vec3,
     way: Vec3,
-    /// How far it moves in a sub-step relative to what damping is relative to (m).
+    /// Its displacement in a sub-step, relative to the damping frame (m).
     against: Vec3,
     substeps: u32,
     /// As the tick begins.
@@ -39,8 +40,8 @@ struct Turning {
     momentum: f32,
     /// Moment of inertia (kg m²).
     inertia: f32,
-    /// What the line's own way in a sub-step, against what damping is relative to, would be as angular momentum, if the cloth went
-    /// along (kg m²).
+    /// Angular momentum of the line's own motion in a sub-step, relative to the damping frame, if the cloth moved along
+    /// (kg m²).
     carried: f32,
 }
 
@@ -125,8 +126,9 @@ impl Spin {
         }
     }
 
-    /// Has the cloth turn as a whole so that its angular momentum is what damping leaves of it, the part `kept` of each
-    /// velocity; and takes back by how far it was turned in the tick, in which the difference has grown evenly.
+    /// Turns the cloth as a whole so that its angular momentum is that after damping, the fraction `kept` of each
+    /// velocity. Also takes back the angle by which it was turned in the tick, in which the difference has grown
+    /// evenly.
     pub fn restore(&self, particles: &mut ClothParticles, kept: f32) {
         let origin = self.origin + self.shift;
         let after = self.measure(particles, origin);

@@ -1,4 +1,4 @@
-//! What a tick and a sub-step are.
+//! Parameters of a tick and of a sub-step.
 
 use bevy::{
     math::Vec3,
@@ -10,7 +10,7 @@ use crate::cloth::ClothParticles;
 /// The time step for which the paper's damping D is given (s).
 pub(super) const DAMPING_REFERENCE: f32 = 1.0 / 60.0;
 
-/// What moves a cloth in a tick, besides its springs.
+/// Parameters of a tick: its length, its sub-steps, and the forces besides springs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TickStep {
     /// Length of the tick (s).
@@ -19,45 +19,46 @@ pub struct TickStep {
     pub substeps: u32,
     /// Acceleration in the cloth's frame (m/s²).
     pub acceleration: Vec3,
-    /// The paper's D: the part of its velocity that the cloth loses in 1/60 s.
+    /// The paper's D: the fraction of its velocity that the cloth loses in 1/60 s.
     pub damping: f32,
-    /// Which velocity that is.
+    /// The frame of that velocity.
     pub damped_against: DampingFrame,
-    /// Of which order in time.
+    /// The order in time.
     pub order: TimeOrder,
-    /// The stretch that the material itself gives: what is far beyond it has not been solved, and is no motion to go on from.
+    /// The stretch of the material itself. A stretch far beyond it is unsolved, and the motion does not continue from
+    /// it.
     pub material_stretch: f32,
 }
 
-/// What the velocity that damping takes from is relative to.
+/// The frame in which damping acts.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub enum DampingFrame {
-    /// To what stands still: the paper's equation (2). What falls freely is slowed down as well.
+    /// At rest: the paper's equation (2). It slows down free fall as well.
     #[default]
     Still,
-    /// To something that moves evenly, such as what a cloth is pinned to: its velocity in the cloth's frame (m/s).
+    /// In uniform motion, such as that of a body to which the cloth is pinned: its velocity in the cloth's frame (m/s).
     Moving(Vec3),
-    /// To the centre of mass of all particles that are free: damping takes no momentum.
+    /// With the centre of mass of all free particles: damping takes no momentum.
     CentreOfMass,
 }
 
-/// How the error of a motion falls with the length of a sub-step Δt.
+/// Order in time: how the error of a motion falls with the length Δt of a sub-step.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum TimeOrder {
-    /// In proportion to Δt: the paper's Verlet, equation (2), which with constraints is implicit Euler. Takes energy out of a
-    /// motion of frequency ω, by the part ω² Δt in a second.
+    /// In proportion to Δt: the paper's Verlet, equation (2), which with constraints is implicit Euler. It takes energy
+    /// from a motion of frequency ω: the fraction ω² Δt in a second.
     First,
-    /// In proportion to Δt²: backward differences over three displacements (BDF2), or velocity Verlet where soft springs push by
-    /// their forces. After what no past can foretell it falls
-    /// back to the first order for a while: contact, springs that were not solved, a write by the game.
+    /// In proportion to Δt²: backward differences over three displacements (BDF2), or velocity Verlet where soft
+    /// springs act by explicit forces. It falls back to first order for a while after sudden changes: contact, unsolved
+    /// springs, or a write by the game.
     #[default]
     Second,
 }
 
 impl Default for TickStep {
-    /// 20 sub-steps of Bevy's 64 Hz, no acceleration, no damping.
+    /// A tick of Bevy's 64 Hz in 20 sub-steps, without acceleration or damping.
     fn default() -> Self {
         Self {
             seconds: 1.0 / 64.0,
@@ -74,16 +75,16 @@ impl Default for TickStep {
 /// One sub-step of a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SubStep {
-    /// Which one, from 0.
+    /// Its index, from 0.
     pub index: u32,
-    /// How many there are.
+    /// Number of sub-steps in the tick.
     pub count: u32,
-    /// How far the particle that moved farthest in it has moved (m).
+    /// Largest displacement of a particle in it (m).
     pub farthest_move: f32,
 }
 
 impl SubStep {
-    /// The first of so many, in which nothing has moved yet.
+    /// The first of `count` sub-steps, in which nothing has moved yet.
     pub(crate) fn first_of(count: u32) -> Self {
         Self {
             index: 0,
@@ -112,15 +113,15 @@ impl SubStep {
     }
 }
 
-/// A pinned particle that its cloth's frame, or whatever it is pinned to, carries along in a tick. One of a particle that
-/// does not exist moves nothing.
+/// The motion of a pinned particle in a tick, with its cloth's frame or the entity that it is pinned to. It is ignored
+/// if the particle does not exist.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PinMotion {
     /// Index of the particle.
     pub particle: u32,
-    /// Where it is as the tick begins (m).
+    /// Its position as the tick begins (m).
     pub from: Vec3,
-    /// Where it is as the tick ends (m).
+    /// Its position as the tick ends (m).
     pub to: Vec3,
 }
 
@@ -130,7 +131,7 @@ pub(super) fn existing(pins: &[PinMotion], particles: usize) -> impl Iterator<It
         .filter(move |pin| (pin.particle as usize) < particles)
 }
 
-/// Puts pinned particles where they are at the end of a tick: not a rounding beside it.
+/// Puts pinned particles exactly where they are at the end of a tick.
 pub(super) fn put_pins(particles: &mut ClothParticles, pins: &[PinMotion]) {
     for pin in existing(pins, particles.len()) {
         particles.put(pin.particle as usize, pin.to);

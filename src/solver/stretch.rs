@@ -1,33 +1,34 @@
-//! How far the springs are from their rest lengths.
+//! The stretch of springs beyond their rest lengths.
 
 use bevy::reflect::Reflect;
 
 use crate::cloth::{ClothParticles, SpringKind, Springs};
 
-/// How far a cloth is stretched, as length / rest length − 1 of its most stretched spring, at least 0.
+/// Stretch of a cloth: length / rest length − 1 of its most stretched spring, at least 0.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Stretch {
-    /// Over the structural springs: the figure that a person sees.
+    /// Largest stretch of the structural springs: the visible stretch.
     pub structural: f32,
-    /// Over structural and shear springs: no path along them is longer than its rest length times 1 + this.
+    /// Largest stretch of structural and shear springs: no path along them is longer than its rest length times 1 +
+    /// this.
     pub bound: f32,
-    /// What the material gives at the largest tension of its structural springs, damping along them included, where threads were
-    /// solved for it; all of `structural` where springs push by their forces; else 0. A stretch beyond it is what the sub-steps left
-    /// unsolved.
+    /// The stretch of the material at the largest tension of its structural springs, including damping along them. A
+    /// stretch beyond it is what the sub-steps left unsolved. It is known where threads were solved; it equals
+    /// `structural` where springs act by explicit forces, and is 0 otherwise.
     pub material: f32,
-    /// Sub-steps in a tick as long as the last for which ripples across its threads are resolved, at the tension of half of its
-    /// width: those of a membrane that is taut in a frame. Of grids whose threads give; else 0.
+    /// Number of sub-steps in a tick as long as the last that resolves ripples across the threads. It is that of a taut
+    /// membrane in a frame, at the tension in half of the cloth's width. 0 except for grids with elastic threads.
     pub ripple_substeps: f32,
-    /// Sub-steps in a tick as long as the last that hold the bodies which the cloth carries: so heavy are they for the threads that they hang
-    /// by; 0 if it carries none.
+    /// Number of sub-steps in a tick as long as the last that holds the bodies on the cloth, by their weight on the
+    /// threads that carry them. 0 if the cloth carries none.
     pub load_substeps: f32,
 }
 
 impl Stretch {
-    /// Measures every structural and shear spring, one by one.
-    /// [`Solver::measure`](super::Solver::measure) does the same for many at once.
+    /// Measures every structural and shear spring one by one. [`Solver::measure`](super::Solver::measure) does the same
+    /// for many at once.
     pub fn measure(springs: &Springs, particles: &ClothParticles) -> Self {
         let (mut structural, mut bound) = (1.0_f32, 1.0_f32);
         springs.for_each(|_, spring| {

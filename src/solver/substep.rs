@@ -1,4 +1,4 @@
-//! A tick of sub-steps: prediction, bending, springs, response.
+//! A tick of sub-steps: prediction, bending, springs, collision response.
 
 mod explicit;
 mod started;
@@ -33,11 +33,12 @@ const UNSOLVED: f32 = 0.5;
 /// Ticks of first order after a tick that ended so stretched.
 const WARY_TICKS: u32 = 15;
 
-/// ω Δt up to which ripples of tension are as fast as they are. Springs pull along where their threads are foreseen to be: beyond 2.3,
-/// on grids of 17² to 65² alike, what is foreseen goes beyond what it comes from, and a taut membrane rings lower, by 30 % at 3.9.
+/// ω Δt up to which ripples of tension have the right speed. Springs pull along the predicted direction of their
+/// threads. Beyond 2.3, on grids of 17² to 65² alike, the prediction overshoots, and a taut membrane rings lower, by 30
+/// % at 3.9.
 const RESOLVED: f32 = 2.2;
 
-/// Moves the particles that it was made for, a tick at a time. On one thread it does not allocate.
+/// Simulates the particles that it was made for, one tick at a time. On one thread it does not allocate.
 #[derive(Debug, Clone)]
 pub struct Solver {
     /// Of the particles.
@@ -49,33 +50,33 @@ pub struct Solver {
     air: Option<Box<Airflow>>,
     tethers: Tethers,
     anchors: Anchors,
-    /// Of damping along springs (s).
+    /// Decay time of damping along springs (s).
     retardation: f32,
     bands: usize,
     simd_level: SimdLevel,
 }
 
 impl Default for Solver {
-    /// Of no springs.
+    /// A solver without springs.
     fn default() -> Self {
         Self::of(Layout::default(), Box::<ListSweep>::default())
     }
 }
 
 impl Solver {
-    /// Solves `springs` between `particles`. Without bending or tethers, on one thread.
+    /// A solver of `springs` between `particles`, without bending or tethers, on one thread.
     ///
     /// # Panics
-    /// If the springs are those of another grid, or between more particles than there are.
+    /// If the springs belong to another grid, or join more particles than there are.
     pub fn new(springs: &Springs, particles: &ClothParticles) -> Self {
         Self::of_layout(springs, particles.layout())
     }
 
-    /// Solves `springs` by one sweep over them in each sub-step, spring after spring, which is of first order in time: what the
-    /// lab compares with.
+    /// A solver of `springs` by one sweep over them in each sub-step, spring after spring, which is of first order in
+    /// time. The lab compares with it.
     ///
     /// # Panics
-    /// As [`new`](Self::new) does.
+    /// See [`new`](Self::new).
     #[doc(hidden)]
     pub fn of_one_sweep(springs: &Springs, particles: &ClothParticles) -> Self {
         match springs.storage() {
@@ -92,10 +93,10 @@ impl Solver {
         }
     }
 
-    /// Solves `springs` between the particles of a surface. Its clones share what it knows of the springs.
+    /// A solver of `springs` between the particles of a surface. Its clones share the data of the springs.
     ///
     /// # Panics
-    /// As [`new`](Self::new) does.
+    /// See [`new`](Self::new).
     pub fn of_surface(surface: &Surface, springs: &Springs) -> Self {
         Self::of_layout(springs, Layout::of(surface))
     }
@@ -139,13 +140,12 @@ impl Solver {
         }
     }
 
-    /// With this resistance to bending from now on, which must be that of the solver's particles; `None` for none.
+    /// Sets the resistance to bending, which must be that of the solver's particles; `None` for none.
     pub fn set_bending(&mut self, bending: Option<Bending>) {
         self.bending = bending;
     }
 
-    /// In this air from now on, the same everywhere, around the surface that the solver was made for; `None` for none, which costs
-    /// nothing.
+    /// Sets uniform air around the surface that the solver was made for; `None` for no air, which costs nothing.
     pub fn set_air(&mut self, surface: &Surface, air: Option<Air>) {
         match (air, &mut self.air) {
             (Some(air), Some(known)) => known.set(air),
@@ -154,52 +154,53 @@ impl Solver {
         }
     }
 
-    /// With a wind of its own at each place in place of [`Air::wind`], until the air is set again: `at` says what it is (m/s) at a
-    /// place (m), both in the cloth's frame. It is asked at some 80 places, where the particles are now, and interpolated between them:
-    /// at nine in each direction of a grid, in a lattice of up to 5 × 5 × 5 around a mesh. Without air it is not asked.
+    /// Sets a wind that depends on the position, in place of [`Air::wind`], until the air is set again. `at` takes a
+    /// position (m) to the velocity of the air (m/s), both in the cloth's frame. It is called at some 80 positions
+    /// around the current particles, and interpolated between them. These are nine in each direction of a grid, or a
+    /// lattice of up to 5 × 5 × 5 around a mesh. Without air it is not called.
     pub fn set_local_wind(&mut self, particles: &ClothParticles, at: impl FnMut(Vec3) -> Vec3) {
         if let Some(air) = &mut self.air {
             air.set_local_wind(particles, at);
         }
     }
 
-    /// What the air gave the cloth in the last tick (N s), in its frame.
+    /// Impulse that the air gave the cloth in the last tick, in the cloth's frame (N s).
     pub fn air_impulse(&self) -> Vec3 {
         self.air.as_ref().map_or(Vec3::ZERO, |air| air.impulse())
     }
 
-    /// What a closed mesh encloses (m³), and the pressure in it over that of the outside (Pa), as the last sub-step found them; 0
-    /// without [`Air::pressure`].
+    /// The volume that a closed mesh encloses (m³), and its gauge pressure (Pa), as of the last sub-step; 0 without
+    /// [`Air::pressure`].
     pub fn enclosed(&self) -> (f32, f32) {
         self.air.as_ref().map_or((0.0, 0.0), |air| air.enclosed())
     }
 
-    /// What the next tick's air goes on from.
+    /// The memory of the air for the next tick.
     pub(crate) fn air_memory(&self) -> AirMemory {
         self.air
             .as_ref()
             .map_or_else(AirMemory::default, |air| air.memory())
     }
 
-    /// What the last tick's air was left with.
+    /// Restores the memory of the air from the last tick.
     pub(crate) fn set_air_memory(&mut self, memory: AirMemory) {
         if let Some(air) = &mut self.air {
             air.set_memory(memory);
         }
     }
 
-    /// With damping along springs from now on: [`ClothMaterial::stretch_damping`](crate::cloth::ClothMaterial::stretch_damping)
+    /// Sets the damping along springs: [`ClothMaterial::stretch_damping`](crate::cloth::ClothMaterial::stretch_damping)
     /// (s), 0 for none.
     pub fn set_stretch_damping(&mut self, retardation: f32) {
         self.retardation = retardation;
     }
 
-    /// With tethers from now on, which must be those of the solver's particles.
+    /// Sets tethers, which must be those of the solver's particles.
     pub fn set_tethers(&mut self, tethers: Tethers) {
         self.tethers = tethers;
     }
 
-    /// Its tethers, for another solver of the same particles. It has none from now on.
+    /// Takes its tethers, for another solver of the same particles.
     pub(crate) fn take_tethers(&mut self) -> Tethers {
         std::mem::take(&mut self.tethers)
     }
@@ -209,8 +210,8 @@ impl Solver {
         &self.tethers
     }
 
-    /// With this many bands of rows from now on, each a task of Bevy's compute pool. The result is the same to the
-    /// last bit. Springs on no grid are always one band.
+    /// Sets the number of bands of rows, each a task of Bevy's compute pool. The result is the same to the last bit.
+    /// Springs that don't belong to a grid are always one band.
     pub fn set_bands(&mut self, bands: usize) {
         self.bands = bands;
         if let Some(forces) = &mut self.forces {
@@ -218,7 +219,7 @@ impl Solver {
         }
     }
 
-    /// How many bands there are: fewer than wanted where there is too little to do.
+    /// Number of bands: fewer than wanted if there is too little to do.
     pub(super) fn bands(&self) -> usize {
         self.sweep.bands(self.bands)
     }
@@ -229,17 +230,18 @@ impl Solver {
         self.forces.as_ref().map_or(1, |forces| forces.bands())
     }
 
-    /// With this SIMD level from now on.
+    /// Sets the SIMD level.
     #[doc(hidden)]
     pub fn set_simd_level(&mut self, simd_level: SimdLevel) {
         self.simd_level = simd_level;
     }
 
-    /// Moves `particles` by one tick and measures the stretch that it ends with. `respond` is called at the end of
-    /// each sub-step, to push particles out of what they touch, and says whether it moved any. No time, no motion.
+    /// Moves `particles` by one tick, and measures the stretch at its end. `respond` is called at the end of each
+    /// sub-step, to push particles out of colliders, and returns whether it moved any. A tick of zero seconds does not
+    /// move anything.
     ///
     /// # Panics
-    /// If the particles are others than those that the solver was made for.
+    /// If the solver was made for other particles.
     pub fn advance(
         &mut self,
         particles: &mut ClothParticles,

@@ -1,4 +1,4 @@
-//! How many sub-steps a tick is cut into: a fixed number, or as few as hold a tolerance.
+//! The number of sub-steps in a tick: a fixed number, or as few as hold a tolerance.
 
 use bevy::reflect::Reflect;
 
@@ -7,8 +7,8 @@ use super::Stretch;
 /// More would be a mistake in typing, and would hang the game.
 pub(super) const MAX_SUBSTEPS: u32 = 10_000;
 
-/// Parts of the tolerance: below the first the sub-steps may become fewer, above the last more, and the one between is aimed
-/// at then. What is left is for what can't be foreseen, and in the wide band between nothing changes.
+/// Fractions of the tolerance. Below the first there may be fewer sub-steps, above the last there are more, and the one
+/// between is the aim then. The rest is for the unforeseeable; in the wide band between nothing changes.
 const SLACK: f32 = 0.3;
 const AIM: f32 = 0.5;
 const TIGHT: f32 = 0.8;
@@ -17,8 +17,8 @@ const TIGHT: f32 = 0.8;
 const CALM_TICKS: u32 = 3;
 const FEWER: f32 = 0.9;
 
-/// More than ripples or loads ask for, so that what grows a little changes nothing; the part of them that asks for less, if it does for
-/// so many ticks; and so many times what the particles need at most.
+/// Margin over the needs of ripples or loads, so that a small growth changes nothing; the fraction of them below which
+/// a need counts as less, and the ticks in which it has to; and the largest multiples of the particles' need.
 const MARGIN: f32 = 1.05;
 const SLACKER: f32 = 0.75;
 const SLACK_TICKS: u32 = 30;
@@ -36,56 +36,61 @@ const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 /// 4 % (`cargo test --test headless heavy`).
 const FOR_LOAD: f32 = 12.0;
 
-/// How exactly a cloth is simulated. Cost grows in proportion to the sub-steps, and the error of the motion shrinks with their
-/// square; stretch that is passed on from thread to thread shrinks faster still, once there are enough.
+/// The number of sub-steps in a tick. Cost grows in proportion to the sub-steps, and the error of the motion falls with
+/// their square. Stretch that passes from thread to thread falls faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum Substepping {
-    /// As many as the cloth needs by its particles, [`Substepping::needed`], or, where it is soft, for its springs to push by their
-    /// forces, [`Solver::needed`](super::Solver::needed); more where it is taut as a membrane, until ripples across its threads are
-    /// resolved, [`Stretch::ripple_substeps`], and where a body lies on it, until it holds that: [`Stretch::load_substeps`].
+    /// As many as the cloth needs:
+    ///
+    /// - By its number of particles, [`Substepping::needed`]; or, for a soft cloth, as many as explicit forces need,
+    ///   [`Solver::needed`](super::Solver::needed).
+    /// - More where it is taut as a membrane, until ripples across its threads are resolved,
+    ///   [`Stretch::ripple_substeps`].
+    /// - More where a body lies on it, until it holds that body, [`Stretch::load_substeps`].
     #[default]
     Automatic,
-    /// This many sub-steps a tick, from 1 to 10,000.
+    /// This number of sub-steps per tick, from 1 to 10,000.
     Fixed(u32),
-    /// As few as keep the largest stretch of a structural spring within a tolerance. A tick that ends beyond it is
-    /// done again with more, before anyone sees it.
+    /// As few as keep the largest stretch of a structural spring within a tolerance. A tick that ends beyond the
+    /// tolerance is repeated with more sub-steps, before the game sees it.
     Adaptive {
-        /// Largest length over rest length, − 1, that is allowed: 0.01 is one per cent. Positive.
+        /// Largest allowed stretch, length / rest length − 1: 0.01 is one per cent. Positive.
         stretch: f32,
-        /// A tick has at most this many, those done in vain with them, from 1 to 10,000; where they don't suffice, or the
-        /// material itself gives more, that is logged:
+        /// Largest number of sub-steps in a tick, including repeated ones, from 1 to 10,000. If they don't suffice, or
+        /// the material itself stretches more, the log says so:
         /// [`ClothLimit::Tolerance`](super::ClothLimit::Tolerance).
         max_substeps: u32,
     },
 }
 
 impl Substepping {
-    /// As many as hold a cloth of this many particles along its longer side in a tick of `seconds`, from 4 to 10,000: one for
-    /// three particles in 1/60 s.
+    /// Number of sub-steps in a tick of `seconds` for a cloth with this number of particles along its longer side. It
+    /// is one for three particles in 1/60 s, from 4 to 10,000.
     pub fn needed(particles: usize, seconds: f32) -> u32 {
         let wanted = FOR_EACH_PARTICLE * particles as f32 * seconds * 60.0;
         (wanted.ceil() as u32).clamp(FEWEST, MAX_SUBSTEPS)
     }
 
-    /// As many as hold a body in a tick of `seconds` that is `ratio` times as heavy as the particles, `spacing` apart (m), of the threads
-    /// that it hangs by, where it weighs `gravity` (m/s²).
+    /// Number of sub-steps in a tick of `seconds` that holds a body under `gravity` (m/s²). The body is `ratio` times
+    /// as heavy as the particles, `spacing` apart (m), of the threads that carry it.
     ///
-    /// What keeps a thread's equations soluble gives way under its pull T by 2 ε w T Δt², in the distance h of particles of the inverse
-    /// mass w: as a part of that in proportion to `r g Δt²/h`, with the ratio r and gravity g, and to one over the slope of the thread,
-    /// which grows with the cube root of the weight.
+    /// The regularisation of a thread's equations gives way by 2 ε w T Δt² under its pull T, between particles of the
+    /// inverse mass w at the distance h. As a fraction of h, that is in proportion to `r g Δt²/h`, with the ratio r and
+    /// gravity g. It is also in proportion to one over the slope of the thread, which grows with the cube root of the
+    /// weight.
     pub(crate) fn for_load(ratio: f32, gravity: f32, spacing: f32, seconds: f32) -> f32 {
         FOR_LOAD * (ratio * gravity * seconds * seconds / spacing).cbrt()
     }
 }
 
-/// Chooses the sub-steps of each tick.
+/// Chooses the number of sub-steps of each tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct Control {
     /// For the coming tick. 0 before the first.
     substeps: f32,
-    /// Done in this tick so far, in vain.
+    /// Sub-steps of this tick so far that are repeated.
     spent: f32,
     /// The stretch a tick ago.
     before: f32,
@@ -127,7 +132,7 @@ impl Demand {
         }
     }
 
-    /// With so many where nothing asks for more, and so many times as many at most.
+    /// At least `needed` sub-steps, and at most `times` as many.
     fn needed(self, needed: u32, times: u32) -> u32 {
         let most = needed.saturating_mul(times).min(MAX_SUBSTEPS);
         needed.max((self.substeps as u32).min(most))
@@ -135,7 +140,7 @@ impl Demand {
 }
 
 impl Control {
-    /// Sub-steps for the coming tick of a cloth that [needs](Substepping::needed) so many at least.
+    /// Number of sub-steps for the coming tick of a cloth that [needs](Substepping::needed) at least `needed`.
     pub fn substeps(&mut self, substepping: Substepping, needed: u32) -> u32 {
         match substepping {
             Substepping::Automatic => {
@@ -152,7 +157,7 @@ impl Control {
                 substeps
             }
             Substepping::Adaptive { max_substeps, .. } => {
-                // With fewer much is left unsolved, which comes back in the change to more.
+                // Fewer sub-steps would leave much unsolved, which comes back in the change to more.
                 let fewest = self.asked(needed).min(max_substeps) as f32;
                 self.substeps = self.substeps.clamp(fewest, max_substeps as f32).ceil();
                 self.spent = 0.0;
@@ -161,7 +166,7 @@ impl Control {
         }
     }
 
-    /// What ripples and loads ask for, where the particles need so many.
+    /// Number of sub-steps for ripples and loads, if the particles need `needed`.
     fn asked(&self, needed: u32) -> u32 {
         let taut = self.taut.needed(needed, MOST_FOR_TAUT);
         taut.max(self.loaded.needed(needed, MOST_FOR_LOAD))
@@ -172,8 +177,8 @@ impl Control {
         self.loaded.observe(stretch.load_substeps);
     }
 
-    /// Takes the stretch that the tick ended with. Returns with how many sub-steps to do it again, from where it
-    /// began, if it has to be.
+    /// Takes the stretch at the end of the tick. If the tick has to be repeated, returns the number of sub-steps for
+    /// that.
     pub fn observe(&mut self, substepping: Substepping, stretch: Stretch) -> Option<u32> {
         let Substepping::Adaptive {
             stretch: tolerance,
@@ -188,7 +193,7 @@ impl Control {
         // Solved threads stretch less with more than the square of the sub-steps: the cube is a cautious guess.
         let substeps = self.substeps;
         let wanted = |stretch: f32| substeps * (stretch / (AIM * tolerance)).cbrt();
-        // What the material gives at its tension no sub-steps take away.
+        // Sub-steps can't remove the stretch of the material at its tension.
         let unsolved = found - stretch.material.min(found);
         self.is_beyond = found > tolerance;
         if self.is_beyond && unsolved > AIM * tolerance {
@@ -204,7 +209,7 @@ impl Control {
             }
             self.substeps = more.min(max);
         }
-        // What it grew by in this tick it may grow by in the next.
+        // Its growth in this tick may repeat in the next.
         let foreseen = unsolved + (unsolved - self.before).max(0.0);
         if foreseen > TIGHT * tolerance {
             self.substeps = wanted(foreseen).clamp(self.substeps, self.substeps * 2.0);

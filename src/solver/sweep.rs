@@ -1,4 +1,4 @@
-//! What solves a cloth's springs, whichever they are.
+//! The common interface of all solvers of springs.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::cloth::{Block, Lanes};
 
-/// What is the same for all particles of a sub-step.
+/// Values that are the same for all particles of a sub-step.
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
     pub kernels: &'a Kernels,
@@ -20,22 +20,22 @@ pub(super) struct Motion<'a> {
     pub measures: bool,
 }
 
-/// What a sub-step ends with.
+/// The results of a sub-step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Swept {
     /// The largest squared displacements (m²), lane by lane.
     pub moved: Lanes,
     /// The stretch, if it was to be measured.
     pub stretch: Option<Stretch>,
-    /// The angular frequency of the fastest ripples across threads that tension makes in half of the cloth's width, if that was
-    /// to be measured and is known, else 0 (rad/s).
+    /// Angular frequency of the fastest ripples across threads, by the tension in half of the cloth's width (rad/s). 0
+    /// if it was not measured or is not known.
     pub ripple: f32,
 }
 
-/// A solver of springs that are known, and of tethers, for particles where they would be without: made once for them, and for
-/// as long as they stay.
+/// A solver of springs and tethers, which corrects predicted particles. It is made once for its springs, and kept as
+/// long as they are.
 pub(super) trait Sweep: fmt::Debug + Send + Sync {
-    /// Takes over what the coming sub-step is.
+    /// Takes over the parameters of the coming sub-step.
     fn set_pace(&mut self, pace: Pace);
 
     /// Whether it leaves so little unsolved that a motion of second order may go on from it.

@@ -1,9 +1,8 @@
-//! Tethers: no particle may be farther from a pin than the cloth between them is long.
+//! Tethers limit the distance of each particle from a pin to the length of cloth between them.
 //!
-//! A sweep is as stiff as mass/Δt², so a spring that holds half of the cloth stretches far while all others are
-//! fine. A unilateral constraint from each particle straight to a pin, which nothing moves, has no such trouble
-//! (long range attachments, Kim, Chentanez and Müller 2012). It takes away energy or none: it acts only against
-//! what is beyond its length, and a pin does not move.
+//! A sweep is as stiff as mass/Δt², so a spring that holds half of the cloth stretches far while all others are fine. A
+//! unilateral constraint from each particle straight to a pin has no such problem (long range attachments, Kim,
+//! Chentanez and Müller 2012). It never adds energy: it acts only beyond its length, and a pin does not move.
 
 use bevy::math::Vec2;
 
@@ -12,24 +11,24 @@ use crate::cloth::{
     Block, ClothMaterial, ClothParticles, Flat, Graph, LANES, Lanes, Layout, Slot, Surface,
 };
 
-/// Up to this many pins each particle is tethered to all of them, with more to the nearest.
+/// Each particle is tethered to all pins if there are up to this many, else to the nearest.
 const FEW_PINS: usize = 4;
 
-/// Tethers give way up to this many times the strain that the cloth's own weight could cause at its pins, so that
-/// they leave to the springs what is elastic: swings and colliders pull harder than weight.
+/// Tethers allow this many times the strain that the cloth's own weight could cause at its pins. So they leave elastic
+/// stretch to the springs, since swings and colliders pull harder than weight.
 const MARGIN: f32 = 4.0;
 
-/// And beyond that by this part of their length: threads that are solved do not come to be so long, so that tethers pull at
-/// nothing that moves as it should.
+/// They also allow this fraction of their length: solved threads do not get that long, so tethers don't disturb a
+/// correct motion.
 const SLACK: f32 = 0.01;
 
-/// What a cloth is taken to weigh at least (m/s²): without gravity it is pulled at, too.
+/// Lower bound of the acceleration for a cloth's weight (m/s²), since there are forces without gravity, too.
 const MIN_ACCELERATION: f32 = 9.81;
 
-/// The length of what has none.
+/// The length of a missing tether.
 const ENDLESS: f32 = f32::MAX;
 
-/// Tethers of a cloth, and what they were made for.
+/// Tethers of a cloth: upper bounds of the distances of its particles from its pins.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Tethers {
     pins: Vec<Slot>,
@@ -41,26 +40,26 @@ pub struct Tethers {
 struct Layer {
     /// Indices of the pins that the particles of a block are tethered to: most blocks of a column have the same.
     patterns: Vec<[u32; LANES]>,
-    /// Which of these each block has.
+    /// The pattern of each block.
     pattern_of: Vec<u32>,
     /// Squared length (m²), block by block.
     length_square: Vec<Lanes>,
 }
 
-/// Where the pins are in a sub-step: x, y and z of each layer's patterns, one layer's after the other's.
+/// Positions of the pins in a sub-step: x, y and z of the patterns, layer by layer.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Anchors {
     patterns: Vec<[Lanes; 3]>,
 }
 
-/// The pull that threads are given room for (N/m): four times the weight of a cloth, over a number of pins side by side.
+/// The tension that tethers allow (N/m): four times the weight of a cloth, over a number of pins side by side.
 fn tension(surface: &Surface, material: &ClothMaterial, pins: usize, acceleration: f32) -> f32 {
     let width = pins as f32 * surface.spacing().typical;
     MARGIN * material.areal_density * surface.area() * acceleration.max(MIN_ACCELERATION) / width
 }
 
-/// The stretch that the material itself gives under four times the weight of the cloth, hung by a number of pins; without
-/// any, by as many as it is wide.
+/// The stretch of the material itself under four times the weight of the cloth, hung by a number of pins; without pins,
+/// hung by its whole width.
 pub(crate) fn material_stretch(
     surface: &Surface,
     material: &ClothMaterial,
@@ -75,7 +74,7 @@ pub(crate) fn material_stretch(
     material.stretch_compliance * tension(surface, material, pins, acceleration)
 }
 
-/// How far it is over a surface at rest from each particle to a pin, with what the material gives.
+/// Distances over a surface at rest from each particle to a pin, including the stretch of the material.
 struct Lengths<'a> {
     surface: &'a Surface,
     material: &'a ClothMaterial,
@@ -105,7 +104,7 @@ impl Lengths<'_> {
         path * (1.0 + SLACK + self.material.stretch_compliance * self.tension)
     }
 
-    /// Which pin each particle is tethered to in a layer, and how long the tether is.
+    /// The pin to which each particle is tethered in a layer, and the length of the tether.
     fn layers(&self, pinned: &[u32]) -> Vec<Vec<(u32, f32)>> {
         let particles = 0..self.surface.len();
         let is_few = pinned.len() <= FEW_PINS;
@@ -150,11 +149,16 @@ impl Lengths<'_> {
 }
 
 impl Tethers {
-    /// Tethers from the particles of a surface to those of them that are pinned. Each is as long as the shortest path
-    /// between them at rest, times what the material gives under four times the weight of the whole cloth hung by its
-    /// pins, under an `acceleration` (m/s²) of at least 9.81; where threads can shear, up to the path along the threads. On a
-    /// surface that is flat and convex the path is a straight line; on any other it follows the edges of its triangles, which
-    /// is a little longer than the shortest path across them. The particles must be those of the surface.
+    /// Tethers from the particles of a surface to the pinned ones among them. The particles must be those of the
+    /// surface.
+    ///
+    /// The length of a tether is that of the shortest path between both particles at rest, lengthened by the stretch of
+    /// the material. That is its stretch under four times the weight of the whole cloth hung by its pins, with an
+    /// `acceleration` (m/s²) of at least 9.81. If threads can shear, the tether may be as long as the path along the
+    /// threads.
+    ///
+    /// On a flat and convex surface the path is a straight line. On any other it follows the edges of the triangles,
+    /// which is a little longer than the shortest path across them.
     pub fn new(
         surface: &Surface,
         material: &ClothMaterial,
@@ -208,8 +212,8 @@ impl Tethers {
         }
     }
 
-    /// The acceleration (m/s²) to make tethers for where `acceleration` acts: 9.81, doubled until four fifths of
-    /// `acceleration` are no more, so that tethers outlast one that grows from tick to tick.
+    /// The acceleration (m/s²) for which tethers are made if `acceleration` acts: 9.81, doubled until it is at least
+    /// four fifths of `acceleration`. So tethers outlast an acceleration that grows from tick to tick.
     pub(crate) fn made_for(acceleration: f32) -> f32 {
         let mut rounded = MIN_ACCELERATION;
         while rounded < 0.8 * acceleration {
@@ -218,12 +222,12 @@ impl Tethers {
         rounded
     }
 
-    /// Whether nothing is tethered.
+    /// Whether there are no tethers.
     pub fn is_empty(&self) -> bool {
         self.layers.is_empty()
     }
 
-    /// How far the farthest particle is beyond its tether, as a part of it.
+    /// The largest excess of a particle over its tether, as a fraction of the tether's length.
     #[cfg(test)]
     pub(super) fn largest_excess(&self, particles: &ClothParticles) -> f32 {
         let mut largest = 0.0_f32;
@@ -242,7 +246,7 @@ impl Tethers {
         largest
     }
 
-    /// Takes over where the pins are at the end of this sub-step.
+    /// Takes over the positions of the pins at the end of this sub-step.
     pub(super) fn locate(&self, blocks: &[Block], anchors: &mut Anchors) {
         let position = |pin: u32| {
             let slot = self.pins[pin as usize];
@@ -258,7 +262,7 @@ impl Tethers {
         }
     }
 
-    /// Pulls particles back. `blocks` are those from number `first` on.
+    /// Pulls particles back. `blocks` begin with number `first`.
     pub(super) fn pull(
         &self,
         anchors: &Anchors,
@@ -290,8 +294,9 @@ fn by_block<T: Copy>(
     values
 }
 
-/// For each particle the place of the nearest pin at rest among `pinned`: each takes the nearest of what its neighbours know,
-/// from the first to the last and back (after Danielsson 1980, whose distances are off by a fraction of a spacing at worst).
+/// For each particle the index in `pinned` of the nearest pin at rest: each takes the nearest among its neighbours'
+/// pins, from the first to the last and back (after Danielsson 1980, whose distances are off by a fraction of a spacing
+/// at worst).
 fn nearest_pins(flat: &Flat, graph: &Graph, pinned: &[u32]) -> Vec<u32> {
     const UNKNOWN: u32 = u32::MAX;
     let mut nearest = vec![UNKNOWN; graph.len()];

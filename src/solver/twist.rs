@@ -1,9 +1,10 @@
 //! The arithmetic of twisted cells, as [`pentadiagonal`](super::pentadiagonal) does that of bent threads.
 //!
-//! The cells between two columns are a strip. How much a cell is twisted is by how much the difference u between both columns
-//! changes from its upper row to its lower one, and what resists that changes nothing but u: a tridiagonal system,
-//! `m e + s k (2 e − e₋ − e₊) = s k (u₋ − 2 u + u₊)` for what is added to u, where m is the mass 1 ⁄ (w + w') that resists it. Strips
-//! that begin in an even column have no particle in common, nor have the odd ones: eight of them are solved side by side.
+//! The cells between two columns are a strip. The twist of a cell is the change of the difference u between both
+//! columns, from its upper row to its lower one. The resistance to twist changes only u, by a tridiagonal system: `m e
+//! + s k (2 e − e₋ − e₊) = s k (u₋ − 2 u + u₊)` for the change e of u, where m is the mass 1 ⁄ (w + w') that resists
+//! it. Strips that begin in an even column share no particle, nor do the odd ones: eight of them are solved side by
+//! side.
 
 use super::pentadiagonal::{Factor, MIN_MOMENT, MIN_MOVE, MOVES, Trio, flush, link};
 use crate::cloth::{Block, LANES, Lanes, View, W};
@@ -22,7 +23,7 @@ pub(super) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Trio]) {
     }
 }
 
-/// The moment of a cell (kg m), and what is left of a row's force.
+/// The moment of a cell (kg m), and the remainder of a row's force.
 #[inline(always)]
 fn forward(
     [own, next]: [&Lanes; 2],
@@ -68,7 +69,7 @@ pub(super) fn twist_forward(
     }
 }
 
-/// By how much a row's differences change, given by how much the next row's do.
+/// Change of a row's differences, given that of the next row's.
 #[inline(always)]
 fn backward(solved: &Lanes, inverse: &Lanes, lower: &Lanes, next: &Lanes) -> Lanes {
     let mut out = [0.0; LANES];

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::cloth::{Cloth, ClothShape};
 
-/// Gives a mesh to each cloth that has none, or that of another surface.
+/// Gives a mesh to each cloth that has none, or the mesh of another surface.
 pub(super) fn add_meshes(
     cloths: Query<(
         Entity,
@@ -42,26 +42,26 @@ pub(super) fn add_meshes(
             continue;
         }
         if let Some(skin) = skin {
-            // What is drawn is where the skeleton has it already.
+            // The particles that are drawn follow the skeleton already.
             let mut cloth = commands.entity(entity);
             cloth.try_insert(ClothSkeleton::of(skin));
             cloth.try_remove::<SkinnedMesh>();
         }
         if let Some(drawn) = drawn.filter(|drawn| is_right(drawn)) {
-            // The game has put back what the cloth was made from.
+            // The game has put back the mesh that the cloth was made from.
             if mesh.is_some_and(|mesh| Some(&mesh.0) == drawn.source.as_ref()) {
                 let own = Mesh3d(drawn.handle.clone());
                 commands.entity(entity).try_insert(own);
             }
             continue;
         }
-        // What the entity drew before the plugin's own mesh.
+        // The mesh that the entity drew before the plugin's own.
         let known = drawn.and_then(|drawn| drawn.replaced.clone());
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
         let replaced = other.map(|mesh| mesh.0.clone()).or(known);
         let source = replaced.clone().filter(|_| is_asset);
-        // What the cloth was made from may have gone meanwhile, or be the renderer's alone.
+        // The asset that the cloth was made from may have been removed meanwhile, or be in the render world alone.
         let copy = source
             .as_ref()
             .and_then(|source| copy_of(meshes.get(source)?, surface));
@@ -80,8 +80,8 @@ pub(super) fn add_meshes(
     }
 }
 
-/// What is no cloth any more is not drawn as one, but as what the entity drew before, if it did. What the game has put in place of
-/// the plugin's mesh stays.
+/// An entity that is no cloth any more draws again what it drew before, if anything. A mesh that the game has put in
+/// place of the plugin's stays.
 pub(super) fn remove_mesh(
     removed: On<Remove, Cloth>,
     meshes: Query<(&ClothMesh, Option<&Mesh3d>, Option<&ClothSkeleton>)>,

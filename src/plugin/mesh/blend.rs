@@ -1,7 +1,7 @@
 //! How the picture passes from one level of detail to another.
 //!
-//! Where what is drawn would jump, as a cloth freezes, thaws or is moved before the picture has got to where the last move left it, the
-//! difference between what was drawn and what is to be drawn is kept, and fades out ("inertialization").
+//! A picture would jump as a cloth freezes, thaws, or is moved before it has been drawn where the last move left it.
+//! Then the difference between the old picture and the new one is kept, and fades out ("inertialization").
 
 use bevy::math::Vec3;
 
@@ -13,22 +13,22 @@ const SECONDS: f64 = 0.125;
 /// A difference that fades out.
 #[derive(Debug, Default)]
 pub(super) struct Blend {
-    /// Of which jump it is.
+    /// The jump that it belongs to.
     cuts: u32,
     /// When it began (s).
     start: f64,
-    /// What each particle is drawn away from where it would be, in the entity's frame.
+    /// Offset of each particle from where it would be drawn, in the entity's frame.
     offsets: Vec<Vec3>,
 }
 
 impl Blend {
-    /// Whether it has nothing more to add, `cuts` being the jumps so far.
+    /// Whether it has nothing more to add; `cuts` is the number of jumps so far.
     pub fn is_over(&self, cuts: u32) -> bool {
         self.offsets.is_empty() && self.cuts == cuts
     }
 
-    /// Adds to what is to be `drawn` at a time (s) what is left of the difference to what was drawn `before`. Pins are drawn where they
-    /// are.
+    /// Adds the rest of the difference to the positions drawn `before` to those `drawn` at a time (s). Pins are drawn
+    /// where they are.
     pub fn add(
         &mut self,
         cuts: u32,

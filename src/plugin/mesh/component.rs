@@ -24,17 +24,19 @@ use super::{
 };
 use crate::cloth::Surface;
 
-/// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents; it replaces one that the entity
-/// had, which comes back when [`Cloth`](crate::cloth::Cloth) is removed. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
-/// both sides.
+/// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents. It replaces
+/// the entity's own mesh, which comes back when [`Cloth`](crate::cloth::Cloth) is removed. A cloth made from a mesh is
+/// drawn with a copy of that mesh, seams included. Give the entity a material with `double_sided: true` and `cull_mode:
+/// None`, as `fabric` does: cloth is seen from both sides.
 ///
-/// Pinned and attached particles are drawn where the cloth's entity and their targets are drawn. Interpolate what moves in
-/// `FixedUpdate` and touches cloth, as the cloth is, for instance by the crate `bevy_transform_interpolation`.
+/// Pinned and attached particles are drawn where the cloth's entity and its targets are drawn. The cloth is
+/// interpolated between ticks. Interpolate colliders that move in `FixedUpdate` too, for instance with the crate
+/// `bevy_transform_interpolation`; otherwise they poke through the cloth by up to one tick's motion.
 ///
-/// The mesh of a cloth that Bevy's visibility hides, its own or an ancestor's, is not written; the cloth moves on all the same, unless its
-/// [`ClothLod`](crate::plugin::ClothLod) says otherwise.
+/// The mesh of a cloth is not written while Bevy's visibility hides it, its own or an ancestor's. The cloth is still
+/// simulated, unless its [`ClothLod`](crate::plugin::ClothLod) says otherwise.
 ///
-/// In scenes and clones it is no more than which assets it replaced: all else is made again.
+/// Scenes and clones hold only the assets that it replaced; everything else is made again.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Component, Default, Debug)]
 #[component(clone_behavior = Custom(clone_replaced))]
@@ -43,9 +45,9 @@ pub struct ClothMesh {
     pub(super) handle: Handle<Mesh>,
     /// The asset that the cloth was made from.
     pub(super) source: Option<Handle<Mesh>>,
-    /// What the entity drew before.
+    /// The mesh that the entity drew before.
     pub(super) replaced: Option<Handle<Mesh>>,
-    /// What it is a mesh of.
+    /// The surface that it is a mesh of.
     #[reflect(ignore)]
     pub(super) surface: Arc<Surface>,
     #[reflect(ignore)]
@@ -53,7 +55,7 @@ pub struct ClothMesh {
     /// Positions as the last tick began, in the cloth's frame.
     #[reflect(ignore)]
     pub(super) previous: Vec<Vec3>,
-    /// What carries its pins, as of the last two ticks.
+    /// The carriers of its pins, as of the last two ticks.
     #[reflect(ignore)]
     pub(super) carriers: Carriers,
     /// The pose that it follows, if it does.
@@ -70,27 +72,27 @@ pub struct ClothMesh {
     pub(super) drawn: Vec<Vec3>,
     #[reflect(ignore)]
     pub(super) normals: Vec<Vec3>,
-    /// What is drawn of a cloth that sleeps or is frozen: when its particles were written, where its entity is or how the frozen particles
-    /// lie to that, and whether it is seen.
+    /// The picture of a cloth that sleeps or is frozen: when its particles were written, the place of its entity or of
+    /// the frozen particles relative to it, and whether it is visible.
     #[reflect(ignore)]
     pub(super) settled: Option<(Tick, Affine3A, bool)>,
-    /// What was drawn before, and how it passes to what is drawn now.
+    /// The last picture, and how it blends into the current one.
     #[reflect(ignore)]
     pub(super) before: Vec<Vec3>,
     #[reflect(ignore)]
     pub(super) blend: Blend,
-    /// How the particles lie to the entity that they are frozen to.
+    /// Place of the particles relative to the entity that they are frozen to.
     #[reflect(ignore)]
     pub(super) frozen: Option<Affine3A>,
     /// Whether it drives other meshes, in this frame.
     #[reflect(ignore)]
     pub(super) drives: bool,
-    /// New whenever it is drawn elsewhere.
+    /// Changes whenever it is drawn elsewhere.
     #[reflect(ignore)]
     pub(super) version: u32,
 }
 
-/// A clone has the `Mesh3d` of its original as yet, which it is known by, and is given one of its own.
+/// A clone still has the `Mesh3d` of its original, by which it is recognised, and gets a mesh of its own.
 fn clone_replaced(original: &SourceComponent, clone: &mut ComponentCloneCtx) {
     if let Some(original) = original.read::<ClothMesh>() {
         clone.write_target_component(ClothMesh {
@@ -108,17 +110,17 @@ impl ClothMesh {
         self.handle.id()
     }
 
-    /// The asset that the cloth was made from, if it was.
+    /// The asset that the cloth was made from, if any.
     pub fn source(&self) -> Option<&Handle<Mesh>> {
         self.source.as_ref()
     }
 
-    /// In this frame the cloth drives another mesh: where it is drawn has to be known, be it hidden.
+    /// In this frame the cloth drives another mesh, so its drawn positions are needed even if it is hidden.
     pub(in crate::plugin) fn drive(&mut self) {
         self.drives = true;
     }
 
-    /// Has been shifted with the world's origin, from one frame to another; `target` says where one is now.
+    /// Shifts it with the world's origin, from one frame to another; `target` gives the current place of a target.
     pub(in crate::plugin) fn shift(
         &mut self,
         shift: Shift,
@@ -134,7 +136,7 @@ impl ClothMesh {
         Arc::ptr_eq(&self.surface, surface)
     }
 
-    /// Where the particles are drawn, in the entity's frame, and a number that is new whenever that is elsewhere.
+    /// Drawn positions of the particles, in the entity's frame, and a number that changes whenever they do.
     pub(in crate::plugin) fn drawn(&self) -> (u32, &[Vec3]) {
         (self.version, &self.drawn)
     }

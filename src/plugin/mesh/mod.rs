@@ -44,17 +44,17 @@ use write::write_mesh;
 
 pub use component::ClothMesh;
 
-/// What is done for the meshes in a frame.
+/// The steps for the meshes in a frame.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum MeshSystems {
-    /// Cloths without a mesh are given one.
+    /// Gives a mesh to cloths without one.
     Add,
-    /// What is drawn is brought up to date.
+    /// Updates the meshes.
     Write,
 }
 
-/// Gives each cloth a mesh with UVs, normals and tangents that follows its particles, updated once a rendered frame and
-/// interpolated between two ticks by `overstep_fraction`. Does nothing in an app without meshes.
+/// Gives each cloth a mesh with UVs, normals and tangents that follows its particles. The mesh is updated once per
+/// rendered frame, interpolated between two ticks by `overstep_fraction`. Does nothing in an app without meshes.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothMeshPlugin {
     schedule: Interned<dyn ScheduleLabel>,
@@ -141,7 +141,7 @@ fn remember_positions(
         if !(rests && mesh.rested) {
             mesh.previous.clear();
             mesh.previous.extend(particles.positions());
-            // As it was before it was carried along.
+            // The state before it was carried along.
             let undone = scratch.carried.map(|carried| carried.undone_in(frame));
             if let Some(undone) = undone {
                 mesh.previous
@@ -205,8 +205,8 @@ impl DrawingItem<'_, '_> {
         if !self.state.is_valid || !self.built.matches(&self.particles) {
             return;
         }
-        // What the game hides no camera sees. What merely no camera looks at is kept up to date: whether one does is
-        // known only after culling, too late for this frame.
+        // No camera sees what the game hides. A mesh outside every camera's view is kept up to date: culling comes
+        // later in the frame, so that is not known yet.
         let is_seen = self.visibility.is_none_or(|visibility| visibility.get());
         let lod = &self.state.lod;
         if !is_seen && !drives || lod.level == ClothLodLevel::Off {
@@ -234,7 +234,7 @@ impl DrawingItem<'_, '_> {
             version,
             ..
         } = &mut *self.mesh;
-        // Those of the tick: what has been attached since has yet to be taken over.
+        // The targets of the tick; later attachments count from the next tick on.
         let drawn_at = self.state.targets.iter();
         let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
         targets.clear();
@@ -252,7 +252,7 @@ impl DrawingItem<'_, '_> {
         }
         let place = |joint| around.transforms.get(joint).ok().copied();
         let moves = pose.read(self.entity, &around.skins, place);
-        // What sleeps or is frozen is drawn once.
+        // A cloth that sleeps or is frozen is drawn once.
         let is_asleep =
             !moves && self.state.rest.is_asleep() && *rested && !carriers.differ_from(targets);
         let still = stands.or(is_asleep.then_some(entity_at));
@@ -297,7 +297,8 @@ impl DrawingItem<'_, '_> {
     }
 }
 
-/// Where the particles are to be drawn: `fraction` of the way from the last tick to this one, in the cloth's frame.
+/// Positions at which the particles are drawn: `fraction` of the way from the last tick to this one, in the cloth's
+/// frame.
 fn interpolate(
     drawn: &mut Vec<Vec3>,
     previous: &[Vec3],

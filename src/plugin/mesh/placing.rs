@@ -1,9 +1,10 @@
-//! Where a cloth is drawn between two ticks, so that its pins are drawn where that is drawn which carries them.
+//! Draws a cloth between two ticks so that its pins are drawn together with their carriers.
 //!
-//! The cloth is interpolated between the last two ticks. Its entity, or what it is attached to, may be drawn elsewhere:
-//! where the latest tick left it, if nobody interpolates it, or where it went since. Particles are moved along by as much
-//! as their carriers are drawn away from their own interpolation: pins wholly, others the less the farther they are
-//! from them, so that no seam opens beside a pin and what hangs far away does not tremble.
+//! The cloth is interpolated between the last two ticks. Its entity, or a target that it is attached to, may be drawn
+//! elsewhere: where the latest tick left it, if nothing interpolates it, or where it has moved since. Particles are
+//! moved along by the distance between their carriers' drawn places and interpolated places: pins by all of it, other
+//! particles by less the farther they are from pins. So no seam opens beside a pin, and cloth that hangs far away does
+//! not tremble.
 
 use bevy::{
     ecs::entity::Entity,
@@ -18,7 +19,7 @@ use super::super::{
 };
 use crate::cloth::ClothParticles;
 
-/// Where a cloth's frame and its targets were as a tick ended.
+/// Places of a cloth's frame and its targets as a tick ended.
 #[derive(Debug, Default, Clone, PartialEq)]
 struct Places {
     frame: ClothFrame,
@@ -44,7 +45,7 @@ impl Carriers {
         self.now
             .targets
             .extend(entities.zip(scratch.targets.iter().copied()));
-        // What jumps, or begins to be carried, does not come from anywhere.
+        // After a teleport, or in the first tick, there is no place before.
         if scratch.teleports || !self.is_known {
             self.before.clone_from(&self.now);
         }
@@ -59,13 +60,14 @@ impl Carriers {
         }
     }
 
-    /// Takes over where a cloth stands in a tick in which it is not moved: what comes next begins there.
+    /// Takes over the place of a cloth in a tick in which it is not moved: the next move begins there.
     pub fn stand(&mut self, frame: ClothFrame) {
         self.now.frame = frame;
         self.now.targets.clear();
     }
 
-    /// Has been shifted with the world's origin. What stood still stands still; `target` says where one is now.
+    /// Shifts it with the world's origin. A place that stood still stands still; `target` gives the current place of a
+    /// target.
     pub fn shift(
         &mut self,
         shift: Shift,
@@ -90,7 +92,7 @@ impl Carriers {
     }
 }
 
-/// By how much of each carrier's correction each particle is moved: of the targets in their order, then of the entity.
+/// The share of each carrier's correction that moves each particle: of the targets in their order, then of the entity.
 #[derive(Debug, Default)]
 struct Weights {
     /// The pins that they are for.
@@ -135,7 +137,7 @@ impl Weights {
             let of_carriers = distances.iter().map(|distance| distance[index]);
             of_carriers.fold(f32::INFINITY, f32::min)
         };
-        // Of what no path leads to a carrier, nothing is.
+        // Particles without a path to a carrier are not moved.
         let reached = (0..particles.len())
             .map(nearest)
             .filter(|distance| distance.is_finite());
@@ -166,22 +168,22 @@ impl Weights {
     }
 }
 
-/// How a cloth is drawn in a frame.
+/// Places with which a cloth is drawn in a frame.
 pub(super) struct Drawn<'a> {
     pub built: &'a ClothBuilt,
     pub state: &'a ClothState,
     pub particles: &'a ClothParticles,
-    /// Where its entity is drawn.
+    /// Drawn place of its entity.
     pub entity: GlobalTransform,
-    /// Where the targets of its attachments are drawn, in their order; empty where it has none.
+    /// Drawn places of its attachments' targets, in their order; empty if it has none.
     pub targets: &'a [Affine3A],
-    /// How much of the last tick has passed, from 0 to 1.
+    /// Fraction of the last tick that has passed, from 0 to 1.
     pub fraction: f32,
 }
 
 impl Drawn<'_> {
-    /// Moves the interpolated particles from the frame that they are given in to that of the entity, which the mesh is
-    /// given in, along with what carries them. Those that have been moved along with a skeleton already are carried by nothing else.
+    /// Moves the interpolated particles from their frame to that of the entity, which is the frame of the mesh, along
+    /// with their carriers. Particles that were already moved with a skeleton have no other carrier.
     pub fn place(&self, carriers: &mut Carriers, is_skinned: bool, drawn: &mut [Vec3]) {
         let frame = carriers.now.frame;
         let mut is_corrected = false;
@@ -226,7 +228,7 @@ impl Drawn<'_> {
         }
     }
 
-    /// How far a carrier is drawn from its interpolation, where that is anything.
+    /// Offset of a carrier's drawn place from its interpolated place, if it is not zero.
     fn correction(&self, carriers: &Carriers, index: usize) -> Option<Isometry3d> {
         let Carriers { before, now, .. } = carriers;
         if index == self.state.attachments.len() {

@@ -1,7 +1,8 @@
 //! Draws a cloth that follows a pose where its skeleton is drawn.
 //!
-//! The cloth is interpolated between two ticks, and so is its pose; the skeleton is drawn where it is in this frame. By as much as
-//! the pose is off, each particle is moved along: what is held is drawn in the pose exactly, beside what the renderer skins.
+//! The cloth and its pose are interpolated between two ticks; the skeleton is drawn where it is in this frame. Each
+//! particle is moved along by the difference. So held particles are drawn exactly in the pose, in line with meshes that
+//! the renderer skins.
 
 use bevy::{
     ecs::entity::Entity,
@@ -16,7 +17,7 @@ use super::super::{
     skin::{Pose, Skins},
 };
 
-/// Poses of the last tick, and where the skeleton is drawn.
+/// Poses of the last tick, and the drawn skeleton.
 #[derive(Debug, Default)]
 pub(super) struct DrawnPose {
     /// As the last tick began and ended, in the frame of its end (m).
@@ -29,7 +30,7 @@ pub(super) struct DrawnPose {
 }
 
 impl DrawnPose {
-    /// Takes over a tick's. `undone` takes back what carried the cloth along as it began.
+    /// Takes over a tick's poses. `undone` undoes the motion that carried the cloth along as the tick began.
     pub fn follow(
         &mut self,
         frame: ClothFrame,
@@ -47,7 +48,7 @@ impl DrawnPose {
         }
     }
 
-    /// Has been shifted with the world's origin, from one frame to another.
+    /// Shifts it with the world's origin, from one frame to another.
     pub fn shift(&mut self, shift: Shift, [before, after]: [ClothFrame; 2]) {
         self.frame = match self.frame == before {
             true => after,
@@ -55,7 +56,7 @@ impl DrawnPose {
         };
     }
 
-    /// Reads where the joints are drawn. Returns whether they have moved since they were drawn last.
+    /// Reads the drawn joints. Returns whether they have moved since they were last drawn.
     pub fn read(
         &mut self,
         entity: Entity,

@@ -12,7 +12,7 @@ use crate::cloth::{Surface, TriangleMesh};
 /// them.
 pub(super) fn mesh_of(surface: &Surface) -> Mesh {
     let particle_of = |vertex: usize| surface.particle_of_vertex(vertex);
-    // One that is no particle is no triangle's.
+    // A vertex without a particle belongs to no triangle.
     let place = |vertex: usize| {
         particle_of(vertex).map_or(Vec3::ZERO, |particle| surface.rest_positions()[particle])
     };
@@ -39,7 +39,7 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
     .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
     .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
     .with_inserted_indices(Indices::U32(indices));
-    // Those that the game gives as triangles have none.
+    // Surfaces that the game gives as triangles have none.
     if surface.uvs().len() == surface.vertices() {
         let uvs: Vec<_> = surface.uvs().iter().map(Vec2::to_array).collect();
         let tangents = vec![[1.0, 0.0, 0.0, 1.0]; surface.vertices()];
@@ -49,8 +49,8 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
     mesh
 }
 
-/// A copy of an asset for one cloth: it is read and written, and lit. Triangles that are no part of the surface are left out,
-/// as their corners do not move. `None` of one that cannot be read, or that is not the surface's.
+/// A copy of an asset for one cloth: it is read and written, and lit. Triangles outside the surface are left out, as
+/// their corners do not move. `None` if the asset can't be read, or does not match the surface.
 pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<Mesh> {
     let TriangleMesh {
         positions,
@@ -63,7 +63,7 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<Mesh> {
     }
     let mut mesh = asset.clone();
     mesh.asset_usage = RenderAssetUsages::default();
-    // Bones would move what the simulation has moved already.
+    // Bones would move vertices that the simulation has moved already.
     mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_INDEX);
     mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
     // And the bounds of a skeleton are not the cloth's.
@@ -93,14 +93,14 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<Mesh> {
 #[derive(Debug, Default)]
 pub(super) struct Tangents {
     triangles: Vec<[u32; 3]>,
-    /// How much of both edges from a triangle's first corner there is in the way in which u grows.
+    /// The direction of growing u, as factors of both edges from a triangle's first corner.
     parts: Vec<[f32; 2]>,
-    /// The sum of its triangles' at each vertex.
+    /// The sum over the triangles at each vertex.
     sums: Vec<Vec3>,
 }
 
 impl Tangents {
-    /// Those of a mesh that has tangents and texture coordinates; of any other none.
+    /// Tangents of a mesh that has tangents and texture coordinates; none for any other.
     pub fn of(mesh: &Mesh) -> Self {
         let Ok(TriangleMesh { triangles, uvs, .. }) = TriangleMesh::of_asset(mesh) else {
             return Self::default();
@@ -114,7 +114,7 @@ impl Tangents {
         let parts = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|corner| uvs[corner as usize]);
             let (ab, ac) = (b - a, c - a);
-            // The larger a triangle is in the texture, the more it says; mirrored ones say it the other way round.
+            // Weighted by the triangle's area in the texture; negative where it is mirrored.
             let side = ab.perp_dot(ac).signum();
             [ac.y * side, -ab.y * side]
         };
@@ -168,14 +168,14 @@ impl Tangents {
             let normal = Vec3::from(*normal);
             let across = along.reject_from_normalized(normal);
             let direction = across.normalize_or(normal.any_orthonormal_vector());
-            // Which way the second direction of a texture goes does not change.
+            // The sign of the bitangent does not change.
             [tangent[0], tangent[1], tangent[2]] = direction.to_array();
         }
     }
 }
 
-/// Writes where the particles are drawn into a mesh, with normals and, if it has them, tangents. Vertices that are no
-/// particle's stay where they are.
+/// Writes the drawn positions of the particles into a mesh, with normals and, if it has them, tangents. Vertices
+/// without a particle stay where they are.
 pub(super) fn write_mesh(
     mesh: &mut Mesh,
     surface: &Surface,

@@ -10,7 +10,7 @@ use crate::{
     solver::ClothSettings,
 };
 
-/// A cloth with all that the panel shows and sets of it.
+/// A cloth with everything that the panel shows and sets.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct PanelCloth {
@@ -26,7 +26,7 @@ pub(super) struct PanelCloth {
     pub stats: &'static ClothStats,
 }
 
-/// Letters of a cloth's name that there is room for.
+/// Number of letters of a cloth's name that fit.
 const LONGEST_NAME: usize = 36;
 
 impl PanelClothItem<'_, '_> {

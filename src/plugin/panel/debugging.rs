@@ -1,4 +1,4 @@
-//! What a game developer seldom needs: how contacts are searched for, how springs are solved, and what it cost.
+//! The debugging part of the panel: search for contacts, solver settings, and their cost.
 
 use std::mem::discriminant;
 
@@ -60,7 +60,7 @@ impl Times {
     }
 }
 
-/// All that is folded away, of one cloth.
+/// The folded rows of one cloth.
 pub(super) fn show(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
     show_figures(ui, cloth);
     show_gizmos(ui, cloth, commands);
@@ -122,7 +122,7 @@ fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
     line(ui, found, &tip);
 }
 
-/// What was chosen, and why.
+/// The chosen search, and the reason.
 fn search_text(stats: &ClothStats) -> String {
     match stats.reason {
         SearchReason::NothingNear | SearchReason::Asleep => format!("no search: {}", stats.reason),

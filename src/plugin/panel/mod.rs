@@ -1,4 +1,5 @@
-//! An egui panel at the window's left edge: what fabric is like on top, how it is simulated folded away below.
+//! An egui panel at the window's left edge: the properties of the fabric on top, the simulation's settings folded
+//! below.
 
 mod cloth;
 mod debugging;
@@ -39,10 +40,11 @@ use self::{
 use super::ClothGravity;
 use crate::cloth::ClothMaterial;
 
-/// The panel at the left edge of the window, as high as it and always [`WIDTH`](Self::WIDTH) wide.
+/// The panel at the left edge of the window: as high as the window, and always [`WIDTH`](Self::WIDTH) wide.
 ///
-/// It covers what a camera draws below it. To draw beside it instead, give the camera its [`viewport`](Self::viewport)
-/// whenever panel or window change, and egui a camera of its own, since egui is laid out in the viewport of its camera:
+/// It covers part of the camera's picture. To draw beside the panel instead, set the camera's
+/// [`viewport`](Self::viewport) whenever panel or window change. Give egui a camera of its own then, since egui is laid
+/// out in its camera's viewport:
 ///
 /// ```
 /// use bevy::{camera::RenderTarget, prelude::*, window::PrimaryWindow};
@@ -61,7 +63,7 @@ use crate::cloth::ClothMaterial;
 pub struct ClothPanel {
     /// Shown or hidden.
     pub visible: bool,
-    /// The game's keys and what they do, for a list at the panel's end.
+    /// The game's keys and what they do, listed at the panel's end.
     pub keys: Vec<(String, String)>,
 }
 
@@ -78,8 +80,8 @@ impl ClothPanel {
     /// Width of the panel while it is shown (logical pixels).
     pub const WIDTH: f32 = 304.0;
 
-    /// What the panel leaves of a window of this size (physical pixels); `None`, the whole of it, while it is hidden or
-    /// where the window is no wider than twice the panel.
+    /// The part of a window of this size (physical pixels) that the panel leaves free. `None` stands for the whole
+    /// window: while the panel is hidden, or if the window is no wider than twice the panel.
     pub fn viewport(&self, window: UVec2, scale_factor: f32) -> Option<Viewport> {
         let panel = (Self::WIDTH * scale_factor).round() as u32;
         (self.visible && window.x > 2 * panel && window.y > 0).then(|| Viewport {
@@ -90,15 +92,15 @@ impl ClothPanel {
     }
 }
 
-/// Speed of a collider (m/s), for the panel to set. The game moves the collider and reads it.
+/// Speed of a collider (m/s), set by the panel. The game reads it and moves the collider.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothColliderSpeed(pub f32);
 
-/// Shows a panel on the primary window: pause and single step (of the fixed schedules), the time that a tick takes; for each
-/// cloth what its fabric is like, from presets or by how stretchy, stiff, heavy, slippery and damped it is; gravity, and
-/// the speed of each collider with a [`ClothColliderSpeed`]. Folded: how contacts are searched for and drawn, sub-steps,
-/// and the material's values. All of it says in tooltips what it is, in which unit.
+/// Shows a panel on the primary window. It has pause and single step (of the fixed schedules) and the time of a tick,
+/// gravity, and the speed of each collider with a [`ClothColliderSpeed`]. For each cloth it sets the fabric: by
+/// presets, or by sliders for stretch, stiffness, weight, slipperiness and damping. Folded below are search and gizmos,
+/// sub-steps, and the exact values of the material. Tooltips explain everything, with units.
 ///
 /// Adds `EguiPlugin` if the app has none yet. The resource [`ClothPanel`] shows and hides it.
 #[derive(Debug, Default, Clone, Copy)]
@@ -124,7 +126,7 @@ fn draw_panel(mut contexts: EguiContexts, mut shown: Shown) -> Result {
     Ok(())
 }
 
-/// All that the panel shows and sets.
+/// Everything that the panel shows and sets.
 #[derive(SystemParam)]
 struct Shown<'w, 's> {
     panel: Res<'w, ClothPanel>,
@@ -146,16 +148,16 @@ struct Shown<'w, 's> {
 }
 
 impl Shown<'_, '_> {
-    /// Draws the panel and returns the place that it takes.
+    /// Draws the panel and returns the rectangle that it covers.
     fn draw(&mut self, context: &egui::Context) -> egui::Rect {
         let place = egui::vec2(ClothPanel::WIDTH, context.content_rect().height());
-        // An area, and not a side panel of egui's: a mouse over it is known to be egui's.
+        // An area instead of egui's side panel, so that egui knows of a mouse over it.
         let area = egui::Area::new(Id::new("bevy_drape: panel"))
             .fixed_pos(egui::Pos2::ZERO)
             .constrain(false)
             .movable(false)
             .show(context, |ui| {
-                // What does not fit is cut off: it must not make the panel wider.
+                // Content that does not fit is cut off, as it must not widen the panel.
                 let (rect, _) = ui.allocate_exact_size(place, egui::Sense::hover());
                 let frame = Frame::side_top_panel(ui.style());
                 ui.painter().rect_filled(rect, 0.0, frame.fill);
@@ -215,7 +217,7 @@ impl Shown<'_, '_> {
         }
     }
 
-    /// Pause and step, and a line that says how the cloths are.
+    /// Pause and step, and a line with the state of the cloths.
     fn draw_clock(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let paused = self.running.is_paused();
@@ -275,7 +277,7 @@ impl Shown<'_, '_> {
         line(ui, text, &tip);
     }
 
-    /// What all cloths share.
+    /// Settings that all cloths share.
     fn draw_world(&mut self, ui: &mut Ui) {
         let mut down = -self.gravity.0.y;
         let tip = "Gravity, downwards (m/s²): 9.81 on Earth, 1.62 on the Moon. Cloths with a gravity of their own keep it";

@@ -1,4 +1,4 @@
-//! What fabric is like, in plain words: each a scale from 0 to 100 over one or two values of a material.
+//! Properties of fabric in plain words: each is a scale from 0 to 100 over one or two values of a material.
 
 use crate::cloth::ClothMaterial;
 
@@ -12,7 +12,7 @@ pub(super) enum Quality {
     Damped,
 }
 
-/// Where the scales begin and end. Rubber's stretch, leather's bending, and more than either needs.
+/// Ends of the scales, which exceed rubber's stretch and leather's bending.
 const STRETCH: Logarithmic = Logarithmic([1.0e-6, 1.0e-2]);
 const BEND: Logarithmic = Logarithmic([1.0e-7, 1.0e-2]);
 const DENSITY: Logarithmic = Logarithmic([0.02, 5.0]);
@@ -38,7 +38,7 @@ impl Quality {
         }
     }
 
-    /// Where a material is on the scale; below 0 or above 100 if it is beyond.
+    /// Value of a material on the scale; below 0 or above 100 if it is beyond.
     pub fn of(self, material: &ClothMaterial) -> f32 {
         match self {
             Self::Stretchy if material.stretch_compliance == 0.0 => 0.0,
@@ -51,7 +51,7 @@ impl Quality {
         }
     }
 
-    /// Makes a material so. What the scale does not name stays as it is.
+    /// Sets this quality of a material. Its other values stay as they are.
     pub fn set(self, material: &mut ClothMaterial, place: f32) {
         match self {
             Self::Stretchy if place <= 0.0 => material.stretch_compliance = 0.0,
@@ -64,7 +64,7 @@ impl Quality {
         }
     }
 
-    /// What it is in physics: quantity, exact value with its unit, and the values at both ends of the scale.
+    /// Explains the physics: quantity, exact value with its unit, and the values at both ends of the scale.
     pub fn explain(self, material: &ClothMaterial) -> String {
         let ClothMaterial {
             areal_density,
@@ -109,7 +109,7 @@ impl Quality {
     }
 }
 
-/// From the value at 0 to that at 100 in equal ratios.
+/// A logarithmic scale from the value at 0 to that at 100.
 struct Logarithmic([f32; 2]);
 
 impl Logarithmic {

@@ -1,4 +1,4 @@
-//! Rows of the panel: a name, what sets it, and an explanation; all of the same width whatever they say.
+//! Rows of the panel: a name, a widget, and an explanation, all of the same width whatever their text.
 
 use std::ops::RangeInclusive;
 
@@ -9,7 +9,7 @@ const NAME: f32 = 84.0;
 const SLIDER: f32 = 110.0;
 const VALUE: f32 = 62.0;
 
-/// A name, and what is added beside it.
+/// A name, and a widget beside it.
 pub(super) fn row<R>(ui: &mut Ui, name: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let size = egui::vec2(NAME, ui.spacing().interact_size.y);
@@ -27,7 +27,7 @@ pub(super) fn row<R>(ui: &mut Ui, name: &str, tip: &str, add: impl FnOnce(&mut U
     .inner
 }
 
-/// A slider that leaves a value outside of its range alone until someone moves it. Whether someone did.
+/// A slider that leaves a value outside its range alone until someone moves it. Returns whether someone did.
 pub(super) fn slide<T: egui::emath::Numeric>(
     ui: &mut Ui,
     name: &str,
@@ -42,7 +42,7 @@ pub(super) fn slide<T: egui::emath::Numeric>(
         .changed()
 }
 
-/// A menu of values with their names and explanations. A value that is not among them is left alone.
+/// A menu of values with their names and explanations. It leaves a value that is not among them alone.
 pub(super) fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
     name: &str,

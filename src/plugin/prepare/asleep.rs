@@ -1,4 +1,4 @@
-//! Cloths that sleep, and have nothing to be prepared for.
+//! Sleeping cloths, which need no preparation.
 
 use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::cloth::ClothParticles;
 
-/// Whether the cloth sleeps, and nothing that it was prepared with has changed since: then there is nothing to prepare.
+/// Whether the cloth sleeps and its inputs have not changed: then there is nothing to prepare.
 pub(super) fn sleeps_as_it_was(
     cloth: &PreparingItem,
     inputs: &Inputs,
@@ -40,7 +40,7 @@ pub(super) fn sleeps_as_it_was(
     );
     let source = built.source();
     let pins = cloth.pins.unwrap_or(&NO_PINS);
-    // What may wake it in this tick goes on with the step that it would have been prepared with.
+    // If something wakes it in this tick, it continues with the step that it would have been prepared with.
     let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
     is_prepared
         && state.known == Some(known)
@@ -63,7 +63,7 @@ pub(super) fn sleeps_as_it_was(
             .is_ok_and(|transform| cloth.frame.is_of(&transform))
 }
 
-/// Whether the pose that it follows is what it was in the last tick, or it follows none.
+/// Whether its pose is the same as in the last tick, or it follows none.
 fn is_in_same_pose(cloth: &PreparingItem, around: &Surroundings) -> bool {
     let place = |joint| global_transform(&around.targets.transforms, joint).ok();
     match (&cloth.skin, &cloth.built.skin) {
@@ -76,7 +76,7 @@ fn is_in_same_pose(cloth: &PreparingItem, around: &Surroundings) -> bool {
     }
 }
 
-/// What is around a cloth in the world: a middle, and a radius (m).
+/// A ball around a cloth in the world: centre and radius (m).
 pub(super) fn ball(
     built: &ClothBuilt,
     particles: &ClothParticles,

@@ -1,4 +1,4 @@
-//! What a cloth is prepared from.
+//! The data from which a cloth is prepared.
 
 use bevy::ecs::{
     change_detection::Ref,
@@ -52,7 +52,7 @@ pub(in crate::plugin) struct Preparing {
     pub fault: Option<&'static ClothFault>,
 }
 
-/// What a cloth is prepared with, besides its own components.
+/// The inputs of a cloth besides its own components.
 #[derive(SystemParam)]
 pub(in crate::plugin) struct Surroundings<'w, 's> {
     pub targets: Targets<'w, 's>,
@@ -60,6 +60,6 @@ pub(in crate::plugin) struct Surroundings<'w, 's> {
     pub skins: Skins<'w, 's>,
     pub roots: Roots<'w, 's>,
     pub field: Res<'w, WindField>,
-    /// What takes others along.
+    /// Entities that teleport the cloths below them.
     pub teleports: Query<'w, 's, Entity, (With<ClothTeleport>, Without<Cloth>)>,
 }

@@ -1,4 +1,4 @@
-//! What a cloth's tick begins with, once it is where it has to be.
+//! The start of a cloth's tick, once the cloth is in place.
 
 use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
 
@@ -17,10 +17,10 @@ use crate::{
     solver::{Substepping, TickStep},
 };
 
-/// Sub-steps of a cloth whose layers touch, unless it asks for a number of its own.
+/// Sub-steps of a cloth whose layers touch, unless its settings give a number.
 const FOR_LAYERS: u32 = 16;
 
-/// Sees whether the cloth may sleep, and wakes it where something else acts on it than before.
+/// Decides whether the cloth may sleep, and wakes it if other forces act on it than before.
 pub(super) fn see_whether_it_rests(
     cloth: &mut PreparingItem,
     inputs: &Inputs,
@@ -75,10 +75,10 @@ pub(super) fn prepare_step(
         (state.air).set(&mut built.solver, surface, particles, &cloth.frame, field);
     }
     let along = surface.particles_along();
-    // A tick that stands for several has as many as one: that is what it saves.
+    // A move for several ticks takes the sub-steps of one: that saves the time.
     let one = seconds / ticks as f32;
     let needed = match settings.substepping {
-        // Nobody asks.
+        // Not needed.
         _ if state.rest.is_asleep() => Substepping::needed(along, one),
         Substepping::Fixed(substeps) => substeps,
         _ => (built.solver).needed(particles, along, one, settings.order),
@@ -105,7 +105,7 @@ pub(super) fn prepare_step(
     scratch.is_in_island = false;
 }
 
-/// Prepares how it is looked at for contact, and how far it may come.
+/// Prepares its search for contacts, and its reach.
 pub(super) fn prepare_contact(
     cloth: &mut PreparingItem,
     inputs: &Inputs,

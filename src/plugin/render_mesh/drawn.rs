@@ -1,4 +1,4 @@
-//! Where a mesh is drawn that a cloth drives.
+//! The picture of a mesh that a cloth drives.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -13,25 +13,25 @@ use super::super::{
 };
 use crate::cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh};
 
-/// A mesh that is bound to a surface, and where it is drawn.
+/// A mesh that is bound to a surface, and its drawn place.
 #[derive(Debug)]
 pub(super) struct Driven {
     binding: SurfaceBinding,
-    /// The particles where they are drawn, and their normals, in the frame of the mesh's entity without its scale (m).
+    /// Drawn positions and normals of the particles, in the frame of the mesh's entity without its scale (m).
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// What takes the scale of the entity out, where it has one.
+    /// The transform that takes out the entity's scale, if it has one.
     unscaled: Option<Affine3A>,
-    /// Which version of the cloth it is drawn on, and how that lies to the mesh's entity.
+    /// The version of the cloth that it is drawn on, and the cloth's place relative to the mesh's entity.
     drawn: Option<(u32, Affine3A, Affine3A)>,
 }
 
 impl Driven {
-    /// Binds an asset, on an entity at `place`, to the surface of a cloth whose entity is at `cloth`; with a copy of the asset to be
-    /// drawn.
+    /// Binds an asset, on an entity at `place`, to the surface of a cloth whose entity is at `cloth`. Also returns the
+    /// copy of the asset that is drawn.
     ///
     /// # Errors
-    /// What is wrong with the asset, with a transform, or [`ClothError::BoundTooFar`].
+    /// The error of the asset or of a transform, or [`ClothError::BoundTooFar`].
     pub fn new(
         asset: &Mesh,
         surface: &Surface,
@@ -49,7 +49,7 @@ impl Driven {
         }
         let mut mesh = asset.clone();
         mesh.asset_usage = RenderAssetUsages::default();
-        // Bones would move what the cloth has moved already.
+        // Bones would move vertices that the cloth has moved already.
         mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_INDEX);
         mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
         let own: Vec<_> = normals.iter().map(Vec3::to_array).collect();
@@ -85,8 +85,8 @@ impl Driven {
         Ok((mesh, driven))
     }
 
-    /// Takes over where a cloth is drawn, whose entity is drawn at `at`, and the mesh's entity at `place`. Returns whether there
-    /// is anything to be drawn anew.
+    /// Takes over the drawn positions of a cloth. Its entity is drawn at `at`, the mesh's entity at `place`. Returns
+    /// whether the picture changes.
     pub fn follow(
         &mut self,
         surface: &Surface,

@@ -29,20 +29,22 @@ use super::{ClothBuilt, ClothFault, ClothMesh, mesh::MeshSystems, naming::Part};
 use crate::cloth::{Cloth, ClothError, Surface};
 use drawn::Driven;
 
-/// On an entity with a [`Mesh3d`]: a cloth drives this mesh. A coarse cloth is simulated, and a fine mesh is drawn on it (also
-/// known as proxy simulation, or as a wrap deformer).
+/// On an entity with a [`Mesh3d`] that a cloth drives: a coarse cloth is simulated, and a fine mesh is drawn on it.
+/// Also known as proxy simulation, or a wrap deformer.
 ///
-/// Each vertex is bound once to the nearest point of the cloth at rest, where both entities are placed as the mesh is first drawn: put
-/// them so that the mesh is where the cloth is before it falls, for instance as a child of the cloth or at the same transform. From then
-/// on the mesh is drawn where the cloth is, wherever its own entity goes, interpolated between ticks as the cloth is; normals and tangents
-/// are turned along, texture coordinates and all else stay as they are ([`SurfaceBinding`](crate::cloth::SurfaceBinding) says how). A copy
-/// of the asset is drawn, which others keep as it is. The cloth may be of either kind, and hidden by
-/// `Visibility::Hidden`: then its own mesh is not written. Several meshes may hang on one cloth, each on an entity of its own, which
-/// is not itself a cloth.
+/// Each vertex is bound once to the nearest point of the cloth at rest, with both entities where they are when the mesh
+/// is first drawn. So place the mesh where the cloth is before it falls, for instance as a child of the cloth or at the
+/// same transform. From then on the mesh follows the cloth, wherever its own entity goes, and is interpolated between
+/// ticks like the cloth. Normals and tangents are rotated along; texture coordinates and everything else stay as they
+/// are. [`SurfaceBinding`](crate::cloth::SurfaceBinding) describes the binding.
 ///
-/// The binding is made again when the `Mesh3d`, the asset or the cloth's shape change. A mesh farther from the cloth than that is large,
-/// one that can't be read and a cloth that is gone are a [`ClothFault`]. When the component is taken away the entity draws its asset
-/// again.
+/// The plugin draws a copy of the asset, and leaves the asset itself unchanged. The cloth may be made from a grid or a
+/// mesh. Its own mesh is not written while it is hidden by `Visibility::Hidden`. A cloth may drive several meshes, each
+/// on an entity of its own that is not itself a cloth.
+///
+/// The binding is made again when the `Mesh3d`, the asset or the cloth's shape change. There is a [`ClothFault`] if the
+/// mesh is farther from the cloth than the cloth is large, if it can't be read, or if the cloth is gone. When you
+/// remove the component, the entity draws its asset again.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -63,28 +65,29 @@ pub struct ClothRenderMesh {
 }
 
 impl FromWorld for ClothRenderMesh {
-    /// Of no cloth as yet, for editors: a fault.
+    /// Without a cloth, for editors: a fault until one is set.
     fn from_world(_: &mut World) -> Self {
         let cloth = Entity::PLACEHOLDER;
         Self { cloth }
     }
 }
 
-/// What is drawn for a [`ClothRenderMesh`]. In scenes and clones it is no more than which asset was replaced: all else is made again.
+/// The drawn copy of a [`ClothRenderMesh`]. Scenes and clones hold only the asset that was replaced; everything else is
+/// made again.
 #[derive(Component, Reflect, Debug, Default)]
 #[reflect(Component, Default)]
 #[component(clone_behavior = Custom(clone_replaced))]
 struct RenderMeshState {
-    /// What the entity drew before.
+    /// The mesh that the entity drew before.
     source: Handle<Mesh>,
-    /// What is drawn.
+    /// The mesh that is drawn.
     #[reflect(ignore)]
     handle: Handle<Mesh>,
     #[reflect(ignore)]
     bound: Option<Bound>,
 }
 
-/// What a mesh is bound to.
+/// The cloth that a mesh is bound to, and the binding.
 #[derive(Debug)]
 struct Bound {
     cloth: Entity,
@@ -92,12 +95,12 @@ struct Bound {
     driven: Driven,
 }
 
-/// What could not be bound, and why: looked at again once something is another.
+/// A mesh that could not be bound, and why. It is tried again once one of these changes.
 #[derive(Component, Debug)]
 struct RefusedMesh {
     source: AssetId<Mesh>,
     surface: Arc<Surface>,
-    /// Where the mesh and the cloth are.
+    /// Places of the mesh and the cloth.
     places: [GlobalTransform; 2],
     error: ClothError,
 }
@@ -113,8 +116,8 @@ fn clone_replaced(original: &SourceComponent, clone: &mut ComponentCloneCtx) {
     }
 }
 
-/// Draws each [`ClothRenderMesh`] where its cloth takes it, once a rendered frame. Does nothing in an app without meshes. It is
-/// for a [`ClothMeshPlugin`](super::ClothMeshPlugin).
+/// Draws each [`ClothRenderMesh`] on its cloth, once per rendered frame. Needs a
+/// [`ClothMeshPlugin`](super::ClothMeshPlugin), and does nothing in an app without meshes.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct ClothRenderMeshPlugin;
 
@@ -149,7 +152,7 @@ struct Binding {
     fault: Option<&'static ClothFault>,
 }
 
-/// What a mesh is bound to.
+/// The cloth that a mesh is bound to, and the binding.
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct Driving {
@@ -158,7 +161,7 @@ struct Driving {
     mesh: &'static mut ClothMesh,
 }
 
-/// Binds meshes to cloths, once both are there.
+/// Binds meshes to cloths, once both exist.
 fn bind(
     mut wanted: Query<Binding, Without<Cloth>>,
     cloths: Query<(), With<Cloth>>,
@@ -207,11 +210,11 @@ fn bind(
                     )
                 }
             }
-            // It has its parts with the next tick.
+            // It gets its components with the next tick.
             _ if cloths.contains(cloth) => continue,
             _ => Err(ClothError::NoDrivingCloth { cloth }),
         };
-        // What is on its way is no fault.
+        // A mesh that is being loaded is no fault.
         let outcome = match outcome {
             Err(ClothError::MeshLoading) => Ok(()),
             outcome => outcome,
@@ -231,7 +234,7 @@ impl BindingItem<'_, '_> {
         server: Option<&AssetServer>,
         commands: &mut Commands,
     ) -> Result<(), ClothError> {
-        // What the entity drew before the plugin's copy.
+        // The mesh that the entity drew before the plugin's copy.
         let other = self.mesh.map(|mesh| &mesh.0);
         let other = other.filter(|mesh| self.state.is_none_or(|state| state.handle != **mesh));
         let source = other.or(self.state.map(|state| &state.source));
@@ -250,7 +253,7 @@ impl BindingItem<'_, '_> {
         let place = self.place.copied().unwrap_or_default();
         let cloth = driving.place.copied().unwrap_or_default();
         let places = [place, cloth];
-        // What was refused would be again: a mesh takes milliseconds to bind.
+        // Not tried again unless something changes: binding a mesh takes milliseconds.
         if let Some(refused) = self.refused
             && refused.source == source.id()
             && Arc::ptr_eq(&refused.surface, &surface)
@@ -288,7 +291,7 @@ impl BindingItem<'_, '_> {
     }
 }
 
-/// Draws the meshes where their cloths have been drawn.
+/// Draws the meshes on their drawn cloths.
 fn update(
     mut driven: Query<(
         &mut RenderMeshState,
@@ -325,7 +328,7 @@ fn update(
     }
 }
 
-/// What is driven no more draws its asset again, unless the game has put something else in place of the copy.
+/// An entity that is no longer driven draws its asset again, unless the game has replaced the copy.
 fn remove_render_mesh(
     removed: On<Remove, ClothRenderMesh>,
     states: Query<(&RenderMeshState, Option<&Mesh3d>)>,

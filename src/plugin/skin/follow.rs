@@ -1,4 +1,4 @@
-//! What a pose does to a cloth as a tick begins.
+//! Follows the pose of a skeleton as a tick begins.
 
 use std::sync::Arc;
 
@@ -16,10 +16,11 @@ use crate::{
     solver::{MotionConstraints, PinMotion},
 };
 
-/// Takes over a [`ClothSkin`], and places the pose in `scratch` whose joints have been read there. A cloth that begins is put into it.
+/// Takes over a [`ClothSkin`], and places the pose from the joints that have been read into `scratch`. A new cloth is
+/// put into the pose.
 ///
 /// # Errors
-/// What is wrong with the component, or with the mesh's joints.
+/// The error of the component, or of the mesh's joints.
 pub(crate) fn place_pose(
     skin: Option<&Ref<ClothSkin>>,
     sources: &Sources,
@@ -38,7 +39,7 @@ pub(crate) fn place_pose(
     Ok(())
 }
 
-/// Places the pose in `scratch` whose joints have been read there, of a cloth that follows one.
+/// Places the pose from the joints that have been read into `scratch`, if the cloth follows one.
 fn place_joints(
     sources: &Sources,
     frame: &ClothFrame,
@@ -57,11 +58,11 @@ fn place_joints(
     pose.place(built.surface(), skinning, frame, with_normals)
 }
 
-/// Has a cloth that stands still, in this frame, go with the joints that have been read into `scratch`: each particle
-/// keeps its place as seen from its place in the pose.
+/// Moves a frozen cloth, in this frame, with the joints that have been read into `scratch`. Each particle keeps its
+/// place relative to its place in the pose.
 ///
 /// # Errors
-/// What is wrong with the mesh's joints.
+/// The error of the mesh's joints.
 pub(crate) fn stand_in_pose(
     sources: &Sources,
     frame: &ClothFrame,
@@ -83,10 +84,11 @@ pub(crate) fn stand_in_pose(
     Ok(())
 }
 
-/// Takes over a [`ClothSkin`] that is new or has changed, or that has gone: what it held and holds no more gets its mass back.
+/// Takes over a [`ClothSkin`] that is new, has changed, or was removed. Particles that it no longer holds get their
+/// mass back.
 ///
 /// # Errors
-/// What is wrong with it; nothing is changed then.
+/// The error of the component; nothing is changed then.
 fn renew_limits(
     skin: Option<&Ref<ClothSkin>>,
     particles: &mut Mut<ClothParticles>,
@@ -111,7 +113,7 @@ fn renew_limits(
     };
     let is_held =
         |index: &usize| (new.as_ref()).is_some_and(|new| new.max_distances[*index] == 0.0);
-    // Of another surface nothing was held.
+    // Nothing was held on another surface.
     let known = known.filter(|known| Arc::ptr_eq(&known.surface, surface));
     let held = known.into_iter().flat_map(|known| known.held());
     let released: Vec<usize> = held.filter(|index| !is_held(index)).collect();
@@ -145,8 +147,8 @@ fn begin_in_pose(pose: &Pose, particles: &mut Mut<ClothParticles>, built: &Cloth
     }
 }
 
-/// Takes over a pose that has been placed in `scratch`, as a tick begins in which the cloth's frame becomes another: by
-/// `new_from_old`, if the cloth was there before and does not jump.
+/// Takes over a pose that has been placed in `scratch`, as a tick begins in which the cloth's frame changes by
+/// `new_from_old`. That is `None` if the cloth is new or teleports.
 pub(crate) fn move_with_pose(
     new_from_old: Isometry3d,
     was_built: bool,
@@ -167,7 +169,7 @@ pub(crate) fn move_with_pose(
         && let Some(turn) = turn
     {
         teleport_to_pose([from, to], turn, particles);
-        // They go with their skeleton, not with what they are attached to.
+        // They move with their skeleton, not with the target that they are attached to.
         state.first_target = None;
     }
     let jumps = scratch.teleports || !was_there;
@@ -175,7 +177,7 @@ pub(crate) fn move_with_pose(
         from.copy_from(to);
     } else {
         from.transform(new_from_old);
-        // A backstop that has just come: nobody asked for normals before.
+        // A new backstop: there were no normals before.
         if from.normals.len() != to.normals.len() {
             from.normals.clone_from(&to.normals);
         }
@@ -187,8 +189,7 @@ pub(crate) fn move_with_pose(
     }
 }
 
-/// Puts each particle where it was, as seen from its place in the pose: from what it was in one frame to what it is in another,
-/// which is turned.
+/// Keeps the place of each particle relative to its place in the pose, from one frame to another that is rotated.
 fn teleport_to_pose([from, to]: [&Pose; 2], turn: Quat, particles: &mut Mut<ClothParticles>) {
     particles.transform(Isometry3d::from_rotation(turn));
     for (index, (from, to)) in from.places.iter().zip(&to.places).enumerate() {
@@ -197,9 +198,9 @@ fn teleport_to_pose([from, to]: [&Pose; 2], turn: Quat, particles: &mut Mut<Clot
     }
 }
 
-/// Has what is held go where the pose takes it in this tick, by `motions`, and what is not stay in its ball and outside of its
-/// backstop. `from` and `to` are in the cloth's frame; they are one where the cloth begins or jumps, and particles that are held
-/// are put there.
+/// Moves held particles with the pose in this tick, by `motions`. Keeps the others in their ball and outside their
+/// backstop. `from` and `to` are in the cloth's frame. They are equal if the cloth is new or teleports, and held
+/// particles are put there.
 fn follow_pose(
     [from, to]: [&Pose; 2],
     jumps: bool,

@@ -1,4 +1,4 @@
-//! Where the joints of a skinned mesh are.
+//! Transforms of the joints of a skinned mesh.
 
 use bevy::{
     asset::{AssetServer, Assets, Handle, LoadState},
@@ -24,19 +24,19 @@ pub(crate) struct Skins<'w, 's> {
 }
 
 impl Skins<'_, '_> {
-    /// The bind poses and joints of an entity. What the game has given it last comes first.
+    /// The bind poses and joints of an entity; those that the game inserted last count first.
     fn of(&self, entity: Entity) -> Option<(&Handle<SkinnedMeshInverseBindposes>, &[Entity])> {
         let (skin, skeleton) = self.skins.get(entity).ok()?;
         let of_skin = skin.map(|skin| (&skin.inverse_bindposes, &*skin.joints));
         of_skin.or(skeleton.map(|skeleton| (&skeleton.inverse_bindposes, &*skeleton.joints)))
     }
 
-    /// The matrices that take an entity's mesh, as it is bound, to the world: each joint's global transform, as `place` knows it,
-    /// times its inverse bind pose. None of an entity that is not skinned.
+    /// The matrices that take an entity's mesh, as it is bound, to the world: each joint's global transform, as `place`
+    /// knows it, times its inverse bind pose. Empty for an entity that is not skinned.
     ///
     /// # Errors
-    /// [`ClothError::Joint`] for one that is nowhere, [`ClothError::MeshLoading`] while the bind poses are on their way,
-    /// [`ClothError::SkinJoints`] if there are none, or fewer than joints.
+    /// [`ClothError::Joint`] for a joint without a transform, [`ClothError::MeshLoading`] while the bind poses are
+    /// being loaded, [`ClothError::SkinJoints`] if there are none, or fewer than joints.
     pub fn read(
         &self,
         entity: Entity,

@@ -1,4 +1,4 @@
-//! Has a cloth follow its skinned pose.
+//! Cloth that follows its skinned pose.
 
 mod follow;
 #[cfg(feature = "mesh")]

@@ -1,4 +1,4 @@
-//! A cloth's pose, and how far it may be from it.
+//! A cloth's pose, and its largest distances from it.
 
 use std::sync::Arc;
 
@@ -13,15 +13,15 @@ use super::super::{
 };
 use crate::cloth::{ClothError, ClothSkin, FARTHEST, Skinning, Surface};
 
-/// Where a skeleton has the particles of a cloth, in the cloth's frame.
+/// The skinned positions of a cloth's particles, in the cloth's frame.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pose {
-    /// What takes the mesh to the world, joint by joint; none where there is no skeleton.
+    /// Transforms of the joints, from the mesh to the world; empty without a skeleton.
     pub joints: Vec<Affine3A>,
     /// Place of each particle (m).
     pub places: Vec<Vec3>,
-    /// Where each faces; none where nobody asks.
+    /// Normal of each particle; empty if they are not needed.
     pub normals: Vec<Vec3>,
     /// That frame.
     pub frame: ClothFrame,
@@ -30,7 +30,7 @@ pub(crate) struct Pose {
 /// Numbers of a [`ClothSkin`], particle by particle.
 #[derive(Debug, Clone)]
 pub(crate) struct SkinLimits {
-    /// When the component was last changed that they are of.
+    /// When the component was last changed.
     pub changed: Tick,
     pub surface: Arc<Surface>,
     /// How far each may be from its place in the pose (m).
@@ -44,10 +44,10 @@ pub(crate) struct SkinLimits {
 }
 
 impl SkinLimits {
-    /// Of a component that was last changed then.
+    /// The limits of a component that was last changed then.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the component.
     pub fn new(
         skin: &ClothSkin,
         changed: Tick,
@@ -90,7 +90,7 @@ impl SkinLimits {
     }
 }
 
-/// A distance (m); one that is beyond all measure is none.
+/// A distance (m); infinite if it is too large to matter.
 fn unbounded(distance: f32) -> f32 {
     if distance < FARTHEST {
         distance
@@ -100,16 +100,16 @@ fn unbounded(distance: f32) -> f32 {
 }
 
 impl Pose {
-    /// Scale of a mesh whose first joint is where it is.
+    /// Scale of the mesh at its first joint.
     pub fn scale(&self) -> Option<Vec3> {
         let first = self.joints.first()?;
         Some(first.to_scale_rotation_translation().0)
     }
 
-    /// Takes over where the joints have the particles of a surface, in `frame`; without joints, where they are at rest.
+    /// Places the particles of a surface by the joints, in `frame`; without joints, where they are at rest.
     ///
     /// # Errors
-    /// What is wrong with the skin of the mesh.
+    /// The error of the mesh's skin.
     pub fn place(
         &mut self,
         surface: &Surface,
@@ -153,7 +153,7 @@ impl Pose {
         Ok(())
     }
 
-    /// Has been shifted with the world's origin, and what takes the mesh to its joints is `now`.
+    /// Shifts it with the world's origin; the transforms of the joints are `now`.
     pub fn shift(&mut self, shift: Shift, frames: [ClothFrame; 2], now: &[Affine3A]) {
         for (index, joint) in self.joints.iter_mut().enumerate() {
             *joint = shift.affine(*joint, now.get(index).copied());
@@ -165,7 +165,7 @@ impl Pose {
         };
     }
 
-    /// Becomes what `other` is, in the memory that it has.
+    /// Copies `other` into its own memory.
     pub fn copy_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);
         self.places.clone_from(&other.places);
@@ -173,7 +173,7 @@ impl Pose {
         self.frame = other.frame;
     }
 
-    /// Sees it from another frame.
+    /// Transforms it to another frame.
     pub fn transform(&mut self, by: Isometry3d) {
         self.places
             .iter_mut()
@@ -183,14 +183,14 @@ impl Pose {
             .for_each(|normal| *normal = by.rotation * *normal);
     }
 
-    /// How far the place is that is farthest from where `other` has it, seen from another frame (m).
+    /// The largest distance of a place from that in `other`, seen from another frame (m).
     pub fn farthest_from(&self, other: &Self, by: Isometry3d) -> f32 {
         let pairs = self.places.iter().zip(&other.places);
         let squares = pairs.map(|(to, from)| to.distance_squared(by * *from));
         squares.fold(0.0, f32::max).sqrt()
     }
 
-    /// How the first joint is turned against where `other` has it, each in its own frame.
+    /// Rotation of the first joint since `other`, each in its own frame.
     pub fn turn_since(&self, other: &Self) -> Option<Quat> {
         let now = rigid(self.joints.first()?).rotation;
         let was = rigid(other.joints.first()?).rotation;

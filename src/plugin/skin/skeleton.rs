@@ -7,21 +7,22 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-/// On a cloth that was spawned with a [`SkinnedMesh`], in place of it while the plugin draws the cloth: what is drawn is the cloth, and
-/// the renderer would skin it a second time. Removing [`Cloth`](crate::cloth::Cloth) gives it back. A game that changes the skeleton inserts
-/// a new `SkinnedMesh`, which is taken over.
+/// The skeleton of a cloth that was spawned with a [`SkinnedMesh`]. It stands in place of the `SkinnedMesh` while the
+/// plugin draws the cloth, since the renderer would skin the mesh a second time. Removing
+/// [`Cloth`](crate::cloth::Cloth) gives the `SkinnedMesh` back. To change the skeleton, insert a new `SkinnedMesh`,
+/// which the plugin takes over.
 #[derive(Component, Reflect, Debug, Default, Clone)]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct ClothSkeleton {
-    /// What takes the mesh to each joint, as it is bound.
+    /// Inverse bind poses: they take the mesh, as it is bound, to the frame of each joint.
     pub inverse_bindposes: Handle<SkinnedMeshInverseBindposes>,
-    /// The joints, as the mesh numbers them.
+    /// The joints, in the mesh's order.
     #[entities]
     pub joints: Vec<Entity>,
 }
 
 impl ClothSkeleton {
-    /// Of a mesh that the renderer skins.
+    /// From a mesh that the renderer skins.
     pub(crate) fn of(skin: &SkinnedMesh) -> Self {
         Self {
             inverse_bindposes: skin.inverse_bindposes.clone(),
@@ -29,7 +30,7 @@ impl ClothSkeleton {
         }
     }
 
-    /// To have the renderer skin it.
+    /// The component with which the renderer skins the mesh.
     pub(crate) fn to_skin(&self) -> SkinnedMesh {
         SkinnedMesh {
             inverse_bindposes: self.inverse_bindposes.clone(),

@@ -1,4 +1,4 @@
-//! One cloth.
+//! The snapshot of a single cloth.
 
 use bevy::ecs::{
     change_detection::DetectChanges,
@@ -18,12 +18,13 @@ use crate::{
     contact::MutualContact,
 };
 
-/// All that the next tick of a cloth depends on, besides what the game says in its own components (`Cloth`, `ClothMaterial`,
-/// `Transform` …) and how colliders move. [`ClothWorldSnapshot`](super::ClothWorldSnapshot) is of all cloths and colliders at once: only
-/// that goes on to the last bit where a cloth touches something.
+/// Everything that the next tick of a cloth depends on, except for the game's own components (`Cloth`, `ClothMaterial`,
+/// `Transform` …) and the motion of colliders. [`ClothWorldSnapshot`](super::ClothWorldSnapshot) holds all cloths and
+/// colliders at once: only that continues to the last bit where a cloth touches something.
 ///
-/// It is taken and restored between two ticks, by an exclusive system or from outside. With the feature `serialize` serde writes and reads
-/// it; entities are written as they are, and [`MapEntities`] takes them to those of another world.
+/// Take and restore it between two ticks, in an exclusive system or outside the schedule. With the feature `serialize`,
+/// serde writes and reads it. Entities are written as they are, and [`MapEntities`] maps them to those of another
+/// world.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -49,7 +50,7 @@ pub struct ClothSnapshot {
 }
 
 impl Default for ClothSnapshot {
-    /// Of no particles: memory for [`take`](Self::take).
+    /// An empty snapshot, as memory for [`take`](Self::take).
     fn default() -> Self {
         Self {
             version: Self::VERSION,
@@ -64,10 +65,10 @@ impl Default for ClothSnapshot {
 }
 
 impl ClothSnapshot {
-    /// What snapshots look like that this crate writes. It reads no others.
+    /// Version of the snapshots that this crate writes. It reads no other version.
     pub const VERSION: u32 = 1;
 
-    /// Of a cloth as it is.
+    /// A snapshot of the current state of a cloth.
     ///
     /// # Errors
     /// [`SnapshotError::NoCloth`].
@@ -77,10 +78,10 @@ impl ClothSnapshot {
         Ok(snapshot)
     }
 
-    /// Becomes that of a cloth as it is, in the memory that it has.
+    /// Overwrites this snapshot with the current state of a cloth, in the memory that it has.
     ///
     /// # Errors
-    /// [`SnapshotError::NoCloth`]; it stays what it was.
+    /// [`SnapshotError::NoCloth`]; the snapshot stays as it was.
     pub fn take(&mut self, world: &World, cloth: Entity) -> Result<(), SnapshotError> {
         let parts = || {
             Some((
@@ -110,7 +111,7 @@ impl ClothSnapshot {
         Ok(())
     }
 
-    /// Whether [`restore`](Self::restore) would.
+    /// Checks whether [`restore`](Self::restore) would succeed.
     pub(super) fn check(&self, world: &World, cloth: Entity) -> Result<(), SnapshotError> {
         if self.version != Self::VERSION {
             return Err(SnapshotError::Version {
@@ -133,11 +134,11 @@ impl ClothSnapshot {
         }
     }
 
-    /// Has a cloth go on from here. It may be one that was never moved, of the same `Cloth`, material and pins, as in an app that
-    /// has just begun.
+    /// Puts a cloth back to this state. The cloth may never have been simulated, as in an app that has just started,
+    /// but needs the same `Cloth`, material and pins.
     ///
     /// # Errors
-    /// [`SnapshotError`]; nothing is changed.
+    /// [`SnapshotError`]; nothing is changed then.
     pub fn restore(&self, world: &mut World, cloth: Entity) -> Result<(), SnapshotError> {
         self.check(world, cloth)?;
         let mut entity = world.entity_mut(cloth);
@@ -145,7 +146,7 @@ impl ClothSnapshot {
         let last_written = entity.get::<ClothState>().and_then(|state| state.written);
         let mut weighs_the_same = false;
         if let Some(mut particles) = entity.get_mut::<ClothParticles>() {
-            // What the game has written was not weighed yet.
+            // Particles that the game has written have not been weighed yet.
             let is_weighed = last_written == Some(particles.last_changed());
             weighs_the_same = is_weighed && particles.weigh_as(&self.particles);
             particles.copy_from(&self.particles);
@@ -162,11 +163,11 @@ impl ClothSnapshot {
         if let Some(mut state) = entity.get_mut::<ClothState>() {
             state.copy_from(&self.state);
             state.written = written.filter(|_| !self.is_written);
-            // In what somebody has written by hand they may be anything.
+            // In a file that was edited by hand, they may be anything.
             let survey = self.particles.survey();
             state.is_valid &= survey.is_valid;
             state.largest_speed = survey.largest_speed;
-            // What was attached is not written in files: it is what the game says.
+            // Attachments are not written to files: they are the game's components.
             let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
             if state.attachments.is_empty() && state.targets.len() == wanted.len() {
                 state.attachments.extend_from_slice(wanted);
@@ -186,7 +187,7 @@ impl ClothSnapshot {
         Ok(())
     }
 
-    /// The particles as they were.
+    /// The particles in the snapshot.
     pub fn particles(&self) -> &ClothParticles {
         &self.particles
     }

@@ -3,36 +3,38 @@
 use bevy::ecs::entity::Entity;
 use thiserror::Error;
 
-/// Why a snapshot was not taken or restored. Nothing was changed then.
+/// Why a snapshot was not taken or restored. Nothing has been changed then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SnapshotError {
-    /// There is no such cloth.
-    #[error("{entity} is no cloth that the plugin knows: it has no `Cloth`, or does not exist")]
+    /// The entity is not a cloth.
+    #[error("{entity} is not a cloth that the plugin knows: it does not exist, or has no `Cloth`")]
     NoCloth {
-        /// What is no cloth.
+        /// The entity.
         entity: Entity,
     },
-    /// There is no such collider, root or carrier.
-    #[error("{entity} was in the snapshot, and does not exist or has lost its `{component}`")]
+    /// A collider, root or carrier of the snapshot is gone.
+    #[error("{entity} is in the snapshot, but no longer exists or has lost its `{component}`")]
     Gone {
-        /// What has gone.
+        /// The entity that is gone.
         entity: Entity,
-        /// What it had.
+        /// The component that it had.
         component: &'static str,
     },
-    /// What a file says of a cloth can't be, as its lists are of different lengths.
-    #[error("the snapshot of {entity} is damaged: its lists do not fit each other")]
+    /// A file holds lists of different lengths for a cloth.
+    #[error("the snapshot of {entity} is damaged: its lists have different lengths")]
     Damaged {
         /// The cloth.
         entity: Entity,
     },
     /// The snapshot was written by another version of the crate.
-    #[error("the snapshot is of version {found}, and this is version {expected}")]
+    #[error(
+        "the snapshot has version {found}, but this version of bevy_drape reads version {expected}"
+    )]
     Version {
-        /// Of the snapshot.
+        /// Version of the snapshot.
         found: u32,
-        /// Of this crate.
+        /// Version that this crate reads.
         expected: u32,
     },
 }

@@ -1,4 +1,4 @@
-//! What a cloth, or a world of cloths and colliders, goes on from: taken between two ticks, and put back.
+//! Snapshots of a cloth, or of a world of cloths and colliders, taken and restored between two ticks.
 
 mod cloth;
 mod error;

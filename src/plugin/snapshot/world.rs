@@ -1,4 +1,4 @@
-//! All cloths and colliders of a world.
+//! The snapshot of all cloths and colliders of a world.
 
 use bevy::{
     ecs::{
@@ -23,14 +23,15 @@ use super::{
 };
 use crate::cloth::Cloth;
 
-/// All that the next ticks of all cloths of a world depend on, besides what the game says in its components: a
-/// [`ClothSnapshot`] of each, where colliders and roots come from, what cloths that touch each other know of each other, how the wind blows,
-/// and the `Transform`s of all of these, of what carries them and of what is above them.
+/// Everything that the next ticks of all cloths of a world depend on, except for the game's own components. It holds a
+/// [`ClothSnapshot`] of each cloth, the motion of colliders, contacts between cloths, and the state of the wind. It
+/// also holds the `Transform`s of all of these, of their carriers, and of everything above them in the hierarchy.
 ///
-/// Taken and restored between two ticks, in the same app or in one that has just begun with the same entities, ticks go on to the last
-/// bit: the same particles, contacts and messages. Cloths and colliders that have come since stay as they are; a cloth or collider that has gone is an error.
-/// Other components of the game's, such as a material that is animated, are the game's to restore. What holds in one
-/// tick alone (`ClothTeleport` that was not used yet) is the game's too.
+/// Take and restore it between two ticks, in the same app or in an app that has just started with the same entities.
+/// The simulation then continues to the last bit, with the same particles, contacts and messages. Cloths and colliders
+/// that were added since stay as they are; a cloth or collider that is gone is an error. Restore the game's own data
+/// yourself: other components, such as an animated material, and components of a single tick, such as a `ClothTeleport`
+/// that was not used yet.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -62,29 +63,29 @@ use crate::cloth::Cloth;
 pub struct ClothWorldSnapshot {
     cloths: Vec<(Entity, ClothSnapshot)>,
     colliders: Vec<(Entity, ColliderMemory)>,
-    /// Where each root was.
+    /// Last place of each root.
     roots: Vec<(Entity, Option<Isometry3d>)>,
     islands: Vec<Island>,
-    /// For how long the wind has blown (s), and how far (m).
+    /// Time for which the wind has blown (s), and the distance that it has travelled (m).
     wind: (f64, DVec3),
     /// Translation (m), rotation and scale of `Transform`s.
     transforms: Vec<(Entity, (Vec3, Quat, Vec3))>,
 }
 
 impl ClothWorldSnapshot {
-    /// Of a world as it is.
+    /// A snapshot of the current state of a world.
     pub fn of(world: &mut World) -> Self {
         let mut snapshot = Self::default();
         snapshot.take(world);
         snapshot
     }
 
-    /// Becomes that of a world as it is, in the memory that it has.
+    /// Overwrites this snapshot with the current state of a world, in the memory that it has.
     pub fn take(&mut self, world: &mut World) {
         let mut cloths = world.query_filtered::<Entity, (With<Cloth>, With<ClothState>)>();
         let mut taken = 0;
         for cloth in cloths.iter(world) {
-            // Mostly the same one's as before, of as many particles.
+            // Usually of the same cloth as before, with the same number of particles.
             if taken == self.cloths.len() {
                 self.cloths.push((cloth, ClothSnapshot::default()));
             }
@@ -118,7 +119,7 @@ impl ClothWorldSnapshot {
         self.take_transforms(world, &zones);
     }
 
-    /// Takes where all of them and these zones of wind are, what carries them, and what is above them.
+    /// Takes the transforms of all of them and of these wind zones, of their carriers, and of everything above them.
     fn take_transforms(&mut self, world: &World, zones: &[Entity]) {
         let mut known = EntityHashSet::default();
         self.transforms.clear();
@@ -147,10 +148,10 @@ impl ClothWorldSnapshot {
         }
     }
 
-    /// Has a world go on from here.
+    /// Puts a world back to this state.
     ///
     /// # Errors
-    /// [`SnapshotError`]; nothing is changed.
+    /// [`SnapshotError`]; nothing is changed then.
     pub fn restore(&self, world: &mut World) -> Result<(), SnapshotError> {
         for (entity, snapshot) in &self.cloths {
             snapshot.check(world, *entity)?;
@@ -166,7 +167,7 @@ impl ClothWorldSnapshot {
             has::<Transform>(world, *entity, "Transform")?;
         }
         for &(entity, (translation, rotation, scale)) in &self.transforms {
-            // As a change: whoever is moved looks where it is now.
+            // Marked as changed, so that the transform is read again.
             if let Some(mut place) = world.get_mut::<Transform>(entity) {
                 *place = Transform {
                     translation,
@@ -206,7 +207,7 @@ impl ClothWorldSnapshot {
 }
 
 /// # Errors
-/// [`SnapshotError::Gone`] if an entity has it no more.
+/// [`SnapshotError::Gone`] if an entity no longer has the component.
 fn has<C: bevy::ecs::component::Component>(
     world: &World,
     entity: Entity,

@@ -15,7 +15,7 @@ use bevy::{
 use super::{super::ClothMesh, id::Source};
 use crate::cloth::{Cloth, ClothError, ClothShape, Skinning, Surface, TriangleMesh, skin_of_asset};
 
-/// How often meshes have been changed since they were loaded; those that never were are not in it.
+/// The number of changes of each mesh since it was loaded; unchanged meshes are not in it.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
 
@@ -25,7 +25,7 @@ impl ChangedMeshes {
         *self.0.entry(mesh).or_default() += 1;
     }
 
-    /// Nobody has it any more.
+    /// The mesh is no longer used.
     pub fn forget(&mut self, mesh: AssetId<Mesh>) {
         self.0.remove(&mesh);
     }
@@ -45,8 +45,8 @@ impl Sources<'_, '_> {
     /// is the one that it was made from.
     ///
     /// # Errors
-    /// [`ClothError::MeshLoading`] while it is being loaded, [`MeshNotLoaded`](ClothError::MeshNotLoaded) if nobody does
-    /// so, [`MeshFailed`](ClothError::MeshFailed).
+    /// [`ClothError::MeshLoading`] while it is being loaded, [`MeshNotLoaded`](ClothError::MeshNotLoaded) if nothing
+    /// loads it, [`MeshFailed`](ClothError::MeshFailed).
     pub fn find(
         &self,
         entity: Entity,
@@ -66,7 +66,7 @@ impl Sources<'_, '_> {
         self.loaded(handle.id(), known).map(Some)
     }
 
-    /// Which mesh it is, and which version of it, once it has been loaded. `known` is what was made last.
+    /// The mesh and its version, once it has been loaded. `known` is the last one that was used.
     ///
     /// # Errors
     /// As for [`find`](Self::find).
@@ -82,7 +82,7 @@ impl Sources<'_, '_> {
                 version: version.copied().unwrap_or(0),
             });
         }
-        // What was made outlasts the asset that it was made from.
+        // A surface outlasts the asset that it was made from.
         if let Some(known) = known.filter(|known| known.mesh == id) {
             return Ok(known);
         }
@@ -102,16 +102,16 @@ impl Sources<'_, '_> {
     /// The triangles of a mesh that has been loaded.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the mesh.
     pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, ClothError> {
         let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
         TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)
     }
 
-    /// What moves a surface with joints, which was made from that mesh.
+    /// The skinning by joints of a surface that was made from that mesh.
     ///
     /// # Errors
-    /// What is wrong with it; [`ClothError::SkinJoints`] of one that names no joints.
+    /// The error of the mesh; [`ClothError::SkinJoints`] if it names no joints.
     pub fn skinning(&self, source: Source, surface: &Surface) -> Result<Skinning, ClothError> {
         let mesh = self
             .meshes
@@ -128,7 +128,7 @@ impl Sources<'_, '_> {
     /// The surface of a cloth.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the mesh.
     pub fn surface(
         &self,
         cloth: &Cloth,

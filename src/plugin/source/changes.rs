@@ -1,4 +1,4 @@
-//! Which meshes a game changes that something is made from.
+//! Changes of meshes that cloths and colliders are made from.
 
 use bevy::{
     asset::{AssetEvent, AssetId},
@@ -12,7 +12,7 @@ use bevy::{
 
 use super::{super::ClothBuilt, asset::ChangedMeshes, collider::SharedMeshes};
 
-/// Takes over which meshes a game has changed: cloths and colliders that are made from them are built again.
+/// Notes the meshes that a game has changed: cloths and colliders that are made from them are built again.
 pub(crate) fn note_changed_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
     mut changed: ResMut<ChangedMeshes>,

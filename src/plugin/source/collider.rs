@@ -1,4 +1,4 @@
-//! Colliders of the meshes that are drawn.
+//! Colliders that are made from drawn meshes.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -19,18 +19,18 @@ use crate::{
     contact::{ClothCollider, MeshCollider},
 };
 
-/// The colliders that have been made of meshes, to be shared by all entities that have the same.
+/// The colliders that have been made from meshes, shared by all entities with the same mesh.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct SharedMeshes(Mutex<HashMap<(Source, MeshCollider), ClothCollider>>);
 
 impl SharedMeshes {
-    /// Those that any collider has been made of, until nobody has them any more.
+    /// The meshes that colliders have been made from, as long as they are used.
     pub fn meshes(&mut self) -> impl Iterator<Item = AssetId<Mesh>> {
         let shared = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
         shared.keys().map(|(source, _)| source.mesh)
     }
 
-    /// Nobody has that mesh any more.
+    /// The mesh is no longer used.
     pub fn forget(&mut self, mesh: AssetId<Mesh>) {
         let shared = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
         shared.retain(|(known, _), _| known.mesh != mesh);
@@ -69,7 +69,7 @@ impl ColliderMeshes<'_, '_> {
     /// The collider with its triangles, or its points; itself, if it is made of no mesh.
     ///
     /// # Errors
-    /// What is wrong with the mesh.
+    /// The error of the mesh.
     pub fn resolve(
         &self,
         collider: &ClothCollider,
@@ -87,7 +87,7 @@ impl ColliderMeshes<'_, '_> {
             MeshCollider::Triangles => ClothCollider::trimesh(mesh.positions, mesh.triangles),
             MeshCollider::Hull => ClothCollider::convex_hull(mesh.positions),
         };
-        // What a mesh was before it changed is needed no more.
+        // Colliders of older versions of the mesh are no longer needed.
         shared.retain(|(known, _), _| known.mesh != source.mesh || *known == source);
         shared.insert((source, *kind), made.clone());
         Ok(made)

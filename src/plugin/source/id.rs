@@ -1,8 +1,8 @@
-//! Which mesh something is made from.
+//! The identity of a source mesh.
 
 use bevy::{asset::AssetId, mesh::Mesh};
 
-/// Which mesh, and how often it had been changed.
+/// A mesh, and how often it had been changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Source {
     pub mesh: AssetId<Mesh>,

@@ -1,4 +1,4 @@
-//! What the air does at a place and at a time.
+//! The velocity of the air at a position and a time.
 
 use bevy::{
     ecs::resource::Resource,
@@ -10,13 +10,14 @@ use fastnoise_lite::{FastNoiseLite, NoiseType};
 use super::{ClothAir, ClothWind, DENSITY, zone::PlacedZone};
 use crate::{cloth::ClothError, plugin::frame::Shift};
 
-/// Far apart in the noise, so that what it says along the axes has nothing to do with each other.
+/// Far apart in the noise, so that its values along the three axes are independent.
 const APART: [f64; 3] = [0.0, 1013.7, 2027.3];
 
-/// The noise begins again after so much of it, as its cells are counted in 32 bits: with eddies of 1 m in 10 m/s after 20 months.
+/// The noise repeats after this length, as its cells are counted in 32 bits: with eddies of 1 m in 10 m/s after 20
+/// months.
 const NOISE: f64 = (1_u32 << 29) as f64;
 
-/// The fastest that air is, gusts and eddies included (m/s).
+/// Largest speed of air, gusts and eddies included (m/s).
 const FASTEST: f32 = 1.0e6;
 
 /// The world's wind in the tick, and its zones.
@@ -25,32 +26,32 @@ pub(in crate::plugin) struct WindField {
     pub zones: Vec<PlacedZone>,
     /// The noise, and what it was made from.
     noise: Option<(i32, FastNoiseLite)>,
-    /// For how long it has blown (s), and the way that it has come (m).
+    /// Time for which it has blown (s), and the distance that it has travelled (m).
     seconds: f64,
     way: DVec3,
-    /// Of the world in the tick.
+    /// The world's wind in the tick.
     world: Option<Result<World, ClothError>>,
 }
 
 /// The world's wind in a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct World {
-    /// With its gusts (m/s).
+    /// Velocity including gusts (m/s).
     velocity: Vec3,
     density: f32,
-    /// How far the air strays from that at most (m/s), and over which lengths (m).
+    /// Largest deviation from that velocity (m/s), and the size of its eddies (m).
     stray: f32,
     length: f32,
 }
 
-/// What the air is for a cloth in the tick, zones aside, in the world.
+/// The air of a cloth in the tick, without zones, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::plugin) struct Breeze {
     pub density: f32,
     pub drag: f32,
     pub lift: f32,
-    /// m/s.
+    /// Velocity (m/s).
     pub velocity: Vec3,
     /// See [`World`].
     pub stray: f32,
@@ -59,7 +60,7 @@ pub(in crate::plugin) struct Breeze {
 }
 
 impl Breeze {
-    /// Whether it is another one in each tick, wherever a cloth is.
+    /// Whether it changes in each tick, wherever a cloth is.
     pub fn is_turbulent(&self) -> bool {
         self.stray > 0.0
     }
@@ -72,7 +73,7 @@ impl WindField {
         self.world = wind.map(|wind| wind.validate().map(|()| self.blow(wind, time)));
     }
 
-    /// For how long it has blown (s), and how far (m).
+    /// Time for which it has blown (s), and the distance that it has travelled (m).
     pub fn memory(&self) -> (f64, DVec3) {
         (self.seconds, self.way)
     }
@@ -82,7 +83,7 @@ impl WindField {
         self.way += by.as_dvec3();
     }
 
-    /// Blows on as of another time.
+    /// Continues from an earlier time, of a snapshot.
     pub fn recall(&mut self, (seconds, way): (f64, DVec3)) {
         (self.seconds, self.way) = (seconds, way);
     }
@@ -138,7 +139,7 @@ impl WindField {
             (None, _) => (DENSITY, None),
             (Some(world), _) => (world.density, Some(world)),
         };
-        // A velocity of its own has neither gusts nor eddies.
+        // The velocity of a `ClothAir` has neither gusts nor eddies.
         let (velocity, stray) = match (velocity, world) {
             (Some(own), _) => (own, 0.0),
             (None, Some(world)) => (world.velocity, world.stray),
@@ -160,7 +161,7 @@ impl WindField {
         zones.filter(move |zone| zone.reaches(centre, radius))
     }
 
-    /// How far the air strays from a cloth's velocity at a place of the world (m/s).
+    /// Deviation of the air from a cloth's breeze at a position in the world (m/s).
     pub fn stray(&self, breeze: &Breeze, place: Vec3) -> Vec3 {
         let (Some(Ok(world)), Some((_, noise))) = (&self.world, &self.noise) else {
             return Vec3::ZERO;

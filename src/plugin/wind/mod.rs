@@ -24,15 +24,15 @@ use crate::cloth::ClothError;
 /// Of air at 20 °C and sea level (kg/m³).
 const DENSITY: f32 = 1.2;
 
-/// The air of the world. Not there unless a game inserts it: without it, a [`ClothWindZone`] and a [`ClothAir`] with a velocity of
-/// its own there is no air, and it costs nothing. One of no velocity is still air, in which cloth falls no faster than its weight and
-/// its drag let it.
+/// The wind of the world. The resource does not exist unless the game inserts it. Without it there is no air and no
+/// cost, except for a [`ClothWindZone`], or a [`ClothAir`] with a velocity of its own. A wind with zero velocity is
+/// still air, in which drag limits the speed of falling cloth.
 ///
-/// May change in every tick: nothing is built again. Cloth that sleeps wakes when it changes, and does not sleep while gusts or
-/// turbulence blow; in a steady wind it sleeps once it is at rest.
+/// It may change in every tick: nothing is built again. Sleeping cloth wakes when it changes. Cloth does not sleep
+/// while gusts or turbulence blow; in a steady wind it sleeps once it is at rest.
 ///
-/// What it is at a place follows from the time of the simulation's clock, from the way that the air has come and from the seed, so
-/// that the same run is the same wind:
+/// The velocity u at a position x follows from the time of the simulation's clock, the distance that the air has
+/// travelled, and the seed. So the same run has the same wind:
 ///
 /// ```text
 ///   U = velocity · (1 + gusts · n(t ⁄ gust_period))                       n: noise from −1 to 1
@@ -41,26 +41,26 @@ const DENSITY: f32 = 1.2;
 #[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothWind {
-    /// Where the air goes (m/s), at most 10⁶ along each axis.
+    /// Velocity of the air (m/s), at most 10⁶ along each axis.
     pub velocity: Vec3,
-    /// Density (kg/m³), from 0 to 10⁶. Air of none does nothing, and costs nothing.
+    /// Density (kg/m³), from 0 to 10⁶. Air of zero density does nothing, and costs nothing.
     pub density: f32,
-    /// By what part of itself the speed rises and falls at most, zero or more: 0.3 is a gusty day.
+    /// Largest rise and fall of the speed in gusts, as a fraction of it, zero or more: 0.3 is a gusty day.
     pub gusts: f32,
-    /// From gust to gust, about (s), positive.
+    /// Approximate time from gust to gust (s), positive.
     pub gust_period: f32,
-    /// By what part of the speed the air strays from it at each place, along each axis, at most; zero or more: 0.2 over a field, 0.5
-    /// among houses.
+    /// Largest deviation of the air at each position, along each axis, as a fraction of the speed; zero or more: 0.2
+    /// over a field, 0.5 among houses.
     pub turbulence: f32,
-    /// How large its eddies are, about (m), positive. Those smaller than an eighth of a grid, or a quarter of a mesh, are not felt as what
-    /// they are.
+    /// Approximate size of its eddies (m), positive. A cloth does not resolve eddies smaller than an eighth of a grid,
+    /// or a quarter of a mesh.
     pub turbulence_length: f32,
-    /// Another one is another wind.
+    /// Seed of the noise: another seed is another wind.
     pub seed: i32,
 }
 
 impl Default for ClothWind {
-    /// Still air of 1.2 kg/m³; gusts, if any, each 4 s, and eddies of 1 m.
+    /// Still air of 1.2 kg/m³. Gusts, if any, come every 4 s, and eddies are 1 m large.
     fn default() -> Self {
         Self {
             velocity: Vec3::ZERO,
@@ -75,7 +75,7 @@ impl Default for ClothWind {
 }
 
 impl ClothWind {
-    /// A steady wind (m/s), all else by default.
+    /// A steady wind (m/s), with defaults for everything else.
     pub fn new(velocity: Vec3) -> Self {
         Self {
             velocity,
@@ -83,7 +83,7 @@ impl ClothWind {
         }
     }
 
-    /// A wind (m/s) with gusts and turbulence as over open land: both by a fifth.
+    /// A wind (m/s) with gusts and turbulence of a fifth each, as over open land.
     pub fn gusty(velocity: Vec3) -> Self {
         Self {
             gusts: 0.2,
@@ -92,10 +92,10 @@ impl ClothWind {
         }
     }
 
-    /// Whether each value is in its range.
+    /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not.
+    /// [`ClothError::Quantity`] for the first value that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         check_velocity(self.velocity)?;
         let density = "density of the air (kg/m³)";
@@ -114,22 +114,22 @@ impl ClothWind {
     }
 }
 
-/// How the air acts on one cloth. Without it the defaults count.
+/// How the air acts on one cloth. A cloth without it uses the defaults.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothAir {
-    /// `C_d`, the coefficient of drag of cloth that the wind meets broadside, from 0 to 10⁶.
+    /// Drag coefficient `C_d` of cloth broadside to the wind, from 0 to 10⁶.
     pub drag: f32,
-    /// `C_l`, the slope of the coefficient of the normal force over the sine of a small angle to the wind, from 0 to 10⁶.
+    /// `C_l`, the slope of the normal force coefficient over the sine of a small angle to the wind, from 0 to 10⁶.
     pub lift: f32,
-    /// A velocity of the air (m/s) for this cloth alone, in place of [`ClothWind`]: inside of a vehicle, that of the vehicle. Zones
-    /// come on top, as to the world's.
+    /// Velocity of the air (m/s) for this cloth alone, in place of [`ClothWind`]: inside a vehicle, the velocity of the
+    /// vehicle. Zones are added to it, as they are to the world's wind.
     pub velocity: Option<Vec3>,
 }
 
 impl Default for ClothAir {
-    /// Those of a square plate: 1.2 broadside (S. F. Hoerner 1965, Fluid-Dynamic Drag, chapter 3: 1.17), and the slope of 1.48 of a
-    /// wing as wide as it is long, `2 π Λ/(√(Λ² + 4) + 2)` with Λ = 1 (H. B. Helmbold 1942).
+    /// The coefficients of a square plate: 1.2 broadside (S. F. Hoerner 1965, Fluid-Dynamic Drag, chapter 3: 1.17), and
+    /// the slope of 1.48 of a wing as wide as it is long, `2 π Λ/(√(Λ² + 4) + 2)` with Λ = 1 (H. B. Helmbold 1942).
     fn default() -> Self {
         Self {
             drag: 1.2,
@@ -140,10 +140,10 @@ impl Default for ClothAir {
 }
 
 impl ClothAir {
-    /// Whether each value is in its range.
+    /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not.
+    /// [`ClothError::Quantity`] for the first value that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         let range = "from 0 to 10⁶";
         ClothError::check(self.drag, is_moderate, "coefficient of drag", range)?;

@@ -1,4 +1,4 @@
-//! What the air is in a tick.
+//! Prepares the air of a tick.
 
 use bevy::{
     ecs::{
@@ -15,7 +15,7 @@ use super::{
 };
 use crate::plugin::{ClothFault, frame::Places, naming::Part};
 
-/// Moves the world's wind on, looks where the zones are, and notes what is wrong with one.
+/// Moves the world's wind on, reads the places of the zones, and reports the faults of zones.
 pub(in crate::plugin) fn prepare_wind(
     wind: Option<Res<ClothWind>>,
     zones: Query<(Entity, &ClothWindZone, Option<&ClothFault>)>,
@@ -31,6 +31,6 @@ pub(in crate::plugin) fn prepare_wind(
         let outcome = placed.map(|placed| field.zones.push(placed));
         ClothFault::report(&mut commands, entity, fault, Part::WindZone, outcome);
     }
-    // Whatever the order of the world's tables.
+    // Independent of the order of the world's tables.
     field.zones.sort_unstable_by_key(|zone| zone.entity);
 }

@@ -1,4 +1,4 @@
-//! Where a wind blows that is not everywhere.
+//! Local winds.
 
 use bevy::{
     ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
@@ -12,23 +12,25 @@ use crate::{
     plugin::frame::{Places, Shift, unusable},
 };
 
-/// A wind in one place, as of a fan: added to that of the world. It is where its entity's `GlobalTransform` is, scaled and turned with
-/// it, and may move as it likes, in systems before `ClothSystems::Prepare`. Inside of it there is air even if the world has none.
+/// A local wind, such as that of a fan, added to the wind of the world. Its entity's `GlobalTransform` moves, scales
+/// and rotates it. It may move freely, in systems before `ClothSystems::Prepare`. Inside it there is air even if the
+/// world has none.
 ///
-/// It blows with all its strength in the middle and falls off softly towards the border, over `softness` of its size.
+/// It blows at full strength in the middle and falls off smoothly towards the border, over the fraction `softness` of
+/// its size.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothWindZone {
-    /// Where it blows.
+    /// The shape in which it blows.
     pub shape: ClothWindShape,
-    /// The air's velocity (m/s), turned with the entity and not scaled; at most 10⁶ along each axis.
+    /// Velocity of the air (m/s), rotated with the entity and not scaled; at most 10⁶ along each axis.
     pub velocity: Vec3,
-    /// The part of its size, from 0 to 1, over which it falls off towards the border.
+    /// Fraction of its size over which it falls off towards the border, from 0 to 1.
     pub softness: f32,
 }
 
-/// A shape around an entity's origin, in its own lengths.
+/// A shape around an entity's origin, in the entity's frame: the entity's scale applies to its lengths.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
@@ -41,14 +43,14 @@ pub enum ClothWindShape {
     },
     /// A box.
     Cuboid {
-        /// Half of its sides (m), positive.
+        /// Half of its side lengths (m), positive.
         half_size: Vec3,
     },
-    /// What a fan blows into: a cone from the origin along −z, which is `forward` of a `Transform`.
+    /// The jet of a fan: a cone from the origin along −z, which is `forward` of a `Transform`.
     Cone {
-        /// Its length (m), positive. It falls off along all of it.
+        /// Length (m), positive. The wind falls off along all of it.
         length: f32,
-        /// From its axis to its side (rad), positive and less than a right angle.
+        /// Angle from its axis to its side (rad), positive and less than a right angle.
         angle: f32,
     },
 }
@@ -61,7 +63,7 @@ impl Default for ClothWindShape {
 }
 
 impl Default for ClothWindZone {
-    /// A ball of 1 m, in which 5 m/s blow forward, falling off over half of it.
+    /// A ball of 1 m with a wind of 5 m/s forward, which falls off over half of it.
     fn default() -> Self {
         Self {
             shape: ClothWindShape::default(),
@@ -72,7 +74,7 @@ impl Default for ClothWindZone {
 }
 
 impl ClothWindZone {
-    /// A ball of this radius (m) with this velocity (m/s).
+    /// A wind in a ball with this radius (m), with this velocity (m/s).
     pub fn ball(radius: f32, velocity: Vec3) -> Self {
         Self {
             shape: ClothWindShape::Ball { radius },
@@ -81,7 +83,7 @@ impl ClothWindZone {
         }
     }
 
-    /// A box of these half sides (m) with this velocity (m/s).
+    /// A wind in a box with these half side lengths (m), with this velocity (m/s).
     pub fn cuboid(half_size: Vec3, velocity: Vec3) -> Self {
         Self {
             shape: ClothWindShape::Cuboid { half_size },
@@ -90,7 +92,8 @@ impl ClothWindZone {
         }
     }
 
-    /// A fan that blows forward, along −z: `speed` (m/s) at the fan, nothing at this `length` (m) and at this `angle` (rad) beside it.
+    /// A fan that blows forward, along −z: with `speed` (m/s) at the fan, falling to zero at this `length` (m) and at
+    /// this `angle` (rad) from its axis.
     pub fn fan(length: f32, angle: f32, speed: f32) -> Self {
         Self {
             shape: ClothWindShape::Cone { length, angle },
@@ -99,10 +102,10 @@ impl ClothWindZone {
         }
     }
 
-    /// Whether each value is in its range.
+    /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not.
+    /// [`ClothError::Quantity`] for the first value that is not.
     pub fn validate(&self) -> Result<(), ClothError> {
         check_velocity(self.velocity)?;
         let softness = "softness of a wind zone";
@@ -136,7 +139,7 @@ impl ClothWindZone {
 }
 
 impl ClothWindShape {
-    /// How far a place is from the middle to the border, of which 1 is; beyond 1 outside.
+    /// Relative distance of a position from the middle: 1 at the border, more outside.
     fn depth(&self, place: Vec3) -> f32 {
         match *self {
             Self::Ball { radius } => place.length() / radius,
@@ -152,7 +155,7 @@ impl ClothWindShape {
         }
     }
 
-    /// A ball around it: its middle, and its radius.
+    /// A ball around it: its centre and its radius.
     fn around(&self) -> (Vec3, f32) {
         match *self {
             Self::Ball { radius } => (Vec3::ZERO, radius),
@@ -164,7 +167,7 @@ impl ClothWindShape {
     }
 }
 
-/// A zone, where it is in the tick.
+/// A zone at its place in the tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::plugin) struct PlacedZone {
@@ -178,10 +181,10 @@ pub(in crate::plugin) struct PlacedZone {
 }
 
 impl PlacedZone {
-    /// Looks where a zone is.
+    /// Reads the place of a zone.
     ///
     /// # Errors
-    /// What is wrong with it, or with where it is.
+    /// The error of the zone, or of its transform.
     pub fn new(entity: Entity, zone: &ClothWindZone, places: &Places) -> Result<Self, ClothError> {
         zone.validate()?;
         let place = places.of(entity)?;
@@ -203,7 +206,7 @@ impl PlacedZone {
         })
     }
 
-    /// After a jump of the world's origin. If that is what is placed `now`, but for rounding, it is that.
+    /// The zone after a jump of the world's origin. If that differs from `now` by no more than rounding, it is `now`.
     pub fn shifted(self, shift: Shift, now: Option<Self>) -> Self {
         let place = self.from_world.inverse();
         let moved = shift.affine(place, now.map(|now| now.from_world.inverse()));
@@ -223,7 +226,8 @@ impl PlacedZone {
         self.centre.distance_squared(centre) <= reach * reach
     }
 
-    /// How it blows at a place of the world (m/s): all of it, less `3 s² − 2 s³` of the way s through what is soft.
+    /// Its velocity at a position in the world (m/s): the full velocity, less `3 s² − 2 s³` of it, with s the fraction
+    /// of the soft border.
     pub fn at(&self, place: Vec3) -> Vec3 {
         let depth = self
             .zone

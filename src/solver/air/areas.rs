@@ -1,4 +1,4 @@
-//! The face that a particle stands for: its normal, as long as its area.
+//! The face of a particle: its normal, as long as its area.
 
 use bevy::math::{Vec3, Vec3A};
 
@@ -88,7 +88,7 @@ pub(super) struct Triangles {
     areas: Vec<Vec3A>,
 }
 
-/// What triangles enclose.
+/// The volume that triangles enclose.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Enclosed {
     /// Volume (m³), positive as long as it is not turned inside out.

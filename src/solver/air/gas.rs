@@ -1,15 +1,17 @@
-//! Gas that is enclosed in a mesh.
+//! Gas enclosed in a mesh.
 //!
-//! Boyle's law gives its pressure over that of the outside, `p = p₀ (V₀/V − 1)`, and virtual work the force on a particle, `p A`, where
-//! A is the gradient of the volume: a third of the areas of its triangles. Air at p₀ = 10⁵ Pa in light cloth is stiff: a ball of the radius r
-//! and ρ kg/m² breathes at √(3 p₀/(ρ r)), some 900 times a second at 0.15 m and 60 g/m². So each sub-step solves for the pressure with which
-//! the volume at its end agrees. That is V* without it and V* + S p with it, S = Δt² Σ w A²: a quadratic equation, with one positive
-//! volume for any V*, of a mesh that is flat or turned inside out too.
+//! Boyle's law gives the gauge pressure, `p = p₀ (V₀/V − 1)`. Virtual work gives the force on a particle, `p A`, where
+//! A is the gradient of the volume: a third of the areas of its triangles. Air at p₀ = 10⁵ Pa in light cloth is stiff.
+//! A ball of radius r and ρ kg/m² breathes at √(3 p₀/(ρ r)): some 900 times a second at 0.15 m and 60 g/m². So each
+//! sub-step solves for the pressure that agrees with the volume at its end. That volume is V* without the pressure and
+//! V* + S p with it, where S = Δt² Σ w A². The result is a quadratic equation with one positive volume for any V*, even
+//! for a mesh that is flat or turned inside out.
 //!
-//! Springs and contact take back a part of what the gas gives, in a taut balloon all of it. They are taken to do so as they did in the
-//! sub-step before: a balloon at rest then has the pressure of its volume, not of one that is a push larger. The two together are stable:
-//! for springs that take back the share β, and any stiffness of the gas, all roots of the scheme are within the unit circle
-//! (β from 0 to 1 in 41 steps, K = S dp/dV from 10⁻² to 10⁵ in 40).
+//! Springs and contact undo a part of the gas's displacements; in a taut balloon they undo all of it. Each sub-step
+//! assumes the same part as in the one before. So a balloon at rest has the pressure of its volume, not that of a
+//! volume which is larger by one push. The combination is stable: all roots of the scheme are within the unit circle,
+//! for any stiffness of the gas and springs that undo any fraction β. This was checked for β from 0 to 1 in 41 steps,
+//! and K = S dp/dV from 10⁻² to 10⁵ in 40.
 
 use bevy::math::{DVec3, Vec3};
 
@@ -19,31 +21,32 @@ use crate::{
     solver::pentadiagonal::Trio,
 };
 
-/// How fast gas moves a face outwards at most (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
+/// Largest speed at which gas moves a face outwards (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
 pub(crate) const FILLING: f32 = 10.0;
 
-/// An amount of gas, and what it is in.
+/// An amount of gas, and the pressure around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Amount {
-    /// Volume that it has at the pressure outside (m³).
+    /// Its volume at the pressure outside (m³).
     pub volume: f64,
     /// Pressure outside (Pa).
     pub outside: f64,
 }
 
-/// What a cloth's gas is known by from sub-step to sub-step.
+/// The state of a cloth's gas from sub-step to sub-step.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gas {
-    /// The volume that would be if nothing held against the gas, and what the gas made of it in the last sub-step (m³).
+    /// The volume if nothing resisted the gas, and the volume that the gas added in the last sub-step (m³).
     expected: f64,
     push: f64,
-    /// Of the inside over the outside (Pa).
+    /// Gauge pressure (Pa).
     pub pressure: f64,
 }
 
 impl Gas {
-    /// Adds to the displacements of a sub-step what the gas adds, with this weight (s²). `seconds` is its length. Returns the impulse (N s).
+    /// Adds the displacements by gas to those of a sub-step of length `seconds`, with this weight (s²). Returns the
+    /// impulse (N s).
     pub fn press(
         &mut self,
         amount: Amount,
@@ -68,7 +71,7 @@ impl Gas {
             }
         }
         let give = give * weight;
-        // Nothing that it could move, or what is not finite and a fault.
+        // Nothing can be moved, or the particles are not finite, which is a fault.
         let known = enclosed.volume + self.expected + self.push;
         if !(give > 0.0 && (give + swept + known).is_finite()) {
             *self = Self::default();
@@ -101,8 +104,8 @@ impl Gas {
 }
 
 impl Amount {
-    /// The pressure (Pa) with which a volume that is `without` it and grows by `give` m³ for each pascal is that of the gas, but none by
-    /// which it would become wider than `widest` m³.
+    /// The pressure (Pa) of the gas in a volume that is `without` m³ and grows by `give` m³ for each pascal. It is
+    /// limited so that the volume does not exceed `widest` m³.
     fn pressure(&self, without: f64, give: f64, widest: f64) -> f64 {
         let Self { volume, outside } = *self;
         // V² − (V* − S p₀) V − S p₀ V₀ = 0.

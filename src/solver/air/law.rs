@@ -1,15 +1,16 @@
-//! What the air does to a particle: the force on the face that it stands for, and its share in each sub-step.
+//! The air's force on the face of a particle, and its share in each sub-step.
 //!
 //! # The floor
-//! A pass over eight particles asks for three roots and two divisions, which a core with AVX2 does in some 45 cycles, and for some
-//! 80 additions and multiplications, two a cycle. A sub-step adds 14 of these and six loads.
+//! A pass over eight particles needs three roots and two divisions, which take a core with AVX2 some 45 cycles. It also
+//! needs some 80 additions and multiplications, two per cycle. A sub-step adds 14 of these and six loads.
 
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
     solver::{barrier::one_block_at_a_time, pentadiagonal::Trio},
 };
 
-/// What eight particles feel until the air is looked at again: an acceleration of `push − drag (drag · v)` at the velocity v.
+/// The air's action on eight particles until its next evaluation: an acceleration of `push − drag (drag · v)` at the
+/// velocity v.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Felt {
@@ -26,25 +27,25 @@ impl Felt {
     };
 }
 
-/// What is alike for all particles.
+/// Values that are the same for all particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law {
     /// `ρ C_d` (kg/m³).
     pub drag: f32,
     /// `ρ C_l ⁄ 2` (kg/m³).
     pub lift: f32,
-    /// Of the inside over the outside (Pa).
+    /// Gauge pressure (Pa).
     pub pressure: f32,
     /// Length of a sub-step (s), and one over it (1/s).
     pub substep: f32,
     pub inverse_substep: f32,
 }
 
-/// What smaller squares are taken as: of normals of faces that have no area (m⁴).
+/// Lower bound of the squares of normals, for faces without an area (m⁴).
 const NO_AREA: f32 = f32::MIN_POSITIVE;
 
-/// What eight particles feel, of these areas (normals as long as the area, m²) in these winds (m/s), and the way of each along what
-/// drags it, for [`given`].
+/// The air's action on eight particles with these areas (normals as long as the area, m²) in these winds (m/s), and the
+/// position of each along its drag, for [`given`].
 #[inline(always)]
 fn feel(view: &View, area: &Trio, wind: &Trio, law: &Law, felt: &mut Felt, way: &mut Lanes) {
     for l in 0..LANES {
@@ -80,8 +81,8 @@ fn feel(view: &View, area: &Trio, wind: &Trio, law: &Law, felt: &mut Felt, way: 
     }
 }
 
-/// Where a particle was as its last displacement began, along what drags it: the sum of those displacements that sub-steps begin with
-/// is the difference of two.
+/// Position of a particle along its drag, at the start of its last displacement. The difference of two is the sum of
+/// the displacements at the start of sub-steps.
 #[inline(always)]
 fn way_of(view: &View, felt: &Felt, l: usize) -> f32 {
     let drag = [0, 1, 2].map(|axis| felt.drag[axis][l]);
@@ -94,7 +95,7 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// What the particles of some blocks feel.
+/// The air's action on the particles of some blocks.
 #[inline(always)]
 pub(crate) fn air_feel(
     blocks: &[Block],

@@ -1,7 +1,7 @@
 //! Air: drag and lift of a wind, and pressure.
 //!
-//! The air moves at U, a face with its normal n at v, so that what it feels is `u = U − v`: `u_n` along its normal, `u_t` along itself.
-//! The force on a face of the area A is
+//! The air moves at U, and a face with the normal n at v. So the face feels `u = U − v`: `u_n` along its normal, and
+//! `u_t` in its plane. The force on a face of the area A is
 //!
 //! ```text
 //!        U ──▶  │                F = ρ/2 A (C_d |u_n| + C_l u_t) u_n n
@@ -10,22 +10,26 @@
 //!               face             C_l: the slope of a plate's normal force at grazing angles
 //! ```
 //!
-//! A hinged sheet of `ρ_s` kg/m² leans in it by t with `sin t = ρ U² (C_d cos² t + C_l sin t cos t)/(2 ρ_s g)`, and a flat one falls
-//! at `√(2 ρ_s g/(ρ C_d))` in the end, whatever its resolution and its sub-steps (`cargo test --test truth air`).
+//! A hinged sheet of `ρ_s` kg/m² leans in the wind by the angle t with `sin t = ρ U² (C_d cos² t + C_l sin t cos t)/(2
+//! ρ_s g)`. A flat sheet falls with the terminal speed `√(2 ρ_s g/(ρ C_d))`. Neither depends on its resolution or its
+//! sub-steps (`cargo test --test truth air`).
 //!
-//! **A face** is what a particle stands for: on a grid half of the diamond of its neighbours, on a mesh a third of each of its
-//! triangles. So its force is along one normal and moves one particle, and what slows it is a number, not a matrix.
+//! **Faces.** Each particle has a face: on a grid half of the diamond of its neighbours, on a mesh a third of each of
+//! its triangles. So the force on a face acts along one normal on one particle, and its damping is a number, not a
+//! matrix.
 //!
-//! **Steps.** The faces are looked at some times a tick ([`LONGEST`]), whatever the sub-steps; in between, the force follows the
-//! particle's velocity along its slope, `a = b − κ n (n·v)` with `κ = ρ A (C_d |u_n| + C_l u_t/2)/m`, in each sub-step anew. As
-//! the slope is that of a square, what it leads to lies between the velocity that the particle had and that of the wind: no wind
-//! and no tick makes it overshoot. The velocity is that with which the sub-step begins, for by the one that it is foreseen to
-//! end with, before springs have acted, the air would hold against what springs undo: a load of wind, too, would count by
-//! 1/(1 + κ Δt) of itself. Where κ Δt is above 1 (cotton in 20 sub-steps of 1/64 s: from 130 m/s on), b and κ are divided by it,
-//! so that a particle comes to its speed in one sub-step, and the load is less than it would be.
+//! **Steps.** The faces are evaluated a few times per tick ([`LONGEST`]), whatever the sub-steps. In between, each
+//! sub-step follows the force along its slope over the particle's velocity, `a = b − κ n (n·v)` with `κ = ρ A (C_d
+//! |u_n| + C_l u_t/2)/m`. The force is quadratic, so the new velocity lies between the particle's velocity and that of
+//! the wind: no wind and no tick makes it overshoot.
 //!
-//! **Cost** (64², 20 sub-steps, one thread): 4 % of a tick where the wind is the same everywhere, 6 % where it is not
-//! (`cargo bench --profile dev --bench solver -- air`).
+//! The velocity is that at the start of the sub-step. With the predicted velocity at its end, before springs have
+//! acted, the air would resist motion that springs undo, and a wind load would count by only 1/(1 + κ Δt). Where κ Δt
+//! is above 1 (cotton in 20 sub-steps of 1/64 s: from 130 m/s on), b and κ are divided by it. A particle then reaches
+//! its final speed in one sub-step, and the load is smaller than it should be.
+//!
+//! **Cost** (64², 20 sub-steps, one thread): 4 % of a tick in a uniform wind, 6 % in any other (`cargo bench --profile
+//! dev --bench solver -- air`).
 
 mod areas;
 mod gas;
@@ -51,8 +55,9 @@ pub(crate) use self::{
 use super::{kernel::Kernels, pentadiagonal::Trio};
 use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, Surface};
 
-/// The faces are looked at again after this time (s) at the latest: twice in a tick of 1/64 s. A flag of 1.4 × 0.9 m in 8 m/s waves 4.7 times a
-/// second so (80 sub-steps, 200 s), 5.0 with four looks and 5.15 with 80; four cost 13 % of a tick instead of 4 (64²).
+/// The faces are evaluated again after this time (s) at the latest: twice in a tick of 1/64 s. A flag of 1.4 × 0.9 m in
+/// 8 m/s then waves 4.7 times a second (80 sub-steps, 200 s). It waves 5.0 times with four evaluations, and 5.15 times
+/// with 80; four cost 13 % of a tick instead of 4 (64²).
 const LONGEST: f32 = 0.01;
 
 /// The air around a cloth, in the cloth's frame.
@@ -60,18 +65,18 @@ const LONGEST: f32 = 0.01;
 pub struct Air {
     /// Density (kg/m³).
     pub density: f32,
-    /// `C_d`: the coefficient of drag of a face that the wind meets broadside.
+    /// `C_d`: the drag coefficient of a face broadside to the wind.
     pub drag: f32,
-    /// `C_l`: the slope of the coefficient of a face's normal force over the sine of a small angle to the wind.
+    /// `C_l`: the slope of a face's normal force coefficient over the sine of a small angle to the wind.
     pub lift: f32,
     /// Velocity of the air (m/s).
     pub wind: Vec3,
-    /// What is inside of a closed mesh.
+    /// The air inside a closed mesh.
     pub pressure: Option<ClothPressure>,
 }
 
 impl Air {
-    /// Of no density: what is left is pressure.
+    /// Air of zero density: only pressure is left.
     pub const NONE: Self = Self {
         density: 0.0,
         drag: 0.0,
@@ -81,7 +86,7 @@ impl Air {
     };
 }
 
-/// What the air does to the particles of a surface.
+/// The effect of the air on the particles of a surface.
 #[derive(Debug, Clone)]
 pub(super) struct Airflow {
     air: Air,
@@ -103,15 +108,15 @@ pub(super) struct Airflow {
     wind_stride: u32,
     since: u32,
     substep: f32,
-    /// What the air gave the cloth in the tick (N s).
+    /// Impulse that the air gave the cloth in the tick (N s).
     impulse: DVec3,
-    /// What the next tick goes on from.
+    /// Memory for the next tick.
     memory: AirMemory,
     /// As the faces were looked at.
     enclosed: Enclosed,
 }
 
-/// What an airflow goes on from in the next tick.
+/// Memory of an airflow for the next tick.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct AirMemory {
@@ -145,20 +150,20 @@ impl Airflow {
         }
     }
 
-    /// The same wind everywhere from now on.
+    /// Sets a uniform wind.
     pub fn set(&mut self, air: Air) {
         self.air = air;
         self.is_local = false;
     }
 
-    /// A wind that is asked for at some places from now on (m, m/s).
+    /// Sets a wind that depends on the position (m, m/s), and is evaluated at some positions.
     pub fn set_local_wind(&mut self, particles: &ClothParticles, at: impl FnMut(Vec3) -> Vec3) {
         let is_grid = self.triangles.is_none();
         self.local.sample(particles, is_grid, at);
         self.is_local = true;
     }
 
-    /// What the air gave the cloth in the last tick (N s).
+    /// Impulse that the air gave the cloth in the last tick (N s).
     pub fn impulse(&self) -> Vec3 {
         self.impulse.as_vec3()
     }
@@ -171,8 +176,8 @@ impl Airflow {
         self.memory = memory;
     }
 
-    /// The volume (m³) that a mesh under pressure encloses, as faces were looked at last, and the pressure in it over that of the outside
-    /// (Pa).
+    /// The volume (m³) that a mesh under pressure encloses, as of the last evaluation of the faces, and its gauge
+    /// pressure (Pa).
     pub fn enclosed(&self) -> (f32, f32) {
         let pressure = match self.air.pressure {
             None => return (0.0, 0.0),
@@ -182,7 +187,7 @@ impl Airflow {
         (self.enclosed.volume.abs() as f32, pressure)
     }
 
-    /// After the displacements of a sub-step are foreseen, with this weight (s²): adds what gas adds.
+    /// Adds the displacements by gas to the predicted displacements of a sub-step, with this weight (s²).
     pub fn press(&mut self, blocks: &mut [Block], weight: f32) {
         let Some(ClothPressure::Gas { volume, outside }) = self.air.pressure else {
             return;
@@ -198,7 +203,7 @@ impl Airflow {
 
     /// Begins a tick of `seconds` in this many sub-steps.
     pub fn begin(&mut self, seconds: f32, substeps: u32) {
-        // What is full of air is as wide as its pressure, its springs and their stretch let it be, in each sub-step.
+        // The size of an inflated cloth follows from its pressure and its springs in each sub-step.
         let looks = ((seconds / LONGEST).ceil() as u32).clamp(1, substeps);
         self.wind_stride = substeps.div_ceil(looks);
         self.stride = match self.air.pressure {
@@ -210,7 +215,7 @@ impl Airflow {
         self.impulse = DVec3::ZERO;
     }
 
-    /// Before a sub-step: looks at the faces if it is time.
+    /// Before a sub-step: evaluates the faces if it is time.
     pub fn before_substep(&mut self, index: u32, particles: &ClothParticles, kernels: &Kernels) {
         if index.is_multiple_of(self.stride) {
             self.settle(particles, kernels);
@@ -219,7 +224,7 @@ impl Airflow {
         self.since += 1;
     }
 
-    /// Adds what the air gave since it looked last.
+    /// Adds the impulse of the air since the last evaluation.
     pub fn settle(&mut self, particles: &ClothParticles, kernels: &Kernels) {
         if self.since == 0 {
             return;
@@ -238,12 +243,12 @@ impl Airflow {
         self.since = 0;
     }
 
-    /// What each particle of a row feels.
+    /// The air's action on each particle of a row.
     pub fn felt(&self) -> &[Felt] {
         &self.felt
     }
 
-    /// Of a mesh, a wind that is not the same everywhere is known from the last look unless it is `asked`.
+    /// On a mesh, a wind that depends on the position is kept from the last evaluation unless `wind_is_asked`.
     fn look(&mut self, particles: &ClothParticles, kernels: &Kernels, wind_is_asked: bool) {
         let Air {
             density,

@@ -1,4 +1,4 @@
-//! What is inside of a closed cloth.
+//! The pressure inside a closed cloth.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -10,24 +10,25 @@ use crate::cloth::{ClothError, Surface};
 /// Mean pressure of the air at sea level (Pa), of the International Standard Atmosphere (ISO 2533).
 const ATMOSPHERE: f32 = 101_325.0;
 
-/// What presses a closed cloth from within: a balloon, a cushion, an air bed. The cloth has to be a mesh without holes, of one or
-/// several pieces; a hole is a `ClothFault`. Whichever side its faces are turned to, the pressure is that of the inside.
+/// Pressure inside a closed cloth: a balloon, a cushion, an air bed. The cloth has to be a mesh without holes, of one
+/// or several pieces; a hole is a `ClothFault`. Faces may be oriented to either side: the pressure always acts from the
+/// inside.
 ///
-/// May change at any time; nothing is built again.
+/// It may change at any time; nothing is built again.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothPressure {
-    /// That of the inside over that of the outside (Pa), as of what a fan or a pump holds; negative where it is sucked empty. From −10⁹
-    /// to 10⁹.
+    /// A constant gauge pressure: the inside less the outside (Pa), as a fan or a pump maintains it. Negative for
+    /// suction. From −10⁹ to 10⁹.
     Gauge(f32),
-    /// An amount of gas, which no more comes into and none leaves: as much as fills `volume` (m³, up to 10⁹) at the pressure `outside` of
-    /// what surrounds the cloth (Pa, up to 10⁹). Where the cloth encloses V, its pressure over that is outside · (volume/V − 1), Boyle's law.
-    /// A mesh that is too small for its gas is taut, one that is larger is slack, and a body that sits down on it is carried. However flat
-    /// it is pressed, faces are blown out by no more than 10 m/s.
+    /// A fixed amount of gas: as much as fills `volume` (m³, up to 10⁹) at the pressure `outside` the cloth (Pa, up to
+    /// 10⁹). A cloth that encloses V has the gauge pressure outside · (volume/V − 1), by Boyle's law. A mesh that is
+    /// too small for its gas is taut, and a larger mesh is slack. Gas carries a body that sits down on it. However flat
+    /// the mesh is pressed, its faces are blown out with at most 10 m/s.
     Gas {
-        /// Volume at the pressure outside (m³).
+        /// Volume of the gas at the pressure outside (m³).
         volume: f32,
         /// Pressure outside (Pa).
         outside: f32,
@@ -35,14 +36,14 @@ pub enum ClothPressure {
 }
 
 impl Default for ClothPressure {
-    /// None: as much inside as outside.
+    /// No gauge pressure: the same inside as outside.
     fn default() -> Self {
         Self::Gauge(0.0)
     }
 }
 
 impl ClothPressure {
-    /// Gas that fills `volume` (m³) in the open, at the sea.
+    /// Gas that fills `volume` (m³) in the open at sea level.
     pub const fn gas(volume: f32) -> Self {
         Self::Gas {
             volume,
@@ -50,7 +51,7 @@ impl ClothPressure {
         }
     }
 
-    /// Whether each value is in its range, and `surface` encloses a volume.
+    /// Checks that each value is in its range, and that `surface` encloses a volume.
     ///
     /// # Errors
     /// [`ClothError::Quantity`], and [`ClothError::NotClosed`].

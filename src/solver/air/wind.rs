@@ -1,4 +1,4 @@
-//! A wind that is not the same everywhere, known at some places and interpolated between them.
+//! A wind that depends on the position, known at some positions and interpolated between them.
 
 use bevy::math::Vec3;
 

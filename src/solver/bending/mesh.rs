@@ -1,8 +1,8 @@
-//! The bending of a mesh, by what the faces beside a face say of its curvature.
+//! The bending of a mesh, from the curvature of its faces.
 //!
-//! Across an edge, what the two faces' slopes differ by is linear in the four positions, and of a quadratic surface it is linear
-//! in the curvature. Three edges give all three numbers of a face's curvature, exactly on any triangles, so that the energy
-//! `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` does not see how the mesh is made:
+//! Across an edge, the difference of the two faces' slopes is linear in the four positions; on a quadratic surface it
+//! is linear in the curvature. Three edges give all three numbers of a face's curvature, exactly on any triangles. So
+//! the energy `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` does not depend on the triangulation:
 //!
 //! ```text
 //!  ――― o ―――      a face and the three beside it: six particles;
@@ -26,15 +26,15 @@ use crate::cloth::{Block, DX, DY, DZ, Layout, Surface, W, X, Y, Z};
 
 /// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
 const TOLERANCE: f32 = 1.0e-4;
-/// Iterations at most: what is left after them is stiff and small, and the next sub-step goes on with it.
+/// Largest number of iterations: the rest is stiff and small, and the next sub-step continues with it.
 const MAX_ITERATIONS: usize = 40;
-/// A particle during a solve. What its neighbours read of it lies apart, close together.
+/// A particle during a solve. The data that its neighbours read lies apart, close together.
 #[derive(Debug, Default, Clone, Copy)]
 struct Row {
-    /// What is to be added to `moved`, and what is left of the right side.
+    /// The solution to add to `moved`, and the residual.
     added: Vec4,
     left: Vec4,
-    /// What the matrix makes of the conjugate direction.
+    /// The matrix times the conjugate direction.
     image: Vec4,
     /// kg, or 0 of a pinned particle.
     mass: f32,

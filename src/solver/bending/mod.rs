@@ -1,10 +1,10 @@
 //! Resistance to bending: that of a plate of the material's flexural rigidity.
 //!
-//! Between its prediction and the sweep over the springs, each sub-step moves the particles from where they would be, p, to the y
-//! that solves `(M + s K) y = M p`: implicit Euler for bending alone, with s = Δt² and K the matrix of the bending energy. That
-//! energy is quadratic in the positions as long as the cloth does not stretch (Bergou et al. 2006), so K is constant, the same for
-//! x, y and z, and stable at any rigidity and sub-step. A grid that is soft enough for its sub-steps is pushed by `−s K p` instead,
-//! which is as good there and costs a fraction.
+//! Between its prediction and the sweep over the springs, each sub-step moves the particles from their predicted
+//! positions p to the solution y of `(M + s K) y = M p`. This is implicit Euler for bending alone, with s = Δt² and K
+//! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
+//! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A grid
+//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction.
 
 mod factor;
 mod grid;
@@ -33,7 +33,7 @@ enum Kind {
 }
 
 impl Bending {
-    /// That of a surface; `None` if its material bends freely.
+    /// The resistance of a surface; `None` if its material bends freely.
     pub fn new(surface: &Surface, material: &ClothMaterial) -> Option<Self> {
         let rigidity = material.bend_rigidity;
         if rigidity <= 0.0 || surface.is_empty() {
@@ -46,7 +46,7 @@ impl Bending {
         Some(Self { of })
     }
 
-    /// Takes over the masses and the weight s (s²) of the forces, if they are others than before: Δt² for implicit Euler.
+    /// Takes over the masses and the weight s (s²) of the forces if they have changed: Δt² for implicit Euler.
     pub(super) fn prepare(&mut self, blocks: &[Block], weight: f32) {
         match &mut self.of {
             Kind::Grid(grid) => grid.prepare(blocks, weight),
@@ -54,7 +54,7 @@ impl Bending {
         }
     }
 
-    /// Changes displacements so that position + displacement is bent as it was, less what its bending moments undo.
+    /// Changes displacements by the implicit effect of the bending moments.
     pub(super) fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         match &mut self.of {
             Kind::Grid(grid) => grid.solve(blocks, kernels),
@@ -70,7 +70,7 @@ impl Bending {
         }
     }
 
-    /// Adds to displacements what the forces at the positions, not beyond them, make with this weight (s²).
+    /// Adds the displacements by the forces at the current positions, with this weight (s²).
     pub(super) fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
         if let Kind::Grid(grid) = &mut self.of {
             grid.push(blocks, weight, kernels);

@@ -1,13 +1,14 @@
-//! What the faces beside a face say of its curvature.
+//! The curvature of a face, from the faces beside it.
 
 use bevy::math::{DMat3, DVec2, DVec3, Vec3};
 
-/// Edges that say the same of a face's curvature, to this part, don't make it infinite.
+/// Regularisation, as a fraction: edges with nearly the same information about a face's curvature don't make it
+/// infinite.
 const REGULAR: f64 = 1.0e-3;
 /// Rest curvatures below this, times the size of a face, are none.
 const FLAT: f64 = 1.0e-4;
 
-/// What a face that is curved at rest does.
+/// The forces of a face that is curved at rest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RestFace {
     /// Its corners first.
@@ -49,9 +50,9 @@ pub(super) fn faces_beside(faces: &[[u32; 3]]) -> Vec<[Option<u32>; 3]> {
 
 /// A face and those beside it.
 pub(super) struct Patch {
-    /// Its corners, and what is beyond its edges; where there is nothing, a corner once more, with zeros.
+    /// Its corners, and the corners beyond its edges; where there is none, a corner again, with zeros.
     pub particles: [u32; 6],
-    /// What each particle's position makes of `κ_xx`, `κ_yy` and `√2 κ_xy` (1/m²).
+    /// Contribution of each particle's position to `κ_xx`, `κ_yy` and `√2 κ_xy` (1/m²).
     pub curvature: [[f64; 6]; 3],
     /// m².
     pub area: f64,
@@ -141,7 +142,7 @@ impl Patch {
         })
     }
 
-    /// What it does if it is curved at rest.
+    /// Its forces if it is curved at rest.
     pub fn rest(&self, stiffness: f64, places: &[DVec3]) -> Option<RestFace> {
         let at = self.particles.map(|particle| places[particle as usize]);
         let bent = self.curvature.map(|of| -> DVec3 {

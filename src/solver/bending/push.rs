@@ -1,8 +1,9 @@
 //! The bending forces of a grid that is soft enough to be pushed by them.
 //!
-//! The solution of `(M + s K) (p + e) = M p` is the series `e = −A p + A² p − …` with `A = s M⁻¹ K`. Where A is small its first
-//! term is enough: what it leaves out is, of each ripple, a part of e that is not larger than A's eigenvalue for it, which falls
-//! with the fourth power of its length. It takes energy away as the solution does, and is stable as long as A is below one.
+//! The solution of `(M + s K) (p + e) = M p` is the series `e = −A p + A² p − …` with `A = s M⁻¹ K`. Where A is small
+//! its first term is enough. For each ripple, the rest is at most the fraction of e that is A's eigenvalue for it,
+//! which falls with the fourth power of the ripple's length. Like the solution, the first term takes energy away, and
+//! it is stable as long as A is below one.
 
 use super::plate::Plate;
 use crate::{
@@ -14,7 +15,8 @@ use crate::{
     },
 };
 
-/// Where A is below this, forces push: what bends fastest, a ripple from particle to particle, gets at most a fifth too much.
+/// Forces push where A is below this: the fastest bending mode, a ripple from particle to particle, gets at most a
+/// fifth too much.
 pub(super) const LIMIT: f32 = 0.2;
 
 /// Rows of each end that differ from those further inside.
@@ -27,7 +29,7 @@ pub(super) struct Push {
     strip: usize,
     /// Of the first row and the last, and of those between.
     stiffness: [Vec<Stiffness>; 2],
-    /// What bounds a row's sum of K (N/m), of the first or last row, the second from there, and others.
+    /// Bounds of a row's sum of K (N/m): of the first or last row, the second from there, and others.
     bounds: [Vec<Lanes>; ENDS],
     places: [Vec<Trio>; 3],
     moments: [Vec<Moments>; 3],
@@ -115,7 +117,7 @@ impl Push {
     }
 }
 
-/// What K's row of a particle sums up to at most, each number taken as positive (N/m).
+/// Upper bound of the sum of absolute values in a particle's row of K (N/m).
 fn bound(plate: &Plate, row: u32, column: u32) -> f32 {
     let of = |k: &dyn Fn(u32, u32) -> f32, down: i64, right: i64| {
         let row = u32::try_from(i64::from(row) + down);

@@ -1,10 +1,11 @@
 //! The bending of a stiff grid: its cells and threads solved, one family after the other.
 //!
-//! A thread's matrix is constant and pentadiagonal, that of the cells between two columns constant and tridiagonal; factored once
-//! into L D Lᵀ they are solved exactly, eight at a time. The families are solved one after the other, which is as exact as the
-//! sub-step is small beside the period of a bend; each by itself takes energy away, however stiff it is. Where only one of them
-//! resists, as in a strip that bends along its rows, nothing is lost by that. Else it leaves a plate too soft: one that is held
-//! at three corners sags by 5 % more where A, [`Push`](super::push)'s, is 10, and by 27 % where it is 100.
+//! The matrix of a thread is constant and pentadiagonal; that of the cells between two columns is constant and
+//! tridiagonal. Factored once into L D Lᵀ, they are solved exactly, eight at a time. The families are solved one after
+//! the other, which is exact if the sub-step is small beside the period of a bend. Each of them takes energy away,
+//! however stiff it is. Where only one of them resists, as in a strip that bends along its rows, nothing is lost.
+//! Otherwise a plate becomes too soft: held at three corners, it sags by 5 % more where A, [`Push`](super::push)'s, is
+//! 10, and by 27 % where it is 100.
 
 use super::{
     factor::{factor_strip, factor_thread, set},
@@ -37,7 +38,7 @@ struct Family {
     stiffness: Vec<Lanes>,
 }
 
-/// What masses and a weight make of all families.
+/// Factors of all families for some masses and a weight.
 #[derive(Debug, Clone, Default)]
 struct Factors {
     weight: f32,
@@ -70,7 +71,7 @@ pub(super) struct ThreadBending {
     none: (Vec<Trio>, Vec<Factor>),
 }
 
-/// Weights that take turns: a method that starts otherwise than it goes on has three.
+/// Weights that take turns: a method with a different start has three.
 const WEIGHTS: usize = 3;
 
 const NOTHING: [Lanes; 3] = [[0.0; LANES]; 3];

@@ -1,30 +1,32 @@
-//! Soft springs, explicitly: the paper's own way, forces and Verlet.
+//! Soft springs, explicitly: by forces and Verlet, as in the paper.
 //!
-//! Where a sub-step is short beside the fastest swing of a cloth, nothing has to be solved: the springs' forces say how each
-//! particle is accelerated, and velocity Verlet moves it,
+//! If a sub-step is short beside the fastest oscillation of a cloth, nothing has to be solved. The forces of the
+//! springs accelerate each particle, and velocity Verlet moves it:
 //!
 //! ```text
 //!   v += a Δt/2,   x += v Δt,   v += a Δt/2         a = g + w Σ k (1 − L/ℓ) (x_j − x_i)
 //! ```
 //!
-//! which is of second order, keeps momentum to the last bits, and energy for ever but for a ripple: it is symplectic. What ends a
-//! sub-step and what begins the next are one kick; only the first and the last of a tick are halves, so that a tick ends with
-//! positions and velocities of the same instant.
+//! This is of second order. It is symplectic, so it keeps momentum to the last bits, and energy for ever but for a
+//! ripple. The end of one sub-step and the beginning of the next are a single kick. Only the first and the last kick of
+//! a tick are halves, so that a tick ends with positions and velocities of the same instant.
 //!
 //! # The limit
-//! It is stable as long as ω Δt < 2 for all that swings. However a cloth is folded or stretched, a spring's tangent stiffness is at
-//! most k in any direction, and of the two particles that it moves each takes at most the double: so no ω² is more than
-//! `2 max_i w_i Σ_j k_ij`. That is twice what a flat lattice has; it holds for a crumpled one, where springs lie side by side.
+//! It is stable as long as ω Δt < 2 for all modes. However a cloth is folded or stretched, a spring's tangent stiffness
+//! is at most k in any direction. Each of its two particles takes at most the double, so no ω² is more than `2 max_i
+//! w_i Σ_j k_ij`. That is twice the value of a flat lattice; it holds for a crumpled one, where springs lie side by
+//! side.
 //!
-//! Nor may a cloth be too far from the origin of its frame. Positions are rounded, in each step by u = 2⁻²³ r ⁄ √12 in the mean at r m
-//! from there, and forces that are of positions alone take each rounding for a stretch: 4 springs a particle gain ½ k u² twice in a
-//! step, `ω² m u²/(4 Δt)` a second. More than 2 % of what the weight does over a spacing h is not allowed: u² < 0.08 g h Δt/ω². That is
-//! 6 m for 64² of 1 mm/N, 2 m wide. (Threads see displacements as well, and may be 150 times as far away.)
+//! A cloth must not be too far from the origin of its frame either. At a distance of r m, each step rounds positions by
+//! u = 2⁻²³ r ⁄ √12 in the mean, and forces from positions alone take each rounding for a stretch. With 4 springs per
+//! particle, these gain ½ k u² twice in a step, which is `ω² m u²/(4 Δt)` a second. It is limited to 2 % of the work of
+//! the weight over a spacing h: u² < 0.08 g h Δt/ω². That is 6 m for 64² of 1 mm/N, 2 m wide. (Threads use
+//! displacements as well, and may be 150 times as far away.)
 //!
-//! # What it costs
-//! 9 µs a sub-step of 64² (16,000 springs), where solving threads takes 24. So where it needs no more than twice the sub-steps, it is
-//! as cheap, and far more exact: a 64² of 1 mm/N that falls, hung by its upper row, is 0.01 mm off after half a second with 92
-//! sub-steps in 1/60 s, threads 0.05 mm with 80.
+//! # Cost
+//! 9 µs for a sub-step of 64² (16,000 springs), where solving threads takes 24. So if it needs at most twice the
+//! sub-steps, it is as cheap, and far more exact. An example is a 64² of 1 mm/N that falls, hung by its upper row.
+//! After half a second it is off by 0.01 mm with 92 sub-steps in 1/60 s; threads with 80 are off by 0.05 mm.
 
 mod pass;
 #[cfg(test)]
@@ -46,13 +48,13 @@ use crate::cloth::{Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, 
 /// Of the largest stable sub-step. The rest is for bending, which pushes with them.
 const MARGIN: f32 = 0.95;
 
-/// What a number is rounded by in the mean, as a part of it: 2⁻²³ ⁄ √12.
+/// Mean rounding of a number, as a fraction of it: 2⁻²³ ⁄ √12.
 const ROUNDING: f32 = f32::EPSILON * 0.288_675;
 
-/// Four times the part of what weight does over a spacing that rounding may add in a second.
+/// Four times the fraction of the work of the weight over a spacing that rounding may add in a second.
 const NOISE: f32 = 0.08;
 
-/// m/s², whatever pulls at a cloth.
+/// Gravity of this estimate (m/s²), whatever the cloth's own.
 const GRAVITY: f32 = 9.81;
 
 /// Fewer rows a band than this, and waiting for the others would take longer than the work.

@@ -1,11 +1,11 @@
 //! The forces of a grid's springs, and the motion that they give: one pass down the rows.
 //!
-//! A row's forces are known when those to the row below it are, and nothing needs its old positions any more then: it moves on
-//! while it is in the first cache.
+//! A row's forces are complete once the springs to the row below are done. Then nothing needs its old positions any
+//! more, and it moves while it is in the first cache.
 //!
 //! # The floor
-//! A spring asks for one division and no root, and for some 26 additions and multiplications, of which a core with AVX2 starts two
-//! of eight lanes a cycle: 13 cycles for eight springs, 0.55 ns a spring at 3 GHz.
+//! A spring needs one division, no root, and some 26 additions and multiplications. A core with AVX2 starts two of
+//! these per cycle, each on eight lanes: 13 cycles for eight springs, 0.55 ns per spring at 3 GHz.
 
 use crate::{
     cloth::{Block, ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
@@ -86,7 +86,7 @@ impl ElasticGrid {
     }
 }
 
-/// What forces and velocities count for in a sub-step.
+/// Weights of forces and velocities in a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kick {
     /// The part of its displacement that a particle keeps.
@@ -112,7 +112,7 @@ fn force(a: &View, b: &View, stiffness: f32, inverse_rest_square: f32, l: usize)
     [share * x, share * y, share * z]
 }
 
-/// What is known of the block before: the forces on the own block, and on the one below that.
+/// Results of the block before: the forces on the own block, and on the block below it.
 type Carried = [Force; 2];
 
 /// The particles that the springs of a block lead to.
@@ -156,7 +156,7 @@ fn act(
     carries
 }
 
-/// Adds what acts on the lanes to the right of those that it is known of.
+/// Adds forces, shifted one lane to the right.
 #[inline(always)]
 fn add_shifted(to: &mut Force, force: &Force) {
     for (to, [a, b, c, d, e, f, g, _]) in to.iter_mut().zip(force) {
@@ -260,8 +260,8 @@ fn push(row: &mut [Block], forces: &[Force], kick: &Kick) {
     }
 }
 
-/// Has the springs' forces, and a pull on all, act on the particles of some rows, and moves them. `around` are the rows before
-/// and behind them, of no blocks at the ends of the grid. Raises `moved` to the squares of displacements (m²).
+/// Applies the springs' forces, and a pull on all, to the particles of some rows, and moves them. `around` are the rows
+/// before and behind them, of no blocks at the ends of the grid. Raises `moved` to the squares of displacements (m²).
 #[inline(always)]
 pub(crate) fn kick(
     blocks: &mut [Block],

@@ -1,4 +1,4 @@
-//! How a disc of cloth drapes over a smaller one, as textile laboratories measure it.
+//! The drape of a disc of cloth over a smaller disc, as textile laboratories measure it.
 
 use bevy::math::{Vec2, Vec3};
 
@@ -14,21 +14,22 @@ const DISC: f32 = 0.09;
 /// A drape test (Cusick 1965): a disc of cloth, 30 cm wide, is held flat on one of 18 cm and hangs over its edge.
 #[derive(Debug, Clone, Copy)]
 pub struct Drape {
-    /// Of the mesh (m).
+    /// Spacing of the mesh (m).
     pub spacing: f32,
-    /// How far the mesh is turned about the vertical (°).
+    /// Rotation of the mesh about the vertical (°).
     pub degrees: f32,
-    /// In 1/60 s.
+    /// Sub-steps in 1/60 s.
     pub substeps: u32,
-    /// Time that it has to come to rest (s).
+    /// Time to come to rest (s).
     pub seconds: f32,
 }
 
 impl Drape {
-    /// The drape coefficient: the part of the ring that overhangs which its shadow still covers, from 0 to 1.
+    /// The drape coefficient: the fraction of the overhanging ring that the shadow of the draped cloth covers, from 0
+    /// to 1.
     ///
     /// # Errors
-    /// A material or a spacing that no disc can be made of.
+    /// [`ClothError`] for a material or a spacing from which no disc can be made.
     pub fn coefficient(&self, material: &ClothMaterial) -> Result<f32, ClothError> {
         let material = &ClothMaterial {
             damping: 0.03,
@@ -40,7 +41,7 @@ impl Drape {
             if rest.length() < DISC + 1.0e-4 {
                 particles.set_inverse_mass(index, 0.0)?;
             } else {
-                // What is perfectly flat would not know where to fold.
+                // A perfectly flat disc would not fold.
                 let angle = rest.z.atan2(rest.x);
                 let wave = (5.0 * angle).sin() + 0.5 * (3.0 * angle + 1.0).sin();
                 let height = 0.02 * wave * (rest.length() - DISC);

@@ -1,4 +1,4 @@
-//! Meshes that no grid is, for tests and benchmarks.
+//! Meshes for tests and benchmarks.
 
 use bevy::{
     math::{Vec2, Vec3},
@@ -7,8 +7,9 @@ use bevy::{
 
 use crate::cloth::TriangleMesh;
 
-/// An irregular mesh of a rectangle, `width` × `height` m, from (0, 0, 0) to (width, −height, 0): points about `spacing` m
-/// apart, each moved from its place in a grid by up to `jitter` spacings, joined as Delaunay would (1934).
+/// An irregular mesh of a rectangle, `width` × `height` m, from (0, 0, 0) to (width, −height, 0). Its points are about
+/// `spacing` m apart, each moved from its place in a grid by up to `jitter` spacings, with a Delaunay triangulation
+/// (1934).
 pub fn irregular(width: f32, height: f32, spacing: f32, jitter: f32) -> TriangleMesh {
     let [columns, rows] = [width, height].map(|side| (side / spacing).round().max(1.0) as u32);
     let mut random = Random(1);

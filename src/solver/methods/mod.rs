@@ -1,9 +1,8 @@
-//! The methods that the library's own solver is compared with: small, plain
-//! implementations that step the same springs under the same damping.
+//! Methods for comparison with the library's own solver: small, plain implementations that step the same springs under
+//! the same damping.
 //!
-//! They are yardsticks for benchmarks and experiments, not a second solver:
-//! no collisions, no threads, no culling. Every method is generic over the
-//! precision, so that a converged `f64` run can serve as the reference.
+//! They are references for benchmarks and experiments, not a second solver: no collisions, no threads, no culling.
+//! Every method is generic over the precision, so that a converged `f64` run can serve as the reference.
 
 mod drape;
 mod error;

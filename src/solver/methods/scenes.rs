@@ -1,4 +1,4 @@
-//! The cloths that solvers are compared on, ready to be stepped.
+//! The cloths on which solvers are compared, ready to be stepped.
 
 use bevy::math::Vec3;
 
@@ -11,16 +11,16 @@ use crate::{
 /// Standard gravity (m/s²), along −y.
 pub const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
-/// A cloth, where it begins, and what moves it.
+/// A cloth, its initial state, and the forces on it.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// The grid of its particles.
     pub grid: ClothGrid,
-    /// What it is made of.
+    /// Its material.
     pub material: ClothMaterial,
     /// The surface of the grid.
     pub surface: Surface,
-    /// Where they begin; some pinned.
+    /// Its particles at the start; some are pinned.
     pub particles: ClothParticles,
     /// The springs between them.
     pub springs: Springs,
@@ -31,11 +31,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A square cloth of `side`² particles, `width` m wide: horizontal, hung by two corners of one edge, with rigid
-    /// structural and shear springs and no bending, losing 1 % of its velocity a second, at 60 ticks a second.
+    /// A square cloth of `side`² particles, `width` m wide: horizontal, and hung by two corners of one edge. It has
+    /// rigid structural and shear springs and no bending, loses 1 % of its velocity a second, and runs at 60 ticks a
+    /// second.
     ///
     /// # Errors
-    /// A cloth that can't be built.
+    /// [`ClothError`] if the cloth can't be built.
     pub fn hung_by_corners(side: u32, width: f32) -> Result<Self, ClothError> {
         let material = ClothMaterial {
             areal_density: 0.15,
@@ -53,12 +54,12 @@ impl Scene {
         Ok(scene)
     }
 
-    /// A square cloth of `side`² particles, `width` m wide: hung by its top row and released `angle` rad from the
-    /// vertical, with structural and shear springs of `compliance` (m/N) and no bending, undamped, at 60 ticks a
-    /// second.
+    /// A square cloth of `side`² particles, `width` m wide: hung by its top row, and released `angle` rad from the
+    /// vertical. It has structural and shear springs of `compliance` (m/N) and no bending, is undamped, and runs at 60
+    /// ticks a second.
     ///
     /// # Errors
-    /// A cloth that can't be built.
+    /// [`ClothError`] if the cloth can't be built.
     pub fn swinging(
         side: u32,
         width: f32,
@@ -144,7 +145,7 @@ impl Scene {
     /// The same network for another method, its springs in the order in which the library's solver sweeps them.
     ///
     /// # Errors
-    /// What [`MassSpring::new`] says.
+    /// The errors of [`MassSpring::new`].
     pub fn network<R: Real>(&self) -> Result<MassSpring<R>, MethodError> {
         let positions: Vec<Vec3> = self.particles.positions().collect();
         let inverse_masses: Vec<f32> = self.particles.inverse_masses().collect();

@@ -1,4 +1,4 @@
-//! Ticks in which soft springs push by their forces: when, and how many sub-steps they take.
+//! Ticks in which soft springs act by explicit forces: their conditions, and their sub-steps.
 
 use super::Solver;
 use crate::{
@@ -6,18 +6,18 @@ use crate::{
     solver::{Substepping, TickStep, TimeOrder, substepping::MAX_SUBSTEPS},
 };
 
-/// So many sub-steps of forces take no longer than one in which threads are solved.
+/// Number of sub-steps of forces that cost as much as one in which threads are solved.
 const CHEAPER: u32 = 2;
 
-/// What a quotient may be off by.
+/// Possible rounding of a quotient.
 const ROUNDING: f32 = 1.0 + 1.0e-6;
 
-/// Damped more than that, particles hardly keep any displacement for what bends to be added to.
+/// With more damping, particles hardly keep any displacement to which bending could add.
 const MAX_DAMPING: f32 = 0.5;
 
 impl Solver {
-    /// The longest sub-step (s) in which the springs push by their forces, in a motion of second order; 0 where they never do: on a
-    /// mesh, with tethers, with damping along springs, and where one of them is rigid.
+    /// The longest sub-step (s) in which the springs act by explicit forces, in a motion of second order. 0 if they
+    /// never do: on a mesh, with tethers, with damping along springs, or if a spring is rigid.
     pub fn longest_explicit_substep(&self, particles: &ClothParticles) -> f32 {
         let blocks = particles.blocks();
         match &self.forces {
@@ -30,13 +30,14 @@ impl Solver {
         }
     }
 
-    /// Whether a sub-step of `dt` (s) may be short enough for forces, which most cloths deny with their first rows.
+    /// Whether a sub-step of `dt` (s) may be short enough for forces; for most cloths the first rows show that it is
+    /// not.
     fn may_be_explicit(&self, particles: &ClothParticles, dt: f32) -> bool {
         let forces = self.forces.as_ref();
         forces.is_some_and(|forces| forces.is_short(particles.blocks(), dt))
     }
 
-    /// Whether the springs of the coming tick push by their forces.
+    /// Whether the springs of the coming tick act by explicit forces.
     pub(in crate::solver) fn is_explicit(
         &self,
         particles: &ClothParticles,
@@ -44,15 +45,16 @@ impl Solver {
     ) -> bool {
         let dt = step.seconds / step.substeps.max(1) as f32;
         step.order == TimeOrder::Second
-            // Forces know nothing of what particles carry.
+            // Forces do not include the bodies that particles carry.
             && !particles.has_loads()
             && step.damping <= MAX_DAMPING
             && self.may_be_explicit(particles, dt)
             && dt <= self.longest_explicit_substep(particles)
     }
 
-    /// Sub-steps in a tick of `seconds` that hold the cloth, whose longer side has `along` particles, in a motion of this order:
-    /// [`Substepping::needed`], or those from which its springs push by their forces, where these cost no more.
+    /// Number of sub-steps in a tick of `seconds` that holds a cloth with `along` particles on its longer side, in a
+    /// motion of this order. It is [`Substepping::needed`], or the number from which its springs act by explicit
+    /// forces, if that costs no more.
     pub fn needed(
         &self,
         particles: &ClothParticles,
@@ -69,14 +71,14 @@ impl Solver {
         // Division may round to a step that is too long.
         let from = (seconds / longest * ROUNDING).ceil() as u32;
         if from <= most.min(MAX_SUBSTEPS) {
-            // What touches it asks for as many as before.
+            // Contact needs as many as before.
             from.max(needed)
         } else {
             needed
         }
     }
 
-    /// Without forces from now on: threads are solved, however soft they are.
+    /// Turns explicit forces off: threads are solved, however soft they are.
     #[doc(hidden)]
     pub fn forget_forces(&mut self) {
         self.forces = None;

@@ -24,14 +24,14 @@ pub(crate) struct StartedTick {
     next: u32,
     /// Whether springs push by their forces.
     is_explicit: bool,
-    /// What the cloth's energy was, where it is watched.
+    /// The cloth's energy as the tick began, if it is watched.
     watched: Option<Energy>,
     spin: Option<Spin>,
     drift: Drift,
     is_pushed: bool,
     /// The stretch, where it was measured on the way.
     measured: Option<Stretch>,
-    /// What the material gave, likewise.
+    /// The stretch of the material, likewise.
     material: f32,
     /// Frequency of ripples (rad/s).
     ripple: f32,
@@ -48,7 +48,8 @@ impl StartedTick {
         self.step.seconds / self.substeps() as f32
     }
 
-    /// To be called after a sub-step at whose end particles were pushed: their past says nothing of what follows.
+    /// Call this after a sub-step at whose end particles were pushed: their past does not predict their motion any
+    /// more.
     pub(crate) fn note_push(&mut self, particles: &mut ClothParticles) {
         self.is_pushed = true;
         self.measured = None;
@@ -60,10 +61,10 @@ impl StartedTick {
 }
 
 impl Solver {
-    /// Begins a tick of `particles`. What follows are its [sub-steps](Self::substep), and its [end](Self::end).
+    /// Begins a tick of `particles`. Then call its [sub-steps](Self::substep), and its [end](Self::end).
     ///
     /// # Panics
-    /// If the particles are others than those that the solver was made for.
+    /// If the solver was made for other particles.
     pub(crate) fn begin(
         &mut self,
         particles: &mut ClothParticles,
@@ -102,7 +103,7 @@ impl Solver {
             particles.zero_pin_displacements();
             return tick;
         }
-        // What a wind does is no excess, and not known here.
+        // The work of a wind is no excess, and not known here.
         if self.air.is_none() {
             tick.watched = Energy::watched(particles, dt, step.acceleration);
         }
@@ -111,7 +112,7 @@ impl Solver {
         if step.order == TimeOrder::First {
             particles.past_mut().forget(0);
         }
-        // What else turns the cloth, or carries it in another way, is not known here.
+        // Other causes that turn the cloth are not known here.
         if self.air.is_none() {
             let [drift, _] = tick.drift.follow(particles.blocks());
             tick.spin = Spin::of(particles, &step, pins, drift);
@@ -137,8 +138,8 @@ impl Solver {
         }
     }
 
-    /// Moves `particles` by the next sub-step; `None` where there is none left. Whoever then pushes any
-    /// [says so](StartedTick::note_push).
+    /// Moves `particles` by the next sub-step; `None` if there is none left. A caller that then pushes any calls
+    /// [`note_push`](StartedTick::note_push).
     pub(crate) fn substep(
         &mut self,
         particles: &mut ClothParticles,
@@ -243,7 +244,7 @@ impl Solver {
         Some(substep)
     }
 
-    /// The next sub-step of a tick of forces. What would follow the last ends it.
+    /// The next sub-step of a tick of forces. The call after the last one ends the tick.
     fn substep_by_forces(
         &mut self,
         particles: &mut ClothParticles,
@@ -308,7 +309,7 @@ impl Solver {
             ..measured.unwrap_or_else(|| self.measure(particles))
         };
         let is_still = pins.iter().all(|pin| pin.from == pin.to);
-        // What the material gives comes back by itself, and what pushes or carries a cloth gives it energy.
+        // The stretch of the material comes back by itself, and pushes and carriers give a cloth energy.
         let given = step.material_stretch.max(stretch.material);
         let is_unsolved = stretch.structural > 2.0 * given;
         if let Some(before) = tick.watched

@@ -120,7 +120,7 @@ impl Rows<'_> {
     }
 }
 
-/// What threads from row to row are solved in.
+/// Memory in which threads from row to row are solved.
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
     links: Vec<Link>,

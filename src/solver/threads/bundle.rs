@@ -1,9 +1,9 @@
-//! Threads that lead anywhere, as those of a mesh: eight at a time, each in a lane.
+//! Threads in any direction, such as those of a mesh: eight at a time, each in a lane.
 //!
 //! # The floor
-//! A spring is three loads and one store of a particle's four numbers, two turns of four by four numbers for four of them,
-//! and two divisions for eight. What one pivot waits for of the one before is a division and three multiplications: some 25
-//! cycles for eight springs, while the particles of the next are on their way.
+//! A spring takes three loads and one store of a particle's four numbers. Four springs take two transpositions of four
+//! by four numbers, and eight take two divisions. Each pivot waits for a division and three multiplications of the one
+//! before: some 25 cycles for eight springs, while the particles of the next are being loaded.
 
 use bevy::math::{Mat4, Vec4};
 
@@ -51,7 +51,7 @@ impl Step {
     }
 }
 
-/// What is known of a step between the forward and the backward pass.
+/// The state of a step between the forward and the backward pass.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Solved {

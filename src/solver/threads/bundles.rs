@@ -25,7 +25,7 @@ struct Bundle {
 pub(in crate::solver) struct Bundles {
     bundles: Arc<[Bundle]>,
     steps: Arc<[Step]>,
-    /// What the springs of each step have pulled with on the way there: their multipliers (kg).
+    /// The multipliers of the springs of each step from the forward pass (kg).
     pulled: Vec<Lanes>,
     /// Of one bundle.
     solved: Vec<Solved>,

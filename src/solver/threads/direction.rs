@@ -1,6 +1,6 @@
-//! Where threads lead.
+//! Directions of threads.
 
-/// Where threads lead that go from row to row.
+/// The direction of threads from row to row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Direction {
     Down,

@@ -1,15 +1,15 @@
 //! Threads that lead from row to row: columns, and both diagonals. The lanes are side by side, each in a thread of its own.
 //!
-//! A thread's system is solved by elimination: forward from its first spring to its last, and back. Where a diagonal comes to the
-//! last block of a row it goes on in the first, a lane on. All that is known of a spring is in the lanes of its second particle
-//! then, and on the way back, what it pulls with is put into those of its first.
+//! A thread's system is solved by elimination: forward from its first spring to its last, and back. Where a diagonal
+//! reaches the last block of a row, it continues in the first block, one lane on. Then all data of a spring is in the
+//! lanes of its second particle, and on the way back its pull is moved to those of its first.
 //!
 //! # The floor
-//! Eight springs ask for some 70 additions, multiplications and comparisons and two divisions, with nothing to wait for but where one
-//! spring needs the pivot of the one before: a division, a subtraction and two multiplications, some 25 cycles, while the other
-//! blocks of the row are worked on. So rows of few blocks are bound by that, others by the arithmetic. What goes to the next row
-//! lies in memory, where to read it a lane aside before it has left the store buffer would cost as much again: it is moved in
-//! registers, by loops that carry a lane's number into the next.
+//! Eight springs need some 70 additions, multiplications and comparisons, and two divisions. They wait only where one
+//! spring needs the pivot of the one before. That takes a division, a subtraction and two multiplications, some 25
+//! cycles, while the other blocks of the row are worked on. So rows of few blocks are bound by that, others by the
+//! arithmetic. Data for the next row lies in memory. To read it one lane aside, before it has left the store buffer,
+//! would cost as much again. So it is moved in registers, by loops that carry a lane's number into the next.
 
 use super::{
     beside::Threads,
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::cloth::{DX, DY, DZ, LANES, Lanes, View, W};
 
-/// Eliminates the springs before. With `CROSSES`, what it finds is moved by a lane to the right.
+/// Eliminates the springs before. With `CROSSES`, the result is moved by a lane to the right.
 #[inline(always)]
 fn eliminate<const CROSSES: bool, const DAMPED: bool>(
     [a, b]: [&View; 2],
@@ -57,8 +57,8 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool>(
     }
 }
 
-/// Solves for the multipliers, given those behind them, and moves the particles in between. With `CROSSES`, what is for the springs
-/// before is moved by a lane to the left.
+/// Solves for the multipliers, given those behind them, and moves the particles in between. With `CROSSES`, the results
+/// for the springs before are moved by a lane to the left.
 #[inline(always)]
 fn substitute<const CROSSES: bool>(b: &mut View, link: &mut Link, behind: &mut Behind) {
     let mut lane_behind = [0.0; 4];

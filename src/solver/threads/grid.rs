@@ -1,5 +1,5 @@
-//! The springs of a grid, thread by thread: in one band, or in several, of blocks side by side where threads lead from row to row,
-//! of rows where they lead within them.
+//! The springs of a grid, thread by thread, in one band or several. A band consists of blocks side by side for threads
+//! from row to row, and of rows for threads within rows.
 
 use std::ops::Range;
 
@@ -45,7 +45,7 @@ pub(in crate::solver) struct ThreadSweep {
     ripple_stiffness: [f32; 2],
 }
 
-/// What a band found.
+/// Results of a band.
 #[derive(Default, Clone, Copy)]
 struct Found {
     given: Lanes,
@@ -80,8 +80,8 @@ impl ThreadSweep {
         }
     }
 
-    /// Solves all threads that lead from row to row in one direction. Raises `given` to the squares of what their springs give
-    /// at their tension (m²).
+    /// Solves all threads that lead from row to row in one direction. Raises `given` to the squares of the elongations
+    /// of their springs at their tension (m²).
     pub(super) fn solve_down(
         &mut self,
         blocks: &mut [Block],
@@ -145,7 +145,8 @@ impl ThreadSweep {
         Stretch::of_ratios(structural, bound)
     }
 
-    /// What the material gives, as a part of its length, from the squares of the most that springs give (m²).
+    /// The stretch of the material, as a fraction of its length, from the squares of the largest elongations of springs
+    /// (m²).
     fn material(&self, across: &Lanes, down: &Lanes) -> f32 {
         (largest(across) / self.across[0].rest).max(largest(down) / self.down.rest)
     }
@@ -222,7 +223,8 @@ impl ThreadSweep {
         }
     }
 
-    /// Solves the threads within rows. Returns the squares of the most that their springs give (m²), if that is to be measured.
+    /// Solves the threads within rows. Returns the squares of the largest elongations of their springs (m²), if they
+    /// are measured.
     fn across_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Lanes {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
@@ -311,7 +313,7 @@ impl Sweep for ThreadSweep {
     }
 }
 
-/// Solves threads. Raises `given` to the squares of what the springs of columns give at their tension (m²).
+/// Solves threads. Raises `given` to the squares of the elongations of the columns' springs at their tension (m²).
 fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels, given: Option<&mut Lanes>) {
     if family.kept < 1.0 {
         (kernels.solve_damped_threads)(threads, family);

@@ -5,14 +5,14 @@ use crate::{
     solver::pace::Pace,
 };
 
-/// What keeps a spring between two pins from dividing by zero (1/kg).
+/// Keeps a spring between two pins from dividing by zero (1/kg).
 pub(super) const HOLD: f32 = 1.0e-18;
 
-/// ε: what is added to a thread that is rigid, as a part of its diagonal. Straight between two pins it would have no solution.
+/// ε: added to a rigid thread, as a fraction of its diagonal. Straight between two pins it would have no solution.
 const REGULARISATION: f32 = 1.0e-3;
 
-/// And for each part by which a squared length is off: a thread between pins too far apart pulls with C/ε, and what is off its
-/// line by y would be thrown beyond it, by C/ε × y.
+/// Added for the relative error of a squared length: a thread between pins too far apart pulls with C/ε, and a particle
+/// beside its line by y would be thrown beyond it, by C/ε × y.
 const STRAINED: f32 = 0.2;
 
 /// Eight springs, each of a thread of its own, between the forward and the backward pass.
@@ -21,7 +21,7 @@ const STRAINED: f32 = 0.2;
 pub(crate) struct Link {
     /// From its first to its second particle, in rest lengths.
     pub way: [Lanes; 3],
-    /// Which part of its multiplier the spring before it is to be given.
+    /// The fraction of its multiplier that is passed to the spring before it.
     pub share: Lanes,
     /// Right side, eliminated; after the backward pass the multiplier (m kg).
     pub right: Lanes,
@@ -36,7 +36,7 @@ impl Link {
     };
 }
 
-/// What a spring has to know of the one before it in its thread.
+/// The data that a spring needs of the one before it in its thread.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Before {
@@ -57,13 +57,13 @@ impl Before {
     };
 }
 
-/// What a spring has to know of the one behind it in its thread.
+/// The data that a spring needs of the one behind it in its thread.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Behind {
-    /// What it pulls with (m kg).
+    /// Its pull (m kg).
     pub pull: [Lanes; 3],
-    /// Its multiplier, as much as the spring before it is to be given (m kg).
+    /// The part of its multiplier for the spring before it (m kg).
     pub given: Lanes,
 }
 
@@ -132,7 +132,7 @@ impl Family {
         1.0 / least
     }
 
-    /// Takes over what a sub-step is.
+    /// Takes over the parameters of a sub-step.
     pub fn soften(&mut self, pace: Pace) {
         for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
             *softness = compliance.map(|compliance| compliance * pace.inverse_weight);
@@ -200,7 +200,8 @@ pub(super) fn way(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
     })
 }
 
-/// Raises `largest` to the squares of what springs give at their pull (m²), of rows of them as long as `softness`.
+/// Raises `largest` to the squares of the springs' elongations at their pull (m²), for rows of them as long as
+/// `softness`.
 #[inline(always)]
 pub(crate) fn measure_given(links: &[Link], softness: &[Lanes], largest: &mut Lanes) {
     for row in links.chunks_exact(softness.len()) {

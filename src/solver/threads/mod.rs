@@ -1,6 +1,6 @@
 //! Threads of a grid, and of a mesh, solved exactly.
 //!
-//! What that is, what it costs and where it fails is in the docs of the module [`solver`](crate::solver).
+//! The docs of the module [`solver`](crate::solver) describe the method, its cost and its limits.
 
 mod beside;
 mod bundle;

@@ -1,14 +1,14 @@
 //! Threads within rows.
 //!
-//! Of a row, each lane has a strip of its own, springs in a line whose last leads to the strip of the next lane. So each lane
-//! eliminates its strip alone, all but the last spring (the partition method, H. H. Wang 1981): what is left are eight multipliers
-//! a row, each of which has to do with those of both lanes beside it. They are found by cyclic reduction (R. W. Hockney 1965), in
-//! three steps, in which each is made independent of those one, two and four lanes away.
+//! Each lane has a strip of a row of its own: springs in a line, whose last leads to the strip of the next lane. So
+//! each lane eliminates its strip alone, all but the last spring (the partition method, H. H. Wang 1981). The remaining
+//! system has eight multipliers per row, each coupled to both lanes beside it. Cyclic reduction (R. W. Hockney 1965)
+//! solves it in three steps, which make each multiplier independent of those one, two and four lanes away.
 //!
 //! # The floor
-//! As of threads from row to row, and besides, what links a strip to the one before it: ten operations for eight springs. The
-//! eight multipliers of a row cost five divisions and some 70 operations: little beside the eight blocks of 64 columns, as much as
-//! one of the two blocks of 16.
+//! That of threads from row to row, and the coupling of a strip to the one before it: ten operations for eight springs.
+//! The eight multipliers of a row cost five divisions and some 70 operations. That is little beside the eight blocks of
+//! 64 columns, and as much as one of the two blocks of 16.
 
 use super::link::{Before, Behind, Family, Link, damped, measure_given, terms, way};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
@@ -16,12 +16,12 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 /// Rows that are worked on at once: while one waits for its divisions, others need not.
 pub(super) const GROUP: usize = 8;
 
-/// What a group of rows is solved in.
+/// Memory in which a group of rows is solved.
 #[derive(Debug, Clone)]
 pub(crate) struct RowScratch {
     /// Row by row, block by block.
     links: Vec<Link>,
-    /// For each of them what it takes of what the first spring of its strip takes from the strip before.
+    /// For each of them, its share of what the first spring of its strip takes from the strip before.
     spikes: Vec<Lanes>,
     strip: Strip,
     ends: Ends,
@@ -51,7 +51,7 @@ const BESIDE: usize = 4;
 #[repr(C, align(32))]
 struct Reduced {
     diagonal: Wide,
-    /// What has to do with the lane before.
+    /// Coupling to the lane before.
     off: Wide,
     right: Wide,
     /// One over the diagonal.
@@ -82,14 +82,14 @@ impl Reduced {
     }
 }
 
-/// What a lane knows of its strip up to a spring.
+/// The state of a lane's strip up to a spring.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 struct Strip {
     before: Before,
-    /// What the spring has to do with the last of the strip before, as a part of what the strip's first spring has.
+    /// Coupling of the spring to the last one of the strip before, as a fraction of that of the strip's first spring.
     off: Lanes,
-    /// What that one has to take over into its diagonal and its right side, likewise.
+    /// Contribution to the diagonal and the right side of that one, likewise.
     to_diagonal: Lanes,
     to_right: Lanes,
 }
@@ -103,7 +103,7 @@ impl Strip {
     };
 }
 
-/// What a group's strips know of their first and last springs.
+/// The first and last springs of a group's strips.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 struct Ends {
@@ -114,9 +114,9 @@ struct Ends {
     last: [Wide; 3],
     to_diagonal: Wide,
     to_right: Wide,
-    /// What the first has to do with the last of the strip before; then what it takes from that one's multiplier.
+    /// Coupling of the first to the last of the strip before; then its share of that one's multiplier.
     off: Wide,
-    /// What the last ones pull with (m kg).
+    /// Pull of the last ones (m kg).
     pull: [Wide; 3],
 }
 
@@ -333,7 +333,7 @@ pub(crate) struct RowThreads<'a> {
     /// For the first and the last of them: whether it is on the grid's border.
     pub is_border: [bool; 2],
     pub scratch: &'a mut RowScratch,
-    /// To be raised to the squares of what springs give at their tension (m²).
+    /// Raised to the squares of the springs' elongations at their tension (m²).
     pub given: Option<&'a mut Lanes>,
 }
 
