@@ -27,7 +27,7 @@ pub mod hierarchy;
 pub mod plugin;
 pub mod solver;
 
-/// What most games need, to be imported with `use bevy_drape::prelude::*`.
+/// Most games need only this: `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{
         Cloth, ClothBackstop, ClothError, ClothMaterial, ClothPaint, ClothParticles, ClothPlane,

@@ -18,8 +18,8 @@ pub use paint::{ClothPaint, RestFunction};
 /// Makes a cloth follow a skinned pose. It limits each particle's distance from the pose, and can stop particles from
 /// passing behind it.
 ///
-/// The pose is that of the entity's `SkinnedMesh`. A particle's position in it is Σ wⱼ Jⱼ Bⱼ x (linear blend skinning),
-/// with the joints' global transforms J, inverse bind poses B, weights w, and the vertex position x. It is read once a
+/// The pose is that of the entity's `SkinnedMesh`. A particle's position in it is Σ wⱼ Jⱼ Bⱼ x (linear blend skinning).
+/// J are the joints' global transforms, B inverse bind poses, w weights, and x is the vertex position. The pose is read once a
 /// tick and interpolated over the sub-steps. Without a `SkinnedMesh`, the pose is the cloth at rest in its entity's
 /// frame.
 ///

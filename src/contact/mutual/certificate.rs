@@ -1,8 +1,8 @@
 //! Proves in each sub-step that no features have passed through each other, and corrects those without a proof.
 //!
 //! The nearest points of two features define a separating plane across the line between them, with one feature on
-//! either side. Particles move along straight lines. So if all of them are on the same sides of a plane with that
-//! normal at the end of a sub-step, they were so all along, and the features have not met. The same normal serves in
+//! either side. Particles move along straight lines. Let all of them be on the same sides of a plane with
+//! that normal at the end of a sub-step. Then they were so all along, and the features have not met. The same normal serves in
 //! the next sub-step, until nearest points are found again.
 //!
 //! Features that were farther apart than the approach of any two particles since have such a plane without a test. If

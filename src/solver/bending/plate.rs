@@ -2,7 +2,7 @@
 //!
 //! A strip of cloth is to bend as a beam of the rigidity D times its width, whatever its width and however its free edges curl.
 //! That is a plate whose Poisson's ratio is 0, of the energy `½ D (κ_xx² + κ_yy² + 2 κ_xy²)` an area, as meshes have it too. It is
-//! never negative, and is ½ D κ² of a cylinder of any direction, for which `κ_xx`, `κ_yy` and `κ_xy` are κ cos²φ, κ sin²φ
+//! never negative. For a cylinder of any direction φ it is ½ D κ², as `κ_xx`, `κ_yy` and `κ_xy` are κ cos²φ, κ sin²φ
 //! and κ cos φ sin φ:
 //!
 //! ```text
