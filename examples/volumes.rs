@@ -29,7 +29,10 @@ mod shared;
 use std::{f32::consts::TAU, process::ExitCode};
 
 use bevy::{color::palettes::css, light::NotShadowCaster, prelude::*};
-use bevy_drape::prelude::*;
+use bevy_drape::{
+    hierarchy::{BoundRule, BoundingVolume},
+    prelude::*,
+};
 use serde::Serialize;
 
 use crate::shared::{

@@ -1,7 +1,11 @@
 //! The cloth, the ball that rapier moves, light, and a floor to cast shadows on.
 
 use bevy::prelude::*;
-use bevy_drape::{plugin::ClothColliderSpeed, prelude::*};
+use bevy_drape::{
+    hierarchy::{BoundRule, BoundingVolume},
+    plugin::ClothColliderSpeed,
+    prelude::*,
+};
 use bevy_rapier3d::prelude::{Collider, PhysicsSet, RigidBody, Velocity};
 use bevy_transform_interpolation::prelude::TransformInterpolation;
 

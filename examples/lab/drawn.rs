@@ -21,7 +21,10 @@ use bevy::{
     },
     time::TimeUpdateStrategy,
 };
-use bevy_drape::prelude::*;
+use bevy_drape::{
+    hierarchy::{BoundRule, BoundingVolume},
+    prelude::*,
+};
 
 use crate::{
     scene::{SHOT, ScenePlugin, moment_beyond},

@@ -1,7 +1,7 @@
 //! What is near a cloth, and what is not.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::{hierarchy::SearchReason, prelude::*};
 
 use crate::support::*;
 

@@ -212,7 +212,7 @@ fn what_is_read_moves_as_what_was_written() {
 }
 
 fn surface(app: &App, cloth: Entity) -> &Surface {
-    let built = app.world().get::<bevy_drape::plugin::ClothBuilt>(cloth);
+    let built = app.world().get::<ClothBuilt>(cloth);
     built.expect("what was built").surface()
 }
 

@@ -9,6 +9,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_drape::{
+    hierarchy::{BoundRule, BoundingVolume},
     plugin::{
         ClothDiagnosticsPlugin, ClothGizmosPlugin, ClothMeshPlugin, ClothPlugin, ClothRapierPlugin,
     },

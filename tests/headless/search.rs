@@ -7,6 +7,7 @@ use bevy::{
 use bevy_drape::{
     contact::{ContactSettings, Detection, MovingCollider},
     hierarchy::SearchReason,
+    hierarchy::{BoundRule, BoundingVolume},
     plugin::ClothBuilt,
     prelude::*,
     solver::{Bending, DampingFrame, Solver, TickStep},

@@ -6,6 +6,7 @@ use bevy_drape::{
         ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase, deepest_penetration,
     },
     hierarchy::NodeState,
+    hierarchy::{BoundRule, BoundingVolume},
     plugin::{ClothBuilt, ClothSearch},
     prelude::*,
     solver::{Bending, Solver, TickStep},

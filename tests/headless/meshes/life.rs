@@ -8,6 +8,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_drape::{
+    hierarchy::{BoundRule, BoundingVolume},
     plugin::{ClothBuilt, ClothDiagnosticsPlugin},
     prelude::*,
 };
