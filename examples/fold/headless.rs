@@ -46,7 +46,8 @@ struct Contact {
 /// Simulates, prints the report, and saves `fold.png` if `view` can draw.
 pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let mut run = Run::new(("folds", ScenePlugin), view, grid, options, |app| {
-        app.add_plugins(MeasuringPlugin)
+        app.insert_resource(scene::SHOT)
+            .add_plugins(MeasuringPlugin)
             .init_resource::<Contact>()
             .add_systems(FixedLast, measure);
         app.world_mut().resource_mut::<Crossings>().is_thorough = true;

@@ -1,13 +1,16 @@
-//! All examples, one after the other: each in its window, or each without one, for all pictures and a sheet of them.
+//! All examples, one after the other: each in its window, or each without one, for all pictures and a sheet of them, or for a moving
+//! picture.
 //!
 //! ```sh
 //! cargo run --example gallery                              # a window each: close one to see the next
 //! cargo run --example gallery -- curtain table             # these alone
 //! cargo run --example gallery -- --headless --out DIR      # every report and picture, and a sheet of all, gallery.png
+//! cargo run --example gallery -- --movie --out DIR         # a moving picture of some of them, cloth.png
 //! ```
 //!
 //! Each runs by itself as well, by `cargo run --example NAME`; it says its keys in the panel beside it.
 
+mod movie;
 #[path = "../shared/pixels.rs"]
 mod pixels;
 mod sheet;
@@ -19,6 +22,11 @@ use std::{
 };
 
 use clap::Parser;
+
+use crate::{
+    movie::{FRAME_TICKS, FRAMES, SCENES, TICKS_A_SECOND},
+    pixels::Pixels,
+};
 
 /// An example, and what the pictures show that it makes.
 struct Entry {
@@ -99,6 +107,9 @@ struct Options {
     /// Run without windows, as fast as possible, and make all pictures
     #[arg(long)]
     headless: bool,
+    /// Run some of them without windows, and make a moving picture
+    #[arg(long)]
+    movie: bool,
     /// Headless: folder that the pictures are saved in, made if it is not there
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
@@ -112,7 +123,8 @@ fn main() -> ExitCode {
     let options = Options::parse();
     let is_asked = |entry: &&Entry| {
         let mut names = options.names.iter();
-        options.names.is_empty() || names.any(|name| name == entry.name)
+        let is_shown = !options.movie || SCENES.iter().any(|(name, _)| *name == entry.name);
+        is_shown && (options.names.is_empty() || names.any(|name| name == entry.name))
     };
     let entries: Vec<&Entry> = ENTRIES.iter().filter(is_asked).collect();
     let mut build = cargo("build");
@@ -123,11 +135,22 @@ fn main() -> ExitCode {
         eprintln!("The examples could not be built: {why}");
         return ExitCode::FAILURE;
     }
+    if options.movie {
+        return match save_movie(&entries, &options.out) {
+            Ok(path) => {
+                println!("\nThe moving picture: {}", path.display());
+                ExitCode::SUCCESS
+            }
+            Err(why) => {
+                eprintln!("No moving picture: {why}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let mut code = ExitCode::SUCCESS;
     for entry in &entries {
         println!("\n{}", entry.name);
-        let mut run = cargo("run");
-        run.args(["--quiet", "--example", entry.name, "--"]);
+        let mut run = run(entry);
         if options.headless {
             // None that an earlier run has left is to be shown.
             for (file, _) in entry.pictures {
@@ -159,6 +182,13 @@ fn cargo(what: &str) -> Command {
     command
 }
 
+/// Runs an example that is built, by the arguments to come.
+fn run(entry: &Entry) -> Command {
+    let mut command = cargo("run");
+    command.args(["--quiet", "--example", entry.name, "--"]);
+    command
+}
+
 fn succeed(command: &mut Command) -> Result<(), String> {
     match command.status() {
         Ok(status) if status.success() => Ok(()),
@@ -173,6 +203,44 @@ fn save_sheet(entries: &[&Entry], out: &Path) -> Result<PathBuf, String> {
         each.map(|&(file, what)| (entry.name, what, out.join(file)))
     });
     let path = out.join("gallery.png");
-    sheet::of(pictures)?.save(&path)?;
+    sheet::of(pictures)?.save(&path, Some(256))?;
     Ok(path)
+}
+
+fn save_movie(entries: &[&Entry], out: &Path) -> Result<PathBuf, String> {
+    let mut frames = Vec::new();
+    for (name, from) in SCENES {
+        for entry in entries.iter().filter(|entry| entry.name == name) {
+            println!("\n{}", entry.name);
+            let (_, what) = entry.pictures[0];
+            for frame in film(entry, from, &out.join(name))? {
+                frames.push(sheet::captioned(&frame, [entry.name, what])?);
+            }
+        }
+    }
+    let path = out.join("cloth.png");
+    movie::save(&frames, &path)?;
+    Ok(path)
+}
+
+/// The frames of a scene from this time on (s), which its example saves in a folder of its own.
+fn film(entry: &Entry, from: f64, folder: &Path) -> Result<Vec<Pixels>, String> {
+    let files = (0..FRAMES).map(|number| folder.join(format!("frame-{number:03}.png")));
+    let files: Vec<_> = files.collect();
+    // None that an earlier run has left is to be shown.
+    for file in &files {
+        let _ = fs::remove_file(file);
+    }
+    let mut run = run(entry);
+    run.arg("--headless").arg("--out").arg(folder);
+    let seconds = f64::from(FRAMES * u32::from(FRAME_TICKS)) / f64::from(TICKS_A_SECOND);
+    let to = (from + seconds).to_string();
+    run.args(["--seconds", &to, "--to", &to]).args([
+        "--from",
+        &from.to_string(),
+        "--frames",
+        &FRAMES.to_string(),
+    ]);
+    succeed(&mut run).map_err(|why| format!("{}: {why}", entry.name))?;
+    files.iter().map(|file| sheet::load(file)).collect()
 }

@@ -50,26 +50,63 @@ pub fn of(
             bytes[from..from + 3 * TILE[0]].copy_from_slice(line.as_flattened());
         }
     }
-    use_font();
-    {
-        let size = (width as u32, height as u32);
-        let area = BitMapBackend::with_buffer(&mut bytes, size).into_drawing_area();
-        for (number, (name, what, _)) in pictures.iter().enumerate() {
+    let captions = pictures
+        .iter()
+        .enumerate()
+        .map(|(number, (name, what, _))| {
             let [left, top] = corner(number);
-            let middle = (top + TILE[1] + CAPTION / 2 - 1) as i32;
-            for (text, x, side, color) in [
-                (name, left + 2, HPos::Left, NAME),
-                (what, left + TILE[0] - 2, HPos::Right, WHAT),
-            ] {
-                let style = TextStyle::from((FONT, LETTERS).into_font())
-                    .color(&color)
-                    .pos(Pos::new(side, VPos::Center));
-                area.draw_text(text, &style, (x as i32, middle))
-                    .map_err(|error| error.to_string())?;
+            Caption {
+                texts: [name, what],
+                sides: [left + 2, left + TILE[0] - 2],
+                middle: top + TILE[1] + CAPTION / 2 - 1,
             }
+        });
+    written(captions, bytes, [width, height])
+}
+
+/// One picture, with its caption below.
+pub fn captioned(picture: &Pixels, texts: [&str; 2]) -> Result<Pixels, String> {
+    let (width, height) = (picture.width, picture.height + CAPTION);
+    let mut bytes = picture.rgb.as_flattened().to_vec();
+    bytes.extend(GROUND.repeat(width * CAPTION));
+    let caption = Caption {
+        texts,
+        sides: [GAP, width - GAP],
+        middle: picture.height + CAPTION / 2 - 1,
+    };
+    written([caption].into_iter(), bytes, [width, height])
+}
+
+/// The name of an example from the left, and what is seen up to the right: where they begin and end, and their middle's height.
+struct Caption<'a> {
+    texts: [&'a str; 2],
+    sides: [usize; 2],
+    middle: usize,
+}
+
+/// A picture of this width and height, with captions in it.
+fn written<'a>(
+    captions: impl Iterator<Item = Caption<'a>>,
+    mut bytes: Vec<u8>,
+    [width, height]: [usize; 2],
+) -> Result<Pixels, String> {
+    use_font();
+    let size = (width as u32, height as u32);
+    let area = BitMapBackend::with_buffer(&mut bytes, size).into_drawing_area();
+    for caption in captions {
+        for (text, x, side, color) in [
+            (caption.texts[0], caption.sides[0], HPos::Left, NAME),
+            (caption.texts[1], caption.sides[1], HPos::Right, WHAT),
+        ] {
+            let style = TextStyle::from((FONT, LETTERS).into_font())
+                .color(&color)
+                .pos(Pos::new(side, VPos::Center));
+            area.draw_text(text, &style, (x as i32, caption.middle as i32))
+                .map_err(|error| error.to_string())?;
         }
-        area.present().map_err(|error| error.to_string())?;
     }
+    area.present().map_err(|error| error.to_string())?;
+    drop(area);
     let rgb = bytes.chunks_exact(3).map(|at| [at[0], at[1], at[2]]);
     Ok(Pixels {
         width,
@@ -98,7 +135,7 @@ fn use_font() {
 }
 
 /// A picture that an example has saved.
-fn load(path: &Path) -> Result<Pixels, String> {
+pub fn load(path: &Path) -> Result<Pixels, String> {
     let fail = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let file = fs::File::open(path).map_err(|error| fail(&error))?;
     let mut decoder = Decoder::new(BufReader::new(file));

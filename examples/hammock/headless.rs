@@ -46,7 +46,8 @@ struct Way {
 pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let scene = ("a ball in a hammock", ScenePlugin);
     let mut run = Run::new(scene, view, grid, options, |app| {
-        app.add_plugins(MeasuringPlugin)
+        app.insert_resource(scene::SHOT)
+            .add_plugins(MeasuringPlugin)
             .init_resource::<Way>()
             .add_systems(FixedLast, follow);
     });

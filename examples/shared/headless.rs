@@ -1,6 +1,7 @@
 //! An example without a window: as fast as it can, with a report and a picture.
 
 use std::{
+    collections::VecDeque,
     fmt, fs,
     path::{Path, PathBuf},
     process::ExitCode,
@@ -27,8 +28,17 @@ use super::{
     view::View,
 };
 
-/// Width and height of a picture.
-const SIZE: [u32; 2] = [800, 450];
+/// Of a picture, and of a film's frames: these are put together, with colours that they share.
+const PICTURE: Format = Format {
+    size: [800, 450],
+    colors: Some(256),
+    is_warm: false,
+};
+const FRAME: Format = Format {
+    size: [480, 270],
+    colors: None,
+    is_warm: false,
+};
 
 /// Frames that a renderer gets to finish a picture in.
 const FRAMES_FOR_A_PICTURE: usize = 60;
@@ -48,6 +58,7 @@ pub struct TickByTick;
 pub struct Run {
     pub app: App,
     view: View,
+    film: Film,
     /// In all.
     pub ticks: u64,
     /// How long what is done took, without pictures (s).
@@ -70,6 +81,7 @@ impl Run {
             .insert_resource(grid);
         measure(&mut app);
         let ticks = ticks_in(&app, options.seconds).max(1);
+        let film = Film::of(&app, options);
         app.finish();
         app.cleanup();
         let bar = ProgressBar::new(ticks).with_style(
@@ -79,6 +91,7 @@ impl Run {
         let mut run = Self {
             app,
             view,
+            film,
             ticks,
             wall_seconds: 0.0,
             done: 0,
@@ -113,8 +126,16 @@ impl Run {
         self.until(self.ticks);
     }
 
-    /// Goes on until this many ticks are done.
+    /// Goes on until this many ticks are done, and films what is to be filmed on the way.
     pub fn until(&mut self, ticks: u64) {
+        while let Some(frame) = self.film.pop_until(ticks) {
+            self.advance(frame.tick);
+            self.save_frame(&frame.file);
+        }
+        self.advance(ticks);
+    }
+
+    fn advance(&mut self, ticks: u64) {
         let start = Instant::now();
         while self.done < ticks {
             let together = match self.app.world().contains_resource::<TickByTick>() {
@@ -134,11 +155,7 @@ impl Run {
     /// Draws one frame into an image and saves it, while time stands still.
     pub fn take_picture(&mut self, shot: Shot, out: &Path, file: &str) -> Picture {
         self.bar.finish_and_clear();
-        let drawn = if self.view == View::Offscreen {
-            draw(&mut self.app, shot, out, file)
-        } else {
-            Err("no graphics adapter found".into())
-        };
+        let drawn = self.draw(shot, PICTURE, out, file);
         let adapter = self.app.world().get_resource::<RenderAdapterInfo>();
         let (picture, no_picture) = match drawn {
             Ok(path) => (Some(path), None),
@@ -150,6 +167,80 @@ impl Run {
             adapter: adapter.map(|info| info.name.clone()),
         }
     }
+
+    /// Draws the film's next frame as the app's [`Shot`] is now.
+    fn save_frame(&mut self, file: &str) {
+        let shot = self.app.world().get_resource::<Shot>().copied();
+        let (format, out) = (self.film.format, self.film.out.clone());
+        self.film.format.is_warm = true;
+        let drawn = shot
+            .ok_or_else(|| "this example has no film".into())
+            .and_then(|shot| self.draw(shot, format, &out, file));
+        if let Err(why) = drawn {
+            eprintln!("{file}: {why}");
+            self.film.frames.clear();
+        }
+    }
+
+    fn draw(
+        &mut self,
+        shot: Shot,
+        format: Format,
+        out: &Path,
+        file: &str,
+    ) -> Result<PathBuf, String> {
+        if self.view == View::Offscreen {
+            draw(&mut self.app, shot, format, out, file)
+        } else {
+            Err("no graphics adapter found".into())
+        }
+    }
+}
+
+/// The frames of a film that are still to be drawn, from the first, and how.
+struct Film {
+    format: Format,
+    frames: VecDeque<Frame>,
+    out: PathBuf,
+}
+
+struct Frame {
+    tick: u64,
+    file: String,
+}
+
+impl Film {
+    fn of(app: &App, options: &Options) -> Self {
+        let length = options.to - options.from;
+        let frame = |number: u32| {
+            let part = f64::from(number) / f64::from(options.frames);
+            Frame {
+                tick: ticks_in(app, options.from + part * length),
+                file: format!("frame-{number:03}.png"),
+            }
+        };
+        Self {
+            format: FRAME,
+            frames: (0..options.frames).map(frame).collect(),
+            out: options.out.clone(),
+        }
+    }
+
+    /// The next frame, if it is to be drawn before more ticks than these are done.
+    fn pop_until(&mut self, ticks: u64) -> Option<Frame> {
+        self.frames.pop_front_if(|frame| frame.tick <= ticks)
+    }
+}
+
+/// How a picture is drawn.
+#[derive(Clone, Copy)]
+struct Format {
+    /// Width and height (pixels).
+    size: [u32; 2],
+    /// How many colours it has at most: all unless given.
+    colors: Option<usize>,
+    /// Whether assets, pipelines and shadows are ready, as after another picture.
+    is_warm: bool,
 }
 
 /// Fixed ticks in this many seconds.
@@ -177,7 +268,13 @@ impl fmt::Display for Picture {
     }
 }
 
-fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, String> {
+fn draw(
+    app: &mut App,
+    shot: Shot,
+    format: Format,
+    out: &Path,
+    file: &str,
+) -> Result<PathBuf, String> {
     let path = out.join(file);
     fs::create_dir_all(out)
         .map_err(|error| format!("{} could not be made: {error}", out.display()))?;
@@ -191,7 +288,7 @@ fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, St
         let target = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         app.world_mut().resource_mut::<Assets<Image>>().add(target)
     };
-    let [small, large] = [[160, 90], SIZE.map(|pixels| 2 * pixels)].map(&mut target);
+    let [small, large] = [[160, 90], format.size.map(|pixels| 2 * pixels)].map(&mut target);
     // The picture is drawn at twice its size, which smooths edges better than samples do.
     let camera = |target| (shot.camera(Some(target)), Msaa::Off);
     // Lines are as wide in the picture as in a window.
@@ -199,17 +296,23 @@ fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, St
     for (_, config, _) in gizmos.iter_mut() {
         config.line.width *= 2.0;
     }
-    // A few frames, small ones, for assets, pipelines and shadows to be ready.
-    let tiny = app.world_mut().spawn(camera(small)).id();
-    (0..8).for_each(|_| app.update());
-    app.world_mut().despawn(tiny);
+    if !format.is_warm {
+        // A few frames, small ones, for all to be ready.
+        let tiny = app.world_mut().spawn(camera(small)).id();
+        (0..8).for_each(|_| app.update());
+        app.world_mut().despawn(tiny);
+    }
     let camera = app.world_mut().spawn(camera(large.clone())).id();
+    // A camera's own light, its sky, is there in its second frame.
     app.update();
     let screenshot = app
         .world_mut()
         .spawn(Screenshot::image(large))
-        .observe(save_to(path.clone()))
+        .observe(save_to(path.clone(), format))
         .id();
+    app.update();
+    // What is drawn is on its way.
+    app.world_mut().despawn(camera);
     for _ in 0..FRAMES_FOR_A_PICTURE {
         app.update();
         let world = app.world();
@@ -217,7 +320,6 @@ fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, St
             break;
         }
     }
-    app.world_mut().despawn(camera);
     let mut gizmos = app.world_mut().resource_mut::<GizmoConfigStore>();
     for (_, config, _) in gizmos.iter_mut() {
         config.line.width /= 2.0;
@@ -230,7 +332,7 @@ fn draw(app: &mut App, shot: Shot, out: &Path, file: &str) -> Result<PathBuf, St
 }
 
 /// Saves what is drawn, at half its size.
-fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>) {
+fn save_to(path: PathBuf, format: Format) -> impl FnMut(On<ScreenshotCaptured>) {
     move |captured| {
         let bytes = captured.image.data.as_deref().unwrap_or_default();
         let rgb = bytes.chunks_exact(4).map(|at| [at[0], at[1], at[2]]);
@@ -239,8 +341,8 @@ fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>) {
             height: captured.image.height() as usize,
             rgb: rgb.collect(),
         };
-        let [width, height] = SIZE.map(|side| side as usize);
-        if let Err(why) = drawn.scaled(width, height).save(&path) {
+        let [width, height] = format.size.map(|side| side as usize);
+        if let Err(why) = drawn.scaled(width, height).save(&path, format.colors) {
             error!("{why}");
         }
     }

@@ -1,11 +1,8 @@
-//! Pictures as files: PNG of at most 256 colours, a third as large as with all of them.
+//! Pictures as files: PNG, of all colours or of at most 256, which is a third as large.
 
 use std::{collections::BTreeMap, fs, io::BufWriter, path::Path};
 
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
-
-/// Colours of a file.
-const COLORS: usize = 256;
 
 /// A picture, row by row from the top.
 pub struct Pixels {
@@ -40,34 +37,67 @@ impl Pixels {
         }
     }
 
-    /// Saves it, in the colours that it needs most.
-    pub fn save(&self, path: &Path) -> Result<(), String> {
+    /// Saves it, in as many colours as given at most, those that it needs most, or else in all.
+    pub fn save(&self, path: &Path, colors: Option<usize>) -> Result<(), String> {
         let fail = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let mut counts = BTreeMap::<[u8; 3], u64>::new();
-        for color in &self.rgb {
-            *counts.entry(*color).or_default() += 1;
-        }
-        let groups = groups(counts.into_iter().collect());
-        let mut numbers = BTreeMap::new();
-        let mut palette = Vec::new();
-        for (number, group) in groups.iter().enumerate() {
-            palette.extend(mean(group).map(|value| value.round() as u8));
-            numbers.extend(group.iter().map(|(color, _)| (*color, number as u8)));
-        }
         let file = fs::File::create(path).map_err(|error| fail(&error))?;
         let mut encoder = Encoder::new(BufWriter::new(file), self.width as u32, self.height as u32);
-        encoder.set_color(ColorType::Indexed);
         encoder.set_depth(BitDepth::Eight);
-        encoder.set_palette(palette);
         encoder.set_compression(Compression::High);
-        // Numbers of colours have no slope that could be foretold.
-        encoder.set_filter(Filter::NoFilter);
-        let indices: Vec<u8> = self.rgb.iter().map(|color| numbers[color]).collect();
+        let bytes = match colors {
+            Some(colors) => {
+                let palette = Palette::of([self], colors);
+                encoder.set_color(ColorType::Indexed);
+                encoder.set_palette(palette.colors.as_flattened().to_vec());
+                // Numbers of colours have no slope that could be foretold.
+                encoder.set_filter(Filter::NoFilter);
+                palette.numbers_of(self)
+            }
+            None => {
+                encoder.set_color(ColorType::Rgb);
+                self.rgb.as_flattened().to_vec()
+            }
+        };
         let mut writer = encoder.write_header().map_err(|error| fail(&error))?;
         writer
-            .write_image_data(&indices)
+            .write_image_data(&bytes)
             .and_then(|()| writer.finish())
             .map_err(|error| fail(&error))
+    }
+}
+
+/// The colours that pictures need most.
+pub struct Palette {
+    pub colors: Vec<[u8; 3]>,
+    /// Which of them stands for each of the pictures' own.
+    numbers: BTreeMap<[u8; 3], u8>,
+}
+
+impl Palette {
+    /// At most as many as given, and 256.
+    pub fn of<'a>(pictures: impl IntoIterator<Item = &'a Pixels>, colors: usize) -> Self {
+        let mut counts = BTreeMap::<[u8; 3], u64>::new();
+        for color in pictures.into_iter().flat_map(|picture| &picture.rgb) {
+            *counts.entry(*color).or_default() += 1;
+        }
+        let mut palette = Self {
+            colors: Vec::new(),
+            numbers: BTreeMap::new(),
+        };
+        let groups = groups(counts.into_iter().collect(), colors.min(256));
+        for (number, group) in groups.iter().enumerate() {
+            let color = mean(group).map(|value| value.round() as u8);
+            palette.colors.push(color);
+            let colors = group.iter().map(|(color, _)| (*color, number as u8));
+            palette.numbers.extend(colors);
+        }
+        palette
+    }
+
+    /// The number of each pixel's colour, of one of the pictures.
+    pub fn numbers_of(&self, picture: &Pixels) -> Vec<u8> {
+        let colors = picture.rgb.iter();
+        colors.map(|color| self.numbers[color]).collect()
     }
 }
 
@@ -83,10 +113,10 @@ fn covered(place: usize, count: usize, whole: usize) -> Vec<(usize, f32)> {
 /// Colours that are alike, with how often each occurs.
 type Group = Vec<([u8; 3], u64)>;
 
-/// Cuts colours into groups: again and again the one that is spread most, at the mean of the channel in which it is.
-fn groups(all: Group) -> Vec<Group> {
+/// Cuts colours into at most this many groups: again and again the one that is spread most, at the mean of the channel in which it is.
+fn groups(all: Group, most: usize) -> Vec<Group> {
     let mut groups = vec![(spread(&all), all)];
-    while groups.len() < COLORS {
+    while groups.len() < most {
         let widest = groups
             .iter()
             .enumerate()

@@ -47,7 +47,8 @@ pub fn run(
     options: &Options,
 ) -> ExitCode {
     let mut run = Run::new((title, scene), view, grid, options, |app| {
-        app.add_plugins(MeasuringPlugin)
+        app.insert_resource(moment.shot)
+            .add_plugins(MeasuringPlugin)
             .init_resource::<Touching>()
             .add_systems(FixedLast, count_contacts);
     });

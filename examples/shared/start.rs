@@ -21,6 +21,15 @@ pub struct Options {
     /// Headless: folder that the picture is saved in, made if it is not there
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    /// Headless: save N frames of a film, frame-000.png and on, beside the picture
+    #[arg(long, value_name = "N", default_value_t = 0, requires_all = ["from", "to"])]
+    pub frames: u32,
+    /// Headless: when the film begins (s)
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    pub from: f64,
+    /// Headless: when the film ends (s)
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    pub to: f64,
     /// Headless: print the report as one JSON object
     #[arg(long)]
     pub json: bool,
