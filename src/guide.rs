@@ -7,7 +7,8 @@
 //! 5. [Tuning](tuning): what stretches, what swings, what costs.
 //! 6. [When it fails](when_it_fails): faults, limits, and what to do about each.
 //! 7. [Saving](saving): snapshots, rollback, worlds whose origin jumps.
-//! 8. [Migrating from `bevy_silk`](migrating_from_bevy_silk): its names, and ours.
+//! 8. [Recipes](recipes): picking cloth with the mouse, gathering a pinned row, opening a curtain.
+//! 9. [Migrating from `bevy_silk`](migrating_from_bevy_silk): its names, and ours.
 
 #[doc = include_str!("guide/first_cloth.md")]
 pub mod first_cloth {}
@@ -29,6 +30,9 @@ pub mod when_it_fails {}
 
 #[doc = include_str!("guide/saving.md")]
 pub mod saving {}
+
+#[doc = include_str!("guide/recipes.md")]
+pub mod recipes {}
 
 #[doc = include_str!("guide/migrating_from_bevy_silk.md")]
 pub mod migrating_from_bevy_silk {}

@@ -8,13 +8,17 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum SnapshotError {
     /// There is no such cloth.
-    #[error("{entity} is no cloth that the plugin knows: it has no `Cloth`, or does not exist")]
+    #[error(
+        "{entity} is no cloth in this world: spawn it first, or map a snapshot of another world with `MapEntities`"
+    )]
     NoCloth {
         /// What is no cloth.
         entity: Entity,
     },
     /// There is no such collider, root or carrier.
-    #[error("{entity} was in the snapshot, and does not exist or has lost its `{component}`")]
+    #[error(
+        "the snapshot has {entity} with a `{component}`, and this world does not: spawn it first, or map a snapshot of another world with `MapEntities`"
+    )]
     Gone {
         /// What has gone.
         entity: Entity,
@@ -22,7 +26,7 @@ pub enum SnapshotError {
         component: &'static str,
     },
     /// What a file says of a cloth can't be, as its lists are of different lengths.
-    #[error("the snapshot of {entity} is damaged: its lists do not fit each other")]
+    #[error("the snapshot of {entity} is damaged: its lists differ in length")]
     Damaged {
         /// The cloth.
         entity: Entity,
