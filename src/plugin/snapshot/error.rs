@@ -8,13 +8,17 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum SnapshotError {
     /// The entity is not a cloth.
-    #[error("{entity} is not a cloth that the plugin knows: it does not exist, or has no `Cloth`")]
+    #[error(
+        "{entity} is not a cloth of this world: spawn it first, or map a snapshot of another world with `MapEntities`"
+    )]
     NoCloth {
         /// The entity.
         entity: Entity,
     },
     /// A collider, root or carrier of the snapshot is gone.
-    #[error("{entity} is in the snapshot, but no longer exists or has lost its `{component}`")]
+    #[error(
+        "the snapshot has {entity} with a `{component}`, and this world does not: spawn it first, or map a snapshot of another world with `MapEntities`"
+    )]
     Gone {
         /// The entity that is gone.
         entity: Entity,

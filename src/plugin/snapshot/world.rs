@@ -198,6 +198,19 @@ impl ClothWorldSnapshot {
         Ok(())
     }
 
+    /// All entities that a world needs for [`restore`](Self::restore), each once: cloths, colliders, roots, what carries them, zones of
+    /// wind, and the parents of all of these. Save a name of your own for each, and
+    /// [`map_entities`](MapEntities::map_entities) takes the snapshot to the entities that have these names in another world.
+    pub fn entities(&self) -> impl Iterator<Item = Entity> + '_ {
+        let mut seen = EntityHashSet::default();
+        let cloths = self.cloths.iter().map(|(entity, _)| *entity);
+        let colliders = self.colliders.iter().map(|(entity, _)| *entity);
+        let roots = self.roots.iter().map(|(entity, _)| *entity);
+        let transforms = self.transforms.iter().map(|(entity, _)| *entity);
+        (cloths.chain(colliders).chain(roots).chain(transforms))
+            .filter(move |entity| seen.insert(*entity))
+    }
+
     /// The cloths, each with its entity.
     pub fn cloths(&self) -> impl ExactSizeIterator<Item = (Entity, &ClothSnapshot)> {
         self.cloths

@@ -1,5 +1,6 @@
 //! Snapshots: what is put back goes on to the last bit, in the same app and in a new one.
 
+mod ids;
 pub mod scene;
 mod threads;
 

@@ -66,7 +66,14 @@ fn once(at: Vec3, velocity: Vec3, seconds: f32) -> Transform {
 /// An app with cloths of every kind: swinging, asleep on a ball and woken, attached, holding a tolerance, teleported, in layers, on a
 /// body, in gusts, below a root that carries it, at a lower rate, on a skeleton, before a fan that comes by, full of gas. The same entities each time.
 pub fn everything() -> (App, Vec<Entity>) {
+    everything_after(0)
+}
+
+/// The same in an app that has spawned some other entities before: all ids are greater.
+pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     let mut app = app_that_draws(FixedUpdate);
+    let others = std::iter::repeat_n(Transform::default(), others);
+    app.world_mut().spawn_batch(others);
     app.init_resource::<Clock>()
         .init_resource::<Origin>()
         .add_systems(FixedUpdate, animate.before(ClothSystems::Prepare))
