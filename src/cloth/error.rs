@@ -1,12 +1,8 @@
 //! What can be wrong with a cloth or a collider.
 
-use std::mem::discriminant;
+mod check;
 
-use bevy::{
-    ecs::entity::{Entity, EntityMapper, MapEntities},
-    math::Vec3,
-    reflect::Reflect,
-};
+use bevy::{ecs::entity::Entity, math::Vec3, reflect::Reflect};
 use thiserror::Error;
 
 use super::{MAX_PARTICLES, ParticleId, Pin, Spring};
@@ -230,7 +226,15 @@ pub enum ClothError {
         /// How far it may be (m).
         farthest: f32,
     },
-    /// A transform that is not finite, that is scaled to nothing, or that an ancestor lacks.
+    /// An entity, or one above it, that has no `Transform`.
+    #[error("{name} has no `Transform`: insert one, such as `Transform::default()`")]
+    NoTransform {
+        /// The entity without one.
+        entity: Entity,
+        /// Its `Name` or number, after `the parent` or `the ancestor` where it is above.
+        name: String,
+    },
+    /// A transform that is not finite, or that is scaled to nothing.
     #[error("the global transform must be finite, with a scale other than zero: {transform}")]
     Transform {
         /// The transform, written out.
@@ -292,15 +296,35 @@ pub enum ClothError {
         /// Its rotation, written out.
         rotation: String,
     },
-    /// Particles that are not those of the surface.
+    /// Particles that are more or fewer than those of the surface.
     #[error(
-        "the cloth has {expected} particles, its `ClothParticles` hold {found}: give it as many, or empty them"
+        "the cloth has {expected} particles, its `ClothParticles` hold {found}: insert {expected}, or `ClothParticles::default()` to build the cloth at rest"
     )]
     ParticleCount {
         /// What the surface asks for.
         expected: usize,
         /// What was found.
         found: usize,
+    },
+    /// Particles that are those of another grid, though as many.
+    #[error(
+        "the cloth has {cloth}, its `ClothParticles` have {columns} columns × {rows} rows: insert `ClothParticles::new` with a position for each index, or `ClothParticles::default()` to build the cloth at rest"
+    )]
+    ParticleLayout {
+        /// Columns and rows of the cloth, or its particles and vertices.
+        cloth: String,
+        /// Particles a row.
+        columns: u32,
+        /// Particles a column.
+        rows: u32,
+    },
+    /// Positions and inverse masses that are not as many of either.
+    #[error("{positions} positions have {inverse_masses} inverse masses: give one for each")]
+    InverseMassCount {
+        /// How many positions.
+        positions: usize,
+        /// How many inverse masses.
+        inverse_masses: usize,
     },
     /// A spring between particles that do not exist or are one, or with a bad rest length or compliance.
     #[error(
@@ -350,46 +374,4 @@ pub enum ClothError {
         /// Particles along the height.
         rows: u32,
     },
-}
-
-impl MapEntities for ClothError {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        match self {
-            Self::NoTarget { target: entity, .. }
-            | Self::NoDrivingCloth { cloth: entity }
-            | Self::Joint { entity, .. } => {
-                *entity = mapper.get_mapped(*entity);
-            }
-            _ => {}
-        }
-    }
-}
-
-impl ClothError {
-    /// Whether `other` is at fault in the same place, whatever the value.
-    pub(crate) fn is_same_fault(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Quantity { quantity: a, .. }, Self::Quantity { quantity: b, .. }) => a == b,
-            (Self::NoTarget { .. }, Self::NoTarget { .. }) => self == other,
-            _ => discriminant(self) == discriminant(other),
-        }
-    }
-
-    /// `value` if it holds to `test`, else the error that names it.
-    pub(crate) fn check(
-        value: f32,
-        test: fn(f32) -> bool,
-        quantity: &'static str,
-        expected: &'static str,
-    ) -> Result<f32, Self> {
-        if test(value) {
-            Ok(value)
-        } else {
-            Err(Self::Quantity {
-                quantity,
-                expected,
-                value,
-            })
-        }
-    }
 }

@@ -23,6 +23,10 @@ use super::{
 /// on by default, `Cloth::mesh()` beside a `Mesh3d` takes that one's; [`triangles`](Self::triangles) takes positions and
 /// triangles.
 ///
+/// A grid, or triangles of its own, is never made from a `Mesh3d` beside it. The plugin draws the cloth in place of that one, logs it once,
+/// and puts the `Mesh3d` back when this component is removed. For that mesh as cloth use `Cloth::mesh()`; to have the cloth drive it, put
+/// it on another entity with a `ClothRenderMesh`.
+///
 /// Position, rotation and scale are respected at spawn; moved later, the transform carries the pinned particles along and the
 /// others follow by their springs.
 ///

@@ -25,8 +25,11 @@ use super::{
 use crate::cloth::Surface;
 
 /// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents; it replaces one that the entity
-/// had, which comes back when [`Cloth`](crate::cloth::Cloth) is removed. A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from
-/// both sides.
+/// had, which comes back when [`Cloth`](crate::cloth::Cloth) is removed. The plugin logs it when a grid takes the place of a `Mesh3d`. One
+/// that the game inserts later on a grid is drawn as it is, in place of the cloth.
+///
+/// A cloth that is made from a mesh is drawn with a copy of that, seams and all. Give the entity a material with `double_sided: true` and
+/// `cull_mode: None`, as `fabric` does: cloth is seen from both sides.
 ///
 /// Pinned and attached particles are drawn where the cloth's entity and their targets are drawn. Interpolate what moves in
 /// `FixedUpdate` and touches cloth, as the cloth is, for instance by the crate `bevy_transform_interpolation`.
