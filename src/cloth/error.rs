@@ -1,12 +1,8 @@
 //! Errors of cloths and colliders.
 
-use std::mem::discriminant;
+mod check;
 
-use bevy::{
-    ecs::entity::{Entity, EntityMapper, MapEntities},
-    math::Vec3,
-    reflect::Reflect,
-};
+use bevy::{ecs::entity::Entity, math::Vec3, reflect::Reflect};
 use thiserror::Error;
 
 use super::{MAX_PARTICLES, ParticleId, Pin, Spring};
@@ -231,7 +227,15 @@ pub enum ClothError {
         /// The largest allowed distance (m).
         farthest: f32,
     },
-    /// A transform is not finite, has a zero scale, or is missing from an ancestor.
+    /// An entity, or one of its ancestors, has no `Transform`.
+    #[error("{name} has no `Transform`: insert one, such as `Transform::default()`")]
+    NoTransform {
+        /// The entity without one.
+        entity: Entity,
+        /// Its `Name` or ID, after `the parent` or `the ancestor` where it is above.
+        name: String,
+    },
+    /// A transform is not finite, or has a zero scale.
     #[error("the global transform must be finite, with a scale other than zero: {transform}")]
     Transform {
         /// The transform, as text.
@@ -293,13 +297,33 @@ pub enum ClothError {
     },
     /// The number of particles is not that of the surface.
     #[error(
-        "the cloth has {expected} particles, its `ClothParticles` hold {found}: give it as many, or empty them"
+        "the cloth has {expected} particles, its `ClothParticles` hold {found}: insert {expected}, or `ClothParticles::default()` to build the cloth at rest"
     )]
     ParticleCount {
         /// Number of particles of the surface.
         expected: usize,
         /// Number of particles found.
         found: usize,
+    },
+    /// The particles are those of another grid with the same number of particles.
+    #[error(
+        "the cloth has {cloth}, its `ClothParticles` have {columns} columns × {rows} rows: insert `ClothParticles::new` with a position for each index, or `ClothParticles::default()` to build the cloth at rest"
+    )]
+    ParticleLayout {
+        /// Columns and rows of the cloth, or its particles and vertices.
+        cloth: String,
+        /// Particles per row.
+        columns: u32,
+        /// Particles per column.
+        rows: u32,
+    },
+    /// The numbers of positions and inverse masses differ.
+    #[error("{positions} positions have {inverse_masses} inverse masses: give one for each")]
+    InverseMassCount {
+        /// Number of positions.
+        positions: usize,
+        /// Number of inverse masses.
+        inverse_masses: usize,
     },
     /// A spring does not join two different particles, or its rest length or compliance is out of range.
     #[error(
@@ -351,46 +375,4 @@ pub enum ClothError {
         /// Particles along the height.
         rows: u32,
     },
-}
-
-impl MapEntities for ClothError {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        match self {
-            Self::NoTarget { target: entity, .. }
-            | Self::NoDrivingCloth { cloth: entity }
-            | Self::Joint { entity, .. } => {
-                *entity = mapper.get_mapped(*entity);
-            }
-            _ => {}
-        }
-    }
-}
-
-impl ClothError {
-    /// Whether `other` is the same fault of the same quantity, whatever its value.
-    pub(crate) fn is_same_fault(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Quantity { quantity: a, .. }, Self::Quantity { quantity: b, .. }) => a == b,
-            (Self::NoTarget { .. }, Self::NoTarget { .. }) => self == other,
-            _ => discriminant(self) == discriminant(other),
-        }
-    }
-
-    /// Returns `value` if it passes `test`, else the error that names it.
-    pub(crate) fn check(
-        value: f32,
-        test: fn(f32) -> bool,
-        quantity: &'static str,
-        expected: &'static str,
-    ) -> Result<f32, Self> {
-        if test(value) {
-            Ok(value)
-        } else {
-            Err(Self::Quantity {
-                quantity,
-                expected,
-                value,
-            })
-        }
-    }
 }

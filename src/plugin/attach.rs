@@ -15,7 +15,7 @@ use super::{
     ClothAttachment, ClothBuilt, ClothFrame, ClothState, ClothTarget,
     attachments::Attached,
     carry::set_motion,
-    frame::{global_transform, rigid},
+    frame::{Places, global_transform, rigid},
 };
 use crate::{
     cloth::{ClothError, ClothParticles, Surface},
@@ -26,6 +26,8 @@ use crate::{
 #[derive(SystemParam)]
 pub(super) struct Targets<'w, 's> {
     pub transforms: TransformHelper<'w, 's>,
+    /// Where cloths are, also below what is disabled.
+    pub cloths: Places<'w, 's>,
     names: Query<'w, 's, (Entity, &'static Name)>,
 }
 
@@ -47,7 +49,7 @@ impl Targets<'_, '_> {
         };
         let find = || {
             let called = self.names.iter().filter(|(_, its)| its.as_str() == name);
-            let exists = |entity: &Entity| global_transform(&self.transforms, *entity).is_ok();
+            let exists = |entity: &Entity| global_transform(&self.transforms, *entity).is_some();
             called
                 .map(|(entity, _)| entity)
                 .filter(exists)
@@ -84,7 +86,7 @@ impl Targets<'_, '_> {
         }
         for (index, attachment) in attachments.iter().enumerate() {
             let target = self.entity(attachment, entities.get(index).copied())?;
-            let transform = global_transform(&self.transforms, target).ok();
+            let transform = global_transform(&self.transforms, target);
             let affine = transform.map(|transform| transform.affine());
             let place = affine.filter(|affine| affine.inverse().is_finite());
             places.push(place.ok_or_else(|| ClothError::NoTarget {

@@ -61,7 +61,7 @@ pub(super) fn build(
         material: *wanted.material,
         pins: wanted.pins.clone(),
         scale: wanted.scale,
-        particles: particles.len(),
+        particles: [particles.columns(), particles.rows()],
     };
     if let Some((before, error)) = &built.refused
         && *before == tried
@@ -145,6 +145,7 @@ fn build_new(
     built.solver = shared.solver.clone();
     built.forget_tethers();
     built.shared = shared;
+    built.noticed.is_due = true;
     built.from = Some(BuiltFrom {
         unevenness: cloth.unevenness,
         changed: wanted.changed,
@@ -266,13 +267,25 @@ fn follow_changes(
     Ok(())
 }
 
-/// Whether the particles are as many as the surface has, laid out alike.
-fn check_count(particles: &ClothParticles, surface: &Surface) -> Result<(), ClothError> {
+/// Whether the particles are as many as the surface has. One row of them is laid out as the surface is.
+fn check_count(particles: &mut Mut<ClothParticles>, surface: &Surface) -> Result<(), ClothError> {
     if particles.matches(surface) {
         return Ok(());
     }
-    Err(ClothError::ParticleCount {
-        expected: surface.len(),
-        found: particles.len(),
+    if let Some(laid_out) = particles.laid_out(surface) {
+        **particles = laid_out;
+        return Ok(());
+    }
+    Err(if particles.len() == surface.len() {
+        ClothError::ParticleLayout {
+            cloth: surface.to_string(),
+            columns: particles.columns(),
+            rows: particles.rows(),
+        }
+    } else {
+        ClothError::ParticleCount {
+            expected: surface.len(),
+            found: particles.len(),
+        }
     })
 }

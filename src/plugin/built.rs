@@ -8,7 +8,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{shared::Shared, skin::SkinLimits, source::Source};
+use super::{notices::Noticed, shared::Shared, skin::SkinLimits, source::Source};
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothParticles, Pins, Springs, Surface},
     hierarchy::QuadTree,
@@ -30,6 +30,9 @@ pub struct ClothBuilt {
     /// The inputs from which nothing could be built, and why.
     #[reflect(ignore)]
     pub(super) refused: Option<(Tried, ClothError)>,
+    /// What has been logged of it.
+    #[reflect(ignore)]
+    pub(super) noticed: Noticed,
     #[reflect(ignore)]
     pub(super) solver: Solver,
     /// Whether there are tethers, and for which acceleration (m/s²), 0 without; `None` if they have to be made again.
@@ -71,7 +74,8 @@ pub(super) struct Tried {
     pub material: ClothMaterial,
     pub pins: Pins,
     pub scale: Vec3,
-    pub particles: usize,
+    /// Its columns and rows.
+    pub particles: [u32; 2],
 }
 
 impl ClothBuilt {

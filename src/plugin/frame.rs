@@ -6,6 +6,7 @@ use bevy::{
         entity::Entity,
         entity_disabling::Disabled,
         hierarchy::ChildOf,
+        name::Name,
         query::Allow,
         reflect::ReflectComponent,
         system::{Query, SystemParam},
@@ -14,25 +15,19 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::{
         components::{GlobalTransform, Transform},
-        helper::{ComputeGlobalTransformError, TransformHelper},
+        helper::TransformHelper,
     },
 };
 
+use super::naming::quoted;
 use crate::cloth::ClothError;
 
-/// An entity's global transform as of now, not as of the last frame.
-///
-/// # Errors
-/// [`ClothError::Transform`] if an ancestor has none.
+/// An entity's global transform as of now, not as of the last frame, if it and all above it have one.
 pub(super) fn global_transform(
     transforms: &TransformHelper,
     entity: Entity,
-) -> Result<GlobalTransform, ClothError> {
-    transforms
-        .compute_global_transform(entity)
-        .map_err(|error| ClothError::Transform {
-            transform: error.to_string(),
-        })
+) -> Option<GlobalTransform> {
+    transforms.compute_global_transform(entity).ok()
 }
 
 /// The error of a global transform that can't be used.
@@ -50,25 +45,33 @@ pub(super) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
 pub(super) struct Places<'w, 's> {
     parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
     transforms: Query<'w, 's, &'static Transform, Allow<Disabled>>,
+    names: Query<'w, 's, &'static Name, Allow<Disabled>>,
 }
 
 impl Places<'_, '_> {
     /// An entity's global transform.
     ///
     /// # Errors
-    /// [`ClothError::Transform`] if it or an ancestor has none.
+    /// [`ClothError::NoTransform`] if it or an ancestor has none.
     pub fn of(&self, entity: Entity) -> Result<GlobalTransform, ClothError> {
-        let own = |entity: Entity| {
-            let transform = self.transforms.get(entity);
-            transform.copied().map_err(|_| ClothError::Transform {
-                transform: ComputeGlobalTransformError::MissingTransform(entity).to_string(),
-            })
-        };
-        let mut place = GlobalTransform::from(own(entity)?);
-        for above in self.parents.iter_ancestors(entity) {
-            place = own(above)? * place;
+        let mut place = GlobalTransform::from(self.own(entity, "")?);
+        for (index, above) in self.parents.iter_ancestors(entity).enumerate() {
+            let kinship = if index == 0 {
+                "the parent "
+            } else {
+                "the ancestor "
+            };
+            place = self.own(above, kinship)? * place;
         }
         Ok(place)
+    }
+
+    fn own(&self, entity: Entity, kinship: &str) -> Result<Transform, ClothError> {
+        let transform = self.transforms.get(entity).copied();
+        transform.map_err(|_| ClothError::NoTransform {
+            entity,
+            name: format!("{kinship}{}", quoted(entity, self.names.get(entity).ok())),
+        })
     }
 }
 

@@ -22,7 +22,7 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
     let Some(target) = state.targets.first() else {
         return Some(frame.isometry());
     };
-    let place = global_transform(&targets.transforms, *target).ok()?;
+    let place = global_transform(&targets.transforms, *target)?;
     Some(rigid(&place.affine()))
 }
 
@@ -30,7 +30,8 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
 /// velocities when it begins.
 ///
 /// # Errors
-/// [`ClothError::Transform`], and [`ClothError::NoTarget`] if the target of the first of `attachments` is gone.
+/// [`ClothError::Transform`], [`ClothError::NoTransform`], and [`ClothError::NoTarget`] if the target of the first of
+/// `attachments` is gone.
 pub(super) fn stand(
     entity: Entity,
     attachments: &[ClothAttachment],
@@ -39,7 +40,7 @@ pub(super) fn stand(
     particles: &mut Mut<ClothParticles>,
     state: &mut ClothState,
 ) -> Result<(), ClothError> {
-    let transform = global_transform(&targets.transforms, entity)?;
+    let transform = targets.cloths.of(entity)?;
     let (now, _) = ClothFrame::of(&transform)?;
     let Some(carried_by) = carrier(targets, state, now) else {
         return match (attachments.first(), state.targets.first()) {

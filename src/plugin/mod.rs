@@ -16,6 +16,7 @@ mod collider_tree;
 mod colliders;
 mod components;
 mod contacts;
+mod cost;
 mod diagnostics;
 mod envelope;
 mod excess;
@@ -38,6 +39,7 @@ mod lod_state;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod naming;
+mod notices;
 mod origin;
 #[cfg(feature = "egui")]
 mod panel;

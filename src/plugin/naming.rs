@@ -33,9 +33,14 @@ impl NamedItem<'_, '_> {
             Part::RenderMesh => "cloth render mesh",
             Part::WindZone => "cloth wind zone",
         };
-        match self.name {
-            Some(name) => format!("{part} \"{name}\""),
-            None => format!("{part} {}", self.entity),
-        }
+        format!("{part} {}", quoted(self.entity, self.name))
+    }
+}
+
+/// `"flag"`, or `12v0` of an entity without a name.
+pub(super) fn quoted(entity: Entity, name: Option<&Name>) -> String {
+    match name {
+        Some(name) => format!("\"{name}\""),
+        None => entity.to_string(),
     }
 }

@@ -1,6 +1,7 @@
 //! The first step of a tick: builds new cloths, and checks and takes over every input.
 
 mod asleep;
+mod notice;
 mod preparing;
 mod step;
 
@@ -14,6 +15,7 @@ use bevy::{
 
 use self::{
     asleep::sleeps_as_it_was,
+    notice::notice_new,
     preparing::{NO_PINS, Preparing, PreparingItem, Surroundings},
     step::{prepare_contact, prepare_step, see_whether_it_rests},
 };
@@ -29,6 +31,7 @@ use super::{
     lod::{ClothLod, ClothLodLevel, GlobalClothLod},
     lod_state::Turn,
     naming::Part,
+    notices::Notices,
     shared::SharedParts,
     skin::{move_with_pose, place_pose, stand_in_pose},
     wind::Breeze,
@@ -39,7 +42,7 @@ use crate::cloth::{ClothError, ClothParticles};
 pub(super) fn prepare_cloths(
     mut cloths: Query<Preparing>,
     around: Surroundings,
-    mut parts: ResMut<SharedParts>,
+    (mut parts, mut notices): (ResMut<SharedParts>, ResMut<Notices>),
     gravity: Res<ClothGravity>,
     global_lod: Option<Res<GlobalClothLod>>,
     time: Res<Time>,
@@ -81,7 +84,9 @@ pub(super) fn prepare_cloths(
             // Forgets the work of an earlier tick.
             cloth.scratch.forget_tick();
             let seconds = (seconds, ticks);
-            prepare(&mut cloth, &inputs, &around, breeze, &mut parts, seconds)
+            prepare(&mut cloth, &inputs, &around, breeze, &mut parts, seconds)?;
+            notice_new(&mut cloth, &inputs, &mut notices);
+            Ok(())
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
@@ -138,7 +143,7 @@ fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), C
     )?;
     if cloth.built.skin.is_some() && state.lod.level != ClothLodLevel::Off {
         let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
-        let place = |joint| global_transform(&targets.transforms, joint).ok();
+        let place = |joint| global_transform(&targets.transforms, joint);
         (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
         let (sources, frame) = (&around.sources, &*cloth.frame);
         stand_in_pose(sources, frame, particles, built, state, scratch)?;
@@ -191,12 +196,12 @@ fn build_cloth(
     parts: &mut SharedParts,
 ) -> Result<(ClothFrame, Build), ClothError> {
     let (targets, sources) = (&around.targets, &around.sources);
-    let transform = global_transform(&targets.transforms, cloth.entity)?;
+    let transform = targets.cloths.of(cloth.entity)?;
     let (frame, mut scale) = ClothFrame::of(&transform)?;
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
     if cloth.skin.is_some() {
-        let place = |joint| global_transform(&targets.transforms, joint).ok();
+        let place = |joint| global_transform(&targets.transforms, joint);
         (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
         // How large it is in the world is the skeleton's matter.
         scale = scratch.pose.scale().unwrap_or(scale);

@@ -45,6 +45,7 @@ use super::{
     islands::{Islands, find_islands},
     levels::choose_levels,
     naming::Part,
+    notices::{Notices, log_notices},
     prepare::prepare_cloths,
     push::push_bodies,
     reflected::register_lists,
@@ -113,6 +114,7 @@ impl Plugin for ClothPlugin {
             .add_message::<ClothLimitExceeded>()
             .insert_resource(ClothPresence::Simulated)
             .init_resource::<SharedParts>()
+            .init_resource::<Notices>()
             .init_resource::<Islands>()
             .init_resource::<ColliderTree>()
             .init_resource::<WindField>()
@@ -127,7 +129,8 @@ impl Plugin for ClothPlugin {
             .add_observer(remove_bone_colliders)
             .add_observer(forget_collider)
             .add_observer(note_enabled)
-            .add_systems(Last, note_removals);
+            .add_systems(Last, note_removals)
+            .add_systems(Last, log_notices.run_if(Notices::are_there));
         #[cfg(feature = "mesh")]
         app.init_resource::<SharedMeshes>();
         // In the schedule of transform propagation, cameras and visibility are of this frame or of the last.

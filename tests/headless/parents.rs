@@ -3,7 +3,10 @@
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
-use crate::support::*;
+use crate::{
+    log::{lines_with, listen},
+    support::*,
+};
 
 /// Where something is in a tick: on its way, turning.
 fn at(tick: u32) -> Transform {
@@ -171,7 +174,7 @@ fn a_collider_without_a_transform_is_named() {
     app.world_mut().entity_mut(ball).remove::<Transform>();
     tick(&mut app, 1);
     let fault = app.world().get::<ClothFault>(ball).expect("a fault");
-    assert!(matches!(fault.error, ClothError::Transform { .. }));
+    assert!(matches!(fault.error, ClothError::NoTransform { .. }));
     assert_eq!(stats(&app, cloth).contacts, 0);
     app.world_mut().entity_mut(ball).insert(place);
     tick(&mut app, 1);
@@ -241,4 +244,59 @@ fn colliders_are_found_below_whatever_moves() {
         tick(&mut app, 2);
         assert_eq!(stats(&app, cloth).colliders_near, 0);
     }
+}
+
+/// A fault names the parent that has no transform, and ends when that gets one.
+#[test]
+fn a_parent_without_a_transform_is_named() {
+    listen();
+    let mut app = app();
+    let level = app.world_mut().spawn(Name::new("level")).id();
+    let cloth = (Cloth::default(), Name::new("drape"), ChildOf(level));
+    let cloth = app.world_mut().spawn(cloth).id();
+    let node = (Transform::default(), ChildOf(level));
+    let node = app.world_mut().spawn(node).id();
+    let ball = (ClothCollider::default(), Name::new("globe"), ChildOf(node));
+    let ball = app.world_mut().spawn(ball).id();
+    tick(&mut app, 3);
+    let remedy = "has no `Transform`: insert one, such as `Transform::default()`";
+    let out = "is left out of the cloth simulation";
+    let mut lines = lines_with("\"level\"");
+    lines.sort();
+    assert_eq!(
+        lines,
+        [
+            format!("cloth \"drape\" {out}: the parent \"level\" {remedy}"),
+            format!("cloth collider \"globe\" {out}: the ancestor \"level\" {remedy}"),
+        ]
+    );
+    app.world_mut()
+        .entity_mut(level)
+        .insert(Transform::default())
+        .remove::<Name>();
+    tick(&mut app, 3);
+    for entity in [cloth, ball] {
+        assert!(app.world().get::<ClothFault>(entity).is_none());
+    }
+    app.world_mut().entity_mut(level).remove::<Transform>();
+    tick(&mut app, 1);
+    let fault = app.world().get::<ClothFault>(cloth).expect("a fault");
+    assert_eq!(
+        fault.error.to_string(),
+        format!("the parent {level} {remedy}")
+    );
+}
+
+/// A disabled parent has its transform still: what is below it is not disabled.
+#[test]
+fn a_cloth_below_something_disabled_moves() {
+    use bevy::ecs::entity_disabling::Disabled;
+    let mut app = app();
+    let parent = (Transform::from_xyz(0.0, 3.0, 0.0), Disabled);
+    let parent = app.world_mut().spawn(parent).id();
+    let cloth = (Cloth::default(), Pins::none(), ChildOf(parent));
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 5);
+    assert!(app.world().get::<ClothFault>(cloth).is_none());
+    assert!(position(&app, cloth, (0, 0)).y < -0.01);
 }

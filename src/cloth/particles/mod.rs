@@ -85,16 +85,20 @@ impl ClothParticles {
         Ok(particles)
     }
 
-    /// Particles at rest in one row, from positions (m) and inverse masses (1/kg, 0 for a pinned particle).
+    /// Particles at rest, from positions (m) and inverse masses (1/kg, 0 for a pinned particle), in the order of their
+    /// indices.
+    ///
+    /// They are one row. A [`Cloth`](super::Cloth) that is a grid with as many particles lays them out in its rows in the
+    /// next tick: the particle at (row, column) is number `row × columns + column`.
     ///
     /// # Errors
-    /// [`ClothError::ParticleCount`] if the two slices differ in length; [`ClothError::ParticleNotFinite`] for the
+    /// [`ClothError::InverseMassCount`] if the two slices differ in length; [`ClothError::ParticleNotFinite`] for the
     /// first invalid particle.
     pub fn new(positions: &[Vec3], inverse_masses: &[f32]) -> Result<Self, ClothError> {
         if positions.len() != inverse_masses.len() {
-            return Err(ClothError::ParticleCount {
-                expected: positions.len(),
-                found: inverse_masses.len(),
+            return Err(ClothError::InverseMassCount {
+                positions: positions.len(),
+                inverse_masses: inverse_masses.len(),
             });
         }
         let mut particles = Self::of_layout(Layout::new(positions.len() as u32, 1));
@@ -106,6 +110,25 @@ impl ClothParticles {
         }
         particles.validate()?;
         Ok(particles)
+    }
+
+    /// One row of particles laid out in the rows of a grid of as many, by their indices; `None` of any others.
+    pub(crate) fn laid_out(&self, surface: &Surface) -> Option<Self> {
+        let (from, to) = (self.sound_layout(), Layout::of(surface));
+        if from.rows != 1 || from.len() != to.len() {
+            return None;
+        }
+        let mut new = Self {
+            substep: self.substep,
+            ..Self::of_layout(to)
+        };
+        for (old, slot) in from.slots().zip(to.slots()) {
+            let (was, block) = (&self.blocks[old.block], &mut new.blocks[slot.block]);
+            block.set_position(slot.lane, was.position(old.lane));
+            block.set_displacement(slot.lane, was.displacement(old.lane));
+            block.set_inverse_mass(slot.lane, was.inverse_mass(old.lane));
+        }
+        Some(new)
     }
 
     fn of_layout(layout: Layout) -> Self {

@@ -68,6 +68,11 @@ impl Pins {
         self.0.iter().try_for_each(|pin| pin.validate(surface))
     }
 
+    /// All pins.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Pin> {
+        self.0.iter()
+    }
+
     /// Calls `pinned` with the index of each pinned particle of `surface`, possibly more than once. The pins must be
     /// valid for it.
     pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {

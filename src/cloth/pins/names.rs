@@ -41,6 +41,12 @@ impl Pin {
         })
     }
 
+    /// Whether it is a predicate that holds for no particle of `surface`, which is no error.
+    pub(crate) fn is_in_vain(&self, surface: &Surface) -> bool {
+        let is_predicate = matches!(self, Self::Where(_) | Self::AtRest(_));
+        is_predicate && self.finds_something(surface).is_err()
+    }
+
     fn finds_something(&self, surface: &Surface) -> Result<(), ClothError> {
         let mut found = false;
         self.for_each(surface, |_| found = true);

@@ -14,7 +14,11 @@ use bevy::{
 };
 
 use super::{
-    super::{ClothBuilt, skin::ClothSkeleton},
+    super::{
+        ClothBuilt,
+        notices::{Notice, Notices},
+        skin::ClothSkeleton,
+    },
     component::ClothMesh,
     write::{Tangents, copy_of, mesh_of},
 };
@@ -31,6 +35,7 @@ pub(super) fn add_meshes(
         Option<&SkinnedMesh>,
     )>,
     mut meshes: ResMut<Assets<Mesh>>,
+    mut notices: ResMut<Notices>,
     mut commands: Commands,
 ) {
     for (entity, cloth, built, mesh, drawn, skin) in &cloths {
@@ -59,6 +64,15 @@ pub(super) fn add_meshes(
         let known = drawn.and_then(|drawn| drawn.replaced.clone());
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
+        let is_own = |mesh: &Mesh3d| {
+            let mut drawn = cloths.iter().filter_map(|(.., drawn, _)| drawn);
+            drawn.any(|drawn| drawn.handle == mesh.0)
+        };
+        // A scene or a clone brings a mesh of the plugin's along.
+        if drawn.is_none() && !is_asset && other.is_some_and(|mesh| !is_own(mesh)) {
+            let text = replacing(cloth);
+            notices.add(entity, Notice::ReplacesMesh, text);
+        }
         let replaced = other.map(|mesh| mesh.0.clone()).or(known);
         let source = replaced.clone().filter(|_| is_asset);
         // The asset that the cloth was made from may have been removed meanwhile, or be in the render world alone.
@@ -78,6 +92,18 @@ pub(super) fn add_meshes(
         };
         commands.entity(entity).try_insert((Mesh3d(handle), drawn));
     }
+}
+
+/// The text for a cloth that ignores the `Mesh3d` on its entity.
+fn replacing(cloth: &Cloth) -> String {
+    let kind = match cloth.as_grid() {
+        Some(_) => "a grid",
+        None => "made of its own triangles",
+    };
+    format!(
+        "it is {kind} and is drawn in place of its `Mesh3d`: use `Cloth::mesh()` to make the cloth from that mesh, or put the `Mesh3d` on another entity \
+         with a `ClothRenderMesh`"
+    )
 }
 
 /// An entity that is no cloth any more draws again what it drew before, if anything. A mesh that the game has put in

@@ -25,9 +25,11 @@ use super::{
 use crate::cloth::Surface;
 
 /// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents. It replaces
-/// the entity's own mesh, which comes back when [`Cloth`](crate::cloth::Cloth) is removed. A cloth made from a mesh is
-/// drawn with a copy of that mesh, seams included. Give the entity a material with `double_sided: true` and `cull_mode:
-/// None`, as `fabric` does: cloth is seen from both sides.
+/// the entity's own mesh, which comes back when [`Cloth`](crate::cloth::Cloth) is removed. The plugin logs it when a grid
+/// replaces a `Mesh3d`. A mesh that the game inserts later on a grid is drawn as it is, in place of the cloth.
+///
+/// A cloth made from a mesh is drawn with a copy of that mesh, seams included. Give the entity a material with
+/// `double_sided: true` and `cull_mode: None`, as `fabric` does: cloth is seen from both sides.
 ///
 /// Pinned and attached particles are drawn where the cloth's entity and its targets are drawn. The cloth is
 /// interpolated between ticks. Interpolate colliders that move in `FixedUpdate` too, for instance with the crate

@@ -35,6 +35,7 @@ use super::{
     frame::rigid,
     lod::ClothLodLevel,
     lod_state::Turn,
+    notices::Notices,
     skin::{ClothSkeleton, Skins},
 };
 use crate::cloth::ClothParticles;
@@ -92,7 +93,8 @@ impl Plugin for ClothMeshPlugin {
                            meshes: ResMut<_>| {
             update_meshes(cloths, at, time, meshes, interpolated);
         };
-        app.register_type::<ClothMesh>()
+        app.init_resource::<Notices>()
+            .register_type::<ClothMesh>()
             .register_type::<ClothSkeleton>()
             .add_observer(remove_mesh)
             .add_systems(

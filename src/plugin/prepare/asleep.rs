@@ -59,13 +59,12 @@ pub(super) fn sleeps_as_it_was(
         && (state.air).is_still(breeze.as_ref(), cloth.pressure, field, || {
             ball(built, &cloth.particles, state.stretch.bound, &cloth.frame)
         })
-        && global_transform(&targets.transforms, cloth.entity)
-            .is_ok_and(|transform| cloth.frame.is_of(&transform))
+        && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))
 }
 
 /// Whether its pose is the same as in the last tick, or it follows none.
 fn is_in_same_pose(cloth: &PreparingItem, around: &Surroundings) -> bool {
-    let place = |joint| global_transform(&around.targets.transforms, joint).ok();
+    let place = |joint| global_transform(&around.targets.transforms, joint);
     match (&cloth.skin, &cloth.built.skin) {
         (None, None) => true,
         (Some(skin), Some(known)) => {
