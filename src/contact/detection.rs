@@ -1,6 +1,7 @@
 //! Which particles each collider may touch in a tick, kept true while the tick goes on, and what came of it.
 
 mod carrying;
+mod caught;
 mod requery;
 mod sewn;
 

@@ -51,7 +51,7 @@ pub use layers::ClothLayers;
 pub use mass::BodyMass;
 pub use moving::MovingCollider;
 pub use mutual::{ClothSelfCollision, intersections};
-pub(crate) use mutual::{MutualContact, Participant, Sheet};
+pub(crate) use mutual::{Inside, MutualContact, Participant, Sheet};
 pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
 pub use shape::ColliderShape;
 pub use source::SharedCollider;

@@ -121,6 +121,8 @@ impl ClothAttachments {
 /// On any other entity, as a character, it takes along all cloths and colliders below that, and cloths whose first attachment's
 /// target is below: none gets a speed from the jump. [`ClothInertia`](super::ClothInertia) does so by itself.
 /// Taken away in the next tick.
+///
+/// Without it a jump drags the cloth along by its pins. The log names a cloth whose pins jump by more than 2 m in a tick, once.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothTeleport;

@@ -17,6 +17,7 @@ mod colliders;
 mod components;
 mod contacts;
 mod diagnostics;
+mod drag;
 mod envelope;
 mod excess;
 #[cfg(feature = "pbr")]

@@ -44,6 +44,10 @@ pub struct ClothScratch {
     pub(super) carried: Option<Carried>,
     /// Whether the cloth jumps.
     pub(super) teleports: bool,
+    /// How far its pins jump in the tick, which drags it along (m); 0 if they do not.
+    pub(super) dragged: f32,
+    /// Whether it was built and has not been moved since.
+    pub(super) begins: bool,
     /// How far a particle may get by itself (m).
     pub(super) reach: f32,
     /// Colliders near the cloth, in its frame. What `detection` calls them by is their place here.
@@ -75,6 +79,7 @@ impl ClothScratch {
         self.pins.clear();
         self.constraints.clear();
         self.carried = None;
+        self.dragged = 0.0;
         self.pushed.clear();
     }
 }

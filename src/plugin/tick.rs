@@ -32,6 +32,7 @@ const MIN_TO_SPLIT: usize = 256 * 256;
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct Integrating {
+    pub entity: Entity,
     pub built: &'static mut ClothBuilt,
     pub frame: &'static ClothFrame,
     pub particles: &'static mut ClothParticles,
@@ -84,6 +85,7 @@ impl IntegratingItem<'_, '_> {
     /// Takes over what came of a tick whose sub-steps took this long (ms).
     pub(super) fn finish(&mut self, milliseconds: f64) {
         self.stats.integrate_ms = milliseconds;
+        self.scratch.begins = false;
         // What is lost here is a fault before anyone sees it.
         let survey = self.particles.survey();
         self.state.is_valid &= survey.is_valid;
