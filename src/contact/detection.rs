@@ -2,6 +2,7 @@
 //! contacts.
 
 mod carrying;
+mod caught;
 mod requery;
 mod sewn;
 

@@ -58,7 +58,7 @@ pub use moving::MovingCollider;
 pub use mutual::ClothSelfCollision;
 #[doc(hidden)]
 pub use mutual::intersections;
-pub(crate) use mutual::{MutualContact, Participant, Sheet};
+pub(crate) use mutual::{Inside, MutualContact, Participant, Sheet};
 pub use narrow_phase::NarrowPhase;
 #[doc(hidden)]
 pub use narrow_phase::PARTICLES_FROM;

@@ -126,6 +126,9 @@ impl ClothAttachments {
 /// and cloths whose first attachment's target is below it. None of them gains speed from the jump.
 /// [`ClothInertia`](super::ClothInertia) does the same automatically when its entity jumps. The plugin removes the
 /// component in the next tick.
+///
+/// Without it a jump drags the cloth along by its pins. The log names a cloth whose pins jump by more than 2 m in a
+/// tick, once.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothTeleport;

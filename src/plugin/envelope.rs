@@ -12,9 +12,10 @@ use bevy::{
 
 use super::{
     ClothScratch, ClothState, ClothStats,
+    drag::FAR,
     naming::{Named, Part},
 };
-use crate::solver::ClothLimit;
+use crate::{cloth::ClothParticles, solver::ClothLimit};
 
 /// Reports are gathered for this number of ticks, half a second at Bevy's 64 Hz, so that many cloths make one line of
 /// the log.
@@ -38,58 +39,127 @@ pub struct ClothLimitExceeded {
 
 /// Cloths beyond one limit that the log does not know of yet.
 #[derive(Debug, Default)]
-pub(super) struct Gathered {
+struct Gathered {
     cloths: EntityHashSet,
     ticks: u32,
-    /// The cloth that is farthest beyond the limit, with its quantity and the largest good value of that.
-    worst: Option<(String, [f32; 2])>,
+    worst: Option<Worst>,
+}
+
+/// The cloth that is farthest beyond a limit.
+#[derive(Debug)]
+struct Worst {
+    name: String,
+    /// Its quantity, and the largest good value of that.
+    figures: [f32; 2],
+    /// The colliders that it is caught between, if it is.
+    caught: Option<String>,
+}
+
+/// Cloths to be logged.
+#[derive(Debug, Default)]
+pub(super) struct Unsaid {
+    limits: [Gathered; ClothLimit::ALL.len()],
+    dragged: Gathered,
 }
 
 impl Gathered {
-    fn add(&mut self, cloth: Entity, name: impl FnOnce() -> String, quantity: [f32; 2]) {
+    fn add(
+        &mut self,
+        cloth: Entity,
+        figures: [f32; 2],
+        describe: impl FnOnce() -> (String, Option<String>),
+    ) {
         self.cloths.insert(cloth);
         // The limit of failed sub-steps is 0.
         let excess = |[quantity, good]: [f32; 2]| match good {
             0.0 => quantity,
             _ => quantity / good,
         };
-        let known = self.worst.as_ref().map(|(_, worst)| excess(*worst));
-        if known.is_none_or(|worst| excess(quantity) > worst) {
-            self.worst = Some((name(), quantity));
+        let known = self.worst.as_ref().map(|worst| excess(worst.figures));
+        if known.is_none_or(|worst| excess(figures) > worst) {
+            let (name, caught) = describe();
+            self.worst = Some(Worst {
+                name,
+                figures,
+                caught,
+            });
         }
     }
 
-    /// Counts a tick. Returns the line to log, if there is one.
-    fn line(&mut self, limit: ClothLimit) -> Option<String> {
+    /// Counts a tick. Returns the number of cloths to log and the worst of them, if there are any.
+    fn take(&mut self) -> Option<(usize, Worst)> {
         self.ticks += u32::from(!self.cloths.is_empty());
         if self.ticks < GATHERED {
             return None;
         }
         let Self { cloths, worst, .. } = std::mem::take(self);
-        let (name, quantity) = worst?;
-        let (figures, remedy) = (limit.figures(quantity), limit.remedy());
-        let cloths = cloths.len();
+        Some((cloths.len(), worst?))
+    }
+
+    /// A tick has passed. Returns what is to be logged of a limit, if anything is.
+    fn line(&mut self, limit: ClothLimit) -> Option<String> {
+        let (cloths, worst) = self.take()?;
+        let Worst {
+            name,
+            figures,
+            caught,
+        } = worst;
+        let (figures, remedy) = (limit.figures(figures), limit.remedy());
+        let remedy = caught.map_or(remedy.into(), |colliders| {
+            format!(
+                "caught between {colliders}: move them apart, or let it meet fewer of them with `ClothLayers`"
+            )
+        });
         Some(if cloths == 1 {
             format!("{name} is {limit}: {figures}: {remedy}")
         } else {
             format!("{cloths} cloths are {limit}, {name} most: {figures}: {remedy}")
         })
     }
+
+    /// A tick has passed. Returns what is to be logged of jumps that drag cloths along, if anything is.
+    fn drag_line(&mut self) -> Option<String> {
+        let (cloths, worst) = self.take()?;
+        let (name, [way, limit]) = (worst.name, worst.figures);
+        let (name, most) = match cloths {
+            1 => (format!("{name} was"), String::new()),
+            _ => (format!("{cloths} cloths were"), format!(", {name} most")),
+        };
+        Some(format!(
+            "{name} dragged along by a jump{most}: {way:.1} m in a tick (limit {limit} m): insert `ClothTeleport` on the cloth in the tick of the jump, or give its character a `ClothInertia`, which teleports it beyond `teleport_distance`"
+        ))
+    }
 }
+
+/// What a cloth is looked at by.
+type Reported = (
+    Named,
+    &'static ClothParticles,
+    &'static mut ClothState,
+    &'static mut ClothScratch,
+    &'static mut ClothStats,
+);
 
 /// Looks at every cloth that moved in the tick.
 pub(super) fn report_limits(
-    mut cloths: Query<(Named, &mut ClothState, &mut ClothScratch, &mut ClothStats)>,
+    mut cloths: Query<Reported>,
+    names: Query<Named>,
     mut exceeded: MessageWriter<ClothLimitExceeded>,
-    mut gathered: Local<[Gathered; ClothLimit::ALL.len()]>,
+    mut unsaid: Local<Unsaid>,
 ) {
-    for (name, mut state, mut scratch, mut stats) in &mut cloths {
+    let Unsaid { limits, dragged } = &mut *unsaid;
+    for (name, particles, mut state, mut scratch, mut stats) in &mut cloths {
         // Kept while the cloth sleeps or is frozen; not written, so that change detection does not see it.
         let Some(limit_inputs) = scratch.limit_inputs else {
             continue;
         };
         scratch.limit_inputs = None;
         stats.exceeded = None;
+        if scratch.dragged > 0.0 && !state.was_dragged {
+            state.was_dragged = true;
+            let describe = || (name.describe(Part::Cloth), None);
+            dragged.add(name.entity, [scratch.dragged, FAR], describe);
+        }
         // Longer sub-steps stretch more, and the level of detail asked for them.
         let is_coarse = state.lod.moved_by() > 1;
         for (index, limit) in ClothLimit::ALL.into_iter().enumerate() {
@@ -109,16 +179,37 @@ pub(super) fn report_limits(
                     quantity,
                     good_up_to,
                 });
-                let figures = [quantity, good_up_to];
-                gathered[index].add(name.entity, || name.describe(Part::Cloth), figures);
+                let is_stretch = matches!(limit, ClothLimit::Stretch | ClothLimit::Tolerance);
+                // What drags it along stretches it, and is logged.
+                if is_stretch && dragged.cloths.contains(&name.entity) {
+                    continue;
+                }
+                limits[index].add(name.entity, [quantity, good_up_to], || {
+                    let caught = is_stretch.then(|| catchers(&scratch, particles, &names));
+                    (name.describe(Part::Cloth), caught.flatten())
+                });
             }
         }
     }
-    for (limit, gathered) in ClothLimit::ALL.into_iter().zip(&mut *gathered) {
-        if let Some(line) = gathered.line(limit) {
-            warn!("{line}");
-        }
+    let lines = ClothLimit::ALL.into_iter().zip(limits);
+    let lines = lines.filter_map(|(limit, gathered)| gathered.line(limit));
+    for line in lines.chain(dragged.drag_line()) {
+        warn!("{line}");
     }
+}
+
+/// Which two colliders a cloth is caught between, if it is.
+fn catchers(
+    scratch: &ClothScratch,
+    particles: &ClothParticles,
+    names: &Query<Named>,
+) -> Option<String> {
+    let colliders = scratch.detection.caught_between(particles)?;
+    let [first, second] = colliders.map(|id| {
+        let (entity, _) = *scratch.near.get(id)?;
+        Some(names.get(entity).ok()?.describe(Part::Collider))
+    });
+    Some(format!("{} and {}", first?, second?))
 }
 
 #[cfg(test)]
@@ -136,9 +227,9 @@ mod tests {
             if tick < 30 {
                 for cloth in [2 * tick, 2 * tick + 1] {
                     let stretch = if cloth == 17 { 0.31 } else { 0.2 };
-                    let name = || format!("cloth \"flag {cloth}\"");
+                    let name = || (format!("cloth \"flag {cloth}\""), None);
                     let entity = Entity::from_raw_u32(cloth).expect("an entity");
-                    gathered.add(entity, name, [stretch, 0.15]);
+                    gathered.add(entity, [stretch, 0.15], name);
                 }
             }
             lines.extend(gathered.line(LIMIT));
@@ -154,11 +245,8 @@ mod tests {
     fn one_is_named_with_its_figures() {
         let mut gathered = Gathered::default();
         let mut add = |stretch| {
-            gathered.add(
-                Entity::PLACEHOLDER,
-                || "cloth \"flag\"".into(),
-                [stretch, 0.15],
-            );
+            let name = || ("cloth \"flag\"".into(), None);
+            gathered.add(Entity::PLACEHOLDER, [stretch, 0.15], name);
         };
         // Ten times worse within the same half second is one cloth all the same.
         add(0.031);

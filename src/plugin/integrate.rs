@@ -4,6 +4,7 @@ use bevy::ecs::system::{Query, ResMut};
 
 use super::{
     islands::Islands,
+    naming::Named,
     threads::threads,
     tick::{Colliders, Integrating},
     together::integrate_together,
@@ -17,9 +18,10 @@ pub(super) fn integrate(
     mut cloths: Query<Integrating>,
     colliders: Colliders,
     mut islands: ResMut<Islands>,
+    names: Query<Named>,
 ) {
     for island in &mut islands.all {
-        integrate_together(island, &mut cloths, &colliders);
+        integrate_together(island, &mut cloths, &colliders, &names);
     }
     let (mut awake, mut work) = (0, 0);
     for cloth in &cloths {

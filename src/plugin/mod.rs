@@ -18,6 +18,7 @@ mod components;
 mod contacts;
 mod cost;
 mod diagnostics;
+mod drag;
 mod envelope;
 mod excess;
 #[cfg(feature = "pbr")]

@@ -25,6 +25,7 @@ use super::{
     broad_phase::clear_stats,
     build::{Build, Wanted, build},
     carry::{carry, new_from_old},
+    drag::jump,
     frame::global_transform,
     freeze::{stand, thaw},
     inputs::Inputs,
@@ -163,7 +164,17 @@ fn prepare(
     let (frame, build) = build_cloth(cloth, inputs, around, parts)?;
     let has_stood = cloth.state.lod.frozen.is_some();
     let was_written = take_over(cloth, inputs, around, [&before, &frame], seconds)?;
+    let (is_known, fastest) = (
+        cloth.state.is_valid && !has_stood,
+        cloth.state.largest_speed,
+    );
     go_along(cloth, around, [&before, &frame], build, seconds, has_stood)?;
+    let scratch = &mut *cloth.scratch;
+    scratch.begins |= build == Build::New;
+    // What stood still, or was at fault, may have been put anywhere meanwhile.
+    if is_known && !scratch.pins.is_empty() {
+        scratch.dragged = jump(&scratch.pins, fastest, (seconds, ticks));
+    }
     let acceleration = cloth.frame.isometry().rotation.inverse() * inputs.gravity;
     let (built, state) = (&mut *cloth.built, &mut *cloth.state);
     if was_written || cloth.scratch.teleports {

@@ -44,6 +44,10 @@ pub struct ClothScratch {
     pub(super) carried: Option<Carried>,
     /// Whether the cloth teleports.
     pub(super) teleports: bool,
+    /// Distance by which its pins jump in the tick, which drags it along (m); 0 if they do not.
+    pub(super) dragged: f32,
+    /// Whether it was built and has not been moved since.
+    pub(super) begins: bool,
     /// Largest distance that a particle may move by itself (m).
     pub(super) reach: f32,
     /// Colliders near the cloth, in its frame. `detection` refers to them by their index here.
@@ -75,6 +79,7 @@ impl ClothScratch {
         self.pins.clear();
         self.constraints.clear();
         self.carried = None;
+        self.dragged = 0.0;
         self.pushed.clear();
     }
 }

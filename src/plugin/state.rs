@@ -73,6 +73,9 @@ pub struct ClothState {
     pub(super) resumes: bool,
     /// Excess over each limit.
     pub(super) excess: [Excess; ClothLimit::ALL.len()],
+    /// Whether it was reported that a jump dragged it along.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub(super) was_dragged: bool,
 }
 
 impl ClothState {
@@ -99,6 +102,7 @@ impl ClothState {
             largest_gravity,
             resumes,
             excess,
+            was_dragged,
         } = *other;
         self.rest.copy_from(rest);
         self.air.clone_from(air);
@@ -113,6 +117,7 @@ impl ClothState {
         (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
         (self.written, self.known, self.first_target) = (written, known, first_target);
         (self.resumes, self.excess) = (resumes, excess);
+        self.was_dragged = was_dragged;
     }
 
     /// Whether this state, read from a file, matches these particles.

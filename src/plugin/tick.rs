@@ -32,6 +32,7 @@ const MIN_TO_SPLIT: usize = 256 * 256;
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct Integrating {
+    pub entity: Entity,
     pub built: &'static mut ClothBuilt,
     pub frame: &'static ClothFrame,
     pub particles: &'static mut ClothParticles,
@@ -84,6 +85,7 @@ impl IntegratingItem<'_, '_> {
     /// Takes over the results of a tick; its sub-steps took this time (ms).
     pub(super) fn finish(&mut self, milliseconds: f64) {
         self.stats.integrate_ms = milliseconds;
+        self.scratch.begins = false;
         // Particles that are lost here are a fault before the game sees them.
         let survey = self.particles.survey();
         self.state.is_valid &= survey.is_valid;

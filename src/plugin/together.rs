@@ -1,7 +1,11 @@
 //! The sub-steps of cloths that may touch each other, run together.
 
 use bevy::{
-    ecs::{entity::EntityIndexSet, system::Query},
+    ecs::{
+        entity::{Entity, EntityIndexSet},
+        system::Query,
+    },
+    log::warn,
     math::Isometry3d,
     platform::time::Instant,
 };
@@ -9,10 +13,11 @@ use bevy::{
 use super::{
     clock::milliseconds_since,
     islands::Island,
+    naming::{Named, Part},
     tick::{Colliders, Integrating, IntegratingItem},
 };
 use crate::{
-    contact::{ClothLayers, MutualContact, Participant},
+    contact::{ClothLayers, Inside, MutualContact, Participant},
     solver::{LimitInputs, StartedTick, Stretch, SubStep, Substepping, TickStep},
 };
 
@@ -30,6 +35,7 @@ pub(super) fn integrate_together(
     island: &mut Island,
     cloths: &mut Query<Integrating>,
     colliders: &Colliders,
+    names: &Query<Named>,
 ) {
     let start = Instant::now();
     let entities: EntityIndexSet = island.cloths.iter().copied().collect();
@@ -78,7 +84,13 @@ pub(super) fn integrate_together(
         }
     }
     loop {
-        let more = advance(&mut members, substeps, &mut island.contact, colliders);
+        let more = advance(
+            &mut members,
+            substeps,
+            &mut island.contact,
+            colliders,
+            names,
+        );
         let Some(more) = more else {
             break;
         };
@@ -108,6 +120,7 @@ fn advance(
     substeps: u32,
     contact: &mut MutualContact,
     colliders: &Colliders,
+    names: &Query<Named>,
 ) -> Option<u32> {
     let seconds = members.iter().find_map(|member| member.step)?.seconds;
     let dt = seconds / substeps as f32;
@@ -130,6 +143,7 @@ fn advance(
         .collect();
     let meets = |a: usize, b: usize| layers[a].interacts_with(layers[b]);
     contact.begin(&participants(members), meets);
+    warn_of_inside(members, contact, names);
     let mut is_pushed = vec![false; members.len()];
     let mut moved: Vec<Option<SubStep>> = Vec::with_capacity(members.len());
     for _ in 0..substeps {
@@ -188,6 +202,40 @@ fn advance(
         wanted = wanted.max(more);
     }
     wanted
+}
+
+/// Warns of cloths that begin inside each other. A later tick, or this one done again, does not ask.
+fn warn_of_inside(members: &mut [Member], contact: &MutualContact, names: &Query<Named>) {
+    if members.iter().all(|member| !member.cloth.scratch.begins) {
+        return;
+    }
+    let begin: Vec<(Entity, bool)> = members
+        .iter_mut()
+        .map(|Member { cloth, .. }| (cloth.entity, std::mem::take(&mut cloth.scratch.begins)))
+        .collect();
+    let inside = contact.begin_inside(&participants(members), |cloth| begin[cloth].1);
+    let Some(Inside {
+        cloths,
+        share,
+        distance,
+        others,
+    }) = inside
+    else {
+        return;
+    };
+    let names = cloths.map(|cloth| names.get(begin[cloth].0));
+    let [Ok(first), Ok(second)] = names else {
+        return;
+    };
+    let [first, second] = [first, second].map(|name| name.describe(Part::Cloth));
+    let others = match others {
+        0 => String::new(),
+        others => format!(" (and {others} more likewise)"),
+    };
+    let (share, distance) = (100.0 * share, 1000.0 * distance);
+    warn!(
+        "{first} begins inside {second}{others}: {share:.0} % of its particles are nearer than {distance:.1} mm: spawn them a thickness apart, or keep them from meeting with `ClothLayers`"
+    );
 }
 
 fn participants<'a>(members: &'a mut [Member]) -> Vec<Participant<'a>> {

@@ -16,6 +16,7 @@ mod gizmos;
 mod heavy;
 mod held;
 mod hidden;
+mod hints;
 mod hostile;
 mod layers;
 mod lifetime;

@@ -13,6 +13,7 @@ mod certificate;
 mod circumstances;
 mod flat;
 mod hold;
+mod inside;
 mod intersections;
 mod members;
 mod motion;
@@ -33,6 +34,7 @@ use self::{
     motion::thinnest, near::NearPairs, origin::Origin, pair::Pair, response::push, search::Search,
 };
 
+pub(crate) use inside::Inside;
 pub use intersections::intersections;
 pub(crate) use participant::Participant;
 pub use settings::ClothSelfCollision;

@@ -5,7 +5,7 @@
 
 mod acts;
 mod mutate;
-mod random;
+pub mod random;
 
 use std::{f32::consts::FRAC_PI_2, time::Instant};
 

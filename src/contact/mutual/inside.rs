@@ -1,0 +1,81 @@
+//! Cloths that begin inside each other.
+
+use super::{
+    MutualContact,
+    pair::{VERTEX_AND_FACE, vertex_to_face},
+    participant::Participant,
+};
+
+/// Of the thickness between two cloths: particles that are nearer are inside. Layers that were laid a thickness apart are not.
+const INSIDE: f32 = 0.5;
+
+/// Of the particles of one cloth, how many are inside of another if it begins there: more than a seam that both share.
+const MOST: f32 = 0.2;
+
+/// Which cloths begin inside of which.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Inside {
+    /// Of all pairs the one with the largest share, by their places among the cloths.
+    pub cloths: [usize; 2],
+    /// The share of the first one's particles that are inside of the second.
+    pub share: f32,
+    /// How near they are, at most (m).
+    pub distance: f32,
+    /// How many other cloths begin inside of cloths.
+    pub others: usize,
+}
+
+impl MutualContact {
+    /// Which cloths begin inside each other, of those that the search has just found near each other and of which at least one
+    /// is new. Looks at all that was found, and allocates: not for each tick.
+    pub fn begin_inside(
+        &self,
+        cloths: &[Participant],
+        is_new: impl Fn(usize) -> bool,
+    ) -> Option<Inside> {
+        // Of a cloth alone there may have been no search.
+        if self.pairs.is_empty() {
+            return None;
+        }
+        let near = |cloths_of: [usize; 2]| {
+            let [a, b] = cloths_of.map(|cloth| cloths[cloth].settings.thickness);
+            INSIDE * (a + b) / 2.0
+        };
+        let mut inside = Vec::new();
+        for found in &self.search.found {
+            let of = found.cloths.map(|cloth| cloth as usize);
+            if found.split != VERTEX_AND_FACE || of[0] == of[1] || !of.iter().any(|&of| is_new(of))
+            {
+                continue;
+            }
+            let place = |cloth: usize, particle: u32| {
+                let cloth = &cloths[cloth];
+                cloth.place(cloth.particles.layout().slot_of(particle as usize))
+            };
+            let [vertex, face @ ..] = found.particles;
+            let face = face.map(|corner| place(of[1], corner));
+            if vertex_to_face(place(of[0], vertex), face) < near(of) * near(of) {
+                inside.push((of, vertex));
+            }
+        }
+        inside.sort_unstable();
+        inside.dedup();
+        let shares = inside.chunk_by(|a, b| a.0 == b.0).map(|of_two| {
+            let cloths_of = of_two[0].0;
+            let share = of_two.len() as f32 / cloths[cloths_of[0]].particles.len() as f32;
+            (cloths_of, share)
+        });
+        let begin = || shares.clone().filter(|(_, share)| *share > MOST);
+        let most = begin().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+        let (most_of, share) = most?;
+        let mut all: Vec<usize> = begin().flat_map(|(cloths_of, _)| cloths_of).collect();
+        all.sort_unstable();
+        all.dedup();
+        Some(Inside {
+            cloths: most_of,
+            share,
+            distance: near(most_of),
+            others: all.len() - 2,
+        })
+    }
+}
