@@ -17,10 +17,12 @@ use crate::{
 
 /// Particles from the waist to the hem.
 pub const PARTICLES: u32 = 22;
-/// Height and radius of the waist, and radius of the skirt when it is laid flat (m).
+/// Height and radius of the waist, and radius of the hem and how far below the waist it is as the skirt is cut (m). Hardly wider than
+/// where it flies: all that is wider would hang in the air in folds that are too sharp for the mesh.
 const WAIST: f32 = 1.02;
 const WAIST_RADIUS: f32 = 0.125;
-const HEM_RADIUS: f32 = 0.74;
+const HEM_RADIUS: f32 = 0.58;
+const DROP: f32 = 0.42;
 /// How fast the figure turns (rad/s), and how much faster it gets in a second (rad/s²).
 const SPEED: f32 = 6.0;
 const PICK_UP: f32 = 5.0;
@@ -111,7 +113,7 @@ fn spawn_figure(
         Transform::from_xyz(0.0, -0.42, 0.0),
     );
     let figure = Figure {
-        speed: SPEED,
+        speed: std::env::var("D_SPEED").map_or(SPEED, |v| v.parse().unwrap()),
         twirls: true,
         now: 0.0,
     };
@@ -129,25 +131,40 @@ fn spawn_figure(
         }
     });
     let inner_edge = Pin::at_rest(|place| place.length() < WAIST_RADIUS + 1.0e-3);
-    commands.spawn((
-        Name::new("skirt"),
-        Cloth::mesh(),
-        Mesh3d(meshes.add(skirt(WAIST_RADIUS, HEM_RADIUS, grid.0))),
-        Pins::none(),
-        ClothAttachments::new([(inner_edge, figure)]),
-        ClothMaterial {
-            damping: 0.03,
-            ..ClothMaterial::COTTON
-        },
-        ClothSettings::substeps(24),
-        ShowClothGizmos::nothing(),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            // As long around as from the waist to the hem.
-            uv_transform: Affine2::from_scale(Vec2::new(1.0, 6.0)),
-            ..cloth
-        })),
-        waist,
-    ));
+    let env = |name: &str, or: f32| std::env::var(name).map_or(or, |v| v.parse().unwrap());
+    let skirt_id = commands
+        .spawn((
+            Name::new("skirt"),
+            Cloth::mesh(),
+            Mesh3d(meshes.add(skirt(
+                WAIST_RADIUS,
+                env("D_HEM", HEM_RADIUS),
+                env("D_DROP", DROP),
+                grid.0,
+            ))),
+            Pins::none(),
+            ClothAttachments::new([(inner_edge, figure)]),
+            ClothMaterial {
+                damping: env("D_DAMP", 0.03),
+                bend_rigidity: env("D_BEND", 6.0e-6),
+                shear_compliance: env("D_SHEAR", 1.0e-3),
+                ..ClothMaterial::COTTON
+            },
+            ClothSettings::substeps(env("D_SUB", 24.0) as u32),
+            ShowClothGizmos::nothing(),
+            MeshMaterial3d(materials.add(StandardMaterial {
+                // As long around as from the waist to the hem.
+                uv_transform: Affine2::from_scale(Vec2::new(1.0, 6.0)),
+                ..cloth
+            })),
+            waist,
+        ))
+        .id();
+    if env("D_SELF", 0.0) > 0.0 {
+        commands
+            .entity(skirt_id)
+            .insert(ClothSelfCollision::of_thickness(env("D_SELF", 0.0)));
+    }
 }
 
 fn spawn_stand(
