@@ -1,27 +1,31 @@
-//! The same cloth and the same ball six times, searched by each kind of volume: sphere, AABB, OBB, and k-DOPs of 14,
-//! 18 and 26 faces. One level of the tree is drawn: red volumes touch the ball or may do so within the tick, green
-//! ones were looked at and nothing touches them, and faint ones were never looked at, for what is above them is green.
+//! A debug view of bounding volumes: six equal cloths and balls, each searched by another kind of volume.
 //!
-//! Each cloth has a `SearchMethod` and a `ShowClothGizmos`; the labels are Bevy's text gizmos, with the figures of
-//! `ClothStats`. The motion is the same in all six, to the last bit.
+//! The volumes are sphere, AABB, OBB, and k-DOPs of 14, 18 and 26 faces. One level of each tree is drawn:
+//!
+//! - red: the volume touches the ball, or may do so within the tick
+//! - green: the search visited it, and nothing touches it
+//! - faint: the search did not visit it, since a volume above it is green
+//!
+//! Each cloth has a `SearchMethod` and a `ShowClothGizmos`. The labels are Bevy's text gizmos with figures from
+//! `ClothStats`. All six cloths move identically, bit for bit.
 //!
 //! ```sh
-//! cargo run --example volumes               # a window, or a report where there is none
-//! cargo run --example volumes -- --headless # a report and a picture
+//! cargo run --example volumes                         # a window, or headless where no window opens
+//! cargo run --example volumes -- --headless --out DIR # no window: prints a report, saves DIR/volumes.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree |
-//! | G | springs on and off |
-//! | B | each cloth's next way to search: all particles, a tree of some volume and rule, what is best |
-//! | C | contact by particles or triangles, or as the ball's size asks for |
-//! | M | next material |
-//! | R | new cloths |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloths |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "shared/mod.rs"]
 mod shared;
@@ -172,7 +176,7 @@ struct Report {
     ticks: u64,
     particles: u32,
     cloths: Vec<Row>,
-    /// Whether all cloths ended the same, bit by bit.
+    /// Whether all cloths end in the same state, bit for bit.
     same: bool,
     #[serde(flatten)]
     picture: Picture,
@@ -235,9 +239,9 @@ fn headless(view: View, grid: Grid, options: &Options) -> ExitCode {
 }
 
 fn print_report(report: &Report) {
-    println!("One cloth, one ball, six volumes, headless");
+    println!("Six bounding volumes, headless");
     println!(
-        "  ticks    {}, of {} particles each",
+        "  ticks    {}; {} particles in each cloth",
         report.ticks, report.particles
     );
     println!(
@@ -251,9 +255,9 @@ fn print_report(report: &Report) {
         );
     }
     let same = if report.same {
-        "the same, bit by bit"
+        "identical in all six, bit for bit"
     } else {
-        "not the same"
+        "differs"
     };
     println!("  motion   {same}");
     println!("  picture  {}", report.picture);
@@ -262,11 +266,11 @@ fn print_report(report: &Report) {
 fn main() -> ExitCode {
     Example {
         name: "volumes",
-        about: "Six kinds of bounding volume, side by side. Opens a window where it can, and runs headless otherwise.",
+        about: "Debug view: six kinds of bounding volume, side by side. Opens a window if possible, otherwise runs headless.",
         seconds: "3",
         particles: PARTICLES,
         window: |grid| {
-            let mut app = window::app("volumes", ScenePlugin, SHOT, &[]);
+            let mut app = window::app("six bounding volumes (debug view)", ScenePlugin, SHOT, &[]);
             app.insert_resource(grid);
             window::run(app)
         },

@@ -14,7 +14,7 @@ use crate::{
 pub fn run(grid: Grid) -> ExitCode {
     let more_keys = &[("Up, Down", "faster, slower ball")];
     let mut app = window::app(
-        "the ball and the cloth",
+        "a ball and a cloth (debug view)",
         ScenePlugin,
         scene::SHOT,
         more_keys,

@@ -1,4 +1,4 @@
-//! The same app without a window: as fast as it can, with a report and a picture.
+//! The same app without a window, as fast as possible: a report and a picture.
 
 use std::{process::ExitCode, time::Instant};
 
@@ -102,23 +102,23 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
 
 fn print_report(report: &Report) {
     let over = |milliseconds| 100.0 * (milliseconds / report.figures.solver_ms - 1.0);
-    report.figures.print("The ball and the cloth");
+    report.figures.print("A ball and a cloth");
     println!("  springs          {}", report.springs);
     println!(
-        "  all of it        {:.4} ms a tick: cloth's systems {:.4} ms, rapier {:.4} ms (medians)",
+        "  whole tick       {:.4} ms: cloth systems {:.4} ms, rapier {:.4} ms (medians)",
         report.tick_ms, report.cloth_ms, report.rapier_ms
     );
     println!(
-        "  beyond solving   {:.0} % for the cloth's systems, {:.0} % for the whole tick",
+        "  over the solver  {:.0} % more for the cloth systems, {:.0} % more for the whole tick",
         over(report.cloth_ms),
         over(report.tick_ms)
     );
     println!(
-        "  contacts         {} particles at most, {} nodes visited at most",
+        "  contacts         at most {} particles, {} nodes visited",
         report.contacts, report.nodes_visited
     );
     println!(
-        "  penetration      {:.2} mm found within a tick, {:.4} mm left after one, at most",
+        "  penetration      at most {:.2} mm before the response, {:.4} mm after a tick",
         report.deepest_penetration_mm, report.deepest_left_mm
     );
     println!("  picture          {}", report.picture);

@@ -1,28 +1,34 @@
-//! The paper's scene: a ball, moved by rapier, travels through a hanging cloth and back. One half of the cloth shows its
-//! fabric, the other the bounding spheres of the fifth level of its tree: red and dark where the ball touches them or may
-//! within the tick, green and bright where it does not, faint where the search had no need to look.
+//! A debug view of the contact search: a ball, moved by rapier, travels through a hanging cloth and back.
 //!
-//! The paper's cloth has 16 × 16 particles; the example's is finer, so that it drapes as fabric does.
+//! One half of the cloth shows its fabric, the other the bounding spheres of the fifth level of its tree:
+//!
+//! - red and dark: the ball touches it, or may do so within the tick
+//! - green and bright: the ball does not touch it
+//! - faint: the search did not visit it
+//!
+//! The scene is that of the paper, with a finer cloth: 48 × 48 particles in place of 16 × 16. For a first look at
+//! cloth, run `flag` or `curtain`.
 //!
 //! ```sh
-//! cargo run --example ball                                      # a window, or a report where there is none
-//! cargo run --example ball -- --particles 16                    # the paper's grid
-//! cargo run --example ball -- --headless --seconds 20 --json    # a report as one JSON object, and a picture
+//! cargo run --example ball                                   # a window, or headless where no window opens
+//! cargo run --example ball -- --headless --out DIR           # no window: prints a report, saves DIR/ball.png
+//! cargo run --example ball -- --particles 16                 # the paper's grid
+//! cargo run --example ball -- --headless --seconds 20 --json # a longer run, reported as one JSON object
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree |
-//! | G | springs on and off |
-//! | B | next way to search: volume (sphere, AABB, OBB, k-DOP) and rule (rest shape, refit, paper) |
-//! | C | contact by particles or triangles, or as the ball's size asks for |
-//! | M | next material |
-//! | Up, Down | faster and slower ball |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Up, Down | faster, slower ball |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 mod controls;
 mod headless;
@@ -41,7 +47,7 @@ use crate::shared::start::Example;
 fn main() -> ExitCode {
     Example {
         name: "ball",
-        about: "A ball strikes a hanging cloth. Opens a window where it can, and runs headless otherwise.",
+        about: "Debug view: a ball travels through a hanging cloth. Opens a window if possible, otherwise runs headless.",
         seconds: "12",
         // So fine that it drapes as fabric does.
         particles: 48,

@@ -1,27 +1,27 @@
-//! Balloons on sticks: two round sheets each, sewn together along their edge, and blown up.
+//! Balloons on sticks: two round sheets each, sewn together along the edge and inflated.
 //!
-//! A closed mesh and a `ClothPressure` are all that it takes; the wrinkles along the edge are those of a real one, for a flat sheet
-//! cannot become round without them. See `scene.rs`.
+//! A closed mesh with a `ClothPressure` is a balloon. Its edge wrinkles as a real foil balloon's does: a flat sheet
+//! can't become round without wrinkles. The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example balloon               # a window, or a report where there is none
-//! cargo run --example balloon -- --headless # a report and a picture
+//! cargo run --example balloon                         # a window, or headless where no window opens
+//! cargo run --example balloon -- --headless --out DIR # no window: prints a report, saves DIR/balloon.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Up, Down | blows more in, lets some out |
-//! | Left, Right | less, more wind |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Up, Down | more, less gas |
+//! | Right, Left | more, less wind |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "../shared/measured.rs"]
 mod measured;
@@ -48,13 +48,13 @@ const TITLE: &str = "balloons";
 fn main() -> ExitCode {
     Example {
         name: "balloon",
-        about: "Balloons are blown up. Opens a window where it can, and runs headless otherwise.",
+        about: "Balloons are inflated. Opens a window if possible, otherwise runs headless.",
         seconds: "6",
         particles: scene::PARTICLES,
         window: |grid| {
             let keys = [
                 ("Up, Down", "more, less gas"),
-                ("Left, Right", "less, more wind"),
+                ("Right, Left", "more, less wind"),
             ];
             let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
             app.insert_resource(grid).add_systems(Update, press_keys);

@@ -1,32 +1,34 @@
-//! A hero who runs, jumps and teleports, in a cape.
+//! A hero who runs, jumps and teleports in a cape.
 //!
-//! `assets/models/hero.glb` has a skeleton, three animations, and a cape that is skinned to it, on which `_MAX_DISTANCE` is painted: how
-//! far each vertex may be from its place in the pose. Three components make cloth of it (`dress` in `scene.rs`); `ClothBones` beside
-//! the hero puts colliders on bones by their names, and `ClothInertia` says how much of the hero's motion the cape feels. A teleport is
-//! nothing but a `Transform` that jumps.
+//! `assets/models/hero.glb` has a skeleton, three animations and a skinned cape. Its vertex attribute `_MAX_DISTANCE`
+//! limits how far each vertex may leave its animated place. `Cloth`, `Pins` and `ClothSkin` make the cape a cloth
+//! (`dress` in `scene.rs`).
+//!
+//! On the hero, `ClothBones` adds colliders to bones by name, and `ClothInertia` sets the share of the hero's motion
+//! that the cape feels. For a teleport the example just sets the `Transform`.
 //!
 //! ```sh
-//! cargo run --example cape                 # a window, or a report where there is none
-//! cargo run --example cape -- --headless   # a report and a picture
-//! cargo run --example cape -- --write-model # makes the glTF file anew, see `model/`
+//! cargo run --example cape                         # a window, or headless where no window opens
+//! cargo run --example cape -- --headless --out DIR # no window: prints a report, saves DIR/cape.png
+//! cargo run --example cape -- --write-model        # writes the glTF file again, see `model/`
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | W | runs, or stands still |
-//! | J | jumps |
-//! | T | teleports, half around the circle |
-//! | Up, Down | a stronger, weaker wind |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | W | run, stand still |
+//! | J | jump |
+//! | T | teleport to the other side of the circle |
+//! | Up, Down | stronger, weaker wind |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 mod hero;
 #[path = "../shared/measured.rs"]
@@ -50,7 +52,7 @@ use crate::{
     shared::{start::Example, window},
 };
 
-const TITLE: &str = "a cape that runs, jumps and teleports";
+const TITLE: &str = "a hero in a cape";
 
 fn main() -> ExitCode {
     if env::args().any(|argument| argument == "--write-model") {
@@ -58,7 +60,7 @@ fn main() -> ExitCode {
     }
     Example {
         name: "cape",
-        about: "A hero runs, jumps and teleports in a cape. Opens a window where it can, and runs headless otherwise.",
+        about: "A hero runs, jumps and teleports in a cape. Opens a window if possible, otherwise runs headless.",
         seconds: "9",
         particles: scene::PARTICLES,
         window: |grid| {

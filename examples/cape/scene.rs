@@ -27,10 +27,10 @@ pub const PARTICLES: u32 = 27;
 /// When the cape flies (s).
 pub const DRAWN_AT: f64 = 2.95;
 
-/// The circle that the hero runs around.
+/// All of the circle that the hero runs around, with room for a jump where it is nearest.
 pub const SHOT: Shot = Shot {
-    from: Vec3::new(-1.5, 1.5, 5.6),
-    focus: Vec3::new(0.05, 0.93, 2.2),
+    from: Vec3::new(-2.1, 2.2, 7.7),
+    focus: Vec3::new(0.0, 1.08, 0.0),
     fov: 0.52,
 };
 

@@ -1,27 +1,27 @@
 //! A castle with sixty flags in one wind.
 //!
-//! Flags that are alike share what is built of them, all of them are moved at once, on as many threads as there are, and those that are
-//! far from the camera are moved in fewer ticks. See `scene.rs`.
+//! Equal flags share their rest shape, springs and tree. All flags move at once, on all threads. `GlobalClothLod` moves
+//! distant flags in fewer ticks. The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example castle               # a window, or a report where there is none
-//! cargo run --example castle -- --headless # a report and a picture
+//! cargo run --example castle                         # a window, or headless where no window opens
+//! cargo run --example castle -- --headless --out DIR # no window: prints a report, saves DIR/castle.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Up, Down | a stronger, weaker wind |
-//! | D | level of detail on and off |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Up, Down | stronger, weaker wind |
+//! | D | level of detail on, off |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "../shared/measured.rs"]
 mod measured;
@@ -47,13 +47,13 @@ const TITLE: &str = "a castle with sixty flags";
 fn main() -> ExitCode {
     Example {
         name: "castle",
-        about: "Sixty flags blow on a castle. Opens a window where it can, and runs headless otherwise.",
+        about: "Sixty flags in the wind on a castle. Opens a window if possible, otherwise runs headless.",
         seconds: "5",
         particles: scene::PARTICLES,
         window: |grid| {
             let keys = [
                 ("Up, Down", "stronger, weaker wind"),
-                ("D", "level of detail on and off"),
+                ("D", "level of detail on, off"),
             ];
             let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
             app.insert_resource(grid).add_systems(Update, press_keys);

@@ -1,27 +1,28 @@
-//! A curtain of two halves that hang on rings, and somebody who walks through it, to and fro.
+//! A curtain in two halves on rings, and a walker who pushes through it.
 //!
-//! Each ring is an entity on the rail, and a curtain's top row follows them by `ClothAttachments`: draw the rings together and the
-//! cloth between them falls into pleats. The walker is a child of colliders. Both are in `scene.rs`.
+//! Each ring is an entity on the rail, and `ClothAttachments` tie a half's top row to its rings. Rings that move
+//! together gather the cloth into pleats. The walker is an entity with colliders as children. The scene is in
+//! `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example curtain               # a window, or a report where there is none
-//! cargo run --example curtain -- --headless # a report and a picture
+//! cargo run --example curtain                         # a window, or headless where no window opens
+//! cargo run --example curtain -- --headless --out DIR # no window: prints a report, saves DIR/curtain.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | O | draws the curtain open, and closed again |
-//! | Up, Down | a faster, slower walker |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | O | open, close the curtain |
+//! | Up, Down | faster, slower walker |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "../shared/measured.rs"]
 mod measured;
@@ -46,11 +47,11 @@ const TITLE: &str = "a walk through a curtain";
 fn main() -> ExitCode {
     Example {
         name: "curtain",
-        about: "Somebody walks through a curtain on rings. Opens a window where it can, and runs headless otherwise.",
+        about: "A walker pushes through a curtain on rings. Opens a window if possible, otherwise runs headless.",
         seconds: "9",
         particles: scene::PARTICLES,
         window: |grid| {
-            let keys = [("O", "open, close"), ("Up, Down", "faster, slower walker")];
+            let keys = [("O", "open, close the curtain"), ("Up, Down", "faster, slower walker")];
             let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
             app.insert_resource(grid).add_systems(Update, press_keys);
             window::run(app)

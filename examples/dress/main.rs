@@ -1,28 +1,27 @@
-//! A skirt on a dressmaker's figure that turns on its stand: the skirt flies up, and winds itself around the hips when the figure
-//! stops.
+//! A skirt on a dressmaker's figure that spins: it flies up, and wraps around the hips when the figure stops.
 //!
-//! The skirt is a mesh, a ring of cloth. What lies on its inner edge is attached to the figure by `Pin::at_rest`, and the figure's
-//! hips and legs are colliders below it. Both are in `scene.rs`.
+//! The skirt is a ring-shaped mesh. `Pin::at_rest` selects its inner edge, and `ClothAttachments` tie that edge to the
+//! figure. Hips and legs are colliders. The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example dress               # a window, or a report where there is none
-//! cargo run --example dress -- --headless # a report and a picture
+//! cargo run --example dress                         # a window, or headless where no window opens
+//! cargo run --example dress -- --headless --out DIR # no window: prints a report, saves DIR/dress.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | T | twirls and rests in turns, or stands still |
-//! | Up, Down | turns faster, slower |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | T | spin, stand still |
+//! | Up, Down | spin faster, slower |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "../shared/measured.rs"]
 mod measured;
@@ -45,16 +44,16 @@ use crate::{
     shared::{start::Example, window},
 };
 
-const TITLE: &str = "a skirt that twirls";
+const TITLE: &str = "a skirt that spins";
 
 fn main() -> ExitCode {
     Example {
         name: "dress",
-        about: "A skirt on a figure that turns. Opens a window where it can, and runs headless otherwise.",
+        about: "A skirt on a figure that spins. Opens a window if possible, otherwise runs headless.",
         seconds: "9",
         particles: scene::PARTICLES,
         window: |grid| {
-            let keys = [("T", "twirl, stand still"), ("Up, Down", "faster, slower")];
+            let keys = [("T", "spin, stand still"), ("Up, Down", "spin faster, slower")];
             let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
             app.insert_resource(grid).add_systems(Update, press_keys);
             window::run(app)

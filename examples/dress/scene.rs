@@ -17,10 +17,12 @@ use crate::{
 
 /// Particles from the waist to the hem.
 pub const PARTICLES: u32 = 22;
-/// Height and radius of the waist, and radius of the skirt when it is laid flat (m).
+/// Height and radius of the waist, and radius of the hem and how far below the waist it is as the skirt is cut (m). Hardly wider than
+/// where it flies: all that is wider would hang in the air in folds that are too sharp for the mesh.
 const WAIST: f32 = 1.02;
 const WAIST_RADIUS: f32 = 0.125;
-const HEM_RADIUS: f32 = 0.74;
+const HEM_RADIUS: f32 = 0.58;
+const DROP: f32 = 0.42;
 /// How fast the figure turns (rad/s), and how much faster it gets in a second (rad/s²).
 const SPEED: f32 = 6.0;
 const PICK_UP: f32 = 5.0;
@@ -132,7 +134,7 @@ fn spawn_figure(
     commands.spawn((
         Name::new("skirt"),
         Cloth::mesh(),
-        Mesh3d(meshes.add(skirt(WAIST_RADIUS, HEM_RADIUS, grid.0))),
+        Mesh3d(meshes.add(skirt(WAIST_RADIUS, HEM_RADIUS, DROP, grid.0))),
         Pins::none(),
         ClothAttachments::new([(inner_edge, figure)]),
         ClothMaterial {

@@ -1,28 +1,28 @@
-//! A flag in the wind, on a pole that sways.
+//! A flag in the wind, on a swaying pole.
 //!
-//! The flag's left column is attached to the pole, and the resource `ClothWind` is all that it takes to blow: a velocity, gusts and
-//! turbulence. The keys change that resource and nothing else (`shared/windy.rs`). See `scene.rs`.
+//! `ClothAttachments` tie the flag's left column to the pole. The resource `ClothWind` blows it: a velocity, gusts and
+//! turbulence. The keys change only that resource (`shared/windy.rs`). The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example flag               # a window, or a report where there is none
-//! cargo run --example flag -- --headless # a report and a picture
+//! cargo run --example flag                         # a window, or headless where no window opens
+//! cargo run --example flag -- --headless --out DIR # no window: prints a report, saves DIR/flag.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Up, Down | a stronger, weaker wind |
-//! | Left, Right | the wind turns |
-//! | T | turbulence and gusts on and off |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Up, Down | stronger, weaker wind |
+//! | Left, Right | turn the wind |
+//! | T | turbulence and gusts on, off |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "../shared/measured.rs"]
 mod measured;
@@ -49,7 +49,7 @@ const TITLE: &str = "a flag in the wind";
 fn main() -> ExitCode {
     Example {
         name: "flag",
-        about: "A flag blows on a pole that sways. Opens a window where it can, and runs headless otherwise.",
+        about: "A flag in the wind, on a swaying pole. Opens a window if possible, otherwise runs headless.",
         seconds: "8",
         particles: scene::PARTICLES,
         window: |grid| {

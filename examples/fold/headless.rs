@@ -85,16 +85,16 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
 }
 
 fn print_report(report: &Report) {
-    report.figures.print("A cloth let down into folds");
+    report.figures.print("A cloth lowered into folds");
     println!(
-        "  intersections    {} pairs of triangles at most, counted {} times by brute force",
+        "  intersections    at most {} pairs of triangles, in {} counts by brute force",
         report.crossings, report.counts
     );
     println!(
-        "  contact          {} pairs of features near each other at most, searched for {} times",
+        "  contact          at most {} pairs of close features, in {} searches",
         report.pairs, report.searches
     );
-    println!("  the pile         {:.0} mm high", report.height_mm);
+    println!("  pile             {:.0} mm high", report.height_mm);
     println!("  picture          {}", report.picture);
 }
 

@@ -1,27 +1,27 @@
-//! A long cloth is let down on the floor by a bar, and falls into folds that lie on each other: contact of cloth with itself. How
-//! many of its triangles pass through each other is counted by brute force, and shown: none.
+//! Self-collision: a long cloth is lowered onto the floor and falls into folds that lie on each other.
 //!
-//! The cloth has a `ClothSelfCollision`, a thickness and friction between its layers; without it it would pass through itself (try
-//! S). Take how it is attached to the bar, and how it is let go, from `scene.rs`.
+//! `ClothSelfCollision` sets the thickness of the cloth and the friction between its layers. Without it the cloth
+//! passes through itself: press S. The picture shows the number of triangle pairs that pass through each other, counted
+//! by brute force: none. `scene.rs` attaches the cloth to a bar and releases it.
 //!
 //! ```sh
-//! cargo run --example fold               # a window, or a report where there is none
-//! cargo run --example fold -- --headless # a report and a picture
+//! cargo run --example fold                         # a window, or headless where no window opens
+//! cargo run --example fold -- --headless --out DIR # no window: prints a report, saves DIR/fold.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | S | contact of the cloth with itself on and off |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth, which is let down again |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | S | self-collision on, off |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth, which is lowered again |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "../shared/figure.rs"]
 mod figure;
@@ -42,11 +42,11 @@ use crate::shared::{start::Example, window};
 fn main() -> ExitCode {
     Example {
         name: "fold",
-        about: "A cloth is let down into folds that lie on each other. Opens a window where it can, and runs headless otherwise.",
+        about: "A cloth is lowered into folds that lie on each other. Opens a window if possible, otherwise runs headless.",
         seconds: "5",
         particles: scene::PARTICLES,
         window: |grid| {
-            let keys = [("S", "contact with itself on, off")];
+            let keys = [("S", "self-collision on, off")];
             let mut app = window::app("folds", scene::ScenePlugin, scene::SHOT, &keys);
             app.insert_resource(grid).add_systems(Update, press_key);
             window::run(app)

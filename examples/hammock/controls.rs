@@ -17,7 +17,7 @@ const TOSS: f32 = 4.0;
 pub fn run(grid: Grid) -> ExitCode {
     let more_keys = &[
         ("T", "toss the ball up"),
-        ("Up, Down", "a ball of twice, half the mass"),
+        ("Up, Down", "double, halve the ball's mass"),
     ];
     let mut app = window::app("a ball in a hammock", ScenePlugin, scene::SHOT, more_keys);
     app.insert_resource(grid)

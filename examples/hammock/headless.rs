@@ -1,4 +1,4 @@
-//! The same app without a window: as fast as it can, with a report and a picture.
+//! The same app without a window, as fast as possible: a report and a picture.
 
 use std::process::ExitCode;
 
@@ -98,7 +98,7 @@ fn print_report(report: &Report) {
     );
     println!("  bounce           {:.2} m", report.bounce_m);
     println!(
-        "  at last          {:.3} m high, {:.2} mm moved and {:.1} mm/s fast in the last second",
+        "  at the end       {:.3} m high; in the last second moved {:.2} mm, at most {:.1} mm/s",
         report.height_m, report.last_moves_mm, report.last_speed_mm_s
     );
     println!("  picture          {}", report.picture);

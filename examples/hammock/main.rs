@@ -1,25 +1,27 @@
-//! A ball in a hammock: rapier moves the ball, it falls into a canvas that hangs by its four corners, and the canvas pushes it
-//! back and keeps it. All that this takes is a `ClothPushBack` beside the ball's `RigidBody`: see `scene.rs`.
+//! A ball falls into a hammock, which carries it.
+//!
+//! Rapier moves the ball. The hammock is a canvas that hangs by its four corners. A `ClothPushBack` beside the ball's
+//! `RigidBody` lets the canvas push the ball. The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example hammock                                    # a window, or a report where there is none
-//! cargo run --example hammock -- --headless --seconds 20 --json  # a report as one JSON object, and a picture
+//! cargo run --example hammock                         # a window, or headless where no window opens
+//! cargo run --example hammock -- --headless --out DIR # no window: prints a report, saves DIR/hammock.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | T | toss the ball up |
-//! | Up, Down | a ball of twice, half the mass |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as the ball's size asks for |
-//! | M | next material |
-//! | R | new cloth, flat |
-//! | P | panel on and off |
+//! | Up, Down | double, halve the mass of the ball |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 mod controls;
 mod headless;
@@ -38,7 +40,7 @@ use crate::shared::start::Example;
 fn main() -> ExitCode {
     Example {
         name: "hammock",
-        about: "A ball falls into a hammock. Opens a window where it can, and runs headless otherwise.",
+        about: "A ball falls into a hammock. Opens a window if possible, otherwise runs headless.",
         seconds: "12",
         particles: scene::PARTICLES,
         window: controls::run,

@@ -1,13 +1,13 @@
-//! The lab: everything that is claimed of the plugin, measured, charted, and checked.
+//! The lab measures, charts and checks every claim about the plugin.
 //!
 //! ```sh
-//! cargo run --release --example lab -- all                       # everything, to out/lab
-//! cargo run --release --example lab -- pareto --quick            # one experiment, short
-//! cargo run --release --example lab -- all --redraw --out DIR    # charts again from the CSV files in DIR
+//! cargo run --release --example lab -- all                       # all experiments, to out/lab
+//! cargo run --release --example lab -- pareto --quick            # a short run of one experiment
+//! cargo run --release --example lab -- all --redraw --out DIR    # draws the charts again from the CSV files in DIR
 //! ```
 //!
-//! Each experiment writes `NAME.csv` with the machine and the settings in its header, and its charts as SVG and PNG for
-//! light and dark pages; it prints a table and what it found, and fails where something does not hold that must.
+//! Each experiment writes `NAME.csv`, with the machine and the settings in its header, and its charts as SVG and PNG for light and
+//! dark pages. It prints a table and its findings, and fails if a required property does not hold.
 
 mod bending;
 mod calls;
@@ -61,20 +61,20 @@ use crate::{
     view::View,
 };
 
-/// Measures speed against accuracy, and where methods fail
+/// Measures speed and accuracy, and finds where methods fail
 #[derive(Parser)]
 #[command(name = "lab")]
 struct Options {
     /// Which experiment
     #[arg(value_enum)]
     name: Name,
-    /// A short run: fewer settings and turns
+    /// Short run: fewer settings and repetitions
     #[arg(long)]
     quick: bool,
-    /// Folder of the CSV files and charts, made if it is not there
+    /// Folder of the CSV files and charts, created if missing
     #[arg(long, value_name = "DIR", default_value = "out/lab")]
     out: PathBuf,
-    /// Measure nothing: draw the charts from the CSV files that are there
+    /// Measure nothing: draw the charts from existing CSV files
     #[arg(long)]
     redraw: bool,
 }
@@ -85,7 +85,7 @@ enum Name {
     Table1,
     /// The paper's frame test
     Frames,
-    /// The paper's test of OpenGL calls, as it is today
+    /// The paper's test of OpenGL calls, with today's renderer
     Calls,
     /// The paper's test of CPU utilisation
     Cpu,
@@ -93,30 +93,30 @@ enum Name {
     Scaling,
     /// Contacts missed and imagined, against brute force in f64
     Exactness,
-    /// What a scene needs, and what it does not
+    /// Features that a scene does not use: what each saves
     Needs,
-    /// What colliders cost, by number and shape
+    /// Cost of colliders, by number and shape
     Colliders,
-    /// What cloths cost that are far from the camera, with and without level of detail
+    /// Cost of distant cloths, with and without level of detail
     Lod,
-    /// Cloth on cloth: what it costs, and what passes through
+    /// Cloth on cloth: its cost, and how much passes through
     #[value(name = "self")]
     Layers,
     /// Speed against accuracy
     Pareto,
-    /// How it is hung: stretch against time for six ways of pinning
+    /// Stretch against time for six ways of pinning
     Hung,
-    /// Real solvers, same scenes, as the package `peers` has measured them
+    /// Other solvers in the same scenes, measured by the package `peers`
     Peers,
-    /// With which power of the sub-step errors fall
+    /// Order of accuracy: error against sub-step
     Convergence,
-    /// Periods of sheets and membranes, and a strip's sag, against closed forms
+    /// Periods of sheets and membranes, and the sag of a strip, against closed forms
     Waves,
     /// A clamped strip against the heavy elastica
     Bending,
     /// Maps of where methods fail
     Stability,
-    /// All of them, one after the other
+    /// All experiments, one after the other
     All,
 }
 

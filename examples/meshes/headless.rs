@@ -1,4 +1,4 @@
-//! The same app without a window: a report of what became of each mesh, and a picture of each.
+//! The same app without a window: a report on each mesh, and a picture of each.
 
 use std::process::ExitCode;
 

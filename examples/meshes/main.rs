@@ -1,26 +1,29 @@
-//! Any mesh is cloth: a pennant of triangles that the program gives, a poncho with a hole from a mesh asset that the program
-//! makes, and a tent from a glTF file, closed along its seams, whose pins an artist has painted.
+//! Cloth from any mesh:
 //!
-//! Each is an entity with a `Cloth` and `Pins`, or attachments to an entity by its name; `scene.rs` has them one after the
-//! other. The seams of poncho and tent are split in the asset, for their textures and normals, and hold all the same.
+//! - a pennant, from triangles in code
+//! - a poncho with a hole, from a mesh asset made in code
+//! - a tent, from a glTF file with painted pins, closed along its seams
+//!
+//! Each is an entity with a `Cloth` and `Pins`, or `ClothAttachments` to an entity by its name. Poncho and tent have
+//! split vertices at their seams, for textures and normals; the plugin joins them. The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example meshes               # a window, or a report where there is none
-//! cargo run --example meshes -- --headless # a report and three pictures
+//! cargo run --example meshes                         # a window, or headless where no window opens
+//! cargo run --example meshes -- --headless --out DIR # no window: prints a report, saves ridge_tent.png, poncho.png and pennant.png in DIR
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloths |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloths |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 mod headless;
 mod models;
@@ -35,7 +38,7 @@ use crate::shared::{start::Example, window};
 fn main() -> ExitCode {
     Example {
         name: "meshes",
-        about: "A pennant, a poncho and a tent, each from a mesh. Opens a window where it can, and runs headless otherwise.",
+        about: "A pennant, a poncho and a tent, each from a mesh. Opens a window if possible, otherwise runs headless.",
         seconds: "9",
         particles: scene::FINENESS,
         window: |grid| {

@@ -70,7 +70,7 @@ struct Measured {
 
 /// Simulates, prints the report, and saves `shapes.png` if `view` can draw.
 pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let scene = ("a cloth over every shape", ScenePlugin);
+    let scene = ("cloth over every shape", ScenePlugin);
     let mut run = Run::new(scene, view, grid, options, |app| {
         app.add_plugins(MeasuringPlugin)
             .init_resource::<Measured>()
@@ -99,25 +99,25 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
 }
 
 fn print_report(report: &Report) {
-    report.figures.print("A cloth over every shape");
+    report.figures.print("Cloth over every shape");
     for (how, ticks) in &report.searches {
-        println!("  search           {ticks} ticks: {how}");
+        println!("  search           {how}: {ticks} ticks");
     }
     println!(
-        "  a search         {} colliders near, {} nodes visited, {} particles tested (medians)",
+        "  each search      {} colliders near, {} nodes visited, {} particles tested (medians)",
         report.colliders_near, report.nodes_visited, report.particles_tested
     );
     println!(
-        "  searched again   {} times within a tick, for particles that outran it",
+        "  extra searches   {} within a tick, after particles outran the first",
         report.requeries
     );
     println!(
-        "  besides          {:.4} ms to refit, {:.4} ms to search (medians)",
+        "  search time      {:.4} ms to refit, {:.4} ms to search (medians)",
         report.rebuild_ms, report.query_ms
     );
     println!(
         "  {:<14} {:>10} {:>6} {:>6} {:>10} {:>10} {:>10} {:>10}",
-        "touched", "by", "most", "last", "found, mm", "left, mm", "area, cm²", "cut, cm³"
+        "collider", "tested by", "most", "last", "found, mm", "left, mm", "area, cm²", "cut, cm³"
     );
     for shape in &report.shapes {
         println!(

@@ -1,28 +1,30 @@
-//! Two sheer cloths of 64 × 64 particles fall over every shape there is. The first over a ball, a standing capsule, a box, and
-//! a ring of marbles so small that the cloth is tested against them by its triangles; the second over a cylinder, a cone, a stone
-//! by the convex hull of its mesh, a ring by the triangles of its own, and dunes that are a height field; below them, a floor that
-//! is a plane.
+//! Two sheer cloths of 64 × 64 particles fall over every collider shape.
 //!
-//! Each is an entity with a `ClothCollider`, a `Transform` and a mesh. Nothing is asked of the search: the plugin
-//! chooses, and the panel and the report say what and why. Take the shapes' places from `scene.rs`.
+//! The first falls over a ball, a capsule, a box, and a ring of marbles so small that contact goes by the cloth's
+//! triangles. The second falls over a cylinder, a cone, the convex hull of a stone, the triangle mesh of a ring, and a
+//! height field of dunes. The floor is a plane.
+//!
+//! Each shape is an entity with a `ClothCollider`, a `Transform` and a mesh. The plugin chooses the search by itself:
+//! the panel and the report show the choice and its reason. The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example shapes                                    # a window, or a report where there is none
-//! cargo run --example shapes -- --headless --seconds 20 --json  # a report as one JSON object, and a picture
+//! cargo run --example shapes                                   # a window, or headless where no window opens
+//! cargo run --example shapes -- --headless --out DIR           # no window: prints a report, saves DIR/shapes.png
+//! cargo run --example shapes -- --headless --seconds 20 --json # a longer run, reported as one JSON object
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth, which falls again |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloths, which fall again |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 mod headless;
 #[path = "../shared/measured.rs"]
@@ -38,7 +40,7 @@ use crate::shared::{start::Example, window};
 fn main() -> ExitCode {
     Example {
         name: "shapes",
-        about: "Cloth falls over every shape there is. Opens a window where it can, and runs headless otherwise.",
+        about: "Cloth falls over every collider shape. Opens a window if possible, otherwise runs headless.",
         seconds: "6",
         particles: scene::PARTICLES,
         window: |grid| {

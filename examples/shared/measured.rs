@@ -1,4 +1,4 @@
-//! What is measured of every cloth on the way, and how each report begins.
+//! Measurements of every cloth during a run, and the first lines of each report.
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::shared::headless::{Run, median};
 
-/// What every report says of its cloths.
+/// Figures of the cloths that every report has.
 #[derive(Serialize)]
 pub struct Figures {
     ticks: u64,
@@ -92,7 +92,7 @@ impl Figures {
             self.simulated_seconds / self.wall_seconds
         );
         println!(
-            "  a tick           {:.3} ms to solve (median while awake)",
+            "  solver           {:.3} ms a tick (median while awake)",
             self.solver_ms
         );
         println!("  largest stretch  {:.2} %", self.largest_stretch_percent);

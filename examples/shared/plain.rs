@@ -1,4 +1,4 @@
-//! The headless run of an example that has nothing more to say than its figures: a report and a picture.
+//! The headless run of an example without figures of its own: a report and a picture.
 
 use std::process::ExitCode;
 
@@ -63,7 +63,7 @@ pub fn run(
     };
     let printed = print(&report, options.json, |report| {
         report.figures.print(&report.title);
-        println!("  contacts         {} particles at most", report.contacts);
+        println!("  contacts         at most {} particles", report.contacts);
         println!("  picture          {}", report.picture);
     });
     let world = run.app.world_mut();

@@ -6,7 +6,7 @@ use clap::{CommandFactory, FromArgMatches, Parser};
 
 use super::{stage::Grid, view::View};
 
-/// Opens a window where it can, and runs headless otherwise.
+/// Opens a window if possible, otherwise runs headless.
 #[derive(Parser)]
 pub struct Options {
     /// Run without a window, as fast as possible, and print a report
@@ -18,7 +18,7 @@ pub struct Options {
     /// Headless: how long to simulate (s)
     #[arg(long, value_name = "S", default_value_t = 12.0, value_parser = seconds)]
     pub seconds: f64,
-    /// Headless: folder that the picture is saved in, made if it is not there
+    /// Headless: folder for the pictures, created if missing
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Headless: save N frames of a film, frame-000.png and on, beside the picture
@@ -73,7 +73,7 @@ impl Example {
             if View::Window.can_be_had() {
                 return (self.window)(grid);
             }
-            eprintln!("No window can be opened here: running headless.");
+            eprintln!("No window opens here: running headless.");
         }
         (self.headless)(View::without_window(), grid, &options)
     }

@@ -15,25 +15,25 @@ use bevy_drape::{
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext, input::EguiWantsInput};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin};
 
-use super::{stage::Shot, view::View};
+use super::{preparing::PreparingPlugin, stage::Shot, view::View};
 
 /// The keys of every example, as they stand in the panel.
 const KEYS: [(&str, &str); 10] = [
-    ("mouse", "orbit, pan, zoom"),
-    ("Space", "pause, go on"),
-    ("N", "single step, while paused"),
-    ("L", "next level of the tree"),
-    ("G", "springs on, off"),
-    ("B", "next search: volume and rule"),
-    ("C", "contact by particles, triangles"),
-    ("M", "next material"),
-    ("R", "new cloth"),
-    ("P", "this panel on, off"),
+    ("Mouse", "orbit, pan, zoom"),
+    ("Space", "pause, resume"),
+    ("N", "single step while paused"),
+    ("M", "next fabric"),
+    ("R", "reset the cloth"),
+    ("P", "show, hide this panel"),
+    ("G", "show, hide springs"),
+    ("L", "show next level of volumes"),
+    ("B", "next search method"),
+    ("C", "next contact method"),
 ];
 
-/// An app that runs a scene in a window, beside the panel, with keys of its own to be listed.
+/// An app that runs a scene in a window beside the panel, which lists the example's own keys first.
 pub fn app(title: &str, scene: impl Plugin, shot: Shot, more_keys: &[(&str, &str)]) -> App {
-    let keys = KEYS.iter().chain(more_keys);
+    let keys = more_keys.iter().chain(&KEYS);
     let panel = ClothPanel {
         keys: keys
             .map(|(key, what)| (key.to_string(), what.to_string()))
@@ -45,6 +45,7 @@ pub fn app(title: &str, scene: impl Plugin, shot: Shot, more_keys: &[(&str, &str
         View::Window.plugins(title),
         scene,
         ClothPanelPlugin,
+        PreparingPlugin,
         PanOrbitCameraPlugin,
     ))
     .insert_resource(panel)

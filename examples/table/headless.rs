@@ -1,4 +1,4 @@
-//! The same app without a window: a report of what became of the things, and two pictures.
+//! The same app without a window: a report on the dishes, and two pictures.
 
 use std::process::ExitCode;
 
@@ -105,16 +105,16 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
 }
 
 fn print_report(report: &Report) {
-    report.figures.print("A tablecloth that is pulled away");
+    report.figures.print("A tablecloth, pulled off");
     println!(
-        "  the table shows  {} times at most until then, {} in all: triangles that one of its edges passes through",
+        "  poke-through     at most {} triangles that a table edge crosses before the pull, {} overall",
         report.edges_through_at_rest, report.edges_through
     );
-    println!("  penetration      at most, after a tick, by brute force:");
+    println!("  penetration      the most after any tick, by brute force:");
     for (name, depth) in &report.deepest_left {
         println!("    {name:<14} {depth:.3} mm");
     }
-    println!("  things           where they are at last:");
+    println!("  dishes           at the end:");
     for row in &report.things {
         println!(
             "    {:<14} moved by {:.1} mm, leans by {:.1}°, {}",
@@ -125,7 +125,7 @@ fn print_report(report: &Report) {
         );
     }
     println!(
-        "  the cloth        {} of its particles are still on the table",
+        "  cloth            {} particles still on the table",
         report.left_on_table
     );
     println!("  pictures         {}", report.laid);

@@ -1,29 +1,30 @@
-//! A tablecloth over a table that is laid for two, and the trick with it: it is pulled away so fast that all stays where it is.
+//! The tablecloth trick: the cloth is pulled off a laid table so fast that the dishes stay where they are.
 //!
-//! Rapier moves plates, cups, bottle and candlestick. They stand on the table, higher by the thickness of the cloth, so that the
-//! cloth has its place between them and the table: cloth does not carry what is heavy, and is pinched where two solids press it.
-//! So the cloth goes around cups, bottle and candlestick, and does not push them: in this scene friction takes nothing along.
-//! It shows neither an edge nor a corner of the table: how many of its triangles an edge of the table passes through is counted
-//! by brute force, and shown.
+//! Rapier moves plates, cups, bottle and candlestick. Cloth can't carry heavy bodies, and two solids that press it from
+//! both sides pinch it. So the dishes stand on the table's own collider, raised by the cloth's thickness, and the cloth
+//! slides through the gap. It moves around the dishes and never pushes them.
+//!
+//! No edge or corner of the table pokes through the cloth: the picture shows the number of cloth triangles that a table
+//! edge crosses, counted by brute force.
 //!
 //! ```sh
-//! cargo run --example table               # a window, or a report where there is none
-//! cargo run --example table -- --headless # a report and two pictures
+//! cargo run --example table                         # a window, or headless where no window opens
+//! cargo run --example table -- --headless --out DIR # no window: prints a report, saves DIR/table.png and DIR/table_pulled.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | T | pull the cloth away |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | T | pull the cloth off |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
 //! | R | lay the table again |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | P | panel on and off |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 mod edges;
 #[path = "../shared/figure.rs"]
@@ -47,11 +48,11 @@ use crate::shared::{start::Example, window};
 fn main() -> ExitCode {
     Example {
         name: "table",
-        about: "A cloth is pulled off a table that is laid. Opens a window where it can, and runs headless otherwise.",
+        about: "A cloth is pulled off a laid table. Opens a window if possible, otherwise runs headless.",
         seconds: "4",
         particles: scene::PARTICLES,
         window: |grid| {
-            let keys = [("T", "pull the cloth away")];
+            let keys = [("T", "pull the cloth off")];
             let mut app = window::app("a tablecloth", scene::ScenePlugin, scene::SHOT, &keys);
             app.insert_resource(grid).add_systems(Update, press_key);
             window::run(app)

@@ -280,7 +280,7 @@ fn write_figure(
     let farthest = things.iter().map(away).fold(0.0, f32::max);
     figure.is_good = shown.now == 0;
     figure.lines = vec![
-        format!("edges that show: {}", shown.now),
-        format!("farthest moved: {:.0} mm", 1.0e3 * farthest),
+        format!("triangles poked through: {}", shown.now),
+        format!("dishes moved: {:.0} mm at most", 1.0e3 * farthest),
     ];
 }

@@ -1,28 +1,28 @@
 //! A pavilion in gusty wind.
 //!
-//! Roof and walls are meshes that the program makes, pinned where the pavilion's poles and pegs hold them: `Pin::at_rest` asks the
-//! position in the mesh. The pennant on its top is cut of triangles and attached to the pole. See `scene.rs`.
+//! Roof and walls are meshes made in code. `Pin::at_rest` pins them where poles and pegs hold them, by position in the
+//! mesh. The pennant on top is cut from triangles and attached to its pole. The scene is in `scene.rs`.
 //!
 //! ```sh
-//! cargo run --example tent               # a window, or a report where there is none
-//! cargo run --example tent -- --headless # a report and a picture
+//! cargo run --example tent                         # a window, or headless where no window opens
+//! cargo run --example tent -- --headless --out DIR # no window: prints a report, saves DIR/tent.png
 //! ```
 //!
-//! | control | what it does |
+//! | Key | Action |
 //! |---|---|
-//! | left drag, right drag, wheel | orbit, pan, zoom |
-//! | Up, Down | a stronger, weaker wind |
-//! | Left, Right | the wind turns |
-//! | T | turbulence and gusts on and off |
-//! | Space | pause and go on |
-//! | N | single step, while paused |
-//! | L | next level of the tree, beginning with none |
-//! | G | springs on and off |
-//! | B | next way to search: what is best, all particles, or a tree of some volume and rule |
-//! | C | contact by particles or triangles, or as each shape's size asks for |
-//! | M | next material |
-//! | R | new cloth |
-//! | P | panel on and off |
+//! | Left drag, right drag, wheel | orbit, pan, zoom |
+//! | Up, Down | stronger, weaker wind |
+//! | Left, Right | turn the wind |
+//! | T | turbulence and gusts on, off |
+//! | Space | pause, resume |
+//! | N | single step while paused |
+//! | M | next fabric |
+//! | R | reset the cloth |
+//! | P | show, hide the panel |
+//! | G | show, hide springs |
+//! | L | show the next level of bounding volumes |
+//! | B | next search method |
+//! | C | next contact method: automatic, particles, triangles |
 
 #[path = "../shared/measured.rs"]
 mod measured;
@@ -51,7 +51,7 @@ const TITLE: &str = "a pavilion in gusty wind";
 fn main() -> ExitCode {
     Example {
         name: "tent",
-        about: "A pavilion stands in gusty wind. Opens a window where it can, and runs headless otherwise.",
+        about: "A pavilion in gusty wind. Opens a window if possible, otherwise runs headless.",
         seconds: "8",
         particles: scene::PARTICLES,
         window: |grid| {

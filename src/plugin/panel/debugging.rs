@@ -54,8 +54,8 @@ impl Times {
             query,
         } = self;
         format!(
-            "Time that a fixed tick takes for all cloths together (ms), a mean of the last ticks:\n\
-             sub-steps of the solver {integrate:.3}, volumes brought up to date {rebuild:.4}, search {query:.4}."
+            "Time of a fixed tick for all cloths together, a mean of the last ticks:\n\
+             solver {integrate:.3} ms, refit of the volumes {rebuild:.4} ms, search {query:.4} ms."
         )
     }
 }
@@ -85,27 +85,27 @@ fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
         (
             "contacts",
             format!("{}", stats.contacts),
-            "Particles that were pushed out of a collider in the last tick, or cells of two triangles where it is small",
+            "Particles that a collider pushed out in the last tick; for small colliders, cells of two triangles",
         ),
         (
             "nodes visited",
             format!("{} of {nodes}", stats.nodes_visited),
-            "Nodes of the tree of bounding volumes that the last tick's search looked at",
+            "Nodes of the bounding-volume tree that the search of the last tick visited",
         ),
         (
             "tested",
             format!("{}", stats.leaf_tests),
-            "Particles that the last tick's search tested against a collider",
+            "Particles that the search of the last tick tested against a collider",
         ),
         (
             "stretch",
             format!("{:.1} %", 100.0 * stats.stretch.structural),
-            "The largest stretch of a thread, at the end of the last tick (% of its length)",
+            "The largest stretch of a thread at the end of the last tick (% of its rest length)",
         ),
         (
             "sub-steps",
             format!("{}", stats.substeps),
-            "Sub-steps of the last tick; none where the cloth sleeps",
+            "Sub-steps of the last tick; none while the cloth sleeps",
         ),
     ] {
         line(
@@ -116,7 +116,7 @@ fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
     }
     let found = search_text(stats);
     let tip = format!(
-        "{found}\n{} colliders near, {} of them against triangles, {} searches again within the tick",
+        "{found}\n{} colliders near, {} of them against triangles, {} extra searches within the tick",
         stats.colliders_near, stats.by_triangles, stats.requeries
     );
     line(ui, found, &tip);
@@ -149,8 +149,8 @@ fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands)
     choose(
         ui,
         "volumes",
-        "Which level of the tree of bounding volumes is drawn, 0 being the root: red and dark where a collider touches, \
-         green and bright where none does, faint where the search did not look",
+        "Level of the bounding-volume tree to draw, 0 is the root. Red and dark: a collider touches it. \
+         Green and bright: none does. Faint: the search did not visit it",
         &mut shown.levels,
         &now,
         std::iter::once(("none".to_string(), String::new(), None)).chain(levels),
@@ -173,7 +173,7 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
     choose(
         ui,
         "search",
-        "How contacts are searched for: all particles one by one, or a tree of volumes by a rule. Auto takes what costs least",
+        "Search for contacts: every particle, or a tree of bounding volumes with a rule. Auto takes the cheapest",
         &mut method,
         &cloth.search_method.to_string(),
         SearchMethod::ALL.map(|each| (each.to_string(), String::new(), each)),
@@ -189,7 +189,7 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
     choose(
         ui,
         "contact by",
-        "What colliders are tested against. Auto takes triangles for small balls and capsules, particles for all else",
+        "Contact of colliders with particles or triangles. Auto takes triangles for small balls and capsules, otherwise particles",
         &mut narrow_phase,
         now,
         NarrowPhase::ALL.map(|(name, each)| (name.to_string(), String::new(), each)),
@@ -202,17 +202,17 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
     let choices = [
         (
             "automatic",
-            "As many sub-steps as a cloth of so many particles needs, the same in each tick",
+            "Sub-steps by the number of particles, the same in each tick",
             Substepping::Automatic,
         ),
         (
             "fixed",
-            "A number of sub-steps, the same in each tick: it costs the same each time",
+            "Your number of sub-steps: each tick costs the same",
             Substepping::Fixed(20),
         ),
         (
             "tolerance",
-            "As many sub-steps as keep the stretch below a limit, at least as many as the cloth needs",
+            "Enough sub-steps to keep the stretch below a limit, and at least those of “automatic”",
             ClothSettings::tolerance(0.01).substepping,
         ),
     ];
@@ -227,7 +227,7 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
     match substepping {
         Substepping::Automatic => {}
         Substepping::Fixed(substeps) => {
-            let tip = "Sub-steps of each fixed tick, 1 to 80: more hold the threads' lengths better, and each costs the same time";
+            let tip = "Sub-steps of each fixed tick, 1 to 80: more sub-steps stretch less, and each costs the same time";
             slide(ui, "sub-steps", tip, substeps, 1..=80, |slider| slider);
         }
         Substepping::Adaptive {
@@ -235,19 +235,19 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
             max_substeps,
         } => {
             let mut percent = 100.0 * *stretch;
-            let tip = "The largest stretch that is allowed (% of a thread's length), 0.1 to 20";
+            let tip = "The largest stretch allowed (% of a thread's rest length), 0.1 to 20";
             if slide(ui, "stretch, %", tip, &mut percent, 0.1..=20.0, |slider| {
                 slider.logarithmic(true)
             }) {
                 *stretch = percent / 100.0;
             }
-            let tip = "The maximum of sub-steps that a tick may take, 1 to 400";
+            let tip = "The most sub-steps that a tick may take, 1 to 400";
             slide(ui, "at most", tip, max_substeps, 1..=400, |slider| slider);
         }
     }
     let mut is_first = settings.order == TimeOrder::First;
     ui.checkbox(&mut is_first, "Verlet as in the paper").on_hover_text(
-        "Of first order in time, equation (2): swings lose energy, the more the fewer the sub-steps. Otherwise of second order",
+        "First order in time, equation (2): swings lose energy, more with fewer sub-steps. Off: second order",
     );
     let order = if is_first {
         TimeOrder::First
@@ -258,10 +258,10 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
         settings.order = order;
     }
     ui.checkbox(&mut settings.tethers, "tethers").on_hover_text(
-        "No particle gets farther from the pins than the cloth between them is long: less stretch for the same sub-steps",
+        "No particle gets farther from a pin than the cloth between them allows: less stretch at the same sub-steps",
     );
     ui.checkbox(&mut settings.sleeps, "sleeps at rest")
-        .on_hover_text("A cloth that has come to rest is left alone until something disturbs it");
+        .on_hover_text("A cloth at rest is not simulated until something disturbs it");
 }
 
 /// The exact values, in their units.
@@ -269,12 +269,12 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
     line(
         ui,
         "material, exact",
-        "The values behind the sliders further up; two clicks on a number edit it",
+        "The values behind the sliders above. Double-click a number to edit it",
     );
     let tip = "Mass per area (kg/m²)";
     slide(
         ui,
-        "kg/m²",
+        "mass, kg/m²",
         tip,
         &mut material.areal_density,
         0.01..=5.0,
@@ -305,7 +305,7 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
             slider.logarithmic(true).smallest_positive(smallest.into())
         });
     }
-    let tip = "Damping along springs (s): the time in which a stretch that nothing pulls at dies away. 0 is none";
+    let tip = "Damping along springs (s): time in which a free stretch decays. 0 is none";
     slide(
         ui,
         "loss, s",
@@ -314,7 +314,7 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
         0.0..=0.1,
         |slider| slider,
     );
-    let tip = "The part of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";
+    let tip = "Share of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";
     slide(
         ui,
         "damping D",

@@ -63,7 +63,7 @@ use crate::cloth::ClothMaterial;
 pub struct ClothPanel {
     /// Shown or hidden.
     pub visible: bool,
-    /// The game's keys and what they do, listed at the panel's end.
+    /// The game's keys and what they do. The panel lists them at its lower edge and never scrolls them out of sight.
     pub keys: Vec<(String, String)>,
 }
 
@@ -75,6 +75,11 @@ impl Default for ClothPanel {
         }
     }
 }
+
+/// At most this many cloths start unfolded.
+const MOST_OPEN: usize = 2;
+/// At most this many cloths start as a list of names: more are folded under one header.
+const MOST_LISTED: usize = 8;
 
 impl ClothPanel {
     /// Width of the panel while it is shown (logical pixels).
@@ -100,7 +105,8 @@ pub struct ClothColliderSpeed(pub f32);
 /// Shows a panel on the primary window. It has pause and single step (of the fixed schedules) and the time of a tick,
 /// gravity, and the speed of each collider with a [`ClothColliderSpeed`]. For each cloth it sets the fabric: by
 /// presets, or by sliders for stretch, stiffness, weight, slipperiness and damping. Folded below are search and gizmos,
-/// sub-steps, and the exact values of the material. Tooltips explain everything, with units.
+/// sub-steps, and the exact values of the material. The game's keys stay in sight at the
+/// lower edge. Each value has its unit and a tooltip.
 ///
 /// Adds `EguiPlugin` if the app has none yet. The resource [`ClothPanel`] shows and hides it.
 #[derive(Debug, Default, Clone, Copy)]
@@ -164,6 +170,7 @@ impl Shown<'_, '_> {
                 let inside = egui::UiBuilder::new().max_rect(rect.shrink(10.0));
                 let mut inside = ui.new_child(inside);
                 inside.shrink_clip_rect(rect);
+                self.draw_keys(&mut inside);
                 ScrollArea::vertical()
                     .auto_shrink(false)
                     .show(&mut inside, |ui| self.draw_all(ui));
@@ -173,48 +180,76 @@ impl Shown<'_, '_> {
 
     fn draw_all(&mut self, ui: &mut Ui) {
         self.draw_clock(ui);
-        let few = self.cloths.iter().len() <= 2;
-        for mut cloth in &mut self.cloths {
+        let count = self.cloths.iter().len();
+        if count > MOST_LISTED {
             ui.separator();
-            CollapsingHeader::new(RichText::new(cloth.name()).strong())
-                .id_salt(cloth.entity)
-                .default_open(few)
-                .show_unindented(ui, |ui| draw_fabric(ui, &mut cloth.material));
+            CollapsingHeader::new(RichText::new(format!("{count} cloths")).strong())
+                .id_salt("cloths")
+                .show_unindented(ui, |ui| self.draw_cloths(ui));
+        } else {
+            self.draw_cloths(ui);
         }
         ui.separator();
         self.draw_world(ui);
         ui.separator();
         CollapsingHeader::new("debugging")
             .default_open(false)
-            .show_unindented(ui, |ui| {
-                for mut cloth in &mut self.cloths {
-                    if few {
-                        ui.push_id(cloth.entity, |ui| {
+            .show_unindented(ui, |ui| self.draw_debugging(ui));
+    }
+
+    fn draw_cloths(&mut self, ui: &mut Ui) {
+        let few = self.cloths.iter().len() <= MOST_OPEN;
+        for mut cloth in &mut self.cloths {
+            ui.separator();
+            // Menus take their ids from their names, which are the same for every cloth.
+            ui.push_id(cloth.entity, |ui| {
+                CollapsingHeader::new(RichText::new(cloth.name()).strong())
+                    .id_salt("fabric")
+                    .default_open(few)
+                    .show_unindented(ui, |ui| draw_fabric(ui, &mut cloth.material));
+            });
+        }
+    }
+
+    fn draw_debugging(&mut self, ui: &mut Ui) {
+        let few = self.cloths.iter().len() <= MOST_OPEN;
+        for mut cloth in &mut self.cloths {
+            ui.push_id(cloth.entity, |ui| {
+                if few {
+                    debugging::show(ui, &mut cloth, &mut self.commands);
+                } else {
+                    CollapsingHeader::new(cloth.name())
+                        .id_salt("debugging")
+                        .show_unindented(ui, |ui| {
                             debugging::show(ui, &mut cloth, &mut self.commands);
                         });
-                    } else {
-                        CollapsingHeader::new(cloth.name())
-                            .id_salt(cloth.entity)
-                            .show_unindented(ui, |ui| {
-                                debugging::show(ui, &mut cloth, &mut self.commands);
-                            });
-                    }
                 }
             });
-        if !self.panel.keys.is_empty() {
-            ui.separator();
-            CollapsingHeader::new("keys")
-                .default_open(true)
-                .show_unindented(ui, |ui| {
-                    egui::Grid::new("keys").spacing([10.0, 2.0]).show(ui, |ui| {
-                        for (key, what) in &self.panel.keys {
-                            ui.strong(key);
-                            ui.label(what);
-                            ui.end_row();
-                        }
-                    });
-                });
         }
+    }
+
+    /// The keys, at the lower edge: in sight whatever is above them.
+    fn draw_keys(&self, ui: &mut Ui) {
+        if self.panel.keys.is_empty() {
+            return;
+        }
+        let most = 0.5 * ui.available_height();
+        egui::Panel::bottom("bevy_drape: keys")
+            .frame(Frame::NONE.inner_margin(egui::Margin {
+                top: 4,
+                ..Default::default()
+            }))
+            .show(ui, |ui| {
+                ScrollArea::vertical()
+                    .auto_shrink([false, true])
+                    .min_scrolled_height(most)
+                    .max_height(most)
+                    .show(ui, |ui| {
+                        CollapsingHeader::new("keys")
+                            .default_open(true)
+                            .show_unindented(ui, |ui| list_keys(ui, &self.panel.keys));
+                    });
+            });
     }
 
     /// Pause and step, and a line with the state of the cloths.
@@ -257,10 +292,10 @@ impl Shown<'_, '_> {
             asleep += usize::from(cloth.stats.is_asleep);
             limits.extend(cloth.stats.exceeded);
         }
-        tip += "A cloth that has come to rest sleeps, and costs next to nothing.";
+        tip += "A cloth at rest sleeps and costs almost nothing.";
         for limit in &limits {
             tip += &format!(
-                "\nBeyond what is simulated well: {limit} {}.",
+                "\nOutside the range that simulates well: {limit} {}.",
                 limit.remedy()
             );
         }
@@ -280,9 +315,9 @@ impl Shown<'_, '_> {
     /// Settings that all cloths share.
     fn draw_world(&mut self, ui: &mut Ui) {
         let mut down = -self.gravity.0.y;
-        let tip = "Gravity, downwards (m/s²): 9.81 on Earth, 1.62 on the Moon. Cloths with a gravity of their own keep it";
+        let tip = "Gravity, downwards (m/s²): 9.81 on Earth, 1.62 on the Moon. A cloth with its own gravity keeps it";
         slide(ui, "gravity", tip, &mut down, 0.0..=25.0, |slider| {
-            slider.fixed_decimals(2)
+            slider.fixed_decimals(2).suffix(" m/s²")
         });
         let changed = ClothGravity(self.gravity.0.with_y(-down));
         self.gravity.set_if_neq(changed);
@@ -291,30 +326,45 @@ impl Shown<'_, '_> {
             let mut value = speed.0;
             let tip = format!("Speed of {name} (m/s)");
             slide(ui, &name, &tip, &mut value, 0.0..=10.0, |slider| {
-                slider.fixed_decimals(2)
+                slider.fixed_decimals(2).suffix(" m/s")
             });
             speed.set_if_neq(ClothColliderSpeed(value));
         }
     }
 }
 
+fn list_keys(ui: &mut Ui, keys: &[(String, String)]) {
+    egui::Grid::new("keys")
+        .spacing([10.0, 1.0])
+        .min_row_height(0.0)
+        .show(ui, |ui| {
+            for (key, what) in keys {
+                ui.strong(key);
+                ui.label(what);
+                ui.end_row();
+            }
+        });
+}
+
 /// A preset, and how stretchy, stiff, heavy, slippery and damped the fabric is. Only what someone moves is changed.
 fn draw_fabric(ui: &mut Ui, material: &mut impl DetectChangesMut<Inner = ClothMaterial>) {
     let mut changed = *material.bypass_change_detection();
     let presets = ClothMaterial::PRESETS;
-    let now = presets
-        .iter()
-        .find(|(_, preset)| *preset == changed)
-        .map_or("custom", |(name, _)| name);
+    let (name, preset) = Quality::nearest(&changed);
+    let now = if preset == changed {
+        name.to_string()
+    } else {
+        format!("{name}, changed")
+    };
     choose(
         ui,
         "fabric",
-        "What the cloth is made of",
+        "The preset that the cloth started from. “changed”: a value differs from the preset",
         &mut changed,
-        now,
+        &now,
         presets.map(|(name, preset)| {
             let qualities =
-                Quality::ALL.map(|each| format!("{} {:.0}", each.name(), each.of(&preset)));
+                Quality::ALL.map(|each| format!("{} {:.0} %", each.name(), each.of(&preset)));
             (name.to_string(), qualities.join(", "), preset)
         }),
     );
@@ -327,7 +377,7 @@ fn draw_fabric(ui: &mut Ui, material: &mut impl DetectChangesMut<Inner = ClothMa
             &tip,
             &mut place,
             0.0..=100.0,
-            |slider| slider.fixed_decimals(0),
+            |slider| slider.fixed_decimals(0).suffix(" %"),
         ) {
             quality.set(&mut changed, place);
         }

@@ -38,6 +38,24 @@ impl Quality {
         }
     }
 
+    /// The preset that a material was most likely made from: it shares the most qualities, and differs least in the others.
+    pub fn nearest(material: &ClothMaterial) -> (&'static str, ClothMaterial) {
+        let differences = |preset: &ClothMaterial| {
+            let each = Self::ALL.map(|quality| (quality.of(preset) - quality.of(material)).abs());
+            let changed = each.iter().filter(|difference| **difference > 0.0).count();
+            (changed, each.iter().sum::<f32>())
+        };
+        let mut nearest = ClothMaterial::PRESETS[0];
+        let mut least = differences(&nearest.1);
+        for preset in &ClothMaterial::PRESETS[1..] {
+            let found = differences(&preset.1);
+            if found < least {
+                (nearest, least) = (*preset, found);
+            }
+        }
+        nearest
+    }
+
     /// Value of a material on the scale; below 0 or above 100 if it is beyond.
     pub fn of(self, material: &ClothMaterial) -> f32 {
         match self {
@@ -76,34 +94,34 @@ impl Quality {
         } = material;
         match self {
             Self::Stretchy => format!(
-                "How much it gives when it is pulled.\n\
-                 Stretch compliance: {stretch_compliance} m/N. A square patch of it, pulled by 1 N, grows by {} mm.\n\
-                 0 is rigid, 1 is 0.000001 m/N, 100 is {} m/N.",
+                "How much the cloth gives when pulled.\n\
+                 Stretch compliance: {stretch_compliance} m/N. A square patch, pulled by 1 N, grows by {} mm.\n\
+                 0 % is rigid, 1 % is 0.000001 m/N, 100 % is {} m/N.",
                 1.0e3 * stretch_compliance,
                 STRETCH.0[1]
             ),
             Self::Stiff => format!(
-                "How much it resists bends and folds.\n\
-                 Flexural rigidity: {bend_rigidity} N·m. A strip 1 cm wide that is bent to a radius of 1 cm needs {} N·mm.\n\
-                 0 is none, 100 is {} N·m. Silk has 0.000002, denim 0.00006.",
+                "How much the cloth resists bending and folding.\n\
+                 Flexural rigidity: {bend_rigidity} N·m. A strip of 1 cm width, bent to a radius of 1 cm, needs {} N·mm.\n\
+                 0 % is none, 100 % is {} N·m. Silk has 0.000002 N·m, denim 0.00006 N·m.",
                 1.0e3 * bend_rigidity,
                 BEND.0[1]
             ),
             Self::Heavy => format!(
-                "How much it weighs.\n\
+                "How much the cloth weighs.\n\
                  Mass per area: {areal_density} kg/m².\n\
-                 0 is {} kg/m², 100 is {} kg/m². A shirt has 0.12, jeans have 0.45.",
+                 0 % is {} kg/m², 100 % is {} kg/m². A shirt has 0.12 kg/m², jeans have 0.45 kg/m².",
                 DENSITY.0[0], DENSITY.0[1]
             ),
             Self::Slippery => format!(
-                "How easily it slides over what it touches.\n\
+                "How easily the cloth slides over colliders.\n\
                  Coulomb's coefficient of friction μ: {friction} (no unit).\n\
-                 0 is μ = 1, which holds on a slope of 45°; 100 is μ = 0, without friction."
+                 0 % is μ = 1, which holds on a slope of 45°; 100 % is μ = 0, without friction."
             ),
             Self::Damped => format!(
-                "How soon it calms down.\n\
-                 Damping D: {damping} (no unit), the part of its velocity that it loses in 1/60 s.\n\
-                 0 is D = 0, 100 is D = {DAMPING}."
+                "How soon the cloth calms down.\n\
+                 Damping D: {damping} (no unit), the share of its velocity that it loses in 1/60 s.\n\
+                 0 % is D = 0, 100 % is D = {DAMPING}."
             ),
         }
     }

@@ -19,22 +19,178 @@ fn app() -> App {
     app
 }
 
+/// Draws a frame in a window of this size. Returns the place that the panel takes, and all that is painted.
+fn frame(
+    app: &mut App,
+    context: &egui::Context,
+    size: egui::Vec2,
+    events: Vec<egui::Event>,
+) -> (egui::Rect, egui::FullOutput) {
+    let mut state = SystemState::<Shown>::new(app.world_mut());
+    let mut shown = state.get_mut(app.world_mut()).expect("the panel's data");
+    context.begin_pass(egui::RawInput {
+        screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size)),
+        events,
+        ..Default::default()
+    });
+    let place = shown.draw(context);
+    let output = context.end_pass();
+    state.apply(app.world_mut());
+    (place, output)
+}
+
 /// The place that the panel takes after some frames in a window of this size.
 fn draw(app: &mut App, context: &egui::Context, size: egui::Vec2) -> egui::Rect {
-    let mut state = SystemState::<Shown>::new(app.world_mut());
-    let mut place = egui::Rect::NOTHING;
-    for _ in 0..3 {
-        let mut shown = state.get_mut(app.world_mut()).expect("the panel's data");
-        let input = egui::RawInput {
-            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size)),
-            ..Default::default()
-        };
-        context.begin_pass(input);
-        place = shown.draw(context);
-        let _output = context.end_pass();
-        state.apply(app.world_mut());
+    let places = (0..3).map(|_| frame(app, context, size, Vec::new()).0);
+    places.last().expect("three frames")
+}
+
+/// All texts that can be seen after some frames in a window of 1280 × 720, each with its place.
+fn texts(app: &mut App, context: &egui::Context) -> Vec<(String, egui::Rect)> {
+    let size = egui::vec2(1280.0, 720.0);
+    let frames = (0..3).map(|_| frame(app, context, size, Vec::new()).1);
+    let output = frames.last().expect("three frames");
+    let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
+    let mut texts = Vec::new();
+    for clipped in output.shapes {
+        let seen = clipped.clip_rect.intersect(screen).expand(0.5);
+        let mut shapes = vec![clipped.shape];
+        while let Some(shape) = shapes.pop() {
+            match shape {
+                egui::Shape::Vec(more) => shapes.extend(more),
+                egui::Shape::Text(text) => {
+                    let place = text.visual_bounding_rect();
+                    if seen.contains_rect(place) {
+                        texts.push((text.galley.text().to_string(), place));
+                    }
+                }
+                _ => {}
+            }
+        }
     }
-    place
+    texts
+}
+
+/// Clicks the text.
+fn click(app: &mut App, context: &egui::Context, text: &str) {
+    let seen = texts(app, context);
+    let found = seen.iter().find(|(each, _)| each == text);
+    let pos = found.map(|(_, place)| place.center());
+    let pos = pos.unwrap_or_else(|| panic!("{text} is not to be seen: {seen:?}"));
+    let button = |pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    };
+    for event in [egui::Event::PointerMoved(pos), button(true), button(false)] {
+        frame(app, context, egui::vec2(1280.0, 720.0), vec![event]);
+    }
+}
+
+/// Spawns cloths by name, and a context in which headers open at once and a clash of ids shows in any build.
+fn cloths(count: usize) -> (App, egui::Context) {
+    let mut app = app();
+    for number in 1..=count {
+        let name = Name::new(format!("cloth {number}"));
+        app.world_mut().spawn((Cloth::default(), name));
+    }
+    app.update();
+    let context = egui::Context::default();
+    context.options_mut(|options| options.warn_on_id_clash = true);
+    context.all_styles_mut(|style| style.animation_time = 0.0);
+    (app, context)
+}
+
+#[test]
+fn no_two_widgets_share_an_id() {
+    for (count, headers) in [
+        (2, &["debugging"][..]),
+        (3, &["cloth 1", "cloth 2"]),
+        (3, &["debugging"]),
+        (9, &["9 cloths", "cloth 1", "cloth 2"]),
+    ] {
+        let (mut app, context) = cloths(count);
+        for header in headers {
+            click(&mut app, &context, header);
+        }
+        let seen = texts(&mut app, &context);
+        assert!(seen.iter().any(|(text, _)| text == "cotton") || headers == ["debugging"]);
+        let clash = seen.iter().find(|(text, _)| text.contains("use of"));
+        assert_eq!(clash, None, "{count} cloths, {headers:?} open");
+    }
+}
+
+#[test]
+fn keys_are_in_sight_whatever_is_open() {
+    for count in [0, 1, 2, 3, 8, 60] {
+        let (mut app, context) = cloths(count);
+        let keys = (0..14).map(|number| (format!("Key{number}"), format!("does {number}")));
+        app.world_mut().resource_mut::<ClothPanel>().keys = keys.collect();
+        for is_open in [false, true] {
+            if is_open {
+                click(&mut app, &context, "debugging");
+            }
+            let seen = texts(&mut app, &context);
+            for number in 0..14 {
+                for text in [format!("Key{number}"), format!("does {number}")] {
+                    let is_seen = seen.iter().any(|(each, _)| *each == text);
+                    assert!(is_seen, "{text} of {count} cloths, debugging: {is_open}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_fabric_is_named_after_the_preset_it_was_made_from() {
+    let cotton = ClothMaterial::COTTON;
+    for (material, name) in [
+        (cotton, "cotton"),
+        (ClothMaterial::RUBBER, "rubber"),
+        (
+            ClothMaterial {
+                damping: 0.03,
+                ..cotton
+            },
+            "cotton, changed",
+        ),
+        (
+            ClothMaterial {
+                areal_density: 0.25,
+                damping: 0.04,
+                ..ClothMaterial::CANVAS
+            },
+            "canvas, changed",
+        ),
+        (
+            ClothMaterial {
+                shear_compliance: f32::INFINITY,
+                ..ClothMaterial::SILK
+            },
+            "silk, changed",
+        ),
+    ] {
+        let (mut app, context) = cloths(1);
+        let mut materials = app.world_mut().query::<&mut ClothMaterial>();
+        *materials.single_mut(app.world_mut()).expect("one cloth") = material;
+        let seen = texts(&mut app, &context);
+        assert!(
+            seen.iter().any(|(text, _)| text == name),
+            "{name}: {seen:?}"
+        );
+    }
+}
+
+#[test]
+fn values_have_their_units_beside_them() {
+    let (mut app, context) = cloths(1);
+    app.world_mut().spawn(ClothColliderSpeed(2.5));
+    let seen = texts(&mut app, &context);
+    for value in ["9.81 m/s²", "2.50 m/s", "50 %"] {
+        let is_seen = seen.iter().any(|(text, _)| text == value);
+        assert!(is_seen, "{value}: {seen:?}");
+    }
 }
 
 /// Whatever is shown in it, and however small the window is.
@@ -139,8 +295,7 @@ fn clicks_anywhere_leave_it_working() {
     app.world_mut().spawn(ClothColliderSpeed(1.0));
     app.update();
     let context = egui::Context::default();
-    let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 1400.0));
-    let mut state = SystemState::<Shown>::new(app.world_mut());
+    let size = egui::vec2(1280.0, 1400.0);
     for column in [20.0, 60.0, 150.0, 190.0, 250.0] {
         for row in 1..110 {
             let pos = egui::pos2(column, 12.0 * row as f32);
@@ -152,15 +307,7 @@ fn clicks_anywhere_leave_it_working() {
             };
             let frames = [egui::Event::PointerMoved(pos), button(true), button(false)];
             for event in frames {
-                let mut shown = state.get_mut(app.world_mut()).expect("the panel's data");
-                context.begin_pass(egui::RawInput {
-                    screen_rect: Some(screen),
-                    events: vec![event],
-                    ..Default::default()
-                });
-                let place = shown.draw(&context);
-                let _output = context.end_pass();
-                state.apply(app.world_mut());
+                let (place, _) = frame(&mut app, &context, size, vec![event]);
                 assert_eq!(place.width(), ClothPanel::WIDTH, "{pos}");
             }
         }
