@@ -15,13 +15,13 @@ macro_rules! chapter {
 
 chapter!(first_cloth);
 chapter!(own_model);
-chapter!(characters);
+chapter!(characters, "lab/lod");
 chapter!(wind);
 chapter!(contact, "lab/self", "lab/colliders");
 chapter!(schedule);
 chapter!(recipes);
 chapter!(saving);
-chapter!(tuning, "lab/lod");
+chapter!(tuning);
 chapter!(when_it_fails);
 chapter!(migrating_from_bevy_silk);
 chapter!(how_it_works);

@@ -8,7 +8,7 @@ fn make_cloth(name: &Name, mesh: Entity, commands: &mut Commands) {
             Cloth::mesh(),
             // Only vertices painted with a max distance of 0 m are pinned.
             Pins::none(),
-            // Red allows up to 0.3 m from the skinned pose. Nothing gets 2 cm behind the pose.
+            // Red, 0 to 1, sets a max distance of 0 to 0.3 m. The backstop, a ball of 0.5 m, begins 2 cm behind the pose.
             ClothSkin::within(ClothPaint::color(0, 0.3)).with_backstop(0.02, 0.5),
             ClothMaterial::DENIM,
         ));

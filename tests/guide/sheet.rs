@@ -13,7 +13,7 @@ fn setup(mut commands: Commands) {
     // A sheet of 24 × 24 particles, 5 cm apart, lies in the air. Nothing holds it.
     let sheet = Cloth::new(24, 24, 0.05).lying().centred();
     commands.spawn((Name::new("sheet"), sheet, Pins::none(), Transform::from_xyz(0.0, 1.2, 0.0)));
-    // A ball of 0.4 m is beneath it.
+    // A ball of radius 0.4 m is beneath it.
     commands.spawn((ClothCollider::ball(0.4), Transform::from_xyz(0.0, 0.6, 0.0)));
 }
 
