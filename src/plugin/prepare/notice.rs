@@ -56,7 +56,8 @@ fn in_vain(pin: &Pin, surface: &Surface) -> String {
         ("Pin::filter", given)
     } else {
         let places = surface.rest_positions().iter();
-        let places = places.map(|place| *place / surface.scale());
+        // The sum makes 0 of −0.
+        let places = places.map(|place| *place / surface.scale() + Vec3::ZERO);
         let [low, high] = places.fold([Vec3::MAX, Vec3::MIN], |[low, high], place| {
             [low.min(place), high.max(place)]
         });
