@@ -2,7 +2,10 @@
 
 use bevy::{
     prelude::*,
-    render::{ExtractSchedule, MainWorld, RenderApp, render_resource::PipelineCache},
+    render::{
+        ExtractSchedule, MainWorld, RenderApp,
+        render_resource::{CachedPipelineState, PipelineCache, PipelineDescriptor},
+    },
 };
 use bevy_drape::{plugin::ClothPanel, prelude::*};
 use bevy_egui::{
@@ -10,14 +13,17 @@ use bevy_egui::{
     egui::{Align2, Color32, FontId, LayerId},
 };
 
-/// Frames in a row in which nothing is left to compile: what is new in one frame is asked for in the next.
+/// Frames in a row in which every mesh can be drawn: a new mesh asks for its pipeline a frame later.
 const FRAMES: u32 = 4;
+/// The scene goes on after this time in any case (s).
+const PATIENCE: f32 = 60.0;
 
 /// There until the scene can be drawn.
 #[derive(Resource, Default)]
 struct Preparing {
-    is_compiling: bool,
-    /// Frames in a row in which all was there.
+    /// Whether all pipelines that draw meshes are compiled. Others may wait for good, for a shader that no scene needs.
+    draws_meshes: bool,
+    /// Frames in a row in which that was so.
     ready: u32,
 }
 
@@ -39,7 +45,18 @@ impl Plugin for PreparingPlugin {
 
 fn note_compilation(mut world: ResMut<MainWorld>, pipelines: Res<PipelineCache>) {
     if let Some(mut preparing) = world.get_resource_mut::<Preparing>() {
-        preparing.is_compiling = pipelines.waiting_pipelines().next().is_some();
+        let mut of_meshes = pipelines
+            .pipelines()
+            .filter(|pipeline| match &pipeline.descriptor {
+                PipelineDescriptor::RenderPipelineDescriptor(descriptor) => descriptor
+                    .label
+                    .as_deref()
+                    .is_some_and(|label| label.ends_with("mesh_pipeline")),
+                PipelineDescriptor::ComputePipelineDescriptor(_) => false,
+            })
+            .map(|pipeline| matches!(pipeline.state, CachedPipelineState::Ok(_)))
+            .peekable();
+        preparing.draws_meshes = of_meshes.peek().is_some() && of_meshes.all(|is_there| is_there);
     }
 }
 
@@ -48,15 +65,16 @@ fn wait_for_scene(
     mut preparing: ResMut<Preparing>,
     cloths: Query<Has<Mesh3d>, With<Cloth>>,
     mut time: ResMut<Time<Virtual>>,
+    real: Res<Time<Real>>,
     mut commands: Commands,
 ) {
     let has_meshes = !cloths.is_empty() && cloths.iter().all(|has_mesh| has_mesh);
-    if !has_meshes || preparing.is_compiling {
-        preparing.ready = 0;
-    } else {
+    if has_meshes && preparing.draws_meshes {
         preparing.ready += 1;
+    } else {
+        preparing.ready = 0;
     }
-    if preparing.ready == FRAMES {
+    if preparing.ready == FRAMES || real.elapsed_secs() > PATIENCE {
         commands.remove_resource::<Preparing>();
         time.set_relative_speed(1.0);
     } else if has_meshes {
