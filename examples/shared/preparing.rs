@@ -1,4 +1,4 @@
-//! Until the scene can be drawn, the window says so and time stands still: drivers take seconds to compile its shaders.
+//! Until the scene can be drawn, the window says so: drivers take seconds to compile its shaders.
 
 use bevy::{
     prelude::*,
@@ -7,7 +7,7 @@ use bevy::{
         render_resource::{CachedPipelineState, PipelineCache, PipelineDescriptor},
     },
 };
-use bevy_drape::{plugin::ClothPanel, prelude::*};
+use bevy_drape::plugin::ClothPanel;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{Align2, Color32, FontId, LayerId},
@@ -15,7 +15,7 @@ use bevy_egui::{
 
 /// Frames in a row in which every mesh can be drawn: a new mesh asks for its pipeline a frame later.
 const FRAMES: u32 = 4;
-/// The scene goes on after this time in any case (s).
+/// The text goes after this time in any case (s).
 const PATIENCE: f32 = 60.0;
 
 /// There until the scene can be drawn.
@@ -60,25 +60,13 @@ fn note_compilation(mut world: ResMut<MainWorld>, pipelines: Res<PipelineCache>)
     }
 }
 
-/// Time stands still once each cloth has had the tick that makes its mesh.
-fn wait_for_scene(
-    mut preparing: ResMut<Preparing>,
-    cloths: Query<Has<Mesh3d>, With<Cloth>>,
-    mut time: ResMut<Time<Virtual>>,
-    real: Res<Time<Real>>,
-    mut commands: Commands,
-) {
-    let has_meshes = !cloths.is_empty() && cloths.iter().all(|has_mesh| has_mesh);
-    if has_meshes && preparing.draws_meshes {
-        preparing.ready += 1;
-    } else {
-        preparing.ready = 0;
-    }
-    if preparing.ready == FRAMES || real.elapsed_secs() > PATIENCE {
+fn wait_for_scene(mut preparing: ResMut<Preparing>, time: Res<Time<Real>>, mut commands: Commands) {
+    preparing.ready = match preparing.draws_meshes {
+        true => preparing.ready + 1,
+        false => 0,
+    };
+    if preparing.ready == FRAMES || time.elapsed_secs() > PATIENCE {
         commands.remove_resource::<Preparing>();
-        time.set_relative_speed(1.0);
-    } else if has_meshes {
-        time.set_relative_speed(0.0);
     }
 }
 
