@@ -55,7 +55,10 @@ fn adopt_colliders(
         // The shape without its scale: cloth takes the transform's, as Avian does.
         match cloth_shape(&*collider.shape().0) {
             Some(shape) => _ = commands.entity(entity).try_insert(shape),
-            None => warn!("{entity}: cloth can't touch {:?}", collider.shape()),
+            None => {
+                warn!("{entity}: cloth can't touch {:?}", collider.shape());
+                commands.entity(entity).try_remove::<ClothCollider>();
+            }
         }
     }
 }
@@ -108,7 +111,9 @@ fn read_masses(
 ) {
     for (entity, kind, mass, inertia, centre, locked, known) in &bodies {
         if !kind.is_dynamic() || !mass.is_finite() {
-            commands.entity(entity).try_remove::<ClothBody>();
+            if known.is_some() {
+                commands.entity(entity).try_remove::<ClothBody>();
+            }
             continue;
         }
         let (moments, axes) = inertia.principal_angular_inertia_with_local_frame();

@@ -1,23 +1,29 @@
-//! Until the scene can be drawn, the window says so and time stands still: drivers take seconds to compile its shaders.
+//! Until the scene can be drawn, the window says so: drivers take seconds to compile its shaders.
 
 use bevy::{
     prelude::*,
-    render::{ExtractSchedule, MainWorld, RenderApp, render_resource::PipelineCache},
+    render::{
+        ExtractSchedule, MainWorld, RenderApp,
+        render_resource::{CachedPipelineState, PipelineCache, PipelineDescriptor},
+    },
 };
-use bevy_drape::{plugin::ClothPanel, prelude::*};
+use bevy_drape::plugin::ClothPanel;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{Align2, Color32, FontId, LayerId},
 };
 
-/// Frames in a row in which nothing is left to compile: what is new in one frame is asked for in the next.
+/// Frames in a row in which every mesh can be drawn: a new mesh asks for its pipeline a frame later.
 const FRAMES: u32 = 4;
+/// The text goes after this time in any case (s).
+const PATIENCE: f32 = 60.0;
 
 /// There until the scene can be drawn.
 #[derive(Resource, Default)]
 struct Preparing {
-    is_compiling: bool,
-    /// Frames in a row in which all was there.
+    /// Whether all pipelines that draw meshes are compiled. Others may wait for good, for a shader that no scene needs.
+    draws_meshes: bool,
+    /// Frames in a row in which that was so.
     ready: u32,
 }
 
@@ -39,28 +45,28 @@ impl Plugin for PreparingPlugin {
 
 fn note_compilation(mut world: ResMut<MainWorld>, pipelines: Res<PipelineCache>) {
     if let Some(mut preparing) = world.get_resource_mut::<Preparing>() {
-        preparing.is_compiling = pipelines.waiting_pipelines().next().is_some();
+        let mut of_meshes = pipelines
+            .pipelines()
+            .filter(|pipeline| match &pipeline.descriptor {
+                PipelineDescriptor::RenderPipelineDescriptor(descriptor) => descriptor
+                    .label
+                    .as_deref()
+                    .is_some_and(|label| label.ends_with("mesh_pipeline")),
+                PipelineDescriptor::ComputePipelineDescriptor(_) => false,
+            })
+            .map(|pipeline| matches!(pipeline.state, CachedPipelineState::Ok(_)))
+            .peekable();
+        preparing.draws_meshes = of_meshes.peek().is_some() && of_meshes.all(|is_there| is_there);
     }
 }
 
-/// Time stands still once each cloth has had the tick that makes its mesh.
-fn wait_for_scene(
-    mut preparing: ResMut<Preparing>,
-    cloths: Query<Has<Mesh3d>, With<Cloth>>,
-    mut time: ResMut<Time<Virtual>>,
-    mut commands: Commands,
-) {
-    let has_meshes = !cloths.is_empty() && cloths.iter().all(|has_mesh| has_mesh);
-    if !has_meshes || preparing.is_compiling {
-        preparing.ready = 0;
-    } else {
-        preparing.ready += 1;
-    }
-    if preparing.ready == FRAMES {
+fn wait_for_scene(mut preparing: ResMut<Preparing>, time: Res<Time<Real>>, mut commands: Commands) {
+    preparing.ready = match preparing.draws_meshes {
+        true => preparing.ready + 1,
+        false => 0,
+    };
+    if preparing.ready == FRAMES || time.elapsed_secs() > PATIENCE {
         commands.remove_resource::<Preparing>();
-        time.set_relative_speed(1.0);
-    } else if has_meshes {
-        time.set_relative_speed(0.0);
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::cloth::{ClothMaterial, Springs, Surface};
 
 /// What a spring of a grid costs in a sub-step (s), at least. `cargo bench --profile dev --bench solver` measures 1.5 to 2.2 ns on a thread
-/// of a 2-core AMD EPYC for 64² to 512² particles; this leaves room for a faster machine, and for two threads.
+/// of a 2-core AMD EPYC for 64² to 512² particles; this leaves room for a faster machine.
 const GRID_SPRING: f32 = 1.0e-9;
 
 /// The same of a mesh: half of the 6 ns that `cargo bench --profile dev --bench mesh` measures.
@@ -12,12 +12,13 @@ const MESH_SPRING: f32 = 3.0e-9;
 /// The bending of a mesh costs as much again as its springs.
 const BENT_MESH: f32 = 2.0;
 
-/// What the sub-steps of a tick cost at least (s), whatever the cloth touches.
+/// What the sub-steps of a tick cost at least (s) on so many `threads`, whatever the cloth touches.
 pub(super) fn least_cost(
     surface: &Surface,
     springs: &Springs,
     material: &ClothMaterial,
     substeps: u32,
+    threads: usize,
 ) -> f32 {
     let spring = if surface.as_grid().is_some() {
         GRID_SPRING
@@ -26,7 +27,7 @@ pub(super) fn least_cost(
     } else {
         MESH_SPRING
     };
-    springs.len() as f32 * substeps as f32 * spring
+    springs.len() as f32 * substeps as f32 * spring / threads as f32
 }
 
 #[cfg(test)]
@@ -46,7 +47,7 @@ mod tests {
             let material = ClothMaterial::COTTON;
             let springs = Springs::of_surface(&surface, &material);
             let substeps = Substepping::needed(surface.particles_along(), tick);
-            least_cost(&surface, &springs, &material, substeps) / tick
+            least_cost(&surface, &springs, &material, substeps, 1) / tick
         };
         assert!(cost(64) < 0.1, "{}", cost(64));
         assert!(cost(128) < 0.5, "{}", cost(128));

@@ -155,6 +155,10 @@ pub(super) fn report_limits(
         };
         scratch.limit_inputs = None;
         stats.exceeded = None;
+        scratch.settling = match scratch.dragged > 0.0 {
+            true => GATHERED,
+            false => scratch.settling.saturating_sub(1),
+        };
         if scratch.dragged > 0.0 && !state.was_dragged {
             state.was_dragged = true;
             let describe = || (name.describe(Part::Cloth), None);
@@ -168,6 +172,11 @@ pub(super) fn report_limits(
             }
             let beyond = limit_inputs.exceeded(limit);
             stats.exceeded = stats.exceeded.or(beyond.map(|_| limit));
+            let is_stretch = matches!(limit, ClothLimit::Stretch | ClothLimit::Tolerance);
+            // A jump stretches the cloth, and is logged itself.
+            if is_stretch && scratch.settling > 0 {
+                continue;
+            }
             let is_reported =
                 state.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
             if let Some([quantity, good_up_to]) = beyond
@@ -179,11 +188,6 @@ pub(super) fn report_limits(
                     quantity,
                     good_up_to,
                 });
-                let is_stretch = matches!(limit, ClothLimit::Stretch | ClothLimit::Tolerance);
-                // What drags it along stretches it, and is logged.
-                if is_stretch && dragged.cloths.contains(&name.entity) {
-                    continue;
-                }
                 limits[index].add(name.entity, [quantity, good_up_to], || {
                     let caught = is_stretch.then(|| catchers(&scratch, particles, &names));
                     (name.describe(Part::Cloth), caught.flatten())

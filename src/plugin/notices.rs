@@ -58,19 +58,19 @@ impl Noticed {
     }
 }
 
-/// Logs the notices of a frame; those of a kind in one line.
+/// Logs the notices of a frame; equal texts in one line.
 pub(super) fn log_notices(mut notices: ResMut<Notices>, names: Query<Named>) {
     let mut all = std::mem::take(&mut notices.0);
     all.retain(|(cloth, ..)| names.contains(*cloth));
-    while let Some(&(cloth, notice, ref text)) = all.first() {
+    while let Some((cloth, _, text)) = all.first().cloned() {
         let Ok(name) = names.get(cloth) else {
             return;
         };
         let name = name.describe(Part::Cloth);
-        match all.iter().filter(|(_, other, _)| *other == notice).count() {
+        match all.iter().filter(|(.., other)| *other == text).count() {
             1 => warn!("{name}: {text}"),
             alike => warn!("{name} and {} more: {text}", alike - 1),
         }
-        all.retain(|(_, other, _)| *other != notice);
+        all.retain(|(.., other)| *other != text);
     }
 }

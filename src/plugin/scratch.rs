@@ -46,6 +46,8 @@ pub struct ClothScratch {
     pub(super) teleports: bool,
     /// Distance by which its pins jump in the tick, which drags it along (m); 0 if they do not.
     pub(super) dragged: f32,
+    /// Ticks in which its stretch is still that of a jump.
+    pub(super) settling: u32,
     /// Whether it was built and has not been moved since.
     pub(super) begins: bool,
     /// Largest distance that a particle may move by itself (m).

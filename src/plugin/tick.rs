@@ -27,7 +27,7 @@ use crate::{
 };
 
 /// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.3 at 256², 1.4 at 512².
-const MIN_TO_SPLIT: usize = 256 * 256;
+pub(super) const MIN_TO_SPLIT: usize = 256 * 256;
 
 #[derive(QueryData)]
 #[query_data(mutable)]

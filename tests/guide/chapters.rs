@@ -73,9 +73,9 @@ mod scene {
 mod coat {
     include!("coat.rs");
 
-    /// The bones may come later: until then nothing is at fault. A mesh of that name gets its cloth.
+    /// Bones may come later: nothing is at fault without them. A mesh of that name becomes cloth.
     #[test]
-    fn the_hero_awaits_a_skeleton_and_the_coat_is_cloth() {
+    fn a_hero_without_a_skeleton_is_no_fault_and_the_coat_is_cloth() {
         let mut app = super::app(hero, |_: &mut App| {});
         let world = app.world_mut();
         let mesh = world.spawn_empty().id();
@@ -158,7 +158,7 @@ mod stats_report {
     include!("stats.rs");
 
     #[test]
-    fn sub_steps_are_reported() {
+    fn the_report_runs() {
         let spawn = |mut commands: Commands| {
             commands.spawn((Name::new("curtain"), Cloth::new(20, 20, 0.05)));
         };

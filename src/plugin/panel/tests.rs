@@ -187,9 +187,14 @@ fn values_have_their_units_beside_them() {
     let (mut app, context) = cloths(1);
     app.world_mut().spawn(ClothColliderSpeed(2.5));
     let seen = texts(&mut app, &context);
-    for value in ["9.81 m/s²", "2.50 m/s", "50 %"] {
-        let is_seen = seen.iter().any(|(text, _)| text == value);
-        assert!(is_seen, "{value}: {seen:?}");
+    // A value and its unit are two texts, one after the other.
+    for value in [["9.81", " m/s²"], ["2.50", " m/s"], ["50", " %"]] {
+        let is_seen = seen.windows(2).any(|pair| {
+            let [number, unit] = [&pair[0], &pair[1]];
+            let is_beside = unit.1.left() - number.1.right() < 10.0;
+            [&*number.0, &*unit.0] == value && is_beside
+        });
+        assert!(is_seen, "{value:?}: {seen:?}");
     }
 }
 

@@ -8,6 +8,8 @@ use super::{
         cost::least_cost,
         inputs::Inputs,
         notices::{Notice, Notices},
+        threads::threads,
+        tick::MIN_TO_SPLIT,
     },
     preparing::PreparingItem,
 };
@@ -29,7 +31,11 @@ pub(super) fn notice_new(cloth: &mut PreparingItem, inputs: &Inputs, notices: &m
     let vain = pins.find(|pin| pin.is_in_vain(surface));
     let vain = vain.map(|pin| in_vain(pin, surface));
     let (springs, material) = (cloth.built.springs(), &inputs.material);
-    let cost = least_cost(surface, springs, material, step.substeps);
+    let threads = match surface.len() < MIN_TO_SPLIT {
+        true => 1,
+        false => threads(),
+    };
+    let cost = least_cost(surface, springs, material, step.substeps, threads);
     let slow = (cost > step.seconds).then(|| {
         format!(
             "{} particles in {} sub-steps take at least {:.0} ms a tick, and a tick lasts {:.1} ms: use fewer particles or sub-steps; a \
