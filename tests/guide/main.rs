@@ -237,8 +237,9 @@ mod interpolated {
 
     #[test]
     fn the_body_is_a_collider() {
-        let mut app = super::app(body, |_: &mut App| {});
-        app.add_plugins(TransformInterpolationPlugin::default());
+        let mut app = super::app(body, |app: &mut App| {
+            app.add_plugins(TransformInterpolationPlugin::default());
+        });
         super::run(&mut app, 0.1);
         let world = app.world_mut();
         let mut bodies = world.query::<(&ClothCollider, &TransformInterpolation)>();
