@@ -1,10 +1,10 @@
 //! The arithmetic of twisted cells, as [`pentadiagonal`](super::pentadiagonal) does that of bent threads.
 //!
 //! The cells between two columns are a strip. The twist of a cell is the change of the difference u between both
-//! columns, from its upper row to its lower one. The resistance to twist changes only u, by a tridiagonal system: `m e
-//! + s k (2 e − e₋ − e₊) = s k (u₋ − 2 u + u₊)` for the change e of u, where m is the mass 1 ⁄ (w + w') that resists
-//! it. Strips that begin in an even column share no particle, nor do the odd ones: eight of them are solved side by
-//! side.
+//! columns, from its upper row to its lower one. The resistance to twist changes only u, by a tridiagonal system:
+//! `m e + s k (2 e − e₋ − e₊) = s k (u₋ − 2 u + u₊)` for the change e of u, where m is the mass 1 ⁄ (w + w') that
+//! resists it. Strips that begin in an even column share no particle, nor do the odd ones: eight of them are solved
+//! side by side.
 
 use super::pentadiagonal::{Factor, MIN_MOMENT, MIN_MOVE, MOVES, Trio, flush, link};
 use crate::cloth::{Block, LANES, Lanes, View, W};
