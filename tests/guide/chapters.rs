@@ -15,7 +15,7 @@ fn places(app: &mut App) -> Vec<Vec3> {
 /// The figures of the only cloth.
 fn stats(app: &mut App) -> ClothStats {
     let mut stats = app.world_mut().query::<&ClothStats>();
-    stats.single(app.world()).expect("one cloth").clone()
+    *stats.single(app.world()).expect("one cloth")
 }
 
 mod sheet {
@@ -141,6 +141,7 @@ mod fan {
     }
 }
 
+#[expect(clippy::unwrap_used, reason = "it stands so in the guide")]
 mod beach_ball {
     include!("beach_ball.rs");
 
