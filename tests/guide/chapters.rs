@@ -148,10 +148,12 @@ mod beach_ball {
     #[test]
     fn the_beach_ball_is_as_large_as_its_gas() {
         let mut app = super::app(beach_ball, |_: &mut App| {});
-        super::run(&mut app, 3.0);
-        let stats = super::stats(&mut app);
-        assert!((stats.enclosed_volume / (0.9 * 0.0141) - 1.0).abs() < 0.01);
-        assert!(stats.gauge_pressure > 0.0, "it carries the ball (Pa)");
+        super::run(&mut app, 4.0);
+        for _ in 0..64 {
+            super::run(&mut app, 1.0 / 64.0);
+            let stats = super::stats(&mut app);
+            assert!((stats.enclosed_volume / (0.9 * 0.0141) - 1.0).abs() < 0.01);
+        }
     }
 }
 
