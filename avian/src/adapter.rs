@@ -121,7 +121,7 @@ fn read_masses(
         let locks = |axes: [u8; 3]| BVec3::from_array(axes.map(|axis| locked & axis != 0));
         let body = ClothBody {
             mass: mass.value(),
-            // What Avian takes for none can't be turned.
+            // Avian writes 0 for a body that cannot turn.
             inertia: Vec3::select(moments.cmpgt(Vec3::ZERO), moments, Vec3::INFINITY),
             axes,
             centre_of_mass: centre.0,

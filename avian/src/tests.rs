@@ -1,4 +1,4 @@
-//! What the adapter promises.
+//! Tests of the adapter.
 
 use super::*;
 
@@ -22,7 +22,7 @@ fn the_ball_rests_on_the_trampoline() {
     for _ in 0..TICKS {
         run(&mut app, 1);
         let [height, speed, dent] = look(&app, ball, cloth);
-        // What gravity gives in one go, the cloth takes back in the course of the tick: half of it is seen.
+        // Gravity acts at once, and the cloth takes its impulse back over the tick: half of it remains.
         assert!(
             speed.abs() < 0.6 * 9.81 / TICKS as f32,
             "{speed} m/s after twenty seconds"
@@ -57,7 +57,7 @@ fn without_push_back_the_ball_falls() {
     assert!(height < -10.0, "{height}");
 }
 
-/// What a thrown sheet loses of its momentum is what Avian's body has: a float's rounding, some dozen times a tick.
+/// A thrown sheet gives its lost momentum to Avian's body, within a dozen roundings of a float per tick.
 #[test]
 fn a_body_gets_what_the_cloth_lost() {
     let mut app = game();
