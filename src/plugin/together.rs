@@ -160,17 +160,13 @@ fn advance(
             moved.push(substep);
         }
         contact.note_before_colliders(&participants(members));
-        let mut farthest_push = 0.0_f32;
         for ((member, tick), substep) in members.iter_mut().zip(&mut ticks).zip(&moved) {
             if let (Some(tick), Some(substep)) = (tick, *substep)
                 && member.cloth.touch(substep, colliders)
             {
                 tick.note_push(&mut member.cloth.particles);
-                let detection = &member.cloth.scratch.detection;
-                farthest_push = detection.farthest_push(substep).max(farthest_push);
             }
         }
-        contact.note_push(farthest_push);
         is_pushed.fill(false);
         let farthest = contact.respond(&mut participants(members), meets, dt, &mut is_pushed);
         for ((member, tick), is_pushed) in members.iter_mut().zip(&mut ticks).zip(&is_pushed) {

@@ -14,7 +14,7 @@ use super::{members::Members, pair::NearPair};
 
 /// Smallest gap left between features, as a fraction of the thickness and of the distance at the beginning of the
 /// sub-step.
-pub(super) const LEFT_OF_THICKNESS: f32 = 0.05;
+const LEFT_OF_THICKNESS: f32 = 0.05;
 const LEFT_OF_DISTANCE: f32 = 0.25;
 
 /// Number of pushes on features that would pass, before they are made to move as one.
@@ -46,20 +46,16 @@ struct Sum {
 }
 
 impl Zones {
-    /// Stops pairs from passing through each other. Checks those that can have met: their distance when they were found
-    /// was at most `nearer` (m).
-    pub fn certify(&mut self, pairs: &[NearPair], nearer: f32, members: &mut Members) {
-        let mut has_zones = false;
+    /// Stops pairs from passing through each other. Returns whether any had to be stopped.
+    pub fn certify(&mut self, pairs: &[NearPair], members: &mut Members) -> bool {
+        let (mut has_zones, mut has_moved) = (false, false);
         for round in 0..PUSHES + ZONES {
             let mut is_certain = true;
             for pair in pairs {
-                if pair.until_met(LEFT_OF_THICKNESS) > nearer {
-                    continue;
-                }
                 let Some(lack) = lack(pair, members) else {
                     continue;
                 };
-                is_certain = false;
+                (is_certain, has_moved) = (false, true);
                 if round < PUSHES {
                     part(pair, lack, members);
                 } else {
@@ -77,6 +73,7 @@ impl Zones {
                 self.move_as_one(members);
             }
         }
+        has_moved
     }
 
     fn clear(&mut self, members: usize) {

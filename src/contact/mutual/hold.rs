@@ -25,6 +25,9 @@ pub(super) struct Hold {
     cloths: Vec<Vec<[Lanes; 3]>>,
 }
 
+/// Weight of the latest push in the mean. The particles that carry a layer's weight vary from one sub-step to the next.
+const LATEST: f32 = 0.3;
+
 /// Largest hold of a particle, in means of its last pushes.
 const MOST: f32 = 4.0;
 
@@ -45,10 +48,16 @@ impl Hold {
         }
     }
 
-    /// Sets the mean of a particle's last pushes, in its cloth's frame (m per sub-step).
-    pub fn set(&mut self, cloth: usize, Slot { block, lane }: Slot, push: Vec3) {
+    /// Begins a sub-step in which pairs are tested: a particle that is not pushed counts, too.
+    pub fn pass(&mut self) {
+        let numbers = self.cloths.iter_mut().flatten().flatten().flatten();
+        numbers.for_each(|number| *number *= 1.0 - LATEST);
+    }
+
+    /// Adds a push to the mean of a particle's last ones, in its cloth's frame (m per sub-step).
+    pub fn add(&mut self, cloth: usize, Slot { block, lane }: Slot, push: Vec3) {
         for (axis, push) in self.cloths[cloth][block].iter_mut().zip(push.to_array()) {
-            axis[lane] = push;
+            axis[lane] += LATEST * push;
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::{
     MutualContact,
-    pair::{VERTEX_AND_FACE, vertex_to_face},
+    pair::VERTEX_AND_FACE,
     participant::Participant,
 };
 
@@ -33,28 +33,21 @@ impl MutualContact {
         cloths: &[Participant],
         is_new: impl Fn(usize) -> bool,
     ) -> Option<Inside> {
-        // Of a cloth alone there may have been no search.
-        if self.pairs.is_empty() {
-            return None;
-        }
         let near = |cloths_of: [usize; 2]| {
             let [a, b] = cloths_of.map(|cloth| cloths[cloth].settings.thickness);
             INSIDE * (a + b) / 2.0
         };
         let mut inside = Vec::new();
-        for found in &self.search.found {
-            let of = found.cloths.map(|cloth| cloth as usize);
-            if found.split != VERTEX_AND_FACE || of[0] == of[1] || !of.iter().any(|&of| is_new(of))
+        for candidate in self.near.all() {
+            let [vertex, corner, ..] = candidate.particles;
+            let [(own, vertex), (other, _)] = [vertex, corner].map(|at| self.motion.cloth_of(at));
+            let of = [own, other];
+            let is_vertex_with_face = candidate.split as usize == VERTEX_AND_FACE;
+            if is_vertex_with_face
+                && own != other
+                && of.iter().any(|&of| is_new(of))
+                && candidate.apart + candidate.thickness < near(of)
             {
-                continue;
-            }
-            let place = |cloth: usize, particle: u32| {
-                let cloth = &cloths[cloth];
-                cloth.place(cloth.particles.layout().slot_of(particle as usize))
-            };
-            let [vertex, face @ ..] = found.particles;
-            let face = face.map(|corner| place(of[1], corner));
-            if vertex_to_face(place(of[0], vertex), face) < near(of) * near(of) {
                 inside.push((of, vertex));
             }
         }

@@ -1,37 +1,57 @@
-//! The particles of all pairs, in one array.
+//! The particles of pairs that may touch in a sub-step, in one array.
 
-use bevy::math::{Vec3, Vec3A};
+use bevy::math::Vec3A;
 
-use super::{hold::Hold, participant::Participant};
+use super::{hold::Hold, motion::Motion, origin::Origin, participant::Participant};
 use crate::cloth::Slot;
 
-/// The particles of all pairs, from any cloth, in the common frame. Each sub-step reads only these.
+/// No member, no pair.
+pub(super) const NOBODY: u32 = u32::MAX;
+
+/// The particles of pairs that may touch, from any cloth, in the common frame.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Members {
     of: Vec<Member>,
+    /// The member of each particle, if it is one.
+    member_of: Vec<u32>,
     /// Their states in the sub-step.
     pub states: Vec<State>,
-    /// Their positions before colliders pushed them in the sub-step (m), if noted.
-    before_colliders: Vec<Vec3A>,
-    /// Their positions and motions at the beginning, to find changes.
+    /// Their positions and motions at first, to find changes.
     gathered: Vec<[Vec3A; 2]>,
-    /// The distance that each has travelled since it was added, without the common motion, and its position at the
-    /// measurement (m).
-    travelled: Vec<f32>,
-    measured: Vec<Vec3A>,
-    /// Mean change of each particle's motion by its last pushes (m per sub-step).
-    held: Vec<Vec3A>,
+    /// The last pair with each member as its vertex, if any.
+    pub last_of: Vec<u32>,
 }
-
-/// Weight of the latest push in the mean. The particles that carry a layer's weight vary from one sub-step to the next.
-const LATEST: f32 = 0.3;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Member {
+    particle: u32,
     cloth: u32,
     slot: Slot,
+}
+
+impl Member {
+    /// Its state. `before` has the positions before colliders pushed.
+    fn state(&self, cloths: &[Participant], motion: &Motion, before: &Origin) -> State {
+        let cloth = &cloths[self.cloth as usize];
+        let Slot { block, lane } = self.slot;
+        let block = &cloth.particles.blocks()[block];
+        let push = before.moved(self.cloth as usize, self.slot, block.position(lane));
+        let push = Vec3A::from(cloth.vector(push.unwrap_or_default()));
+        State {
+            place: motion.end[self.particle as usize],
+            start: motion.start[self.particle as usize],
+            moved: cloth.vector(block.displacement(lane)).into(),
+            support: push.normalize_or_zero(),
+            inverse_mass: if cloth.is_fixed {
+                0.0
+            } else {
+                block.inverse_mass(lane)
+            },
+            is_supported: push != Vec3A::ZERO,
+        }
+    }
 }
 
 /// A particle in a sub-step.
@@ -53,108 +73,91 @@ pub(super) struct State {
 }
 
 impl Members {
-    pub fn clear(&mut self) {
+    /// Begins a sub-step without members.
+    pub fn clear(&mut self, particles: usize) {
+        if self.member_of.len() == particles {
+            for member in &self.of {
+                self.member_of[member.particle as usize] = NOBODY;
+            }
+        } else {
+            self.member_of.clear();
+            self.member_of.resize(particles, NOBODY);
+        }
         self.of.clear();
         self.states.clear();
-        self.travelled.clear();
-        self.held.clear();
-        self.measured.clear();
-        self.before_colliders.clear();
+        self.gathered.clear();
+        self.last_of.clear();
     }
 
     pub fn len(&self) -> usize {
         self.of.len()
     }
 
-    /// Position of a member at the beginning of the sub-step (m).
-    pub fn start(&self, member: u32) -> Vec3 {
-        self.states[member as usize].start.into()
+    /// The member of a particle, which is added if it is new. `before` has the positions before colliders pushed.
+    pub fn of(
+        &mut self,
+        particle: u32,
+        cloths: &[Participant],
+        motion: &Motion,
+        before: &Origin,
+    ) -> u32 {
+        let known = self.member_of[particle as usize];
+        if known != NOBODY {
+            return known;
+        }
+        let index = self.of.len() as u32;
+        self.member_of[particle as usize] = index;
+        let (own, local) = motion.cloth_of(particle);
+        let member = Member {
+            particle,
+            cloth: own as u32,
+            slot: cloths[own].particles.layout().slot_of(local),
+        };
+        let state = member.state(cloths, motion, before);
+        self.of.push(member);
+        self.gathered.push([state.place, state.moved]);
+        self.states.push(state);
+        self.last_of.push(NOBODY);
+        index
     }
 
-    /// Adds a particle of a cloth with its position at the beginning of the sub-step (m). It may be `known` from
-    /// before. Returns its index.
-    pub fn add(&mut self, cloth: u32, slot: Slot, start: Vec3, known: Option<(&Self, u32)>) -> u32 {
-        let start = start.into();
-        self.of.push(Member { cloth, slot });
-        self.states.push(State {
-            start,
-            ..State::default()
-        });
-        self.travelled.push(0.0);
-        let held = known.map(|(before, member)| before.held[member as usize]);
-        self.held.push(held.unwrap_or_default());
-        self.measured.push(start);
-        self.of.len() as u32 - 1
-    }
-
-    /// Sets the start of the coming sub-step to the current positions.
-    pub fn begin(&mut self, cloths: &[Participant]) {
-        for (state, member) in self.states.iter_mut().zip(&self.of) {
-            state.start = cloths[member.cloth as usize].place(member.slot).into();
+    /// Reads the states of the same members in a new sub-step.
+    pub fn gather(&mut self, cloths: &[Participant], motion: &Motion, before: &Origin) {
+        let each = self.of.iter().zip(&mut self.states);
+        for ((member, state), gathered) in each.zip(&mut self.gathered) {
+            *state = member.state(cloths, motion, before);
+            *gathered = [state.place, state.moved];
         }
     }
 
-    /// Notes their positions before colliders push them.
-    pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
-        self.before_colliders.clear();
-        let each = self.of.iter();
-        let places =
-            each.map(|member| Vec3A::from(cloths[member.cloth as usize].place(member.slot)));
-        self.before_colliders.extend(places);
-    }
-
-    /// Reads the particles' current positions.
-    pub fn gather(&mut self, cloths: &[Participant]) {
-        let is_noted = self.before_colliders.len() == self.len();
-        self.gathered.clear();
-        for (index, (state, member)) in self.states.iter_mut().zip(&self.of).enumerate() {
-            let cloth = &cloths[member.cloth as usize];
-            let Slot { block, lane } = member.slot;
-            let block = &cloth.particles.blocks()[block];
-            state.place = cloth.point(block.position(lane)).into();
-            state.moved = cloth.vector(block.displacement(lane)).into();
-            state.inverse_mass = if cloth.is_fixed {
-                0.0
-            } else {
-                block.inverse_mass(lane)
-            };
-            // Without a note, supports stay the same.
-            if is_noted {
-                let push = state.place - self.before_colliders[index];
-                state.is_supported = push != Vec3A::ZERO;
-                if state.is_supported {
-                    state.support = push.normalize_or_zero();
-                }
-            }
-            self.gathered.push([state.place, state.moved]);
+    /// Puts their positions among those of all particles.
+    pub fn put(&self, motion: &mut Motion) {
+        for (member, state) in self.of.iter().zip(&self.states) {
+            motion.end[member.particle as usize] = state.place;
         }
-        self.before_colliders.clear();
     }
 
-    /// Writes changes back to the particles, and begins the next sub-step there. Marks the affected cloths, and updates
-    /// their holds.
-    pub fn scatter(&mut self, cloths: &mut [Participant], is_pushed: &mut [bool], hold: &mut Hold) {
-        let each = self.of.iter().zip(&mut self.states).zip(&mut self.held);
-        for (((member, state), held), &[was, moved_by]) in each.zip(&self.gathered) {
+    /// Writes changes back to the particles. Marks the affected cloths, and updates their holds.
+    pub fn scatter(&self, cloths: &mut [Participant], is_pushed: &mut [bool], hold: &mut Hold) {
+        for ((member, state), &[was, moved_by]) in
+            self.of.iter().zip(&self.states).zip(&self.gathered)
+        {
             let (index, slot) = (member.cloth as usize, member.slot);
             let cloth = &mut cloths[index];
             let push = state.place - was;
             let slowed = state.moved - moved_by;
-            if push != Vec3A::ZERO || slowed != Vec3A::ZERO {
-                is_pushed[index] = true;
-                let push = cloth.own_vector(push.into());
-                let moved = cloth.own_vector(state.moved.into());
-                let block = &mut cloth.particles.blocks_mut()[slot.block];
-                block.set_position(slot.lane, block.position(slot.lane) + push);
-                block.set_displacement(slot.lane, moved);
+            if push == Vec3A::ZERO && slowed == Vec3A::ZERO {
+                continue;
             }
-            *held = if state.inverse_mass == 0.0 {
-                Vec3A::ZERO
-            } else {
-                *held + LATEST * (slowed - *held)
-            };
-            hold.set(index, slot, cloth.own_vector((*held).into()));
-            state.start = state.place;
+            is_pushed[index] = true;
+            let push = cloth.own_vector(push.into());
+            let moved = cloth.own_vector(state.moved.into());
+            let block = &mut cloth.particles.blocks_mut()[slot.block];
+            block.set_position(slot.lane, block.position(slot.lane) + push);
+            block.set_displacement(slot.lane, moved);
+            if state.inverse_mass != 0.0 {
+                hold.add(index, slot, cloth.own_vector(slowed.into()));
+            }
         }
     }
 
@@ -166,27 +169,8 @@ impl Members {
 
     /// Their positions at the beginning of the sub-step (m).
     #[inline]
-    pub fn starts(&self, of: [u32; 4]) -> [Vec3; 4] {
-        of.map(|member| self.start(member))
-    }
-
-    /// Total distance that the four particles of a pair have travelled up to the last measurement (m).
-    #[inline]
-    pub fn travelled(&self, of: [u32; 4]) -> f32 {
-        let [a, b, c, d] = of.map(|member| self.travelled[member as usize]);
-        a + b + c + d
-    }
-
-    /// Measures the distance that each has travelled up to the beginning of the sub-step.
-    pub fn note_travel(&mut self) {
-        let from: Vec3A = self.measured.iter().sum();
-        let to: Vec3A = self.states.iter().map(|state| state.start).sum();
-        let drift = (to - from) / self.len().max(1) as f32;
-        let each = self.states.iter().zip(&mut self.measured);
-        for ((state, measured), travelled) in each.zip(&mut self.travelled) {
-            *travelled += (state.start - *measured - drift).length();
-            *measured = state.start;
-        }
+    pub fn starts(&self, of: [u32; 4]) -> [Vec3A; 4] {
+        of.map(|member| self.states[member as usize].start)
     }
 
     /// Whether none moved farther than this (m), and a collider or a pin holds some.

@@ -1,37 +1,44 @@
 //! Contact of cloth with cloth: with itself, and with others.
 //!
-//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart. A search through the trees finds
-//! pairs that may come near each other, with a margin. Until particles have moved by that margin, each sub-step tests
-//! only these pairs. A nearly flat patch is skipped entirely, by [a proven bound](bounds::Tangents).
+//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart. A surface is cut into
+//! [patches](sheet) of a few faces. [Boxes](near_patches) around patches, searched from the top down, find the pairs of
+//! patches that are near. Each pair knows how far it may move before [features](near_features) that are not listed can
+//! touch, and is compared again only when [its own motion](motion) has used that up.
 //!
-//! At the end of each sub-step, pairs are pushed apart in proportion to their inverse masses, with friction. Then [a
-//! plane](certificate) between each pair proves that nothing has passed through. If everything is slow, this is done
-//! only in some sub-steps, and particles are [held](hold) in between, while none can have come near enough to pass.
+//! At the end of each sub-step, pairs that may touch are [pushed](response) apart in proportion to their inverse masses,
+//! with friction. Then [a plane](certificate) between each pair proves that nothing has passed through. Resting layers
+//! are [held](hold) for a few sub-steps, while none can have come near enough to pass.
 
-mod bounds;
 mod certificate;
 mod circumstances;
-mod flat;
 mod hold;
 mod inside;
 mod intersections;
 mod members;
 mod motion;
-mod near;
+mod near_features;
+mod near_patches;
 mod origin;
 mod pair;
 mod participant;
-mod renewal;
 mod response;
-mod search;
 mod settings;
 mod sheet;
+mod tangents;
 #[cfg(test)]
 mod tests;
 
 use self::{
-    certificate::Zones, circumstances::Circumstances, hold::Hold, members::Members,
-    motion::thinnest, near::NearPairs, origin::Origin, pair::Pair, response::push, search::Search,
+    certificate::Zones,
+    circumstances::Circumstances,
+    hold::Hold,
+    members::{Members, NOBODY},
+    motion::Motion,
+    near_features::{Candidate, NearFeatures},
+    near_patches::{Meets, Rooms},
+    origin::Origin,
+    pair::{NearPair, VERTEX_AND_FACE},
+    response::push,
 };
 
 pub(crate) use inside::Inside;
@@ -40,23 +47,21 @@ pub(crate) use participant::Participant;
 pub use settings::ClothSelfCollision;
 pub(crate) use sheet::Sheet;
 
-/// Number of rounds in a sub-step in which pushed features are compared with those that were too far away.
+/// Largest number of times that features are looked for in a sub-step near those that were pushed.
 const ROUNDS: u32 = 4;
 
-/// While no two features are near each other, the longest wait between tests in sub-steps, and the largest fraction of
-/// the free distance that particles may use up at their recent speed.
-const LONGEST_WAIT: u32 = 16;
-const PART_OF_WAY: f32 = 0.5;
+/// Work limits of a tick for each particle and in total: nodes, pairs of features, and pairs that are kept apart.
+const MOST_WORK: usize = 1 << 14;
+const MOST_WORK_OF_ALL: usize = 1 << 25;
 
-/// Work limits of a tick for each particle and in total: nodes and pairs of features, in searches and in the tests of
-/// pairs.
-const MOST_WORK: usize = 1 << 17;
-const MOST_WORK_OF_ALL: usize = 1 << 28;
+/// Work of keeping a pair apart, in pairs of features compared.
+const WORK_OF_PAIR: usize = 8;
 
 /// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
-/// of their last pushes, for this many sub-steps at most.
+/// of their last pushes, for this many sub-steps at most, and this fraction of the way.
 const HELD: f32 = 0.1;
 const LONGEST_HOLD: u32 = 3;
+const PART_OF_WAY: f32 = 0.5;
 
 /// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
 const RESTING_SPEED: f32 = 0.25;
@@ -66,147 +71,112 @@ const RESTING_SPEED: f32 = 0.25;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MutualContact {
     circumstances: Circumstances,
-    #[cfg_attr(feature = "serialize", serde(skip))]
-    search: Search,
-    pairs: Vec<Pair>,
+    motion: Motion,
+    rooms: Rooms,
+    near: NearFeatures,
+    /// The pairs that may touch in the sub-step.
+    contacts: Vec<NearPair>,
+    too_near: Vec<u32>,
     members: Members,
-    /// The member of each particle of each cloth, if any.
-    member_of: Vec<Vec<u32>>,
-    /// The last pair with each member as its vertex, if any.
-    last_of: Vec<u32>,
-    /// The members before the last search.
-    members_before: Members,
-    member_of_before: Vec<Vec<u32>>,
-    /// Positions of all particles at the last search, and the largest approach of any two before the next (m).
-    origin: Origin,
-    margin: f32,
-    /// Largest approach of any two so far (m).
-    nearer: f32,
-    is_searched: bool,
-    near: NearPairs,
     zones: Zones,
-    /// Number of sub-steps left without a test, and number since the last test.
-    wait: u32,
-    waited: u32,
-    /// Largest approach of any two in a sub-step by colliders' pushes since, and in total (m).
-    pushed_pace: f32,
-    pushed: f32,
-    /// The pushes that hold particles between tests.
+    /// The pushes that hold particles between tests, and the number of sub-steps left without a test.
     hold: Hold,
-    /// Largest approach of any two while they are held (m).
-    free: f32,
-    /// Positions of all particles when layers were last kept apart, or known to be: usually at the beginning of the
-    /// sub-step.
+    wait: u32,
+    /// Number of sub-steps since the last test, and positions of all particles then: up to there, layers are apart.
+    waited: u32,
     passed: Origin,
-    searches: u32,
+    /// Positions before colliders push particles in the sub-step, if noted.
+    before_colliders: Origin,
+    /// Largest approach of any two particles from there before others can touch (m).
+    free: f32,
+    is_known: bool,
+    counts: Counts,
+}
+
+/// What happened in a tick.
+#[derive(Debug, Default, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+struct Counts {
     has_touched: bool,
+    /// Number of pairs of patches compared.
+    compared: u32,
     /// Work left in the tick.
     work: usize,
-    /// Whether there was too much work: nothing is kept apart until a search completes.
+    /// Whether there was too much work: nothing is kept apart for the rest of the tick.
     is_lost: bool,
     /// Number of sub-steps of the tick in which that was so.
     lost: u32,
 }
 
-/// Positions at which new members were last known to be apart.
-#[derive(Debug, Clone, Copy)]
-enum Starts {
-    /// Their current positions: the motion up to there has been tested.
-    Here,
-    /// The positions when layers were last known to be apart.
-    Passed,
-}
-
 impl MutualContact {
     /// Forgets all pairs: the particles are others, or have jumped.
     pub fn forget(&mut self) {
-        self.is_searched = false;
+        self.is_known = false;
     }
 
     /// Begins a tick of these cloths. `meets` returns whether two of them may touch.
     pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
-        self.searches = 0;
-        self.has_touched = false;
-        self.lost = 0;
+        let was_lost = self.counts.is_lost;
         let particles = cloths.iter().map(|cloth| cloth.particles.len());
         let particles = particles.sum::<usize>();
-        self.work = MOST_WORK.saturating_mul(particles).min(MOST_WORK_OF_ALL);
+        self.counts = Counts {
+            work: MOST_WORK.saturating_mul(particles).min(MOST_WORK_OF_ALL),
+            ..Counts::default()
+        };
         let is_same = self.circumstances.renew(cloths, &meets);
-        let is_known = is_same && self.is_searched && !self.is_lost && self.origin.is_of(cloths);
-        if is_known {
-            self.nearer = self.origin.approach(cloths);
-            self.members.begin(cloths);
-            if let Some(approach) = self.near.approach(cloths) {
-                self.near.pass(approach);
+        if is_same && self.is_known && !was_lost && self.motion.is_of(cloths) {
+            if self.passed.approach(cloths) == 0.0 {
+                return;
             }
+            // Something else has moved them.
+            self.motion.read(cloths);
+            self.motion.measure_drift();
+            self.motion.measure(cloths);
+            self.motion.pass();
         } else {
-            // Particles of other cloths, or after a jump.
-            self.near.forget();
-            self.members.clear();
-            self.member_of.clear();
-            self.pairs.clear();
+            self.motion.reset(cloths);
+            self.rooms.reset(cloths, self.motion.patches.len());
+            self.near.clear();
+            self.hold.clear(cloths);
+            self.is_known = true;
         }
         (self.wait, self.waited) = (0, 0);
-        if !self.pairs.is_empty() {
-            self.passed.set(cloths);
+        self.contacts.clear();
+        self.passed.set(cloths);
+        match self.look(cloths, &meets) {
+            Some(free) => self.free = free,
+            None => self.lose(),
         }
-        if !is_known {
-            self.search(cloths, meets, 0.0, Starts::Here);
-        } else if self.nearer > self.margin {
-            let starts = if self.pairs.is_empty() {
-                self.passed.copy_from(&self.origin);
-                Starts::Passed
-            } else {
-                Starts::Here
-            };
-            self.search(cloths, meets, self.nearer - self.margin, starts);
-        }
+        self.near.has_changed = true;
     }
 
-    /// Number of searches for features in the tick.
+    /// Number of times that the features of two patches were compared in the tick.
     pub fn searches(&self) -> u32 {
-        self.searches
+        self.counts.compared
     }
 
     /// Whether anything touched in the tick.
     pub fn has_touched(&self) -> bool {
-        self.has_touched
+        self.counts.has_touched
     }
 
-    /// Number of sub-steps of the tick in which nothing was kept apart, because the cloth was too fast, too thick or
-    /// too crowded to search in time.
+    /// Number of sub-steps of the tick in which nothing was kept apart, because there was too much work.
     pub fn lost(&self) -> u32 {
-        self.lost
+        self.counts.lost
     }
 
-    /// Number of pairs of features that may come near each other, from the last search.
+    /// Number of pairs of features that may come near each other.
     pub fn pairs(&self) -> usize {
-        self.pairs.len()
-    }
-
-    /// Number of pairs of features tested in the last sub-step.
-    #[cfg(test)]
-    pub fn near(&self) -> usize {
-        self.near.contacts.len()
+        self.near.len()
     }
 
     /// Notes the particles' positions in a sub-step before colliders push them. Particles cannot move against these
     /// pushes.
     pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
-        if !self.pairs.is_empty() && self.waited >= self.wait {
-            self.members.note_before_colliders(cloths);
-        }
-    }
-
-    /// Adds the largest push of any particle by colliders in a sub-step without tests (m): pushed particles keep that
-    /// motion.
-    pub fn note_push(&mut self, farthest: f32) {
-        self.pushed_pace += 2.0 * farthest;
-        self.pushed += self.pushed_pace;
-        // False for NaN.
-        let is_less = self.nearer + self.pushed < PART_OF_WAY * self.margin;
-        if self.pairs.is_empty() && !is_less && !self.is_lost {
-            self.wait = 0;
+        if self.near.len() > 0 && self.wait == 0 {
+            self.before_colliders.set(cloths);
+        } else {
+            self.before_colliders.clear();
         }
     }
 
@@ -219,120 +189,190 @@ impl MutualContact {
         dt: f32,
         is_pushed: &mut [bool],
     ) -> f32 {
-        self.waited += 1;
-        let mut held = 0.0;
-        if self.waited <= self.wait {
-            if self.pairs.is_empty() {
-                self.lost += u32::from(self.is_lost);
-                return 0.0;
-            }
-            let approach;
-            (held, approach) = self.hold.apply(cloths, &self.passed, is_pushed);
-            if approach <= self.free {
-                return held;
-            }
-        }
-        (self.pushed_pace, self.pushed) = (0.0, 0.0);
-        let before = self.nearer;
-        self.nearer = self.origin.approach(cloths);
-        if self.is_lost {
-            self.search(cloths, &meets, 0.0, Starts::Here);
-        } else if self.nearer > self.margin {
-            // Some may have met on the way.
-            if self.pairs.is_empty() {
-                match self.waited {
-                    1 => self.passed.set_to_start(cloths),
-                    _ => self.passed.copy_from(&self.origin),
-                }
-            }
-            self.search(cloths, &meets, self.nearer - self.margin, Starts::Passed);
-        }
-        if self.is_lost {
-            self.lost += 1;
-            return held;
-        }
-        if self.pairs.is_empty() {
-            let pace = (self.nearer - before).max(0.0) / self.waited as f32;
-            (self.wait, self.waited) = (self.free_substeps(pace), 0);
-            // A search from here is better than one on the way.
-            if self.nearer + pace > self.margin {
-                self.search(cloths, &meets, 0.0, Starts::Here);
-            }
+        if self.counts.is_lost {
+            self.counts.lost += 1;
             return 0.0;
         }
-        let waited = std::mem::take(&mut self.waited);
-        self.members.gather(cloths);
-        let thinnest = thinnest(cloths);
-        // The approach of any two in the sub-step, and since near pairs were found.
-        let in_substep = self.passed.approach(cloths);
-        let mut since = self.near.approach(cloths).unwrap_or(in_substep);
-        let mut pushed = 0.0;
-        for round in 0..ROUNDS {
-            if !self.near.covers(since + pushed) {
-                since = in_substep;
-                let Some(left) = self.work.checked_sub(self.pairs.len()) else {
-                    self.lost += 1;
-                    self.members.scatter(cloths, is_pushed, &mut self.hold);
-                    self.lose();
-                    return 0.5 * pushed + held;
-                };
-                self.work = left;
-                self.near.find(
-                    &mut self.pairs,
-                    &mut self.members,
-                    &self.last_of,
-                    (&self.passed, since + pushed),
-                    thinnest,
-                );
+        self.waited += 1;
+        let is_held = self.wait > 0;
+        let (held, approach) = if is_held {
+            self.wait -= 1;
+            self.hold.apply(cloths, &self.passed, is_pushed)
+        } else {
+            (0.0, self.passed.approach(cloths))
+        };
+        if (is_held || self.contacts.is_empty()) && approach <= self.free {
+            return held;
+        }
+        self.motion.read(cloths);
+        self.motion.measure_drift();
+        self.motion.measure(cloths);
+        let is_apart = self.keep_apart(cloths, &meets, dt);
+        let pushed = self.members.farthest_push();
+        self.hold.pass();
+        self.members.scatter(cloths, is_pushed, &mut self.hold);
+        if !is_apart {
+            self.lose();
+            self.counts.lost += 1;
+            return pushed + held;
+        }
+        self.motion.pass();
+        if !self.contacts.is_empty() {
+            let thinnest = cloths.iter().map(|cloth| cloth.settings.thickness);
+            self.free = self.free.min(HELD * thinnest.fold(f32::INFINITY, f32::min));
+            let pace = self.passed.approach(cloths) / self.waited as f32;
+            if self.members.are_resting(RESTING_SPEED * dt) {
+                self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
             }
-            if round == 0 {
-                let NearPairs {
-                    contacts, too_near, ..
-                } = &mut self.near;
-                self.has_touched |= push(contacts, too_near, &mut self.members, dt);
-            } else if let Some(nearer) = self.near.may_meet_within(since + pushed) {
-                self.work = self.work.saturating_sub(self.near.contacts.len());
-                self.zones
-                    .certify(&self.near.contacts, nearer, &mut self.members);
+        }
+        self.passed.set(cloths);
+        self.waited = 0;
+        pushed + held
+    }
+
+    /// Pushes apart what touches, and looks for what the pushed particles may touch. Returns whether there was not too
+    /// much work.
+    fn keep_apart(
+        &mut self,
+        cloths: &[Participant],
+        meets: impl Fn(usize, usize) -> bool,
+        dt: f32,
+    ) -> bool {
+        let mut is_listed_again = false;
+        for round in 0..ROUNDS {
+            let Some(free) = self.look(cloths, &meets) else {
+                return false;
+            };
+            self.free = free;
+            if round == 0 && !self.near.has_changed {
+                self.members.gather(cloths, &self.motion, &self.before_colliders);
+            } else if self.near.has_changed {
+                self.list(cloths, round == 0);
+                is_listed_again |= round > 0;
             } else {
                 break;
             }
-            // Pushed features have come nearer to others.
-            let farther = 2.0 * self.members.farthest_push();
-            if round > 0 && farther <= pushed {
+            let work = WORK_OF_PAIR * self.contacts.len();
+            self.counts.work = self.counts.work.saturating_sub(work);
+            let mut has_moved = false;
+            if round == 0 {
+                let (too_near, members) = (&mut self.too_near, &mut self.members);
+                has_moved = push(&self.contacts, too_near, members, dt);
+                self.counts.has_touched |= has_moved;
+            }
+            has_moved |= self.zones.certify(&self.contacts, &mut self.members);
+            if !has_moved {
                 break;
             }
-            pushed = farther;
+            self.members.put(&mut self.motion);
+            self.motion.measure(cloths);
+            self.free = f32::NEG_INFINITY;
         }
-        self.members.scatter(cloths, is_pushed, &mut self.hold);
-        if let Some(after) = self.near.approach(cloths) {
-            self.near.pass(after);
-        }
-        self.free = self
-            .near
-            .spare()
-            .min(self.margin - self.nearer - pushed)
-            .min(HELD * thinnest);
-        // The remaining pace of held particles.
-        let pace = self.passed.approach(cloths) / waited as f32;
-        self.passed.set(cloths);
-        self.wait = match self.members.are_resting(RESTING_SPEED * dt) {
-            true => ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD),
-            false => 0,
-        };
-        self.near.renew_ahead_of(pace, thinnest);
-        let in_substep = in_substep + pushed;
-        // A search from here is better than one on the way.
-        if self.nearer + in_substep > self.margin {
-            self.search(cloths, &meets, 0.0, Starts::Here);
-        }
-        0.5 * pushed + held
+        // The next sub-step pushes those that were added, too.
+        self.near.has_changed |= is_listed_again;
+        true
     }
 
-    /// Number of sub-steps without a test, for particles that approach each other by `pace` (m) in each.
-    fn free_substeps(&self, pace: f32) -> u32 {
-        let free = PART_OF_WAY * (self.margin - self.nearer);
-        // Also for no pace, or one that is not finite.
-        ((free / pace) as u32).min(LONGEST_WAIT)
+    /// Looks at the patches that have used up what they may. Returns the approach of any two particles before others
+    /// have (m); `None` if there was too much work.
+    fn look(
+        &mut self,
+        cloths: &[Participant],
+        meets: impl Fn(usize, usize) -> bool,
+    ) -> Option<f32> {
+        let Self {
+            motion,
+            rooms,
+            near,
+            counts,
+            ..
+        } = self;
+        if let Some(room) = rooms.renew(cloths, motion) {
+            let slack = near.look(cloths, motion, &mut counts.work, &mut counts.compared)?;
+            return Some(slack.min(2.0 * room));
+        }
+        let among = Meets { cloths, meets };
+        near.renew(rooms, &among, motion, &mut counts.work);
+        let slack = near.look(cloths, motion, &mut counts.work, &mut counts.compared)?;
+        Some(slack.min(0.0))
+    }
+
+    /// Lists the contacts. A `first` list of a sub-step has members of its own.
+    fn list(&mut self, cloths: &[Participant], is_first: bool) {
+        let Self {
+            near,
+            motion,
+            members,
+            contacts,
+            before_colliders,
+            ..
+        } = self;
+        if is_first {
+            members.clear(motion.end.len());
+        }
+        members.last_of.fill(NOBODY);
+        contacts.clear();
+        near.has_changed = false;
+        let add = |candidate: &Candidate, of: [u32; 2]| {
+            let particles = candidate.particles;
+            let members_of =
+                particles.map(|particle| members.of(particle, cloths, motion, before_colliders));
+            let split = candidate.split as usize;
+            let nearest = candidate.nearest;
+            let [a, b] = of.map(|cloth| cloths[cloth as usize].settings.friction);
+            let mut before = NOBODY;
+            if split == VERTEX_AND_FACE {
+                let last = &mut members.last_of[members_of[0] as usize];
+                before = std::mem::replace(last, contacts.len() as u32);
+            }
+            contacts.push(NearPair {
+                members: members_of,
+                split,
+                thickness: candidate.thickness,
+                friction: (a * b).sqrt(),
+                distance: nearest.distance,
+                normal: nearest.normal,
+                weights: nearest.weights,
+                is_pushed: split == VERTEX_AND_FACE || !nearest.is_at_border(),
+                before,
+            });
+        };
+        near.contacts(motion, add);
+        if is_first {
+            self.leave_out_implied();
+        }
+    }
+
+    /// Marks the faces from which a nearer face already keeps a vertex away: the nearest point is on an edge of both.
+    fn leave_out_implied(&mut self) {
+        for index in 0..self.contacts.len() {
+            let pair = &self.contacts[index];
+            if pair.split != VERTEX_AND_FACE || pair.weights.iter().all(|&weight| weight != 0.0) {
+                continue;
+            }
+            let mut next = self.members.last_of[pair.members[0] as usize];
+            let mut is_implied = false;
+            while next != NOBODY && !is_implied {
+                let other = &self.contacts[next as usize];
+                let is_nearer = other.distance < pair.distance
+                    || (other.distance == pair.distance && (next as usize) < index);
+                let has = |corner: usize| {
+                    pair.weights[corner] == 0.0 || other.members[1..].contains(&pair.members[corner])
+                };
+                is_implied = next as usize != index
+                    && other.thickness >= pair.thickness
+                    && is_nearer
+                    && (1..4).all(has);
+                next = other.before;
+            }
+            self.contacts[index].is_pushed &= !is_implied;
+        }
+    }
+
+    /// Keeps nothing apart for the rest of the tick.
+    fn lose(&mut self) {
+        self.counts.is_lost = true;
+        self.near.clear();
+        self.contacts.clear();
     }
 }

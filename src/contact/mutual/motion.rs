@@ -1,40 +1,260 @@
-//! Thickness, motion and flatness of all cloths together.
+//! The motion of particles and patches since they were last compared.
+//!
+//! ```text
+//!   x = c + o + δ      c: mean of a patch's particles, o: offset at its reference, |δ| ≤ deviation
+//!
+//!   A ●───────────────● B      approach of any two points of A and B since a comparison
+//!      c_A         c_B         ≤ |(c_A − c_B) − (c_A − c_B)₀| + used(A) + used(B)
+//! ```
+//!
+//! `used` only grows: by the deviation from the reference, however often that is taken anew. Trembling around the
+//! reference does not add up. Patches that move alike use nothing up.
 
-use bevy::math::Vec3;
+use bevy::math::Vec3A;
 
-use super::participant::Participant;
+use super::{participant::Participant, sheet::Sheet};
 
-/// The smallest thickness (m).
-pub(super) fn thinnest(cloths: &[Participant]) -> f32 {
-    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
-    each.fold(f32::INFINITY, f32::min)
+/// A box (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Bounds {
+    pub min: Vec3A,
+    pub max: Vec3A,
 }
 
-/// Largest approach of any two particles in a sub-step as long as the last (m).
-pub(super) fn relative_motion(cloths: &[Participant]) -> f32 {
-    let each = || {
-        cloths.iter().flat_map(|cloth| {
-            cloth
-                .particles
-                .displacements()
-                .map(|moved| cloth.vector(moved))
-        })
+impl Bounds {
+    /// The empty box.
+    pub const EMPTY: Self = Self {
+        min: Vec3A::INFINITY,
+        max: Vec3A::NEG_INFINITY,
     };
-    let count = cloths
-        .iter()
-        .map(|cloth| cloth.particles.len())
-        .sum::<usize>();
-    let drift = each().sum::<Vec3>() / count.max(1) as f32;
-    let squares = each().map(|moved| (moved - drift).length_squared());
-    2.0 * squares.fold(0.0, f32::max).sqrt()
+
+    pub fn with(&self, point: Vec3A) -> Self {
+        Self {
+            min: self.min.min(point),
+            max: self.max.max(point),
+        }
+    }
+
+    pub fn join(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
+    /// Distance between two boxes (m), 0 if they overlap.
+    pub fn distance(&self, other: &Self) -> f32 {
+        let gap = (self.min - other.max).max(other.min - self.max);
+        gap.max(Vec3A::ZERO).length()
+    }
 }
 
-/// Largest approach of any two points of a single cloth before it can touch itself (m), from its tangents; `None` if
-/// they give no bound.
-pub(super) fn room_in_flat(cloths: &[Participant]) -> Option<f32> {
-    let [cloth] = cloths else {
-        return None;
-    };
-    let tangents = cloth.sheet.tangents_of_all(cloth.particles)?;
-    Some(tangents.unfolded() * cloth.sheet.closest() - cloth.settings.thickness)
+/// A patch at the beginning and at the end of a sub-step.
+#[derive(Debug, Default, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct PatchMotion {
+    pub cloth: u32,
+    pub start: Vec3A,
+    pub end: Vec3A,
+    /// Largest offset of a particle along each axis at the reference (m).
+    half: Vec3A,
+    /// Deviations of particles from earlier references in all, and from this one at the beginning and at the end (m).
+    earlier: f32,
+    deviation: [f32; 2],
+}
+
+impl PatchMotion {
+    /// Upper bound of all that its particles have moved against each other (m).
+    pub fn used(&self) -> f32 {
+        self.earlier + self.deviation[1]
+    }
+
+    /// What [`used`](Self::used) is measured from, for a comparison at the beginning of the sub-step (m).
+    pub fn used_before(&self) -> f32 {
+        self.earlier - self.deviation[0]
+    }
+
+    /// Upper bound of what its particles move against each other in the sub-step (m).
+    pub fn used_in_substep(&self) -> f32 {
+        self.deviation[0] + self.deviation[1]
+    }
+
+    /// Upper bound of all that its particles had moved against each other before the sub-step (m).
+    pub fn used_at_start(&self) -> f32 {
+        self.earlier + self.deviation[0]
+    }
+
+    /// Deviation from its reference at the beginning of the sub-step (m).
+    pub fn deviation_before(&self) -> f32 {
+        self.deviation[0]
+    }
+
+    pub fn bounds_at_start(&self) -> Bounds {
+        let half = self.half + self.deviation[0];
+        Bounds {
+            min: self.start - half,
+            max: self.start + half,
+        }
+    }
+
+    pub fn bounds_at_end(&self) -> Bounds {
+        let half = self.half + self.deviation[1];
+        Bounds {
+            min: self.end - half,
+            max: self.end + half,
+        }
+    }
+}
+
+/// The particles and patches of some cloths, one cloth after the other, in the common frame.
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Motion {
+    /// The first particle, patch, and particle of a patch of each cloth; and one more.
+    pub firsts: Vec<[u32; 3]>,
+    /// Positions at the beginning of the sub-step, up to which layers are apart, and at its end (m).
+    pub start: Vec<Vec3A>,
+    pub end: Vec<Vec3A>,
+    pub patches: Vec<PatchMotion>,
+    /// Offsets of each patch's particles at its reference (m).
+    offsets: Vec<Vec3A>,
+    /// The motion that all had in common, in all and in the sub-step (m).
+    pub drift: Vec3A,
+    pub drifted: Vec3A,
+}
+
+impl Motion {
+    /// Begins with new cloths.
+    pub fn reset(&mut self, cloths: &[Participant]) {
+        self.firsts.clear();
+        self.patches.clear();
+        let mut next = [0; 3];
+        for (index, cloth) in cloths.iter().enumerate() {
+            self.firsts.push(next);
+            let patches = cloth.sheet.patch_count() as u32;
+            let particles = (0..patches).map(|patch| cloth.sheet.particles_of(patch).len() as u32);
+            next[0] += cloth.particles.len() as u32;
+            next[1] += patches;
+            next[2] += particles.sum::<u32>();
+            self.patches.resize(
+                next[1] as usize,
+                PatchMotion {
+                    cloth: index as u32,
+                    ..PatchMotion::default()
+                },
+            );
+        }
+        self.firsts.push(next);
+        (self.drift, self.drifted) = (Vec3A::ZERO, Vec3A::ZERO);
+        self.read(cloths);
+        self.start.clone_from(&self.end);
+        self.offsets.clear();
+        for (index, cloth) in cloths.iter().enumerate() {
+            for patch in 0..cloth.sheet.patch_count() as u32 {
+                let (first, particles) = (self.firsts[index], cloth.sheet.particles_of(patch));
+                let place = |&particle: &u32| self.start[(first[0] + particle) as usize];
+                let center = particles.iter().map(place).sum::<Vec3A>() / particles.len() as f32;
+                let mut half = Vec3A::ZERO;
+                for offset in particles.iter().map(place).map(|place| place - center) {
+                    self.offsets.push(offset);
+                    half = half.max(offset.abs());
+                }
+                let state = &mut self.patches[(first[1] + patch) as usize];
+                (state.start, state.end, state.half) = (center, center, half);
+            }
+        }
+    }
+
+    /// Whether the numbers of particles match.
+    pub fn is_of(&self, cloths: &[Participant]) -> bool {
+        let each = self.firsts.windows(2).zip(cloths);
+        self.firsts.len() == cloths.len() + 1
+            && each
+                .into_iter()
+                .all(|(first, cloth)| (first[1][0] - first[0][0]) as usize == cloth.particles.len())
+    }
+
+    /// The cloth of a particle, and its index there.
+    pub fn cloth_of(&self, particle: u32) -> (usize, usize) {
+        let cloth = self.firsts.partition_point(|first| first[0] <= particle) - 1;
+        (cloth, (particle - self.firsts[cloth][0]) as usize)
+    }
+
+    /// Reads the particles' positions at the end of the sub-step.
+    pub fn read(&mut self, cloths: &[Participant]) {
+        self.end.clear();
+        for cloth in cloths {
+            let places = cloth.particles.positions();
+            self.end
+                .extend(places.map(|place| Vec3A::from(cloth.point(place))));
+        }
+    }
+
+    /// Measures the motion that all have in common.
+    pub fn measure_drift(&mut self) {
+        let each = self.end.iter().zip(&self.start);
+        let sum = each.map(|(end, start)| *end - *start).sum::<Vec3A>();
+        let drifted = sum / self.end.len().max(1) as f32;
+        self.drift += drifted - self.drifted;
+        self.drifted = drifted;
+    }
+
+    /// Measures each patch at the end of the sub-step.
+    pub fn measure(&mut self, cloths: &[Participant]) {
+        let mut offsets = self.offsets.iter();
+        let mut patches = self.patches.iter_mut();
+        for (cloth, first) in cloths.iter().zip(&self.firsts) {
+            let places = &self.end[first[0] as usize..];
+            for patch in 0..cloth.sheet.patch_count() as u32 {
+                let particles = cloth.sheet.particles_of(patch);
+                let Some(state) = patches.next() else { return };
+                let sum = particles
+                    .iter()
+                    .map(|&particle| places[particle as usize])
+                    .sum::<Vec3A>();
+                state.end = sum / particles.len() as f32;
+                let mut square = 0.0_f32;
+                for (&particle, offset) in particles.iter().zip(&mut offsets) {
+                    let moved = places[particle as usize] - state.end - *offset;
+                    square = square.max(moved.length_squared());
+                }
+                state.deviation[1] = square.sqrt();
+            }
+        }
+    }
+
+    /// Takes a patch's shape at the beginning of the sub-step for its reference.
+    pub fn refer(&mut self, patch: u32, sheet: &Sheet) {
+        let state = &mut self.patches[patch as usize];
+        let [first_particle, first_patch, _] = self.firsts[state.cloth as usize];
+        let particles = sheet.particles_of(patch - first_patch);
+        let first = self.firsts[state.cloth as usize][2] + sheet.first_of(patch - first_patch);
+        let offsets = &mut self.offsets[first as usize..first as usize + particles.len()];
+        let (mut half, mut square) = (Vec3A::ZERO, 0.0_f32);
+        for (&particle, offset) in particles.iter().zip(offsets) {
+            let index = (first_particle + particle) as usize;
+            *offset = self.start[index] - state.start;
+            half = half.max(offset.abs());
+            let moved = self.end[index] - state.end - *offset;
+            square = square.max(moved.length_squared());
+        }
+        state.half = half;
+        state.earlier += state.deviation[0];
+        state.deviation = [0.0, square.sqrt()];
+    }
+
+    /// Ends the sub-step: the next one begins where it ended.
+    pub fn pass(&mut self) {
+        std::mem::swap(&mut self.start, &mut self.end);
+        self.drifted = Vec3A::ZERO;
+        for patch in &mut self.patches {
+            patch.start = patch.end;
+            patch.deviation[0] = patch.deviation[1];
+        }
+    }
 }

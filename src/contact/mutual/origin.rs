@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 
 use super::participant::Participant;
-use crate::cloth::{DX, LANES, Lanes, Slot, X, Y, Z};
+use crate::cloth::{LANES, Lanes, Slot, X, Y, Z};
 
 /// Earlier positions of all particles of some cloths, each in its own frame, block by block (m). Empty lanes are NaN.
 #[derive(Debug, Default, Clone)]
@@ -15,21 +15,6 @@ pub(super) struct Origin {
 impl Origin {
     /// Stores the current positions.
     pub fn set(&mut self, cloths: &[Participant]) {
-        self.set_back(cloths, 0.0);
-    }
-
-    /// Stores the positions at the beginning of the last sub-step.
-    pub fn set_to_start(&mut self, cloths: &[Participant]) {
-        self.set_back(cloths, 1.0);
-    }
-
-    /// Copies another one.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.cloths.clone_from(&other.cloths);
-    }
-
-    /// Stores the positions at a fraction of the last sub-step ago.
-    fn set_back(&mut self, cloths: &[Participant], part: f32) {
         self.cloths.resize_with(cloths.len(), Vec::new);
         for (places, cloth) in self.cloths.iter_mut().zip(cloths) {
             let layout = cloth.particles.layout();
@@ -37,9 +22,7 @@ impl Origin {
             places.clear();
             places.extend(cloth.particles.blocks().iter().map(|block| {
                 let view = block.view();
-                [X, Y, Z].map(|axis| {
-                    std::array::from_fn(|l| view[axis + l] - part * view[axis - X + DX + l])
-                })
+                [X, Y, Z].map(|axis| std::array::from_fn(|l| view[axis + l]))
             }));
             for (block, lane) in (0..strip).flat_map(|block| (0..LANES).map(move |l| (block, l))) {
                 if layout.column(block, lane).is_none() {
@@ -50,19 +33,15 @@ impl Origin {
         }
     }
 
-    /// Position of a particle in its cloth's frame (m).
-    pub fn place(&self, cloth: usize, slot: Slot) -> Vec3 {
-        self.cloths[cloth][slot.block]
-            .map(|axis| axis[slot.lane])
-            .into()
+    pub fn clear(&mut self) {
+        self.cloths.clear();
     }
 
-    /// Whether the numbers of particles match.
-    pub fn is_of(&self, cloths: &[Participant]) -> bool {
-        let sizes = |(places, cloth): (&Vec<_>, &Participant)| {
-            places.len() == cloth.particles.blocks().len()
-        };
-        self.cloths.len() == cloths.len() && self.cloths.iter().zip(cloths).all(sizes)
+    /// Displacement of a particle since, in its cloth's frame (m); `None` if nothing is stored.
+    pub fn moved(&self, cloth: usize, slot: Slot, place: Vec3) -> Option<Vec3> {
+        let places = self.cloths.get(cloth)?;
+        let before = places[slot.block].map(|axis| axis[slot.lane]);
+        Some(place - Vec3::from(before))
     }
 
     /// Positions of all particles of a cloth, block by block (m).

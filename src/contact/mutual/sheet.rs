@@ -1,61 +1,62 @@
 //! The search structure of a surface, for contact with itself and with others.
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
-use bevy::{math::Vec3A, platform::collections::HashSet};
-
-use super::{
-    bounds::{Bounds, Tangents},
-    flat::{Masks, tangents_of_all},
+use bevy::{
+    math::{Vec2, Vec3A},
+    platform::collections::HashSet,
 };
+
+use super::tangents::Tangents;
+
 use crate::{
-    cloth::{ClothParticles, Layout, Surface},
+    cloth::{ClothGrid, Surface},
     hierarchy::QuadTree,
 };
 
-/// A surface with its edges and the nodes of its tree, for contact of cloth with cloth. It depends only on the rest
-/// shape, is built once, and is shared.
+/// Largest number of rows and columns whose tangents are compared.
+const LARGEST: usize = 7;
+
+/// Largest number of particles that a patch owns.
+const OWNED: u32 = 4;
+
+/// A surface in patches of a few faces, and a tree over them, for contact of cloth with cloth. It depends only on the
+/// rest shape, is built once, and is shared.
 #[derive(Debug, Default)]
 pub(crate) struct Sheet {
     surface: Arc<Surface>,
-    /// Edges of faces, each owned by one particle.
-    edges: Vec<[u32; 2]>,
-    /// First edge of each particle; one more entry than particles.
-    first_edge: Vec<u32>,
+    patches: Vec<Patch>,
+    /// The particles of all patches' features; those that a patch owns come first.
+    particles: Vec<u32>,
+    /// Faces and edges of faces, by the places of their corners among the particles of their patch.
+    faces: Vec<[u16; 3]>,
+    edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
-    /// Bounds of each node's faces at rest (m).
-    rest: Vec<Bounds>,
-    /// For a grid, the layout of its nodes on each level.
-    lattice: Vec<Lattice>,
-    closest: f32,
-    masks: Masks,
 }
 
-/// A node of the tree.
+/// The features that a few neighbouring particles own. Every vertex, edge and face belongs to one patch.
+#[derive(Debug, Clone)]
+struct Patch {
+    owned: u32,
+    particles: Range<u32>,
+    faces: Range<u32>,
+    edges: Range<u32>,
+    /// For a grid, its first row and column, and the last of its features.
+    rectangle: [[u32; 2]; 2],
+}
+
+/// A node of the tree over patches: its children, or its patch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Node {
-    pub level: u32,
     children: [u32; 4],
     child_count: u32,
-    /// The particle of a leaf.
-    pub particle: u32,
+    pub patch: u32,
 }
 
 impl Node {
     pub fn children(&self) -> &[u32] {
         &self.children[..self.child_count as usize]
     }
-
-    pub fn is_leaf(&self) -> bool {
-        self.child_count == 0
-    }
-}
-
-/// The nodes of one level of a grid's tree, row by row.
-#[derive(Debug, Clone, Copy)]
-struct Lattice {
-    first: u32,
-    columns: u32,
 }
 
 impl Sheet {
@@ -68,59 +69,89 @@ impl Sheet {
             tree.validate(surface.len()).is_ok(),
             "the tree belongs to another surface"
         );
+        let mut sheet = Self {
+            surface: surface.clone(),
+            ..Self::default()
+        };
+        if tree.is_empty() {
+            return sheet;
+        }
+        let mut leaves = vec![0; tree.len()];
+        for index in (0..tree.len()).rev() {
+            let children = tree.node(index as u32);
+            let below = children.children().iter().map(|&child| leaves[child as usize]);
+            leaves[index] = below.sum::<u32>().max(1);
+        }
         let mut seen = HashSet::new();
-        let (mut edges, mut first_edge) = (Vec::new(), vec![0]);
-        for particle in 0..surface.len() as u32 {
-            for &[a, b, c] in surface.faces().of(particle) {
-                for [from, to] in [[a, b], [b, c], [c, a]] {
-                    let edge = [from.min(to), from.max(to)];
-                    if seen.insert(edge) {
-                        edges.push(edge);
+        sheet.add(tree, 0, &leaves, &mut seen);
+        sheet
+    }
+
+    /// Adds a node of the tree and all below it. Returns its index.
+    fn add(&mut self, tree: &QuadTree, of: u32, leaves: &[u32], seen: &mut HashSet<[u32; 2]>) -> u32 {
+        let index = self.nodes.len();
+        let mut node = Node {
+            children: [0; 4],
+            child_count: 0,
+            patch: self.patches.len() as u32,
+        };
+        self.nodes.push(node);
+        if leaves[of as usize] <= OWNED {
+            let mut owned = Vec::new();
+            collect(tree, of, &mut owned);
+            self.add_patch(&owned, seen);
+        } else {
+            for &child in tree.node(of).children() {
+                node.children[node.child_count as usize] = self.add(tree, child, leaves, seen);
+                node.child_count += 1;
+            }
+            self.nodes[index] = node;
+        }
+        index as u32
+    }
+
+    fn add_patch(&mut self, owned: &[u32], seen: &mut HashSet<[u32; 2]>) {
+        let from = [self.particles.len(), self.faces.len(), self.edges.len()];
+        self.particles.extend(owned);
+        for &particle in owned {
+            for &face in self.surface.faces().of(particle) {
+                let face = face.map(|corner| {
+                    let known = &self.particles[from[0]..];
+                    let place = known.iter().position(|&known| known == corner);
+                    place.unwrap_or_else(|| {
+                        self.particles.push(corner);
+                        self.particles.len() - 1 - from[0]
+                    }) as u16
+                });
+                self.faces.push(face);
+                let [a, b, c] = face;
+                for edge in [[a, b], [b, c], [c, a]] {
+                    let [from, to] = edge.map(|end| self.particles[from[0] + usize::from(end)]);
+                    if seen.insert([from.min(to), from.max(to)]) {
+                        self.edges.push(edge);
                     }
                 }
             }
-            first_edge.push(edges.len() as u32);
         }
-        let nodes = (0..tree.len() as u32).map(|index| {
-            let node = tree.node(index);
-            let mut children = [0; 4];
-            let child_count = node.children().len();
-            children[..child_count].copy_from_slice(node.children());
-            Node {
-                level: node.level as u32,
-                children,
-                child_count: child_count as u32,
-                particle: node.middle,
-            }
+        let range = |from: usize, to: usize| from as u32..to as u32;
+        let columns = self.surface.as_grid().map_or(1, ClothGrid::columns);
+        let of_patch = self.particles[from[0]..].iter();
+        let cells = of_patch.map(|particle| [particle / columns, particle % columns]);
+        let rectangle = cells.fold([[u32::MAX; 2], [0; 2]], |[low, high], at| {
+            [0, 1].map(|end| {
+                [0, 1].map(|axis| match end {
+                    0 => low[axis].min(at[axis]),
+                    _ => high[axis].max(at[axis]),
+                })
+            })
         });
-        let lattice = tree.lattice().map(|levels| {
-            let levels = levels.into_iter();
-            let lattice = levels.map(|(first, columns)| Lattice { first, columns });
-            lattice.collect()
+        self.patches.push(Patch {
+            owned: owned.len() as u32,
+            particles: range(from[0], self.particles.len()),
+            faces: range(from[1], self.faces.len()),
+            edges: range(from[2], self.edges.len()),
+            rectangle,
         });
-        let closest = surface.as_grid().map_or(0.0, |grid| {
-            let [across, down] = grid.spacing().to_array();
-            across * down / across.hypot(down)
-        });
-        let mut sheet = Self {
-            surface: surface.clone(),
-            edges,
-            first_edge,
-            nodes: nodes.collect(),
-            rest: Vec::new(),
-            lattice: lattice.unwrap_or_default(),
-            closest,
-            masks: Masks::new(Layout::of(surface)),
-        };
-        let rest: Vec<Vec3A> = surface
-            .rest_positions()
-            .iter()
-            .map(|&position| position.into())
-            .collect();
-        let mut bounds = Vec::new();
-        sheet.bounds(&rest, &mut bounds);
-        sheet.rest = bounds;
-        sheet
     }
 
     /// The surface.
@@ -128,99 +159,72 @@ impl Sheet {
         &self.surface
     }
 
-    /// For a grid, the smallest distance at rest between two features without a common particle (m): from a corner of a
-    /// cell to its diagonal. 0 for a mesh.
-    pub(super) fn closest(&self) -> f32 {
-        self.closest
+    /// The nodes of the tree over its patches, each before its children.
+    pub(super) fn nodes(&self) -> &[Node] {
+        &self.nodes
     }
 
-    pub(super) fn node(&self, node: u32) -> &Node {
-        &self.nodes[node as usize]
+    pub(super) fn patch_count(&self) -> usize {
+        self.patches.len()
     }
 
-    /// Faces that a particle owns.
-    pub(super) fn faces_of(&self, particle: u32) -> &[[u32; 3]] {
-        self.surface.faces().of(particle)
-    }
-
-    /// Edges that a particle owns.
-    pub(super) fn edges_of(&self, particle: u32) -> &[[u32; 2]] {
-        let particle = particle as usize;
-        &self.edges[self.first_edge[particle] as usize..self.first_edge[particle + 1] as usize]
-    }
-
-    /// Lower bound of the distance at rest between the faces of two nodes (m).
-    pub(super) fn rest_distance(&self, a: u32, b: u32) -> f32 {
-        self.rest[a as usize].distance(&self.rest[b as usize])
-    }
-
-    /// For a grid, the nodes of the smallest rectangle around two nodes of one level, if they are near each other.
-    pub(super) fn around(&self, a: u32, b: u32) -> Option<impl Iterator<Item = u32> + use<>> {
-        let Lattice { first, columns } =
-            *self.lattice.get(self.nodes[a as usize].level as usize)?;
-        let [a, b] = [a, b].map(|node| ((node - first) / columns, (node - first) % columns));
-        let (top, bottom) = (a.0.min(b.0), a.0.max(b.0));
-        let (left, right) = (a.1.min(b.1), a.1.max(b.1));
-        let is_near = bottom - top <= MAX_APART && right - left <= MAX_APART;
-        let node = move |row| (left..=right).map(move |column| first + row * columns + column);
-        is_near.then(|| (top..=bottom).flat_map(node))
-    }
-
-    /// Computes the bounds of each node's faces, for particles at `positions` (m).
-    pub(super) fn bounds(&self, positions: &[Vec3A], bounds: &mut Vec<Bounds>) {
-        bounds.clear();
-        bounds.resize(self.nodes.len(), Bounds::EMPTY);
-        // Children come after their parents.
-        for (index, node) in self.nodes.iter().enumerate().rev() {
-            bounds[index] = if node.is_leaf() {
-                let corners = self.faces_of(node.particle).iter().flatten();
-                let own = Bounds::at(positions[node.particle as usize]);
-                corners.fold(own, |bounds, &corner| {
-                    bounds.with(positions[corner as usize])
-                })
-            } else {
-                let children = node.children().iter();
-                children.fold(Bounds::EMPTY, |joined, &child| {
-                    joined.join(&bounds[child as usize])
-                })
-            };
-        }
-    }
-
-    /// Computes the tangents of each node of a grid, for particles at `positions` (m); none for a mesh.
-    pub(super) fn tangents(&self, positions: &[Vec3A], tangents: &mut Vec<Tangents>) {
-        tangents.clear();
-        let Some(grid) = self.surface.as_grid() else {
-            return;
-        };
-        let (columns, per_metre) = (grid.columns() as usize, grid.spacing().recip());
-        tangents.resize(self.nodes.len(), Tangents::EMPTY);
-        for (index, node) in self.nodes.iter().enumerate().rev() {
-            tangents[index] = if node.is_leaf() {
-                let at = node.particle as usize;
-                // The last particle of a row or column begins no cell.
-                let is_cell = at % columns + 1 < columns && at + columns < positions.len();
-                if is_cell {
-                    let corners = [at, at + 1, at + columns, at + columns + 1];
-                    Tangents::of_cell(corners.map(|corner| positions[corner]), per_metre)
-                } else {
-                    Tangents::EMPTY
-                }
-            } else {
-                let children = node.children().iter();
-                children.fold(Tangents::EMPTY, |joined, &child| {
-                    joined.join(&tangents[child as usize])
-                })
-            };
-        }
-    }
-
-    /// Bounds of the tangents of all rows and columns; `None` for a mesh.
-    pub(super) fn tangents_of_all(&self, particles: &ClothParticles) -> Option<Tangents> {
+    /// A lower bound of the distance between two patches of a grid (m), from its tangents at these positions; `None` for
+    /// a mesh, and for patches that are far from each other at rest.
+    pub(super) fn unfolded(&self, of: [u32; 2], places: &[Vec3A]) -> Option<f32> {
         let grid = self.surface.as_grid()?;
-        Some(tangents_of_all(particles, &self.masks, grid.spacing()))
+        let [a, b] = of.map(|patch| self.patches[patch as usize].rectangle);
+        let low = [0, 1].map(|axis| a[0][axis].min(b[0][axis]) as usize);
+        let size = [0, 1].map(|axis| a[1][axis].max(b[1][axis]) as usize - low[axis] + 1);
+        if size.iter().any(|&size| size > LARGEST) {
+            return None;
+        }
+        let spacing = grid.spacing();
+        let gap = |axis: usize| a[0][axis].max(b[0][axis]).saturating_sub(a[1][axis].min(b[1][axis]));
+        let apart = spacing * Vec2::new(gap(1) as f32, gap(0) as f32);
+        // From a corner of a cell to its diagonal.
+        let closest = spacing.x * spacing.y / spacing.length();
+        let columns = grid.columns() as usize;
+        let place = |row: usize, column: usize| places[(low[0] + row) * columns + low[1] + column];
+        let tangents = Tangents::of(size[0], size[1], spacing, place);
+        Some(tangents.unfolded() * apart.length().max(closest))
+    }
+
+    /// The particles of a patch's features.
+    pub(super) fn particles_of(&self, patch: u32) -> &[u32] {
+        let Range { start, end } = self.patches[patch as usize].particles;
+        &self.particles[start as usize..end as usize]
+    }
+
+    /// The place of a patch's first particle among those of all patches.
+    pub(super) fn first_of(&self, patch: u32) -> u32 {
+        self.patches[patch as usize].particles.start
+    }
+
+    /// The number of a patch's particles that it owns: the first ones.
+    pub(super) fn owned_of(&self, patch: u32) -> u16 {
+        self.patches[patch as usize].owned as u16
+    }
+
+    /// The faces of a patch, by the places of their corners among its particles.
+    pub(super) fn faces_of(&self, patch: u32) -> &[[u16; 3]] {
+        let Range { start, end } = self.patches[patch as usize].faces;
+        &self.faces[start as usize..end as usize]
+    }
+
+    /// The edges of a patch, by the places of their ends among its particles.
+    pub(super) fn edges_of(&self, patch: u32) -> &[[u16; 2]] {
+        let Range { start, end } = self.patches[patch as usize].edges;
+        &self.edges[start as usize..end as usize]
     }
 }
 
-/// Nodes whose rows or columns are farther apart are not combined.
-const MAX_APART: u32 = 2;
+/// Collects the particles below a node.
+fn collect(tree: &QuadTree, of: u32, particles: &mut Vec<u32>) {
+    let node = tree.node(of);
+    if node.is_leaf() {
+        particles.push(node.middle);
+    }
+    for &child in node.children() {
+        collect(tree, child, particles);
+    }
+}

@@ -1,0 +1,501 @@
+//! Pairs of features of near patches, and how far patches may move before others can touch.
+//!
+//! ```text
+//!   distance of two features when compared          slack of a pair of patches:
+//!   ├──── thickness ────┤──── apart ────►            the least `apart` of all features that were not listed
+//!        they touch           │
+//!                             used: what the patches have moved towards each other since, at most
+//! ```
+//!
+//! Features touch only once `used > apart`. Patches are looked at again once `used > until`, at the beginning of the
+//! sub-step in which that happens: up to there, nothing has touched that was not a contact. Then their listed features
+//! are measured, or all are compared if the slack is used up.
+
+use std::ops::Range;
+
+use bevy::math::{Vec3, Vec3A};
+
+use super::{
+    motion::Motion,
+    near_patches::{Meets, Rooms},
+    pair::{Nearest, TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
+    participant::Participant,
+    sheet::Sheet,
+};
+
+/// Distance of edges, as a fraction of the thickness. Vertices and faces keep flat layers apart. Edges that cross
+/// between them show where both bend, and only must not pass.
+const EDGES: f32 = 0.5;
+
+/// Largest distance that a pair of one cloth is kept apart, as a fraction of its distance at rest.
+const OF_REST: f32 = 0.5;
+
+/// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
+const FRESH: f32 = 0.1;
+
+/// Number of sub-steps of motion that a list of features lasts; at least this fraction of the thickness, at most this
+/// fraction of the shortest spacing.
+const AHEAD: f32 = 8.0;
+const LEAST_AHEAD: f32 = 0.25;
+const MOST_AHEAD: f32 = 0.5;
+
+/// Deviation of a patch, as a fraction of the thickness, from which on it gets a new reference before it is compared.
+const REFERENCE: f32 = 0.05;
+
+/// Two patches whose boxes overlap.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+struct PatchPair {
+    of: [u32; 2],
+    /// The vector between them, and what they had used, when they were last looked at (m).
+    between: Vec3A,
+    since: f32,
+    /// What they may use before features that are not listed can touch (m).
+    slack: f32,
+    /// What they may use before their features are measured again, and the largest `apart` of contacts (m).
+    until: f32,
+    near: f32,
+    /// The listed features, and whether any is a contact.
+    first: u32,
+    count: u32,
+    has_contacts: bool,
+}
+
+/// Two features that may touch.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Candidate {
+    pub particles: [u32; 4],
+    pub split: u32,
+    pub thickness: f32,
+    /// Their nearest points when they were last measured, and the distance less the thickness (m).
+    pub nearest: Nearest,
+    pub apart: f32,
+}
+
+/// The pairs of patches, and the features of those that are near each other.
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct NearFeatures {
+    pairs: Vec<PatchPair>,
+    candidates: Vec<Candidate>,
+    /// Number of candidates that belong to pairs of patches.
+    listed: usize,
+    due: Vec<u32>,
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    spare: Vec<Candidate>,
+    /// Whether the contacts have changed.
+    pub has_changed: bool,
+}
+
+impl PatchPair {
+    fn new(of: [u32; 2]) -> Self {
+        Self {
+            of,
+            between: Vec3A::ZERO,
+            since: 0.0,
+            slack: f32::NEG_INFINITY,
+            until: f32::NEG_INFINITY,
+            near: 0.0,
+            first: 0,
+            count: 0,
+            has_contacts: false,
+        }
+    }
+
+    fn candidates(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+
+    /// Upper bound of their approach since they were last looked at (m).
+    fn used(&self, motion: &Motion) -> f32 {
+        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
+        (a.end - b.end - self.between).length() + a.used() + b.used() - self.since
+    }
+
+    /// The same, up to the beginning of the sub-step.
+    fn used_at_start(&self, motion: &Motion) -> f32 {
+        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
+        (a.start - b.start - self.between).length() + a.used_at_start() + b.used_at_start()
+            - self.since
+    }
+}
+
+impl NearFeatures {
+    pub fn clear(&mut self) {
+        self.pairs.clear();
+        self.candidates.clear();
+        self.listed = 0;
+        self.has_changed = true;
+    }
+
+    /// Number of pairs of features that may touch.
+    pub fn len(&self) -> usize {
+        self.listed
+    }
+
+    /// All pairs of features that may touch.
+    pub fn all(&self) -> impl Iterator<Item = &Candidate> {
+        let each = self.pairs.iter();
+        each.flat_map(|pair| &self.candidates[pair.candidates()])
+    }
+
+    /// Calls `add` with each contact, and the two cloths.
+    pub fn contacts(&self, motion: &Motion, mut add: impl FnMut(&Candidate, [u32; 2])) {
+        for pair in self.pairs.iter().filter(|pair| pair.has_contacts) {
+            let cloths = pair.of.map(|patch| motion.patches[patch as usize].cloth);
+            let candidates = self.candidates[pair.candidates()].iter();
+            candidates
+                .filter(|candidate| candidate.apart <= pair.near)
+                .for_each(|candidate| add(candidate, cloths));
+        }
+    }
+
+    /// Drops the pairs of patches whose boxes are apart, and adds those whose boxes have begun to overlap.
+    pub fn renew(
+        &mut self,
+        rooms: &mut Rooms,
+        among: &Meets<impl Fn(usize, usize) -> bool>,
+        motion: &Motion,
+        work: &mut usize,
+    ) {
+        let (listed, has_changed) = (&mut self.listed, &mut self.has_changed);
+        self.pairs.retain(|pair| {
+            let is_near = rooms.overlap(pair.of);
+            if !is_near {
+                *listed -= pair.count as usize;
+                *has_changed |= pair.has_contacts;
+            }
+            is_near
+        });
+        let pairs = &mut self.pairs;
+        rooms.search(among, motion, work, |of| pairs.push(PatchPair::new(of)));
+    }
+
+    /// Looks at the patches that have used up what they may. Returns the approach of any two particles before others
+    /// have (m); `None` if there was too much work.
+    pub fn look(
+        &mut self,
+        cloths: &[Participant],
+        motion: &mut Motion,
+        work: &mut usize,
+        compared: &mut u32,
+    ) -> Option<f32> {
+        self.due.clear();
+        let mut left = f32::INFINITY;
+        for (index, pair) in self.pairs.iter().enumerate() {
+            let until = pair.until - pair.used(motion);
+            if until < 0.0 {
+                self.due.push(index as u32);
+            } else {
+                left = left.min(until);
+            }
+        }
+        let due = std::mem::take(&mut self.due);
+        for &index in &due {
+            let pair = &mut self.pairs[index as usize];
+            let had_contacts = pair.has_contacts;
+            let slack = pair.slack - pair.used_at_start(motion);
+            let place = Place::of(pair, cloths, motion);
+            if slack > place.used {
+                pair.slack = slack;
+                *work = work.saturating_sub(pair.count as usize);
+                let candidates = &mut self.candidates[pair.candidates()];
+                measure(pair, candidates, motion, &place);
+            } else {
+                *compared += 1;
+                self.listed -= pair.count as usize;
+                let first = self.candidates.len();
+                pair.first = first as u32;
+                compare(pair, cloths, motion, &place, &mut self.candidates, work);
+                pair.count = (self.candidates.len() - first) as u32;
+                self.listed += pair.count as usize;
+                measure(pair, &mut self.candidates[first..], motion, &place);
+            }
+            self.has_changed |= had_contacts || pair.has_contacts;
+            left = left.min(pair.until - place.used);
+            if *work == 0 {
+                break;
+            }
+        }
+        self.due = due;
+        if self.candidates.len() > 2 * self.listed + 64 {
+            self.compact();
+        }
+        (*work > 0).then_some(left)
+    }
+
+    /// Removes the candidates of earlier comparisons.
+    fn compact(&mut self) {
+        self.spare.clear();
+        for pair in &mut self.pairs {
+            let first = self.spare.len();
+            self.spare.extend_from_slice(&self.candidates[pair.candidates()]);
+            pair.first = first as u32;
+        }
+        std::mem::swap(&mut self.spare, &mut self.candidates);
+    }
+}
+
+/// Two patches that are looked at, at the beginning of the sub-step.
+struct Place {
+    thickness: f32,
+    spacing: f32,
+    /// Upper bound of their approach in the sub-step (m).
+    used: f32,
+}
+
+impl Place {
+    /// Takes their places for those that their motion is measured from.
+    fn of(pair: &mut PatchPair, cloths: &[Participant], motion: &mut Motion) -> Self {
+        let of = pair.of.map(|patch| &cloths[motion.patches[patch as usize].cloth as usize]);
+        let thickness = (of[0].settings.thickness + of[1].settings.thickness) / 2.0;
+        for (patch, cloth) in pair.of.into_iter().zip(of) {
+            if motion.patches[patch as usize].deviation_before() > REFERENCE * thickness {
+                motion.refer(patch, cloth.sheet);
+            }
+        }
+        let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
+        pair.between = a.start - b.start;
+        pair.since = a.used_before() + b.used_before();
+        let spacing = of.map(|cloth| cloth.sheet.surface().spacing().shortest);
+        Self {
+            thickness,
+            spacing: spacing[0].min(spacing[1]),
+            used: pair.used(motion),
+        }
+    }
+}
+
+/// Measures the listed features of two patches.
+fn measure(pair: &mut PatchPair, candidates: &mut [Candidate], motion: &Motion, place: &Place) {
+    pair.near = place.used + FRESH * place.thickness;
+    let mut least = f32::INFINITY;
+    for candidate in candidates {
+        let places = candidate.particles.map(|particle| motion.start[particle as usize]);
+        candidate.nearest = Nearest::of(candidate.split as usize, places);
+        candidate.apart = candidate.nearest.distance - candidate.thickness;
+        least = least.min(candidate.apart);
+    }
+    pair.has_contacts = least <= pair.near;
+    let until = if pair.has_contacts { pair.near } else { least };
+    pair.until = until.min(pair.slack);
+}
+
+/// Compares two patches, and lists their near features.
+fn compare(
+    pair: &mut PatchPair,
+    cloths: &[Participant],
+    motion: &Motion,
+    place: &Place,
+    candidates: &mut Vec<Candidate>,
+    work: &mut usize,
+) {
+    let Place {
+        thickness,
+        spacing,
+        used,
+    } = *place;
+    let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
+    let ahead = (AHEAD * used).clamp(LEAST_AHEAD * thickness, MOST_AHEAD * spacing);
+    let listed = used + ahead;
+    *work = work.saturating_sub(1);
+    let apart = a.bounds_at_start().distance(&b.bounds_at_start()) - thickness;
+    if pair.of[0] != pair.of[1] && apart > listed {
+        pair.slack = apart;
+        return;
+    }
+    let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
+    let is_one_cloth = a.cloth == b.cloth;
+    if is_one_cloth {
+        let of = [sides[0].patch, sides[1].patch];
+        let unfolded = sides[0].sheet.unfolded(of, sides[0].places);
+        if let Some(apart) = unfolded.map(|distance| distance - thickness)
+            && apart > listed
+        {
+            pair.slack = apart;
+            return;
+        }
+    }
+    let mut features = Features {
+        sides: &sides,
+        sheet: sides[0].sheet,
+        is_one_cloth,
+        is_one_patch: pair.of[0] == pair.of[1],
+        thickness,
+        listed,
+        slack: listed.max(LONGEST * spacing),
+        candidates,
+    };
+    *work = work.saturating_sub(features.count());
+    features.compare();
+    pair.slack = features.slack;
+}
+
+/// Largest slack that is looked for, as a fraction of the shortest spacing.
+const LONGEST: f32 = 2.0;
+
+/// A patch in a comparison.
+struct Side<'a> {
+    sheet: &'a Sheet,
+    patch: u32,
+    first_particle: u32,
+    /// Its particles, and their positions at the beginning of the sub-step (m).
+    particles: &'a [u32],
+    places: &'a [Vec3A],
+}
+
+impl<'a> Side<'a> {
+    fn of(motion: &'a Motion, cloths: &'a [Participant], patch: u32) -> Self {
+        let cloth = motion.patches[patch as usize].cloth as usize;
+        let [first_particle, first_patch, _] = motion.firsts[cloth];
+        let (sheet, patch) = (&**cloths[cloth].sheet, patch - first_patch);
+        Self {
+            sheet,
+            patch,
+            first_particle,
+            particles: sheet.particles_of(patch),
+            places: &motion.start[first_particle as usize..],
+        }
+    }
+
+    fn place(&self, local: u16) -> Vec3A {
+        self.places[self.particles[usize::from(local)] as usize]
+    }
+
+    fn particle(&self, local: u16) -> u32 {
+        self.particles[usize::from(local)]
+    }
+}
+
+/// The features of two patches in a comparison.
+struct Features<'a> {
+    sides: &'a [Side<'a>; 2],
+    sheet: &'a Sheet,
+    is_one_cloth: bool,
+    is_one_patch: bool,
+    thickness: f32,
+    /// How far apart features are that are listed (m).
+    listed: f32,
+    slack: f32,
+    candidates: &'a mut Vec<Candidate>,
+}
+
+impl Features<'_> {
+    /// Number of pairs of features.
+    fn count(&self) -> usize {
+        let [a, b] = self.sides;
+        let count = |side: &Side| {
+            let [vertices, faces] = [side.sheet.owned_of(side.patch).into(), side.sheet.faces_of(side.patch).len()];
+            (vertices, faces, side.sheet.edges_of(side.patch).len())
+        };
+        let (a, b): ((usize, _, _), (usize, _, _)) = (count(a), count(b));
+        a.0 * b.1 + b.0 * a.1 + a.2 * b.2
+    }
+
+    fn compare(&mut self) {
+        self.vertices_with_faces(0, 1);
+        if !self.is_one_patch {
+            self.vertices_with_faces(1, 0);
+        }
+        self.edges_with_edges();
+    }
+
+    /// Distance at which two features of one cloth touch, from their squared distance at rest.
+    fn allowed(&self, thickness: f32, rest_square: impl FnOnce() -> f32) -> f32 {
+        if self.is_one_cloth {
+            thickness.min(rest_square().sqrt() * OF_REST)
+        } else {
+            thickness
+        }
+    }
+
+    fn vertices_with_faces(&mut self, own: usize, other: usize) {
+        let [own, other] = [&self.sides[own], &self.sides[other]];
+        for local in 0..own.sheet.owned_of(own.patch) {
+            let (vertex, place) = (own.particle(local), own.place(local));
+            for &face in other.sheet.faces_of(other.patch) {
+                let corners = face.map(|corner| other.particle(corner));
+                if self.is_one_cloth && corners.contains(&vertex) {
+                    continue;
+                }
+                let [a, b, c] = face.map(|corner| other.place(corner));
+                let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+                let far = self.slack + self.thickness;
+                let gap = (place - high).max(low - place).max(Vec3A::ZERO);
+                if gap.length_squared() > far * far {
+                    continue;
+                }
+                let square = vertex_to_face(place.into(), [a, b, c].map(Vec3::from));
+                if square > far * far {
+                    continue;
+                }
+                let rest = self.sheet.surface().rest_positions();
+                let thickness = self.allowed(self.thickness, || {
+                    let at_rest = |particle: u32| rest[particle as usize];
+                    vertex_to_face(at_rest(vertex), corners.map(at_rest))
+                });
+                let apart = square.sqrt() - thickness;
+                if apart > self.listed {
+                    self.slack = self.slack.min(apart);
+                    continue;
+                }
+                let [a, b, c] = corners.map(|corner| other.first_particle + corner);
+                self.candidates.push(Candidate {
+                    particles: [own.first_particle + vertex, a, b, c],
+                    split: VERTEX_AND_FACE as u32,
+                    thickness,
+                    apart,
+                    nearest: Nearest::default(),
+                });
+            }
+        }
+    }
+
+    fn edges_with_edges(&mut self) {
+        let [own, other] = self.sides;
+        let wanted = EDGES * self.thickness;
+        let seconds = other.sheet.edges_of(other.patch);
+        for (index, &first) in own.sheet.edges_of(own.patch).iter().enumerate() {
+            let ends = first.map(|end| own.particle(end));
+            let [p, q] = first.map(|end| own.place(end));
+            let (low, high) = (p.min(q), p.max(q));
+            let from = if self.is_one_patch { index + 1 } else { 0 };
+            for &second in &seconds[from..] {
+                let [r, s] = second.map(|end| other.place(end));
+                let far = self.slack + wanted;
+                let gap = (r.min(s) - high).max(low - r.max(s)).max(Vec3A::ZERO);
+                if gap.length_squared() > far * far {
+                    continue;
+                }
+                let others = second.map(|end| other.particle(end));
+                if self.is_one_cloth && ends.iter().any(|end| others.contains(end)) {
+                    continue;
+                }
+                let square = edge_to_edge([p, q].map(Vec3::from), [r, s].map(Vec3::from));
+                if square > far * far {
+                    continue;
+                }
+                let rest = self.sheet.surface().rest_positions();
+                let thickness = self.allowed(wanted, || {
+                    let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
+                    edge_to_edge(at_rest(ends), at_rest(others))
+                });
+                let apart = square.sqrt() - thickness;
+                if apart > self.listed {
+                    self.slack = self.slack.min(apart);
+                    continue;
+                }
+                let [p, q] = ends.map(|end| own.first_particle + end);
+                let [r, s] = others.map(|end| other.first_particle + end);
+                self.candidates.push(Candidate {
+                    particles: [p, q, r, s],
+                    split: TWO_EDGES as u32,
+                    thickness,
+                    apart,
+                    nearest: Nearest::default(),
+                });
+            }
+        }
+    }
+}
