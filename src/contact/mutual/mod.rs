@@ -59,7 +59,7 @@ const WORK_OF_PAIR: usize = 8;
 
 /// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
 /// of their last pushes, for this many sub-steps at most, and this fraction of the way.
-const HELD: f32 = 0.1;
+const HELD: f32 = 0.08;
 const LONGEST_HOLD: u32 = 3;
 const PART_OF_WAY: f32 = 0.5;
 
@@ -89,6 +89,8 @@ pub(crate) struct MutualContact {
     before_colliders: Origin,
     /// Largest approach of any two particles from there before others can touch (m).
     free: f32,
+    /// The part of it that resting layers keep, to be held (m).
+    reserve: f32,
     is_known: bool,
     counts: Counts,
 }
@@ -217,11 +219,14 @@ impl MutualContact {
             return pushed + held;
         }
         self.motion.pass();
+        self.reserve = 0.0;
         if !self.contacts.is_empty() {
             let thinnest = cloths.iter().map(|cloth| cloth.settings.thickness);
-            self.free = self.free.min(HELD * thinnest.fold(f32::INFINITY, f32::min));
+            let most = HELD * thinnest.fold(f32::INFINITY, f32::min);
+            self.free = self.free.min(most);
             let pace = self.passed.approach(cloths) / self.waited as f32;
             if self.members.are_resting(RESTING_SPEED * dt) {
+                self.reserve = most;
                 self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
             }
         }
@@ -284,16 +289,18 @@ impl MutualContact {
             motion,
             rooms,
             near,
+            reserve,
             counts,
             ..
         } = self;
+        let reserve = *reserve;
         if let Some(room) = rooms.renew(cloths, motion) {
-            let slack = near.look(cloths, motion, &mut counts.work, &mut counts.compared)?;
+            let slack = near.look(cloths, motion, reserve, &mut counts.work, &mut counts.compared)?;
             return Some(slack.min(2.0 * room));
         }
         let among = Meets { cloths, meets };
         near.renew(rooms, &among, motion, &mut counts.work);
-        let slack = near.look(cloths, motion, &mut counts.work, &mut counts.compared)?;
+        let slack = near.look(cloths, motion, reserve, &mut counts.work, &mut counts.compared)?;
         Some(slack.min(0.0))
     }
 

@@ -79,9 +79,9 @@ impl PatchMotion {
         self.earlier - self.deviation[0]
     }
 
-    /// Upper bound of what its particles move against each other in the sub-step (m).
-    pub fn used_in_substep(&self) -> f32 {
-        self.deviation[0] + self.deviation[1]
+    /// What [`used`](Self::used) is measured from, for a comparison at the end of the sub-step (m).
+    pub fn used_to_end(&self) -> f32 {
+        self.earlier - self.deviation[1]
     }
 
     /// Upper bound of all that its particles had moved against each other before the sub-step (m).

@@ -31,13 +31,19 @@ const EDGES: f32 = 0.5;
 const OF_REST: f32 = 0.5;
 
 /// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
-const FRESH: f32 = 0.1;
+const FRESH: f32 = 0.12;
+
+/// Rest of that room, as a fraction, from which on contacts are measured together with others.
+const SOON: f32 = 0.5;
 
 /// Number of sub-steps of motion that a list of features lasts; at least this fraction of the thickness, at most this
 /// fraction of the shortest spacing.
-const AHEAD: f32 = 8.0;
+const AHEAD: f32 = 4.0;
 const LEAST_AHEAD: f32 = 0.25;
 const MOST_AHEAD: f32 = 0.5;
+
+/// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
+const ENOUGH: f32 = 2.0;
 
 /// Deviation of a patch, as a fraction of the thickness, from which on it gets a new reference before it is compared.
 const REFERENCE: f32 = 0.05;
@@ -82,6 +88,7 @@ pub(super) struct NearFeatures {
     /// Number of candidates that belong to pairs of patches.
     listed: usize,
     due: Vec<u32>,
+    soon: Vec<u32>,
     #[cfg_attr(feature = "serialize", serde(skip))]
     spare: Vec<Candidate>,
     /// Whether the contacts have changed.
@@ -105,6 +112,15 @@ impl PatchPair {
 
     fn candidates(&self) -> Range<usize> {
         self.first as usize..(self.first + self.count) as usize
+    }
+
+    /// Starts anew at the end of the sub-step, at which all their features are `apart` (m).
+    fn stay_unfolded(&mut self, apart: f32, motion: &Motion) {
+        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
+        self.between = a.end - b.end;
+        self.since = a.used_to_end() + b.used_to_end();
+        (self.slack, self.until) = (apart, apart);
+        (self.count, self.has_contacts) = (0, false);
     }
 
     /// Upper bound of their approach since they were last looked at (m).
@@ -172,32 +188,54 @@ impl NearFeatures {
         rooms.search(among, motion, work, |of| pairs.push(PatchPair::new(of)));
     }
 
-    /// Looks at the patches that have used up what they may. Returns the approach of any two particles before others
-    /// have (m); `None` if there was too much work.
+    /// Looks at the patches that have used up what they may, but for a `reserve` (m). Returns the approach of any two
+    /// particles before others have (m); `None` if there was too much work.
     pub fn look(
         &mut self,
         cloths: &[Participant],
         motion: &mut Motion,
+        reserve: f32,
         work: &mut usize,
         compared: &mut u32,
     ) -> Option<f32> {
         self.due.clear();
-        let mut left = f32::INFINITY;
+        self.soon.clear();
+        let (mut left, mut soon) = (f32::INFINITY, f32::INFINITY);
+        let mut is_contact_due = false;
         for (index, pair) in self.pairs.iter().enumerate() {
             let until = pair.until - pair.used(motion);
-            if until < 0.0 {
+            if until < reserve {
                 self.due.push(index as u32);
+                is_contact_due |= pair.has_contacts;
+            } else if pair.has_contacts && until < SOON * pair.near {
+                self.soon.push(index as u32);
+                soon = soon.min(until);
             } else {
                 left = left.min(until);
             }
+        }
+        // One new list of contacts serves all that would soon ask for one.
+        if is_contact_due {
+            self.due.append(&mut self.soon);
+        } else {
+            left = left.min(soon);
         }
         let due = std::mem::take(&mut self.due);
         for &index in &due {
             let pair = &mut self.pairs[index as usize];
             let had_contacts = pair.has_contacts;
+            if let Some(apart) = unfolded_by(pair, cloths, motion)
+                && apart > reserve
+            {
+                self.listed -= pair.count as usize;
+                pair.stay_unfolded(apart, motion);
+                self.has_changed |= had_contacts;
+                left = left.min(apart);
+                continue;
+            }
             let slack = pair.slack - pair.used_at_start(motion);
             let place = Place::of(pair, cloths, motion);
-            if slack > place.used {
+            if slack > place.used + reserve {
                 pair.slack = slack;
                 *work = work.saturating_sub(pair.count as usize);
                 let candidates = &mut self.candidates[pair.candidates()];
@@ -235,6 +273,18 @@ impl NearFeatures {
         }
         std::mem::swap(&mut self.spare, &mut self.candidates);
     }
+}
+
+/// By how much the features of two patches of a grid are farther apart than the thickness at the end of the sub-step
+/// (m), from the tangents around them. It does not matter how they got there: a sheet that is unfolded has not passed
+/// through itself.
+fn unfolded_by(pair: &PatchPair, cloths: &[Participant], motion: &Motion) -> Option<f32> {
+    let [a, b] = pair.of.map(|patch| motion.patches[patch as usize].cloth as usize);
+    let [first_particle, first_patch, _] = motion.firsts[a];
+    let of = pair.of.map(|patch| patch - first_patch);
+    let cloth = (a == b).then(|| &cloths[a])?;
+    let places = &motion.end[first_particle as usize..];
+    Some(cloth.sheet.unfolded(of, places)? - cloth.settings.thickness)
 }
 
 /// Two patches that are looked at, at the beginning of the sub-step.
@@ -301,22 +351,12 @@ fn compare(
     let listed = used + ahead;
     *work = work.saturating_sub(1);
     let apart = a.bounds_at_start().distance(&b.bounds_at_start()) - thickness;
-    if pair.of[0] != pair.of[1] && apart > listed {
+    if pair.of[0] != pair.of[1] && apart > ENOUGH * used {
         pair.slack = apart;
         return;
     }
     let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
     let is_one_cloth = a.cloth == b.cloth;
-    if is_one_cloth {
-        let of = [sides[0].patch, sides[1].patch];
-        let unfolded = sides[0].sheet.unfolded(of, sides[0].places);
-        if let Some(apart) = unfolded.map(|distance| distance - thickness)
-            && apart > listed
-        {
-            pair.slack = apart;
-            return;
-        }
-    }
     let mut features = Features {
         sides: &sides,
         sheet: sides[0].sheet,
