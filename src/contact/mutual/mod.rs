@@ -14,6 +14,7 @@ mod circumstances;
 mod hold;
 mod inside;
 mod intersections;
+mod lanes;
 mod members;
 mod motion;
 mod near_features;

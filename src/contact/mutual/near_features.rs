@@ -16,7 +16,8 @@ use std::ops::Range;
 use bevy::math::{Vec3, Vec3A};
 
 use super::{
-    motion::Motion,
+    lanes::{Eight, Points, edge_to_edges, vertex_to_faces},
+    motion::{Bounds, Motion},
     near_patches::{Meets, Rooms},
     pair::{Nearest, TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
     participant::Participant,
@@ -233,13 +234,14 @@ impl NearFeatures {
                 left = left.min(apart);
                 continue;
             }
-            let slack = pair.slack - pair.used_at_start(motion);
+            let used_before = pair.used_at_start(motion);
+            let slack = pair.slack - used_before;
             let place = Place::of(pair, cloths, motion);
             if slack > place.used + reserve {
                 pair.slack = slack;
                 *work = work.saturating_sub(pair.count as usize);
                 let candidates = &mut self.candidates[pair.candidates()];
-                measure(pair, candidates, motion, &place);
+                measure(pair, candidates, motion, &place, used_before);
             } else {
                 *compared += 1;
                 self.listed -= pair.count as usize;
@@ -248,7 +250,7 @@ impl NearFeatures {
                 compare(pair, cloths, motion, &place, &mut self.candidates, work);
                 pair.count = (self.candidates.len() - first) as u32;
                 self.listed += pair.count as usize;
-                measure(pair, &mut self.candidates[first..], motion, &place);
+                measure(pair, &mut self.candidates[first..], motion, &place, 0.0);
             }
             self.has_changed |= had_contacts || pair.has_contacts;
             left = left.min(pair.until - place.used);
@@ -317,11 +319,23 @@ impl Place {
     }
 }
 
-/// Measures the listed features of two patches.
-fn measure(pair: &mut PatchPair, candidates: &mut [Candidate], motion: &Motion, place: &Place) {
+/// Measures the listed features of two patches that have come nearer by no more than `used_before` (m). Those that are
+/// still far stay as they are.
+fn measure(
+    pair: &mut PatchPair,
+    candidates: &mut [Candidate],
+    motion: &Motion,
+    place: &Place,
+    used_before: f32,
+) {
     pair.near = place.used + FRESH * place.thickness;
     let mut least = f32::INFINITY;
     for candidate in candidates {
+        candidate.apart -= used_before;
+        if candidate.apart > pair.near {
+            least = least.min(candidate.apart);
+            continue;
+        }
         let places = candidate.particles.map(|particle| motion.start[particle as usize]);
         candidate.nearest = Nearest::of(candidate.split as usize, places);
         candidate.apart = candidate.nearest.distance - candidate.thickness;
@@ -359,12 +373,11 @@ fn compare(
     let is_one_cloth = a.cloth == b.cloth;
     let mut features = Features {
         sides: &sides,
-        sheet: sides[0].sheet,
         is_one_cloth,
         is_one_patch: pair.of[0] == pair.of[1],
         thickness,
         listed,
-        slack: listed.max(LONGEST * spacing),
+        slack: LONGEST * listed,
         candidates,
     };
     *work = work.saturating_sub(features.count());
@@ -372,30 +385,36 @@ fn compare(
     pair.slack = features.slack;
 }
 
-/// Largest slack that is looked for, as a fraction of the shortest spacing.
-const LONGEST: f32 = 2.0;
+/// Largest slack that is looked for, as a multiple of the distance up to which features are listed.
+const LONGEST: f32 = 3.0;
+
+/// Relative error of distances in lanes, more than it is.
+const ROUNDING: f32 = 1.0e-3;
 
 /// A patch in a comparison.
 struct Side<'a> {
     sheet: &'a Sheet,
     patch: u32,
     first_particle: u32,
-    /// Its particles, and their positions at the beginning of the sub-step (m).
+    /// Its particles, and the positions of its cloth's at the beginning of the sub-step (m).
     particles: &'a [u32],
     places: &'a [Vec3A],
+    bounds: Bounds,
 }
 
 impl<'a> Side<'a> {
     fn of(motion: &'a Motion, cloths: &'a [Participant], patch: u32) -> Self {
-        let cloth = motion.patches[patch as usize].cloth as usize;
-        let [first_particle, first_patch, _] = motion.firsts[cloth];
-        let (sheet, patch) = (&**cloths[cloth].sheet, patch - first_patch);
+        let state = &motion.patches[patch as usize];
+        let [first_particle, first_patch, _] = motion.firsts[state.cloth as usize];
+        let sheet = &**cloths[state.cloth as usize].sheet;
+        let patch = patch - first_patch;
         Self {
             sheet,
             patch,
             first_particle,
             particles: sheet.particles_of(patch),
             places: &motion.start[first_particle as usize..],
+            bounds: state.bounds_at_start(),
         }
     }
 
@@ -406,12 +425,24 @@ impl<'a> Side<'a> {
     fn particle(&self, local: u16) -> u32 {
         self.particles[usize::from(local)]
     }
+
+    /// The points of up to eight features; the last one fills the rest.
+    fn points<const N: usize>(&self, features: &[[u16; N]]) -> [Points; N] {
+        let mut points = [[[0.0; 8]; 3]; N];
+        for l in 0..8 {
+            let feature = features[l.min(features.len() - 1)];
+            for (point, local) in points.iter_mut().zip(feature) {
+                let place = self.place(local);
+                (point[0][l], point[1][l], point[2][l]) = (place.x, place.y, place.z);
+            }
+        }
+        points
+    }
 }
 
 /// The features of two patches in a comparison.
 struct Features<'a> {
     sides: &'a [Side<'a>; 2],
-    sheet: &'a Sheet,
     is_one_cloth: bool,
     is_one_patch: bool,
     thickness: f32,
@@ -424,69 +455,72 @@ struct Features<'a> {
 impl Features<'_> {
     /// Number of pairs of features.
     fn count(&self) -> usize {
-        let [a, b] = self.sides;
-        let count = |side: &Side| {
-            let [vertices, faces] = [side.sheet.owned_of(side.patch).into(), side.sheet.faces_of(side.patch).len()];
-            (vertices, faces, side.sheet.edges_of(side.patch).len())
-        };
-        let (a, b): ((usize, _, _), (usize, _, _)) = (count(a), count(b));
-        a.0 * b.1 + b.0 * a.1 + a.2 * b.2
+        let [a, b] = self.sides.each_ref().map(|side| {
+            let vertices = usize::from(side.sheet.owned_of(side.patch));
+            let faces = side.sheet.faces_of(side.patch).len();
+            [vertices, faces, side.sheet.edges_of(side.patch).len()]
+        });
+        a[0] * b[1] + b[0] * a[1] + a[2] * b[2]
     }
 
     fn compare(&mut self) {
-        self.vertices_with_faces(0, 1);
+        self.vertices_with_faces([0, 1]);
         if !self.is_one_patch {
-            self.vertices_with_faces(1, 0);
+            self.vertices_with_faces([1, 0]);
         }
         self.edges_with_edges();
     }
 
-    /// Distance at which two features of one cloth touch, from their squared distance at rest.
-    fn allowed(&self, thickness: f32, rest_square: impl FnOnce() -> f32) -> f32 {
-        if self.is_one_cloth {
-            thickness.min(rest_square().sqrt() * OF_REST)
-        } else {
-            thickness
+    /// Whether a feature within these bounds is too far from the other patch for its features to be listed.
+    fn is_far(&mut self, bounds: Bounds, other: usize) -> bool {
+        let apart = bounds.distance(&self.sides[other].bounds) - self.thickness;
+        let is_far = apart > self.listed;
+        if is_far {
+            self.slack = self.slack.min(apart);
         }
+        is_far
     }
 
-    fn vertices_with_faces(&mut self, own: usize, other: usize) {
-        let [own, other] = [&self.sides[own], &self.sides[other]];
-        for local in 0..own.sheet.owned_of(own.patch) {
-            let (vertex, place) = (own.particle(local), own.place(local));
-            for &face in other.sheet.faces_of(other.patch) {
-                let corners = face.map(|corner| other.particle(corner));
-                if self.is_one_cloth && corners.contains(&vertex) {
+    /// Takes the squared distances of a feature from the first `count` of eight (m²): calls `list` with those that are
+    /// to be listed.
+    fn sort(&mut self, squares: Eight, count: usize, thickness: f32, mut list: impl FnMut(&mut Self, usize)) {
+        let far = self.listed + thickness;
+        let mut least = f32::INFINITY;
+        for (l, &square) in squares.iter().enumerate().take(count) {
+            if square > far * far {
+                least = least.min(square);
+            } else {
+                // Also for NaN.
+                list(self, l);
+            }
+        }
+        let apart = least.sqrt() * (1.0 - ROUNDING) - thickness;
+        self.slack = self.slack.min(apart);
+    }
+
+    fn vertices_with_faces(&mut self, [own_side, other_side]: [usize; 2]) {
+        let sides = self.sides;
+        let [own, other] = [&sides[own_side], &sides[other_side]];
+        for faces in other.sheet.faces_of(other.patch).chunks(8) {
+            let points = other.points(faces);
+            for local in 0..own.sheet.owned_of(own.patch) {
+                let (vertex, place) = (own.particle(local), own.place(local));
+                if self.is_far(Bounds::at(place), other_side) {
                     continue;
                 }
-                let [a, b, c] = face.map(|corner| other.place(corner));
-                let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-                let far = self.slack + self.thickness;
-                let gap = (place - high).max(low - place).max(Vec3A::ZERO);
-                if gap.length_squared() > far * far {
-                    continue;
-                }
-                let square = vertex_to_face(place.into(), [a, b, c].map(Vec3::from));
-                if square > far * far {
-                    continue;
-                }
-                let rest = self.sheet.surface().rest_positions();
-                let thickness = self.allowed(self.thickness, || {
-                    let at_rest = |particle: u32| rest[particle as usize];
-                    vertex_to_face(at_rest(vertex), corners.map(at_rest))
-                });
-                let apart = square.sqrt() - thickness;
-                if apart > self.listed {
-                    self.slack = self.slack.min(apart);
-                    continue;
-                }
-                let [a, b, c] = corners.map(|corner| other.first_particle + corner);
-                self.candidates.push(Candidate {
-                    particles: [own.first_particle + vertex, a, b, c],
-                    split: VERTEX_AND_FACE as u32,
-                    thickness,
-                    apart,
-                    nearest: Nearest::default(),
+                let squares = vertex_to_faces(place, &points);
+                self.sort(squares, faces.len(), self.thickness, |features, l| {
+                    let corners = faces[l].map(|corner| other.particle(corner));
+                    if features.is_one_cloth && corners.contains(&vertex) {
+                        return;
+                    }
+                    let thickness = features.allowed(features.thickness, |rest| {
+                        let at_rest = |particle: u32| rest[particle as usize];
+                        vertex_to_face(at_rest(vertex), corners.map(at_rest))
+                    });
+                    let [a, b, c] = corners.map(|corner| other.first_particle + corner);
+                    let particles = [own.first_particle + vertex, a, b, c];
+                    features.list(particles, VERTEX_AND_FACE, thickness);
                 });
             }
         }
@@ -495,47 +529,53 @@ impl Features<'_> {
     fn edges_with_edges(&mut self) {
         let [own, other] = self.sides;
         let wanted = EDGES * self.thickness;
-        let seconds = other.sheet.edges_of(other.patch);
-        for (index, &first) in own.sheet.edges_of(own.patch).iter().enumerate() {
-            let ends = first.map(|end| own.particle(end));
-            let [p, q] = first.map(|end| own.place(end));
-            let (low, high) = (p.min(q), p.max(q));
-            let from = if self.is_one_patch { index + 1 } else { 0 };
-            for &second in &seconds[from..] {
-                let [r, s] = second.map(|end| other.place(end));
-                let far = self.slack + wanted;
-                let gap = (r.min(s) - high).max(low - r.max(s)).max(Vec3A::ZERO);
-                if gap.length_squared() > far * far {
+        for (chunk, seconds) in other.sheet.edges_of(other.patch).chunks(8).enumerate() {
+            let points = other.points(seconds);
+            for (index, &first) in own.sheet.edges_of(own.patch).iter().enumerate() {
+                let ends = first.map(|end| own.particle(end));
+                let places = first.map(|end| own.place(end));
+                if self.is_far(Bounds::at(places[0]).with(places[1]), 1) {
                     continue;
                 }
-                let others = second.map(|end| other.particle(end));
-                if self.is_one_cloth && ends.iter().any(|end| others.contains(end)) {
-                    continue;
-                }
-                let square = edge_to_edge([p, q].map(Vec3::from), [r, s].map(Vec3::from));
-                if square > far * far {
-                    continue;
-                }
-                let rest = self.sheet.surface().rest_positions();
-                let thickness = self.allowed(wanted, || {
-                    let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
-                    edge_to_edge(at_rest(ends), at_rest(others))
-                });
-                let apart = square.sqrt() - thickness;
-                if apart > self.listed {
-                    self.slack = self.slack.min(apart);
-                    continue;
-                }
-                let [p, q] = ends.map(|end| own.first_particle + end);
-                let [r, s] = others.map(|end| other.first_particle + end);
-                self.candidates.push(Candidate {
-                    particles: [p, q, r, s],
-                    split: TWO_EDGES as u32,
-                    thickness,
-                    apart,
-                    nearest: Nearest::default(),
+                let squares = edge_to_edges(places, &points);
+                self.sort(squares, seconds.len(), wanted, |features, l| {
+                    let others = seconds[l].map(|end| other.particle(end));
+                    let is_known = features.is_one_patch && 8 * chunk + l <= index;
+                    let is_joined =
+                        features.is_one_cloth && ends.iter().any(|end| others.contains(end));
+                    if is_known || is_joined {
+                        return;
+                    }
+                    let thickness = features.allowed(wanted, |rest| {
+                        let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
+                        edge_to_edge(at_rest(ends), at_rest(others))
+                    });
+                    let [p, q] = ends.map(|end| own.first_particle + end);
+                    let [r, s] = others.map(|end| other.first_particle + end);
+                    features.list([p, q, r, s], TWO_EDGES, thickness);
                 });
             }
         }
+    }
+
+    /// Distance at which two features touch, from their squared distance at rest if they are of one cloth.
+    fn allowed(&self, thickness: f32, rest_square: impl FnOnce(&[Vec3]) -> f32) -> f32 {
+        let sheet = self.sides[0].sheet;
+        if self.is_one_cloth && OF_REST * sheet.closest() < thickness {
+            let square = rest_square(sheet.surface().rest_positions());
+            thickness.min(square.sqrt() * OF_REST)
+        } else {
+            thickness
+        }
+    }
+
+    fn list(&mut self, particles: [u32; 4], split: usize, thickness: f32) {
+        self.candidates.push(Candidate {
+            particles,
+            split: split as u32,
+            thickness,
+            nearest: Nearest::default(),
+            apart: f32::NEG_INFINITY,
+        });
     }
 }

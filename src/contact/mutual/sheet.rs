@@ -159,6 +159,15 @@ impl Sheet {
         &self.surface
     }
 
+    /// For a grid, the smallest distance at rest between two features without a common particle (m): from a corner of a
+    /// cell to its diagonal. 0 for a mesh.
+    pub(super) fn closest(&self) -> f32 {
+        self.surface.as_grid().map_or(0.0, |grid| {
+            let [across, down] = grid.spacing().to_array();
+            across * down / across.hypot(down)
+        })
+    }
+
     /// The nodes of the tree over its patches, each before its children.
     pub(super) fn nodes(&self) -> &[Node] {
         &self.nodes
@@ -178,15 +187,13 @@ impl Sheet {
         if size.iter().any(|&size| size > LARGEST) {
             return None;
         }
-        let spacing = grid.spacing();
         let gap = |axis: usize| a[0][axis].max(b[0][axis]).saturating_sub(a[1][axis].min(b[1][axis]));
+        let spacing = grid.spacing();
         let apart = spacing * Vec2::new(gap(1) as f32, gap(0) as f32);
-        // From a corner of a cell to its diagonal.
-        let closest = spacing.x * spacing.y / spacing.length();
         let columns = grid.columns() as usize;
         let place = |row: usize, column: usize| places[(low[0] + row) * columns + low[1] + column];
         let tangents = Tangents::of(size[0], size[1], spacing, place);
-        Some(tangents.unfolded() * apart.length().max(closest))
+        Some(tangents.unfolded() * apart.length().max(self.closest()))
     }
 
     /// The particles of a patch's features.
