@@ -14,7 +14,7 @@ use super::{members::Members, pair::NearPair};
 
 /// Smallest gap left between features, as a fraction of the thickness and of the distance at the beginning of the
 /// sub-step.
-const LEFT_OF_THICKNESS: f32 = 0.05;
+pub(super) const LEFT_OF_THICKNESS: f32 = 0.05;
 const LEFT_OF_DISTANCE: f32 = 0.25;
 
 /// Number of pushes on features that would pass, before they are made to move as one.

@@ -30,7 +30,7 @@ mod tangents;
 mod tests;
 
 use self::{
-    certificate::Zones,
+    certificate::{LEFT_OF_THICKNESS, Zones},
     circumstances::Circumstances,
     hold::Hold,
     members::{Members, NOBODY},
@@ -231,6 +231,7 @@ impl MutualContact {
                 self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
             }
         }
+        if std::env::var("DBG").is_ok() { eprintln!("pass contacts {} listed {} members {} wait {} waited {} free {:.4} pace {:.4} reserve {:.4} fastest {:.4} changed {}", self.contacts.len(), self.near.len(), self.members.len(), self.wait, self.waited, self.free*1e3, self.passed.approach(cloths)*1e3, self.reserve*1e3, self.members.states.iter().map(|s| s.moved.length()).fold(0.0, f32::max)*1e3, self.near.has_changed); }
         self.passed.set(cloths);
         self.waited = 0;
         pushed + held
@@ -294,15 +295,13 @@ impl MutualContact {
             counts,
             ..
         } = self;
-        let reserve = *reserve;
-        if let Some(room) = rooms.renew(cloths, motion) {
-            let slack = near.look(cloths, motion, reserve, &mut counts.work, &mut counts.compared)?;
-            return Some(slack.min(2.0 * room));
+        let (have_left, room) = rooms.renew(cloths, motion, *reserve);
+        if have_left {
+            let among = Meets { cloths, meets };
+            near.renew(rooms, &among, motion, &mut counts.work);
         }
-        let among = Meets { cloths, meets };
-        near.renew(rooms, &among, motion, &mut counts.work);
-        let slack = near.look(cloths, motion, reserve, &mut counts.work, &mut counts.compared)?;
-        Some(slack.min(0.0))
+        let slack = near.look(cloths, motion, *reserve, counts)?;
+        Some(slack.min(2.0 * room))
     }
 
     /// Lists the contacts. A `first` list of a sub-step has members of its own.
@@ -321,7 +320,7 @@ impl MutualContact {
         members.last_of.fill(NOBODY);
         contacts.clear();
         near.has_changed = false;
-        let add = |candidate: &Candidate, of: [u32; 2]| {
+        let add = |candidate: &Candidate, of: [u32; 2], near: f32| {
             let particles = candidate.particles;
             let members_of =
                 particles.map(|particle| members.of(particle, cloths, motion, before_colliders));
@@ -343,6 +342,7 @@ impl MutualContact {
                 weights: nearest.weights,
                 is_pushed: split == VERTEX_AND_FACE || !nearest.is_at_border(),
                 before,
+                may_pass: candidate.nearest.distance <= near + LEFT_OF_THICKNESS * candidate.thickness,
             });
         };
         near.contacts(motion, add);
@@ -375,6 +375,7 @@ impl MutualContact {
             }
             self.contacts[index].is_pushed &= !is_implied;
         }
+        self.contacts.retain(|pair| pair.is_pushed || pair.may_pass);
     }
 
     /// Keeps nothing apart for the rest of the tick.

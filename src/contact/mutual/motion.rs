@@ -54,10 +54,10 @@ impl Bounds {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
-    /// Distance between two boxes (m), 0 if they overlap.
-    pub fn distance(&self, other: &Self) -> f32 {
+    /// Squared distance between two boxes (m²), 0 if they overlap.
+    pub fn distance_squared(&self, other: &Self) -> f32 {
         let gap = (self.min - other.max).max(other.min - self.max);
-        gap.max(Vec3A::ZERO).length()
+        gap.max(Vec3A::ZERO).length_squared()
     }
 }
 

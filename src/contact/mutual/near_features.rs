@@ -16,6 +16,7 @@ use std::ops::Range;
 use bevy::math::{Vec3, Vec3A};
 
 use super::{
+    Counts,
     lanes::{Eight, Points, edge_to_edges, vertex_to_faces},
     motion::{Bounds, Motion},
     near_patches::{Meets, Rooms},
@@ -157,14 +158,14 @@ impl NearFeatures {
         each.flat_map(|pair| &self.candidates[pair.candidates()])
     }
 
-    /// Calls `add` with each contact, and the two cloths.
-    pub fn contacts(&self, motion: &Motion, mut add: impl FnMut(&Candidate, [u32; 2])) {
+    /// Calls `add` with each contact, the two cloths, and the approach for which it is one (m).
+    pub fn contacts(&self, motion: &Motion, mut add: impl FnMut(&Candidate, [u32; 2], f32)) {
         for pair in self.pairs.iter().filter(|pair| pair.has_contacts) {
             let cloths = pair.of.map(|patch| motion.patches[patch as usize].cloth);
             let candidates = self.candidates[pair.candidates()].iter();
             candidates
                 .filter(|candidate| candidate.apart <= pair.near)
-                .for_each(|candidate| add(candidate, cloths));
+                .for_each(|candidate| add(candidate, cloths, pair.near));
         }
     }
 
@@ -196,8 +197,7 @@ impl NearFeatures {
         cloths: &[Participant],
         motion: &mut Motion,
         reserve: f32,
-        work: &mut usize,
-        compared: &mut u32,
+        counts: &mut Counts,
     ) -> Option<f32> {
         self.due.clear();
         self.soon.clear();
@@ -239,22 +239,22 @@ impl NearFeatures {
             let place = Place::of(pair, cloths, motion);
             if slack > place.used + reserve {
                 pair.slack = slack;
-                *work = work.saturating_sub(pair.count as usize);
+                counts.work = counts.work.saturating_sub(pair.count as usize);
                 let candidates = &mut self.candidates[pair.candidates()];
                 measure(pair, candidates, motion, &place, used_before);
             } else {
-                *compared += 1;
+                counts.compared += 1;
                 self.listed -= pair.count as usize;
                 let first = self.candidates.len();
                 pair.first = first as u32;
-                compare(pair, cloths, motion, &place, &mut self.candidates, work);
+                compare(pair, cloths, motion, &place, &mut self.candidates, &mut counts.work);
                 pair.count = (self.candidates.len() - first) as u32;
                 self.listed += pair.count as usize;
                 measure(pair, &mut self.candidates[first..], motion, &place, 0.0);
             }
             self.has_changed |= had_contacts || pair.has_contacts;
             left = left.min(pair.until - place.used);
-            if *work == 0 {
+            if counts.work == 0 {
                 break;
             }
         }
@@ -262,7 +262,7 @@ impl NearFeatures {
         if self.candidates.len() > 2 * self.listed + 64 {
             self.compact();
         }
-        (*work > 0).then_some(left)
+        (counts.work > 0).then_some(left)
     }
 
     /// Removes the candidates of earlier comparisons.
@@ -364,7 +364,8 @@ fn compare(
     let ahead = (AHEAD * used).clamp(LEAST_AHEAD * thickness, MOST_AHEAD * spacing);
     let listed = used + ahead;
     *work = work.saturating_sub(1);
-    let apart = a.bounds_at_start().distance(&b.bounds_at_start()) - thickness;
+    let apart = a.bounds_at_start().distance_squared(&b.bounds_at_start());
+    let apart = apart.sqrt() - thickness;
     if pair.of[0] != pair.of[1] && apart > ENOUGH * used {
         pair.slack = apart;
         return;
@@ -377,12 +378,13 @@ fn compare(
         is_one_patch: pair.of[0] == pair.of[1],
         thickness,
         listed,
-        slack: LONGEST * listed,
+        least: f32::INFINITY,
         candidates,
     };
     *work = work.saturating_sub(features.count());
     features.compare();
-    pair.slack = features.slack;
+    let apart = features.least.sqrt() * (1.0 - ROUNDING) - thickness;
+    pair.slack = apart.max(listed).min(LONGEST * listed);
 }
 
 /// Largest slack that is looked for, as a multiple of the distance up to which features are listed.
@@ -448,7 +450,8 @@ struct Features<'a> {
     thickness: f32,
     /// How far apart features are that are listed (m).
     listed: f32,
-    slack: f32,
+    /// The least squared distance of others (m²).
+    least: f32,
     candidates: &'a mut Vec<Candidate>,
 }
 
@@ -473,10 +476,11 @@ impl Features<'_> {
 
     /// Whether a feature within these bounds is too far from the other patch for its features to be listed.
     fn is_far(&mut self, bounds: Bounds, other: usize) -> bool {
-        let apart = bounds.distance(&self.sides[other].bounds) - self.thickness;
-        let is_far = apart > self.listed;
+        let square = bounds.distance_squared(&self.sides[other].bounds);
+        let far = self.listed + self.thickness;
+        let is_far = square > far * far;
         if is_far {
-            self.slack = self.slack.min(apart);
+            self.least = self.least.min(square);
         }
         is_far
     }
@@ -485,17 +489,14 @@ impl Features<'_> {
     /// to be listed.
     fn sort(&mut self, squares: Eight, count: usize, thickness: f32, mut list: impl FnMut(&mut Self, usize)) {
         let far = self.listed + thickness;
-        let mut least = f32::INFINITY;
         for (l, &square) in squares.iter().enumerate().take(count) {
             if square > far * far {
-                least = least.min(square);
+                self.least = self.least.min(square);
             } else {
                 // Also for NaN.
                 list(self, l);
             }
         }
-        let apart = least.sqrt() * (1.0 - ROUNDING) - thickness;
-        self.slack = self.slack.min(apart);
     }
 
     fn vertices_with_faces(&mut self, [own_side, other_side]: [usize; 2]) {

@@ -56,9 +56,14 @@ impl Rooms {
         }
     }
 
-    /// Makes boxes for patches that have left theirs. If there are none, returns how far any patch may move before it
-    /// leaves its box (m).
-    pub fn renew(&mut self, cloths: &[Participant], motion: &Motion) -> Option<f32> {
+    /// Makes boxes for patches that have left theirs, but for a `reserve` (m). Returns whether there are any, and how far
+    /// any patch may move before it leaves its box (m).
+    pub fn renew(
+        &mut self,
+        cloths: &[Participant],
+        motion: &Motion,
+        reserve: f32,
+    ) -> (bool, f32) {
         let (before, after) = (motion.drift - motion.drifted, motion.drift);
         self.left.clear();
         let mut free = f32::INFINITY;
@@ -72,7 +77,7 @@ impl Rooms {
             };
             let inside = (at_end.min - room.min).min(room.max - at_end.max);
             // False for NaN.
-            if inside.min_element() >= 0.0 {
+            if inside.min_element() >= reserve {
                 free = free.min(inside.min_element());
                 continue;
             }
@@ -85,6 +90,7 @@ impl Rooms {
             let moved = patch.end - patch.start - motion.drifted;
             let ahead = moved * AHEAD;
             let around = ROOM * cloth.sheet.surface().spacing().shortest;
+            free = free.min(around);
             let both = at_start.join(&at_end);
             *room = Bounds {
                 min: both.min - around + ahead.min(Vec3A::ZERO),
@@ -92,7 +98,7 @@ impl Rooms {
             };
         }
         if self.left.is_empty() {
-            return Some(free);
+            return (false, free);
         }
         for (index, cloth) in cloths.iter().enumerate() {
             let boxes = &self.boxes[motion.firsts[index][1] as usize..];
@@ -107,7 +113,7 @@ impl Rooms {
                 };
             }
         }
-        None
+        (true, free)
     }
 
     /// Whether the boxes of two patches overlap.

@@ -80,6 +80,8 @@ pub(super) struct NearPair {
     pub is_pushed: bool,
     /// The previous pair of the same vertex with another face; or [`NOBODY`](super::members::NOBODY).
     pub before: u32,
+    /// Whether they may pass through each other before they are measured again.
+    pub may_pass: bool,
 }
 
 impl NearPair {

@@ -191,8 +191,11 @@ impl Sheet {
         let spacing = grid.spacing();
         let apart = spacing * Vec2::new(gap(1) as f32, gap(0) as f32);
         let columns = grid.columns() as usize;
-        let place = |row: usize, column: usize| places[(low[0] + row) * columns + low[1] + column];
-        let tangents = Tangents::of(size[0], size[1], spacing, place);
+        let rows = (0..size[0]).map(|row| {
+            let first = (low[0] + row) * columns + low[1];
+            &places[first..first + size[1]]
+        });
+        let tangents = Tangents::of(rows, spacing);
         Some(tangents.unfolded() * apart.length().max(self.closest()))
     }
 

@@ -26,19 +26,18 @@ pub(super) struct Tangents {
 }
 
 impl Tangents {
-    /// The tangents of a rectangle of particles, row by row, at these distances at rest.
-    pub fn of(rows: usize, columns: usize, spacing: Vec2, place: impl Fn(usize, usize) -> Vec3A) -> Self {
+    /// The tangents of a rectangle of particles, from its rows, at these distances at rest.
+    pub fn of<'a>(rows: impl Iterator<Item = &'a [Vec3A]>, spacing: Vec2) -> Self {
         let (mut across, mut down) = (Bounds::EMPTY, Bounds::EMPTY);
-        for row in 0..rows {
-            for column in 0..columns {
-                let here = place(row, column);
-                if column + 1 < columns {
-                    across = across.with(place(row, column + 1) - here);
-                }
-                if row + 1 < rows {
-                    down = down.with(place(row + 1, column) - here);
-                }
+        let mut above: &[Vec3A] = &[];
+        for row in rows {
+            for (left, right) in row.iter().zip(&row[1..]) {
+                across = across.with(*right - *left);
             }
+            for (upper, lower) in above.iter().zip(row) {
+                down = down.with(*lower - *upper);
+            }
+            above = row;
         }
         let per_metre = spacing.recip();
         let scaled = |of: Bounds, by: f32| Bounds {
