@@ -55,9 +55,6 @@ const ROUNDS: u32 = 4;
 const MOST_WORK: usize = 1 << 14;
 const MOST_WORK_OF_ALL: usize = 1 << 25;
 
-/// Work of keeping a pair apart, in pairs of features compared.
-const WORK_OF_PAIR: usize = 8;
-
 /// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
 /// of their last pushes, for this many sub-steps at most, and this fraction of the way.
 const HELD: f32 = 0.08;
@@ -86,6 +83,8 @@ pub(crate) struct MutualContact {
     /// Number of sub-steps since the last test, and positions of all particles then: up to there, layers are apart.
     waited: u32,
     passed: Origin,
+    /// The largest approach of any two particles since (m).
+    approach: f32,
     /// Positions before colliders push particles in the sub-step, if noted.
     before_colliders: Origin,
     /// Largest approach of any two particles from there before others can touch (m).
@@ -128,7 +127,7 @@ impl MutualContact {
         };
         let is_same = self.circumstances.renew(cloths, &meets);
         if is_same && self.is_known && !was_lost && self.motion.is_of(cloths) {
-            if self.passed.approach(cloths) == 0.0 {
+            if self.passed.approach(cloths) == self.approach {
                 return;
             }
             // Something else has moved them.
@@ -141,16 +140,16 @@ impl MutualContact {
             self.rooms.reset(cloths, self.motion.patches.len());
             self.near.clear();
             self.hold.clear(cloths);
+            self.contacts.clear();
             self.is_known = true;
         }
-        (self.wait, self.waited) = (0, 0);
-        self.contacts.clear();
+        (self.wait, self.waited, self.approach) = (0, 0, 0.0);
         self.passed.set(cloths);
         match self.look(cloths, &meets) {
             Some(free) => self.free = free,
             None => self.lose(),
         }
-        self.near.has_changed = true;
+        self.near.begins = false;
     }
 
     /// Number of times that the features of two patches were compared in the tick.
@@ -176,7 +175,7 @@ impl MutualContact {
     /// Notes the particles' positions in a sub-step before colliders push them. Particles cannot move against these
     /// pushes.
     pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
-        if self.near.len() > 0 && self.wait == 0 {
+        if self.near.len() > 0 {
             self.before_colliders.set(cloths);
         } else {
             self.before_colliders.clear();
@@ -204,7 +203,9 @@ impl MutualContact {
         } else {
             (0.0, self.passed.approach(cloths))
         };
-        if (is_held || self.contacts.is_empty()) && approach <= self.free {
+        let has_none = self.contacts.is_empty() && !self.near.has_changed;
+        if (is_held || has_none) && approach <= self.free {
+            self.approach = self.passed.approach(cloths);
             return held;
         }
         self.motion.read(cloths);
@@ -227,13 +228,13 @@ impl MutualContact {
             self.free = self.free.min(most);
             let pace = self.passed.approach(cloths) / self.waited as f32;
             if self.members.are_resting(RESTING_SPEED * dt) {
-                self.reserve = most;
+                self.reserve = most.min(LONGEST_HOLD as f32 * pace / PART_OF_WAY);
                 self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
             }
         }
         if std::env::var("DBG").is_ok() { eprintln!("pass contacts {} listed {} members {} wait {} waited {} free {:.4} pace {:.4} reserve {:.4} fastest {:.4} changed {}", self.contacts.len(), self.near.len(), self.members.len(), self.wait, self.waited, self.free*1e3, self.passed.approach(cloths)*1e3, self.reserve*1e3, self.members.states.iter().map(|s| s.moved.length()).fold(0.0, f32::max)*1e3, self.near.has_changed); }
         self.passed.set(cloths);
-        self.waited = 0;
+        (self.waited, self.approach) = (0, 0.0);
         pushed + held
     }
 
@@ -245,7 +246,6 @@ impl MutualContact {
         meets: impl Fn(usize, usize) -> bool,
         dt: f32,
     ) -> bool {
-        let mut is_listed_again = false;
         for round in 0..ROUNDS {
             let Some(free) = self.look(cloths, &meets) else {
                 return false;
@@ -255,19 +255,17 @@ impl MutualContact {
                 self.members.gather(cloths, &self.motion, &self.before_colliders);
             } else if self.near.has_changed {
                 self.list(cloths, round == 0);
-                is_listed_again |= round > 0;
             } else {
                 break;
             }
-            let work = WORK_OF_PAIR * self.contacts.len();
-            self.counts.work = self.counts.work.saturating_sub(work);
             let mut has_moved = false;
             if round == 0 {
                 let (too_near, members) = (&mut self.too_near, &mut self.members);
                 has_moved = push(&self.contacts, too_near, members, dt);
                 self.counts.has_touched |= has_moved;
             }
-            has_moved |= self.zones.certify(&self.contacts, &mut self.members);
+            let (members, work) = (&mut self.members, &mut self.counts.work);
+            has_moved |= self.zones.certify(&self.contacts, members, work);
             if !has_moved {
                 break;
             }
@@ -275,8 +273,6 @@ impl MutualContact {
             self.motion.measure(cloths);
             self.free = f32::NEG_INFINITY;
         }
-        // The next sub-step pushes those that were added, too.
-        self.near.has_changed |= is_listed_again;
         true
     }
 
@@ -346,9 +342,7 @@ impl MutualContact {
             });
         };
         near.contacts(motion, add);
-        if is_first {
-            self.leave_out_implied();
-        }
+        self.leave_out_implied();
     }
 
     /// Marks the faces from which a nearer face already keeps a vertex away: the nearest point is on an edge of both.

@@ -40,7 +40,7 @@ const SOON: f32 = 0.5;
 
 /// Number of sub-steps of motion that a list of features lasts; at least this fraction of the thickness, at most this
 /// fraction of the shortest spacing.
-const AHEAD: f32 = 4.0;
+const AHEAD: f32 = 5.0;
 const LEAST_AHEAD: f32 = 0.25;
 const MOST_AHEAD: f32 = 0.5;
 
@@ -49,6 +49,9 @@ const ENOUGH: f32 = 2.0;
 
 /// Deviation of a patch, as a fraction of the thickness, from which on it gets a new reference before it is compared.
 const REFERENCE: f32 = 0.05;
+
+/// Distance of features that begin inside each other, as a fraction of the thickness.
+const INSIDE: f32 = 0.05;
 
 /// Two patches whose boxes overlap.
 #[derive(Debug, Clone)]
@@ -63,10 +66,13 @@ struct PatchPair {
     /// What they may use before their features are measured again, and the largest `apart` of contacts (m).
     until: f32,
     near: f32,
-    /// The listed features, and whether any is a contact.
+    /// The listed features.
     first: u32,
     count: u32,
-    has_contacts: bool,
+    /// The number of these that are contacts: the first ones.
+    contacts: u32,
+    /// Whether they began inside each other: they are left alone until they are apart.
+    is_tangled: bool,
 }
 
 /// Two features that may touch.
@@ -95,6 +101,8 @@ pub(super) struct NearFeatures {
     spare: Vec<Candidate>,
     /// Whether the contacts have changed.
     pub has_changed: bool,
+    /// Whether this is the first look at cloths that may be inside each other.
+    pub begins: bool,
 }
 
 impl PatchPair {
@@ -108,8 +116,13 @@ impl PatchPair {
             near: 0.0,
             first: 0,
             count: 0,
-            has_contacts: false,
+            contacts: 0,
+            is_tangled: false,
         }
+    }
+
+    fn has_contacts(&self) -> bool {
+        self.contacts > 0
     }
 
     fn candidates(&self) -> Range<usize> {
@@ -122,7 +135,22 @@ impl PatchPair {
         self.between = a.end - b.end;
         self.since = a.used_to_end() + b.used_to_end();
         (self.slack, self.until) = (apart, apart);
-        (self.count, self.has_contacts) = (0, false);
+        (self.count, self.contacts) = (0, 0);
+    }
+
+    /// Whether they are inside each other, as they may begin.
+    fn has_tangled(&self, candidates: &[Candidate]) -> bool {
+        let is_inside = |of: &Candidate| of.nearest.distance < INSIDE * of.thickness;
+        candidates.iter().any(is_inside)
+    }
+
+    /// Has no contacts, unless they have come apart.
+    fn leave_alone(&mut self, place: &Place) {
+        self.is_tangled = self.has_contacts();
+        if self.is_tangled {
+            self.contacts = 0;
+            self.until = self.slack.min(place.used + LEAST_AHEAD * place.thickness);
+        }
     }
 
     /// Upper bound of their approach since they were last looked at (m).
@@ -144,7 +172,7 @@ impl NearFeatures {
         self.pairs.clear();
         self.candidates.clear();
         self.listed = 0;
-        self.has_changed = true;
+        (self.has_changed, self.begins) = (true, true);
     }
 
     /// Number of pairs of features that may touch.
@@ -160,12 +188,12 @@ impl NearFeatures {
 
     /// Calls `add` with each contact, the two cloths, and the approach for which it is one (m).
     pub fn contacts(&self, motion: &Motion, mut add: impl FnMut(&Candidate, [u32; 2], f32)) {
-        for pair in self.pairs.iter().filter(|pair| pair.has_contacts) {
+        for pair in self.pairs.iter().filter(|pair| pair.has_contacts()) {
             let cloths = pair.of.map(|patch| motion.patches[patch as usize].cloth);
-            let candidates = self.candidates[pair.candidates()].iter();
-            candidates
-                .filter(|candidate| candidate.apart <= pair.near)
-                .for_each(|candidate| add(candidate, cloths, pair.near));
+            let candidates = &self.candidates[pair.candidates()];
+            for candidate in &candidates[..pair.contacts as usize] {
+                add(candidate, cloths, pair.near);
+            }
         }
     }
 
@@ -182,7 +210,7 @@ impl NearFeatures {
             let is_near = rooms.overlap(pair.of);
             if !is_near {
                 *listed -= pair.count as usize;
-                *has_changed |= pair.has_contacts;
+                *has_changed |= pair.has_contacts();
             }
             is_near
         });
@@ -207,8 +235,8 @@ impl NearFeatures {
             let until = pair.until - pair.used(motion);
             if until < reserve {
                 self.due.push(index as u32);
-                is_contact_due |= pair.has_contacts;
-            } else if pair.has_contacts && until < SOON * pair.near {
+                is_contact_due |= pair.has_contacts();
+            } else if pair.has_contacts() && until < SOON * pair.near {
                 self.soon.push(index as u32);
                 soon = soon.min(until);
             } else {
@@ -224,7 +252,7 @@ impl NearFeatures {
         let due = std::mem::take(&mut self.due);
         for &index in &due {
             let pair = &mut self.pairs[index as usize];
-            let had_contacts = pair.has_contacts;
+            let had_contacts = pair.has_contacts();
             if let Some(apart) = unfolded_by(pair, cloths, motion)
                 && apart > reserve
             {
@@ -236,7 +264,7 @@ impl NearFeatures {
             }
             let used_before = pair.used_at_start(motion);
             let slack = pair.slack - used_before;
-            let place = Place::of(pair, cloths, motion);
+            let place = Place::of(pair, cloths, motion, reserve);
             if slack > place.used + reserve {
                 pair.slack = slack;
                 counts.work = counts.work.saturating_sub(pair.count as usize);
@@ -251,8 +279,12 @@ impl NearFeatures {
                 pair.count = (self.candidates.len() - first) as u32;
                 self.listed += pair.count as usize;
                 measure(pair, &mut self.candidates[first..], motion, &place, 0.0);
+                pair.is_tangled |= self.begins && pair.has_tangled(&self.candidates[first..]);
             }
-            self.has_changed |= had_contacts || pair.has_contacts;
+            if pair.is_tangled {
+                pair.leave_alone(&place);
+            }
+            self.has_changed |= had_contacts || pair.has_contacts();
             left = left.min(pair.until - place.used);
             if counts.work == 0 {
                 break;
@@ -295,11 +327,18 @@ struct Place {
     spacing: f32,
     /// Upper bound of their approach in the sub-step (m).
     used: f32,
+    /// What resting layers keep (m).
+    reserve: f32,
 }
 
 impl Place {
     /// Takes their places for those that their motion is measured from.
-    fn of(pair: &mut PatchPair, cloths: &[Participant], motion: &mut Motion) -> Self {
+    fn of(
+        pair: &mut PatchPair,
+        cloths: &[Participant],
+        motion: &mut Motion,
+        reserve: f32,
+    ) -> Self {
         let of = pair.of.map(|patch| &cloths[motion.patches[patch as usize].cloth as usize]);
         let thickness = (of[0].settings.thickness + of[1].settings.thickness) / 2.0;
         for (patch, cloth) in pair.of.into_iter().zip(of) {
@@ -315,6 +354,7 @@ impl Place {
             thickness,
             spacing: spacing[0].min(spacing[1]),
             used: pair.used(motion),
+            reserve,
         }
     }
 }
@@ -329,20 +369,24 @@ fn measure(
     used_before: f32,
 ) {
     pair.near = place.used + FRESH * place.thickness;
+    pair.contacts = 0;
     let mut least = f32::INFINITY;
-    for candidate in candidates {
+    for index in 0..candidates.len() {
+        let candidate = &mut candidates[index];
         candidate.apart -= used_before;
-        if candidate.apart > pair.near {
-            least = least.min(candidate.apart);
-            continue;
+        if candidate.apart <= pair.near {
+            let places = candidate.particles.map(|particle| motion.start[particle as usize]);
+            candidate.nearest = Nearest::of(candidate.split as usize, places);
+            candidate.apart = candidate.nearest.distance - candidate.thickness;
         }
-        let places = candidate.particles.map(|particle| motion.start[particle as usize]);
-        candidate.nearest = Nearest::of(candidate.split as usize, places);
-        candidate.apart = candidate.nearest.distance - candidate.thickness;
-        least = least.min(candidate.apart);
+        if candidate.apart <= pair.near {
+            candidates.swap(index, pair.contacts as usize);
+            pair.contacts += 1;
+        } else {
+            least = least.min(candidate.apart);
+        }
     }
-    pair.has_contacts = least <= pair.near;
-    let until = if pair.has_contacts { pair.near } else { least };
+    let until = if pair.has_contacts() { pair.near } else { least };
     pair.until = until.min(pair.slack);
 }
 
@@ -359,6 +403,7 @@ fn compare(
         thickness,
         spacing,
         used,
+        reserve,
     } = *place;
     let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
     let ahead = (AHEAD * used).clamp(LEAST_AHEAD * thickness, MOST_AHEAD * spacing);
@@ -366,7 +411,7 @@ fn compare(
     *work = work.saturating_sub(1);
     let apart = a.bounds_at_start().distance_squared(&b.bounds_at_start());
     let apart = apart.sqrt() - thickness;
-    if pair.of[0] != pair.of[1] && apart > ENOUGH * used {
+    if pair.of[0] != pair.of[1] && apart > ENOUGH * used + reserve {
         pair.slack = apart;
         return;
     }
