@@ -59,8 +59,51 @@ fn run(scene: &Scene, with: bool, check: bool, trace: bool) -> (f64, f64, f64, f
     (mean, v[v.len() / 2], v[v.len() * 99 / 100], *v.last().unwrap(), bad, badt, searches / ticks as f64, pairs)
 }
 
+fn hostile() {
+    let states: [(&str, fn(usize) -> Vec3); 6] = [
+        ("plane", |i| Vec3::new(((i * 7919) % 400) as f32 / 400.0, 0.0, ((i * 104729) % 401) as f32 / 401.0)),
+        ("flat fold", |i| { let x = (i % 20) as f32 * 0.05; Vec3::new(if x > 0.5 { 1.0 - x } else { x }, 0.0, (i / 20) as f32 * 0.05) }),
+        ("line", |i| Vec3::new(((i * 7919) % 400) as f32 / 400.0, 0.0, 0.0)),
+        ("point", |_| Vec3::ZERO),
+        ("cube", |i| Vec3::new(((i * 7919) % 400) as f32 / 400.0, ((i * 104729) % 401) as f32 / 401.0, ((i * 1299709) % 397) as f32 / 397.0)),
+        ("small cube", |i| 0.05 * Vec3::new(((i * 7919) % 400) as f32 / 400.0, ((i * 104729) % 401) as f32 / 401.0, ((i * 1299709) % 397) as f32 / 397.0)),
+    ];
+    for (name, state) in states {
+        for seconds in [1e-6, 1.0 / 240.0, 1.0 / 60.0, 0.5] {
+            for two in [false, true] {
+            let mut app = App::new();
+            app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default())).init_asset::<Mesh>().add_plugins(DrapePlugins::default())
+                .insert_resource(Time::<Fixed>::from_seconds(seconds)).insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+                .insert_resource(Clock(Instant::now(), vec![]))
+                .edit_schedule(FixedUpdate, |s| { s.set_executor(SingleThreadedExecutor::new()); })
+                .add_systems(FixedUpdate, (start.before(ClothSystems::Prepare), stop.after(ClothSystems::WriteBack)));
+            app.world_mut().spawn(ClothCollider::plane());
+            for _ in 0..if two { 2 } else { 1 } {
+                let n = if two { 14 } else { 20 };
+                app.world_mut().spawn((Cloth::new(n, n, 0.05), Pins::none(), ClothSelfCollision::default(), Transform::from_xyz(0.0, 0.5, 0.0)));
+            }
+            app.finish(); app.cleanup();
+            (0..3).for_each(|_| app.update());
+            let w = app.world_mut();
+            let mut q = w.query::<&mut ClothParticles>();
+            for mut p in q.iter_mut(w) { for i in 0..p.len() { p.set_position(i, state(i)).unwrap(); } }
+            w.resource_mut::<Clock>().1.clear();
+            for _ in 0..30 { app.update(); }
+            let v = &app.world().resource::<Clock>().1;
+            let worst = v.iter().copied().fold(0.0, f64::max);
+            let mean = v.iter().sum::<f64>() / v.len() as f64;
+            let w = app.world_mut();
+            let mut q = w.query::<&ClothStats>();
+            let ex = q.iter(w).next().map(|s| (s.substeps, format!("{:?}", s.exceeded)));
+            if worst > 10.0 { println!("{name:10} dt {seconds:.6} two {two}: mean {mean:.2} worst {worst:.2} ms {ex:?}"); }
+            }
+        }
+    }
+}
+
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
+    if args.iter().any(|a| a == "hostile") { hostile(); return; }
     let has = |s: &str| args.iter().any(|a| a == s);
     for (k, scene) in SCENES.iter().enumerate() {
         let wanted: Vec<usize> = args.iter().filter_map(|a| a.parse().ok()).collect();

@@ -6,7 +6,6 @@ use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
     contact::{candidates::Ranges, touch::ContactSettings},
-    solver::SubStep,
 };
 
 /// Number of measurements of the particles' displacements in a sub-step, before a new search.
@@ -127,10 +126,5 @@ impl Detection {
     #[cfg(test)]
     pub(in crate::contact) fn forget_edges(&mut self) {
         self.shapes.forget_edges();
-    }
-
-    /// Largest push of any particle by colliders in the last sub-step (m).
-    pub(crate) fn farthest_push(&self, substep: SubStep) -> f32 {
-        self.moved_now - substep.farthest_move
     }
 }

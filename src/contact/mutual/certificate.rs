@@ -58,6 +58,9 @@ impl Zones {
         for round in 0..PUSHES + ZONES {
             let mut is_certain = true;
             *work = work.saturating_sub(pairs.len());
+            if *work == 0 {
+                break;
+            }
             for pair in pairs {
                 let Some(lack) = lack(pair, members) else {
                     continue;

@@ -26,7 +26,7 @@ pub(super) struct Hold {
 }
 
 /// Weight of the latest push in the mean. The particles that carry a layer's weight vary from one sub-step to the next.
-const LATEST: f32 = 0.3;
+pub(super) const LATEST: f32 = 0.3;
 
 /// Largest hold of a particle, in means of its last pushes.
 const MOST: f32 = 4.0;

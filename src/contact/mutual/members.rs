@@ -167,12 +167,6 @@ impl Members {
         of.map(|member| &self.states[member as usize])
     }
 
-    /// Their positions at the beginning of the sub-step (m).
-    #[inline]
-    pub fn starts(&self, of: [u32; 4]) -> [Vec3A; 4] {
-        of.map(|member| self.states[member as usize].start)
-    }
-
     /// Whether none moved farther than this (m), and a collider or a pin holds some.
     pub fn are_resting(&self, farthest: f32) -> bool {
         let square = farthest * farthest;

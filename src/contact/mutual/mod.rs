@@ -51,9 +51,16 @@ pub(crate) use sheet::Sheet;
 /// Largest number of times that features are looked for in a sub-step near those that were pushed.
 const ROUNDS: u32 = 4;
 
-/// Work limits of a tick for each particle and in total: nodes, pairs of features, and pairs that are kept apart.
-const MOST_WORK: usize = 1 << 14;
+/// Work limits of a tick for each particle and in total, in units of some 5 ns: two pairs of features compared, or a
+/// node visited. A sheet that collapses into a pile needs two thirds of that.
+const MOST_WORK: usize = 3 << 12;
 const MOST_WORK_OF_ALL: usize = 1 << 25;
+
+/// Units of work for a contact that is listed and pushed.
+const WORK_OF_CONTACT: usize = 8;
+
+/// Number of ticks without contact after one with too much work.
+const TICKS_OFF: u32 = 8;
 
 /// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
 /// of their last pushes, for this many sub-steps at most, and this fraction of the way.
@@ -92,6 +99,8 @@ pub(crate) struct MutualContact {
     /// The part of it that resting layers keep, to be held (m).
     reserve: f32,
     is_known: bool,
+    /// Number of ticks left without contact.
+    ticks_off: u32,
     counts: Counts,
 }
 
@@ -113,7 +122,7 @@ struct Counts {
 impl MutualContact {
     /// Forgets all pairs: the particles are others, or have jumped.
     pub fn forget(&mut self) {
-        self.is_known = false;
+        (self.is_known, self.ticks_off) = (false, 0);
     }
 
     /// Begins a tick of these cloths. `meets` returns whether two of them may touch.
@@ -126,6 +135,11 @@ impl MutualContact {
             ..Counts::default()
         };
         let is_same = self.circumstances.renew(cloths, &meets);
+        if is_same && self.ticks_off > 0 {
+            self.ticks_off -= 1;
+            self.counts.is_lost = true;
+            return;
+        }
         if is_same && self.is_known && !was_lost && self.motion.is_of(cloths) {
             if self.passed.approach(cloths) == self.approach {
                 return;
@@ -232,7 +246,6 @@ impl MutualContact {
                 self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
             }
         }
-        if std::env::var("DBG").is_ok() { eprintln!("pass contacts {} listed {} members {} wait {} waited {} free {:.4} pace {:.4} reserve {:.4} fastest {:.4} changed {}", self.contacts.len(), self.near.len(), self.members.len(), self.wait, self.waited, self.free*1e3, self.passed.approach(cloths)*1e3, self.reserve*1e3, self.members.states.iter().map(|s| s.moved.length()).fold(0.0, f32::max)*1e3, self.near.has_changed); }
         self.passed.set(cloths);
         (self.waited, self.approach) = (0, 0.0);
         pushed + held
@@ -258,6 +271,8 @@ impl MutualContact {
             } else {
                 break;
             }
+            let work = WORK_OF_CONTACT * self.contacts.len();
+            self.counts.work = self.counts.work.saturating_sub(work);
             let mut has_moved = false;
             if round == 0 {
                 let (too_near, members) = (&mut self.too_near, &mut self.members);
@@ -354,13 +369,14 @@ impl MutualContact {
             }
             let mut next = self.members.last_of[pair.members[0] as usize];
             let mut is_implied = false;
-            while next != NOBODY && !is_implied {
+            while next != NOBODY && !is_implied && self.counts.work > 0 {
                 let other = &self.contacts[next as usize];
                 let is_nearer = other.distance < pair.distance
                     || (other.distance == pair.distance && (next as usize) < index);
                 let has = |corner: usize| {
                     pair.weights[corner] == 0.0 || other.members[1..].contains(&pair.members[corner])
                 };
+                self.counts.work = self.counts.work.saturating_sub(1);
                 is_implied = next as usize != index
                     && other.thickness >= pair.thickness
                     && is_nearer
@@ -372,9 +388,9 @@ impl MutualContact {
         self.contacts.retain(|pair| pair.is_pushed || pair.may_pass);
     }
 
-    /// Keeps nothing apart for the rest of the tick.
+    /// Keeps nothing apart for the rest of the tick and some more.
     fn lose(&mut self) {
-        self.counts.is_lost = true;
+        (self.counts.is_lost, self.ticks_off) = (true, TICKS_OFF);
         self.near.clear();
         self.contacts.clear();
     }

@@ -278,7 +278,9 @@ impl NearFeatures {
                 compare(pair, cloths, motion, &place, &mut self.candidates, &mut counts.work);
                 pair.count = (self.candidates.len() - first) as u32;
                 self.listed += pair.count as usize;
-                measure(pair, &mut self.candidates[first..], motion, &place, 0.0);
+                let candidates = &mut self.candidates[first..];
+                counts.work = counts.work.saturating_sub(4 * candidates.len());
+                measure(pair, candidates, motion, &place, 0.0);
                 pair.is_tangled |= self.begins && pair.has_tangled(&self.candidates[first..]);
             }
             if pair.is_tangled {
@@ -406,7 +408,9 @@ fn compare(
         reserve,
     } = *place;
     let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
-    let ahead = (AHEAD * used).clamp(LEAST_AHEAD * thickness, MOST_AHEAD * spacing);
+    let ahead = (AHEAD * used)
+        .min(MOST_AHEAD * spacing)
+        .max(LEAST_AHEAD * thickness);
     let listed = used + ahead;
     *work = work.saturating_sub(1);
     let apart = a.bounds_at_start().distance_squared(&b.bounds_at_start());
@@ -426,7 +430,7 @@ fn compare(
         least: f32::INFINITY,
         candidates,
     };
-    *work = work.saturating_sub(features.count());
+    *work = work.saturating_sub(features.count() / 2);
     features.compare();
     let apart = features.least.sqrt() * (1.0 - ROUNDING) - thickness;
     pair.slack = apart.max(listed).min(LONGEST * listed);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{settings::ClothSelfCollision, sheet::Sheet};
-use crate::cloth::{ClothParticles, Slot};
+use crate::cloth::ClothParticles;
 
 /// A cloth and its search structure, among cloths that are simulated together.
 #[derive(Debug)]
@@ -63,10 +63,5 @@ impl<'a> Participant<'a> {
             None => vector,
             Some(frame) => frame.rotation.inverse() * vector,
         }
-    }
-
-    /// Position of a particle in the common frame (m).
-    pub(super) fn place(&self, Slot { block, lane }: Slot) -> Vec3 {
-        self.point(self.particles.blocks()[block].position(lane))
     }
 }

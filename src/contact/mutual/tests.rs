@@ -4,6 +4,7 @@ mod hold;
 mod response;
 mod scenes;
 mod search;
+mod thrown;
 
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ use bevy::math::{Quat, Vec3};
 
 use super::{ClothSelfCollision, MutualContact, Participant, Sheet, intersections};
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
+    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
     hierarchy::QuadTree,
     solver::{Solver, TickStep},
 };
@@ -28,12 +29,25 @@ impl Sheeted {
     /// A square of so many particles a side and this width (m), each put where `place` says from where it would lie around the
     /// origin.
     pub fn new(side: u32, width: f32, place: impl Fn(Vec3) -> Vec3) -> Self {
-        let cloth = Cloth::new(side, side, width / (side - 1) as f32)
-            .lying()
-            .centred();
-        let grid = cloth.grid(Vec3::ONE).expect("a valid grid");
+        Self::of_kind(side, width, false, place)
+    }
+
+    /// The same, of a grid or of an irregular mesh.
+    pub fn of_kind(
+        side: u32,
+        width: f32,
+        is_mesh: bool,
+        place: impl Fn(Vec3) -> Vec3,
+    ) -> Self {
+        let spacing = width / (side - 1) as f32;
+        let surface = if is_mesh {
+            Surface::of_mesh(&irregular(side, spacing), 0.0, Vec3::ONE).expect("a surface")
+        } else {
+            let cloth = Cloth::new(side, side, spacing).lying().centred();
+            Surface::of_grid(&cloth.grid(Vec3::ONE).expect("a valid grid"))
+        };
         let material = ClothMaterial::default();
-        let surface = Arc::new(Surface::of_grid(&grid));
+        let surface = Arc::new(surface);
         let springs = Springs::of_surface(&surface, &material);
         let tree = QuadTree::of_surface(&surface, true);
         let solver = Solver::of_surface(&surface, &springs);
@@ -49,6 +63,30 @@ impl Sheeted {
             surface,
             solver,
         }
+    }
+}
+
+/// A lying square whose vertices are moved by up to 0.2 spacings, with diagonals of any direction.
+fn irregular(side: u32, spacing: f32) -> TriangleMesh {
+    let off = |index: u32| 0.2 * (1.7 * index as f32 + 0.3 * (index * index % 17) as f32).sin();
+    let place = |index: u32| {
+        let middle = 0.5 * (side - 1) as f32;
+        let [row, column] = [index / side, index % side].map(|at| at as f32 - middle);
+        Vec3::new(column + off(index), 0.0, row + off(index + 7)) * spacing
+    };
+    let cells = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));
+    let triangles = cells.flat_map(|a| {
+        let [b, c, d] = [a + 1, a + side, a + side + 1];
+        if off(3 * a) > 0.0 {
+            [[a, c, b], [b, c, d]]
+        } else {
+            [[a, c, d], [a, d, b]]
+        }
+    });
+    TriangleMesh {
+        positions: (0..side * side).map(place).collect(),
+        triangles: triangles.collect(),
+        ..TriangleMesh::default()
     }
 }
 

@@ -47,10 +47,6 @@ impl Tree for GridTree {
         }
     }
 
-    fn columns(&self, level: usize) -> Option<u32> {
-        Some(self.levels[level].columns.len() as u32)
-    }
-
     fn layout(&self) -> Layout {
         self.layout
     }

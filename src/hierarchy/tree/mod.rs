@@ -154,14 +154,6 @@ impl QuadTree {
         })
     }
 
-    /// For a grid, the layout of each level's nodes: the first node, and the number in a row.
-    pub(crate) fn lattice(&self) -> Option<Vec<(u32, u32)>> {
-        let levels = self.levels().iter().enumerate();
-        levels
-            .map(|(level, nodes)| Some((nodes.start, self.0.columns(level)?)))
-            .collect()
-    }
-
     /// Indices of a node's particles.
     pub fn particles_of(&self, node: u32) -> Vec<u32> {
         let level = self.level_of(node);

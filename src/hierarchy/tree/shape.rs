@@ -16,11 +16,6 @@ pub(crate) trait Tree: Debug + Send + Sync {
     /// A node of a level.
     fn node(&self, level: usize, node: u32) -> Node;
 
-    /// Number of nodes in a row of a level, if all of its nodes lie in rows and columns.
-    fn columns(&self, _level: usize) -> Option<u32> {
-        None
-    }
-
     /// The layout of its particles.
     fn layout(&self) -> Layout;
 

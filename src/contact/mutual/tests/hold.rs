@@ -3,7 +3,10 @@
 use bevy::math::Vec3;
 
 use super::{Scene, Sheeted, floor, participants, settings};
-use crate::contact::mutual::{hold::Hold, origin::Origin};
+use crate::contact::mutual::{
+    hold::{Hold, LATEST},
+    origin::Origin,
+};
 
 /// A vector for each number, as if drawn, of up to 1 in each direction.
 fn drawn(number: usize) -> Vec3 {
@@ -33,7 +36,7 @@ fn what_is_held_gets_no_faster_and_is_not_turned_back() {
         _ => 1.0e-4 * drawn(index),
     };
     for index in 0..count {
-        hold.set(0, layout.slot_of(index), push(index));
+        hold.add(0, layout.slot_of(index), push(index) / LATEST);
         let moved = 1.0e-4 * drawn(3 * index + 7);
         let particles = &mut cloths[0].particles;
         let at = particles.position(index).expect("it exists");
@@ -93,7 +96,7 @@ fn each_cloth_that_is_held_is_marked() {
                 .set_displacement(4, moved)
                 .expect("it exists");
             if marked[index] {
-                hold.set(index, slot, Vec3::Y * 1.0e-5);
+                hold.add(index, slot, Vec3::Y * 1.0e-5 / LATEST);
             }
         }
         let mut is_pushed = [false; 2];
