@@ -54,6 +54,7 @@ const ROUNDS: u32 = 4;
 /// Work limits of a tick for each particle and in total, in units of some 5 ns: two pairs of features compared, or a
 /// node visited. A sheet that collapses into a pile needs two thirds of that.
 const MOST_WORK: usize = 3 << 12;
+const LEAST_WORK_OF_ALL: usize = 1 << 22;
 const MOST_WORK_OF_ALL: usize = 1 << 25;
 
 /// Units of work for a contact that is listed and pushed.
@@ -70,6 +71,9 @@ const PART_OF_WAY: f32 = 0.5;
 
 /// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
 const RESTING_SPEED: f32 = 0.25;
+
+/// Deviation of a patch from its reference, as a fraction of the smallest thickness, from which on it gets a new one.
+const REFERENCE: f32 = 0.05;
 
 /// Contact of cloths with themselves and with each other, from tick to tick. Can be dropped at any time.
 #[derive(Debug, Default, Clone)]
@@ -131,7 +135,9 @@ impl MutualContact {
         let particles = cloths.iter().map(|cloth| cloth.particles.len());
         let particles = particles.sum::<usize>();
         self.counts = Counts {
-            work: MOST_WORK.saturating_mul(particles).min(MOST_WORK_OF_ALL),
+            work: MOST_WORK
+                .saturating_mul(particles)
+                .clamp(LEAST_WORK_OF_ALL, MOST_WORK_OF_ALL),
             ..Counts::default()
         };
         let is_same = self.circumstances.renew(cloths, &meets);
@@ -148,7 +154,7 @@ impl MutualContact {
             self.motion.read(cloths);
             self.motion.measure_drift();
             self.motion.measure(cloths);
-            self.motion.pass();
+            self.motion.pass(cloths, REFERENCE * thinnest(cloths));
         } else {
             self.motion.reset(cloths);
             self.rooms.reset(cloths, self.motion.patches.len());
@@ -234,11 +240,11 @@ impl MutualContact {
             self.counts.lost += 1;
             return pushed + held;
         }
-        self.motion.pass();
+        let thinnest = thinnest(cloths);
+        self.motion.pass(cloths, REFERENCE * thinnest);
         self.reserve = 0.0;
         if !self.contacts.is_empty() {
-            let thinnest = cloths.iter().map(|cloth| cloth.settings.thickness);
-            let most = HELD * thinnest.fold(f32::INFINITY, f32::min);
+            let most = HELD * thinnest;
             self.free = self.free.min(most);
             let pace = self.passed.approach(cloths) / self.waited as f32;
             if self.members.are_resting(RESTING_SPEED * dt) {
@@ -394,4 +400,10 @@ impl MutualContact {
         self.near.clear();
         self.contacts.clear();
     }
+}
+
+/// The smallest thickness (m).
+fn thinnest(cloths: &[Participant]) -> f32 {
+    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
+    each.fold(f32::INFINITY, f32::min)
 }

@@ -12,7 +12,7 @@
 
 use bevy::math::Vec3A;
 
-use super::{participant::Participant, sheet::Sheet};
+use super::participant::Participant;
 
 /// A box (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,11 +94,6 @@ impl PatchMotion {
     /// Upper bound of all that its particles had moved against each other before the sub-step (m).
     pub fn used_at_start(&self) -> f32 {
         self.earlier + self.deviation[0]
-    }
-
-    /// Deviation from its reference at the beginning of the sub-step (m).
-    pub fn deviation_before(&self) -> f32 {
-        self.deviation[0]
     }
 
     pub fn bounds_at_start(&self) -> Bounds {
@@ -235,33 +230,30 @@ impl Motion {
         }
     }
 
-    /// Takes a patch's shape at the beginning of the sub-step for its reference.
-    pub fn refer(&mut self, patch: u32, sheet: &Sheet) {
-        let state = &mut self.patches[patch as usize];
-        let [first_particle, first_patch, _] = self.firsts[state.cloth as usize];
-        let particles = sheet.particles_of(patch - first_patch);
-        let first = self.firsts[state.cloth as usize][2] + sheet.first_of(patch - first_patch);
-        let offsets = &mut self.offsets[first as usize..first as usize + particles.len()];
-        let (mut half, mut square) = (Vec3A::ZERO, 0.0_f32);
-        for (&particle, offset) in particles.iter().zip(offsets) {
-            let index = (first_particle + particle) as usize;
-            *offset = self.start[index] - state.start;
-            half = half.max(offset.abs());
-            let moved = self.end[index] - state.end - *offset;
-            square = square.max(moved.length_squared());
-        }
-        state.half = half;
-        state.earlier += state.deviation[0];
-        state.deviation = [0.0, square.sqrt()];
-    }
-
-    /// Ends the sub-step: the next one begins where it ended.
-    pub fn pass(&mut self) {
+    /// Ends the sub-step: the next one begins where it ended. Patches that deviate from their references by more than
+    /// `most` (m) get new ones.
+    pub fn pass(&mut self, cloths: &[Participant], most: f32) {
         std::mem::swap(&mut self.start, &mut self.end);
         self.drifted = Vec3A::ZERO;
-        for patch in &mut self.patches {
+        for (index, patch) in self.patches.iter_mut().enumerate() {
             patch.start = patch.end;
             patch.deviation[0] = patch.deviation[1];
+            // Also for NaN.
+            if patch.deviation[0] <= most {
+                continue;
+            }
+            let [first_particle, first_patch, first_offset] = self.firsts[patch.cloth as usize];
+            let (sheet, own) = (&cloths[patch.cloth as usize].sheet, index as u32 - first_patch);
+            let particles = sheet.particles_of(own);
+            let first = (first_offset + sheet.first_of(own)) as usize;
+            let offsets = &mut self.offsets[first..first + particles.len()];
+            patch.half = Vec3A::ZERO;
+            for (&particle, offset) in particles.iter().zip(offsets) {
+                *offset = self.start[(first_particle + particle) as usize] - patch.start;
+                patch.half = patch.half.max(offset.abs());
+            }
+            patch.earlier += patch.deviation[0];
+            patch.deviation = [0.0; 2];
         }
     }
 }

@@ -47,9 +47,6 @@ const MOST_AHEAD: f32 = 0.5;
 /// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
 const ENOUGH: f32 = 2.0;
 
-/// Deviation of a patch, as a fraction of the thickness, from which on it gets a new reference before it is compared.
-const REFERENCE: f32 = 0.05;
-
 /// Distance of features that begin inside each other, as a fraction of the thickness.
 const INSIDE: f32 = 0.05;
 
@@ -223,7 +220,7 @@ impl NearFeatures {
     pub fn look(
         &mut self,
         cloths: &[Participant],
-        motion: &mut Motion,
+        motion: &Motion,
         reserve: f32,
         counts: &mut Counts,
     ) -> Option<f32> {
@@ -338,16 +335,11 @@ impl Place {
     fn of(
         pair: &mut PatchPair,
         cloths: &[Participant],
-        motion: &mut Motion,
+        motion: &Motion,
         reserve: f32,
     ) -> Self {
         let of = pair.of.map(|patch| &cloths[motion.patches[patch as usize].cloth as usize]);
         let thickness = (of[0].settings.thickness + of[1].settings.thickness) / 2.0;
-        for (patch, cloth) in pair.of.into_iter().zip(of) {
-            if motion.patches[patch as usize].deviation_before() > REFERENCE * thickness {
-                motion.refer(patch, cloth.sheet);
-            }
-        }
         let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
         pair.between = a.start - b.start;
         pair.since = a.used_before() + b.used_before();

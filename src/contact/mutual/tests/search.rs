@@ -225,7 +225,7 @@ fn no_pair_is_lost_on_the_way() {
             contact.near.contacts(&contact.motion, |candidate, _, _| {
                 known.insert(feature(candidate));
             });
-            contact.motion.pass();
+            contact.motion.pass(&of, 0.05 * thickness);
             let places = places(&cloths[0]);
             brute.near(&places, f64::from(thickness) - ROUNDING, |feature, apart| {
                 met += 1;
