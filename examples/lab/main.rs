@@ -22,6 +22,7 @@ mod drawn;
 mod exactness;
 mod experiment;
 mod frames;
+mod games;
 mod hung;
 mod layers;
 mod lod;
@@ -102,6 +103,8 @@ enum Name {
     /// Cloth on cloth: its cost, and how much passes through
     #[value(name = "self")]
     Layers,
+    /// Cloth on cloth in scenes of games: mean and longest tick
+    Games,
     /// Speed against accuracy
     Pareto,
     /// Stretch against time for six ways of pinning
@@ -122,7 +125,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 17] = [
+const EXPERIMENTS: [(Name, Conduct); 18] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -133,6 +136,7 @@ const EXPERIMENTS: [(Name, Conduct); 17] = [
     (Name::Colliders, conduct::<colliders::Colliders>),
     (Name::Lod, conduct::<lod::Lod>),
     (Name::Layers, conduct::<layers::Layers>),
+    (Name::Games, conduct::<games::Games>),
     (Name::Pareto, conduct::<pareto::Pareto>),
     (Name::Hung, conduct::<hung::Hung>),
     (Name::Peers, conduct::<peers::Peers>),

@@ -15,7 +15,7 @@ pub enum ClothSystems {
     /// Searches the trees from the top down for candidates: particles that a collider may touch. The bounds are
     /// inflated by the distance that cloth and collider can move in the tick.
     Query,
-    /// Runs all sub-steps: Verlet integration, one sweep over the springs, and collision response for the candidates.
+    /// Runs all sub-steps: Verlet integration, springs, pins, and collision response for the candidates.
     Integrate,
     /// Writes messages and diagnostics.
     WriteBack,

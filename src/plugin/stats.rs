@@ -43,7 +43,7 @@ pub struct ClothStats {
     /// Pairs of features that may come near each other, within the cloth or between it and other cloths: vertices with
     /// faces, edges with edges. 0 without [`ClothSelfCollision`](crate::contact::ClothSelfCollision).
     pub layer_pairs: usize,
-    /// Number of searches for these pairs in the tick.
+    /// Number of times that the features of two patches of a few faces were compared in the tick, to find these pairs.
     pub layer_searches: u32,
     /// The largest stretch, at the end of the tick.
     pub stretch: Stretch,

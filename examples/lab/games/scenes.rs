@@ -1,6 +1,6 @@
 //! The scenes: cloth of games whose layers touch.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -12,11 +12,12 @@ use bevy_drape::prelude::*;
 /// Ticks a second.
 pub const RATE: f32 = 60.0;
 
-/// A scene: its name, its length in ticks, and how it is spawned.
+/// A scene: its name, its length in ticks, whether its cloths begin apart, and its spawning function.
 #[derive(Clone, Copy)]
 pub struct Scene {
     pub name: &'static str,
     pub ticks: usize,
+    pub begins_apart: bool,
     spawn: fn(&mut World, &Layers),
 }
 
@@ -31,19 +32,39 @@ struct Path(fn(f32, usize) -> Transform, usize);
 pub const SCENES: [Scene; 21] = [
     scene("cape behind a runner", 240, cape),
     scene("flag, 8 to 15 m/s", 240, flag),
-    scene("skirt, 3,072 vertices", 240, |world, layers| skirt(world, layers, 96, 32)),
-    scene("skirt, 1,152 vertices", 240, |world, layers| skirt(world, layers, 48, 24)),
+    scene("skirt, 3,072 vertices", 240, |world, layers| {
+        skirt(world, layers, 96, 32)
+    }),
+    scene("skirt, 1,152 vertices", 240, |world, layers| {
+        skirt(world, layers, 48, 24)
+    }),
     scene("30 capes apart", 180, capes),
-    scene("dropped on edge, 32²", 360, |world, layers| dropped(world, layers, 32)),
-    scene("dropped on edge, 48²", 360, |world, layers| dropped(world, layers, 48)),
-    scene("tablecloth on a box", 240, |world, layers| tablecloth(world, layers, ClothCollider::cuboid(1.0, 0.1, 1.0))),
-    scene("tablecloth on a cylinder", 240, |world, layers| tablecloth(world, layers, ClothCollider::cylinder(0.5, 0.1))),
+    scene("dropped on edge, 32²", 360, |world, layers| {
+        dropped(world, layers, 32)
+    }),
+    scene("dropped on edge, 48²", 360, |world, layers| {
+        dropped(world, layers, 48)
+    }),
+    scene("tablecloth on a box", 240, |world, layers| {
+        tablecloth(world, layers, ClothCollider::cuboid(1.0, 0.1, 1.0))
+    }),
+    scene("tablecloth on a cylinder", 240, |world, layers| {
+        tablecloth(world, layers, ClothCollider::cylinder(0.5, 0.1))
+    }),
     scene("32² on 40²", 240, on_another),
-    scene("panels, edges meet", 180, |world, layers| panels(world, layers, 0.0)),
-    scene("panels, overlap of 10 cm", 180, |world, layers| panels(world, layers, 0.1)),
-    scene("two in one place", 120, in_one_place),
-    scene("half on half, 64²", 120, |world, layers| folded(world, layers, 64)),
-    scene("half on half, 32²", 120, |world, layers| folded(world, layers, 32)),
+    inside(scene("panels, edges meet", 180, |world, layers| {
+        panels(world, layers, 0.0)
+    })),
+    inside(scene("panels, overlap of 10 cm", 180, |world, layers| {
+        panels(world, layers, 0.1)
+    })),
+    inside(scene("two in one place", 120, in_one_place)),
+    scene("half on half, 64²", 120, |world, layers| {
+        folded(world, layers, 64)
+    }),
+    scene("half on half, 32²", 120, |world, layers| {
+        folded(world, layers, 32)
+    }),
     scene("flat, 64²", 120, flat),
     scene("50 far apart", 120, fifty),
     scene("twisted strip", 180, twisted),
@@ -53,7 +74,19 @@ pub const SCENES: [Scene; 21] = [
 ];
 
 const fn scene(name: &'static str, ticks: usize, spawn: fn(&mut World, &Layers)) -> Scene {
-    Scene { name, ticks, spawn }
+    Scene {
+        name,
+        ticks,
+        begins_apart: true,
+        spawn,
+    }
+}
+
+const fn inside(scene: Scene) -> Scene {
+    Scene {
+        begins_apart: false,
+        ..scene
+    }
 }
 
 impl Scene {
@@ -87,7 +120,15 @@ impl Layers {
 }
 
 /// A cape's neck row of `columns`, each held by the runner.
-fn neck(world: &mut World, layers: &Layers, at: Vec3, columns: u32, rows: u32, spacing: f32, runs: bool) {
+fn neck(
+    world: &mut World,
+    layers: &Layers,
+    at: Vec3,
+    columns: u32,
+    rows: u32,
+    spacing: f32,
+    runs: bool,
+) {
     let path = |seconds: f32, index: usize| {
         let side = 6.0 * (index % 6) as f32;
         let row = (index / 6) as f32 * 3.0;
@@ -97,7 +138,11 @@ fn neck(world: &mut World, layers: &Layers, at: Vec3, columns: u32, rows: u32, s
             .with_rotation(Quat::from_rotation_y(turn))
     };
     let index = ((at.z / 3.0) as usize) * 6 + (at.x / 2.0) as usize;
-    let place = if runs { path(0.0, index) } else { Transform::from_translation(at + Vec3::Y * 1.45) };
+    let place = if runs {
+        path(0.0, index)
+    } else {
+        Transform::from_translation(at + Vec3::Y * 1.45)
+    };
     let mut runner = world.spawn((place, Visibility::default()));
     if runs {
         runner.insert(Path(path, index));
@@ -105,13 +150,10 @@ fn neck(world: &mut World, layers: &Layers, at: Vec3, columns: u32, rows: u32, s
     let runner = runner.id();
     let body = Transform::from_xyz(0.0, -0.45, 0.0);
     world.spawn((ClothCollider::capsule(0.16, 0.8), body, ChildOf(runner)));
-    // On a half circle, as wide as the shoulders: the cloth behind hangs in folds.
-    let width = (columns - 1) as f32 * spacing;
     let back = Transform::from_xyz(0.0, 0.05, 0.2);
     let held = ClothAttachments::new([(Pin::Row(0), runner)]);
     let cloth = Cloth::new(columns, rows, spacing);
-    let cape = layers.spawn(world, (cloth, Pins::none(), held, place * back));
-    world.entity_mut(cape).insert(Name::new(format!("cape {width:.2}")));
+    layers.spawn(world, (cloth, Pins::none(), held, place * back));
 }
 
 fn cape(world: &mut World, layers: &Layers) {
@@ -150,8 +192,16 @@ fn flag(world: &mut World, layers: &Layers) {
 
 /// A mesh of rings: `at` gives the place of a vertex around (0 to 1) and down (0 to 1).
 fn rings(around: u32, down: u32, at: impl Fn(f32, f32) -> Vec3) -> Mesh {
-    let place = |ring: u32, column: u32| at(column as f32 / around as f32, ring as f32 / (down - 1) as f32);
-    let places: Vec<Vec3> = (0..down).flat_map(|ring| (0..around).map(move |column| (ring, column))).map(|(ring, column)| place(ring, column)).collect();
+    let place = |ring: u32, column: u32| {
+        at(
+            column as f32 / around as f32,
+            ring as f32 / (down - 1) as f32,
+        )
+    };
+    let places: Vec<Vec3> = (0..down)
+        .flat_map(|ring| (0..around).map(move |column| (ring, column)))
+        .map(|(ring, column)| place(ring, column))
+        .collect();
     let index = |ring: u32, column: u32| ring * around + column % around;
     let indices = (0..down - 1)
         .flat_map(|ring| (0..around).map(move |column| (ring, column)))
@@ -159,14 +209,21 @@ fn rings(around: u32, down: u32, at: impl Fn(f32, f32) -> Vec3) -> Mesh {
             let [a, b] = [index(ring, column), index(ring, column + 1)];
             let [c, d] = [index(ring + 1, column), index(ring + 1, column + 1)];
             // The diagonals alternate.
-            if (ring + column) % 2 == 0 { [a, c, b, b, c, d] } else { [a, c, d, a, d, b] }
+            if (ring + column) % 2 == 0 {
+                [a, c, b, b, c, d]
+            } else {
+                [a, c, d, a, d, b]
+            }
         })
         .collect();
     let normals: Vec<[f32; 3]> = places.iter().map(|_| [0.0, 1.0, 0.0]).collect();
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
-        .with_inserted_indices(Indices::U32(indices))
+    Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
+    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+    .with_inserted_indices(Indices::U32(indices))
 }
 
 fn mesh(world: &mut World, layers: &Layers, mesh: Mesh, rest: impl Bundle) -> Entity {
@@ -177,7 +234,10 @@ fn mesh(world: &mut World, layers: &Layers, mesh: Mesh, rest: impl Bundle) -> En
 /// A skirt on hips and two legs that walk.
 fn skirt(world: &mut World, layers: &Layers, around: u32, down: u32) {
     let hips = world
-        .spawn((Transform::from_xyz(0.0, 1.0, 0.0), ClothCollider::ball(0.15)))
+        .spawn((
+            Transform::from_xyz(0.0, 1.0, 0.0),
+            ClothCollider::ball(0.15),
+        ))
         .id();
     for side in [0, 1] {
         let leg = |seconds: f32, side: usize| {
@@ -187,7 +247,11 @@ fn skirt(world: &mut World, layers: &Layers, around: u32, down: u32) {
             let turn = Quat::from_rotation_x(angle);
             Transform::from_translation(hip + turn * Vec3::new(0.0, -0.4, 0.0)).with_rotation(turn)
         };
-        world.spawn((leg(0.0, side), Path(leg, side), ClothCollider::capsule(0.08, 0.6)));
+        world.spawn((
+            leg(0.0, side),
+            Path(leg, side),
+            ClothCollider::capsule(0.08, 0.6),
+        ));
     }
     let cloth = rings(around, down, |part, down| {
         let angle = part * TAU;
@@ -198,7 +262,12 @@ fn skirt(world: &mut World, layers: &Layers, around: u32, down: u32) {
     });
     let waist = Pin::at_rest(|place| place.y > -1.0e-3);
     let held = ClothAttachments::new([(waist, hips)]);
-    mesh(world, layers, cloth, (held, Transform::from_xyz(0.0, 1.0, 0.0)));
+    mesh(
+        world,
+        layers,
+        cloth,
+        (held, Transform::from_xyz(0.0, 1.0, 0.0)),
+    );
 }
 
 /// A sheet of 1.2 m that stands on its edge, leaning a little.
@@ -214,13 +283,28 @@ fn tablecloth(world: &mut World, layers: &Layers, table: ClothCollider) {
     world.spawn(ClothCollider::plane());
     world.spawn((table, Transform::from_xyz(0.0, 0.65, 0.0)));
     let cloth = Cloth::new(64, 64, 1.6 / 63.0).lying().centred();
-    layers.spawn(world, (cloth, Pins::none(), Transform::from_xyz(0.0, 0.75, 0.0)));
+    layers.spawn(
+        world,
+        (cloth, Pins::none(), Transform::from_xyz(0.0, 0.75, 0.0)),
+    );
 }
 
 /// A sheet falls on one that hangs by its corners.
 fn on_another(world: &mut World, layers: &Layers) {
     let hung = Cloth::new(40, 40, 0.025).lying().centred();
-    layers.spawn(world, (hung, Pins::new([Pin::Cell(0, 0), Pin::Cell(0, 39), Pin::Cell(39, 0), Pin::Cell(39, 39)]), Transform::default()));
+    layers.spawn(
+        world,
+        (
+            hung,
+            Pins::new([
+                Pin::Cell(0, 0),
+                Pin::Cell(0, 39),
+                Pin::Cell(39, 0),
+                Pin::Cell(39, 39),
+            ]),
+            Transform::default(),
+        ),
+    );
     let turn = Quat::from_euler(EulerRot::XYZ, 0.1, 0.45, 0.05);
     let place = Transform::from_xyz(0.05, 0.2, 0.02).with_rotation(turn);
     let falls = Cloth::new(32, 32, 0.025).lying().centred();
@@ -250,19 +334,28 @@ fn in_one_place(world: &mut World, layers: &Layers) {
 /// A sheet that lies folded in its middle.
 fn folded(world: &mut World, layers: &Layers, side: u32) {
     world.spawn(ClothCollider::plane());
-    let cloth = Cloth::new(side, side, 1.0 / (side - 1) as f32).lying().centred();
-    layers.spawn(world, (cloth, Pins::none(), Moved(|Vec3 { x, z, .. }| {
-        let (radius, low) = (0.004, 0.003);
-        let half = TAU / 4.0 * radius;
-        if z < -half {
-            Vec3::new(x, low, z + half)
-        } else if z > half {
-            Vec3::new(x, low + 2.0 * radius, half - z)
-        } else {
-            let angle = z / radius;
-            Vec3::new(x, low + radius * (1.0 + angle.sin()), radius * angle.cos())
-        }
-    })));
+    let cloth = Cloth::new(side, side, 1.0 / (side - 1) as f32)
+        .lying()
+        .centred();
+    layers.spawn(
+        world,
+        (
+            cloth,
+            Pins::none(),
+            Moved(|Vec3 { x, z, .. }| {
+                let (radius, low) = (0.004, 0.003);
+                let half = TAU / 4.0 * radius;
+                if z < -half {
+                    Vec3::new(x, low, z + half)
+                } else if z > half {
+                    Vec3::new(x, low + 2.0 * radius, half - z)
+                } else {
+                    let angle = z / radius;
+                    Vec3::new(x, low + radius * (1.0 + angle.sin()), radius * angle.cos())
+                }
+            }),
+        ),
+    );
 }
 
 /// Where each particle begins, from its place in the world as the cloth is spawned.
@@ -271,7 +364,10 @@ pub struct Moved(pub fn(Vec3) -> Vec3);
 
 fn flat(world: &mut World, layers: &Layers) {
     let cloth = Cloth::new(64, 64, 1.0 / 63.0).lying().centred();
-    layers.spawn(world, (cloth, Pins::none(), Transform::from_xyz(0.0, 50.0, 0.0)));
+    layers.spawn(
+        world,
+        (cloth, Pins::none(), Transform::from_xyz(0.0, 50.0, 0.0)),
+    );
 }
 
 fn fifty(world: &mut World, layers: &Layers) {
@@ -300,7 +396,10 @@ fn twisted(world: &mut World, layers: &Layers) {
 /// A shirt: a body that hangs from the shoulders, wider than the figure, and two sleeves on arms that swing.
 fn shirt(world: &mut World, layers: &Layers) {
     let chest = world
-        .spawn((Transform::from_xyz(0.0, 1.2, 0.0), ClothCollider::capsule(0.14, 0.4)))
+        .spawn((
+            Transform::from_xyz(0.0, 1.2, 0.0),
+            ClothCollider::capsule(0.14, 0.4),
+        ))
         .id();
     let tube = |radius: f32, pleats: f32| {
         move |part: f32, down: f32| {
@@ -315,15 +414,25 @@ fn shirt(world: &mut World, layers: &Layers) {
         Vec3::new(at.x, 0.6 * at.y, at.z)
     });
     let held = ClothAttachments::new([(top(), chest)]);
-    mesh(world, layers, body, (held, Transform::from_xyz(0.0, 1.42, 0.0)));
+    mesh(
+        world,
+        layers,
+        body,
+        (held, Transform::from_xyz(0.0, 1.42, 0.0)),
+    );
     for side in [0, 1] {
         let arm = |seconds: f32, side: usize| {
             let sign = if side == 0 { 1.0 } else { -1.0 };
             let swing = Quat::from_rotation_x(0.6 * sign * (5.0 * seconds).sin());
             let shoulder = Vec3::new(0.34 * sign, 1.4, 0.0);
-            Transform::from_translation(shoulder + swing * Vec3::new(0.0, -0.25, 0.0)).with_rotation(swing)
+            Transform::from_translation(shoulder + swing * Vec3::new(0.0, -0.25, 0.0))
+                .with_rotation(swing)
         };
-        let capsule = (ClothCollider::capsule(0.05, 0.4), arm(0.0, side), Path(arm, side));
+        let capsule = (
+            ClothCollider::capsule(0.05, 0.4),
+            arm(0.0, side),
+            Path(arm, side),
+        );
         let arm_entity = world.spawn(capsule).id();
         let sleeve = rings(24, 16, |part, down| {
             let at = tube(0.085, 5.0)(part, down);
@@ -331,7 +440,12 @@ fn shirt(world: &mut World, layers: &Layers) {
         });
         let held = ClothAttachments::new([(top(), arm_entity)]);
         let sign = if side == 0 { 1.0 } else { -1.0 };
-        mesh(world, layers, sleeve, (held, Transform::from_xyz(0.34 * sign, 1.4, 0.0)));
+        mesh(
+            world,
+            layers,
+            sleeve,
+            (held, Transform::from_xyz(0.34 * sign, 1.4, 0.0)),
+        );
     }
 }
 
@@ -342,15 +456,24 @@ fn bag(world: &mut World, layers: &Layers) {
         Transform::from_xyz(swing, 1.0, 0.0).with_rotation(Quat::from_rotation_y(swing))
     };
     let hand = world.spawn((path(0.0, 0), Path(path, 0))).id();
-    let cloth = rings(40, 26, |part, down| {
+    let cloth = rings(32, 26, |part, down| {
         let angle = part * TAU;
-        // Its bottom is a disc.
-        let (radius, depth) = if down < 0.7 { (0.16, down / 0.7) } else { (0.16 * (1.02 - down) / 0.32, 1.0) };
+        // Its bottom is a ring.
+        let (radius, depth) = if down < 0.8 {
+            (0.16, down / 0.8)
+        } else {
+            (0.16 * (1.2 - down) / 0.4, 1.0)
+        };
         Vec3::new(radius * angle.cos(), -0.35 * depth, radius * angle.sin())
     });
     let handles = Pin::at_rest(|place| place.y > -1.0e-3 && place.z.abs() < 0.05);
     let held = ClothAttachments::new([(handles, hand)]);
-    mesh(world, layers, cloth, (held, Transform::from_xyz(0.0, 1.0, 0.0)));
+    mesh(
+        world,
+        layers,
+        cloth,
+        (held, Transform::from_xyz(0.0, 1.0, 0.0)),
+    );
 }
 
 /// Six towels fall on each other.
@@ -358,9 +481,9 @@ fn laundry(world: &mut World, layers: &Layers) {
     world.spawn(ClothCollider::plane());
     for index in 0..6 {
         let turn = Quat::from_euler(EulerRot::YXZ, 0.7 * index as f32, 0.3, 0.1 * index as f32);
-        let place = Transform::from_xyz(0.02 * index as f32, 0.25 + 0.22 * index as f32, 0.0).with_rotation(turn);
+        let place = Transform::from_xyz(0.02 * index as f32, 0.25 + 0.22 * index as f32, 0.0)
+            .with_rotation(turn);
         let cloth = Cloth::new(16, 24, 0.03).lying().centred();
         layers.spawn(world, (cloth, Pins::none(), place));
     }
-    let _ = PI;
 }

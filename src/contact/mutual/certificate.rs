@@ -48,12 +48,7 @@ struct Sum {
 impl Zones {
     /// Stops pairs from passing through each other. Returns whether any had to be stopped. Subtracts
     /// the tests from `work`.
-    pub fn certify(
-        &mut self,
-        pairs: &[NearPair],
-        members: &mut Members,
-        work: &mut usize,
-    ) -> bool {
+    pub fn certify(&mut self, pairs: &[NearPair], members: &mut Members, work: &mut usize) -> bool {
         let (mut has_zones, mut has_moved) = (false, false);
         for round in 0..PUSHES + ZONES {
             let mut is_certain = true;

@@ -1,16 +1,12 @@
 //! Cloths that begin inside each other.
 
-use super::{
-    MutualContact,
-    pair::VERTEX_AND_FACE,
-    participant::Participant,
-};
+use super::{MutualContact, pair::VERTEX_AND_FACE, participant::Participant};
 
-/// Of the thickness between two cloths: particles that are nearer are inside. Layers that were laid a thickness apart are not.
+/// Distance of particles that are inside of another cloth, as a fraction of the thickness.
 const INSIDE: f32 = 0.5;
 
-/// Of the particles of one cloth, how many are inside of another if it begins there: more than a seam that both share.
-const MOST: f32 = 0.2;
+/// Fraction of a cloth's particles that are inside of another one if it begins there: more than those of a common seam.
+const SHARE: f32 = 0.2;
 
 /// Which cloths begin inside of which.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,7 +54,7 @@ impl MutualContact {
             let share = of_two.len() as f32 / cloths[cloths_of[0]].particles.len() as f32;
             (cloths_of, share)
         });
-        let begin = || shares.clone().filter(|(_, share)| *share > MOST);
+        let begin = || shares.clone().filter(|(_, share)| *share > SHARE);
         let most = begin().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
         let (most_of, share) = most?;
         let mut all: Vec<usize> = begin().flat_map(|(cloths_of, _)| cloths_of).collect();

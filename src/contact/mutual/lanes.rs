@@ -130,11 +130,7 @@ fn from_segment(from: &Vectors, along: &Vectors, square: Lanes, product: Lanes) 
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
 pub(super) fn vertex_to_faces(vertex: Vec3A, faces: &[Points; 3]) -> Eight {
     let vertex = splat(vertex);
-    let [a, b, c] = [
-        vectors(&faces[0]),
-        vectors(&faces[1]),
-        vectors(&faces[2]),
-    ];
+    let [a, b, c] = [vectors(&faces[0]), vectors(&faces[1]), vectors(&faces[2])];
     let (ab, ac, bc) = (minus(&b, &a), minus(&c, &a), minus(&c, &b));
     let (from_a, from_b) = (minus(&vertex, &a), minus(&vertex, &b));
     let (d00, d01, d11) = (dot(&ab, &ab), dot(&ab, &ac), dot(&ac, &ac));

@@ -11,6 +11,7 @@
 
 mod certificate;
 mod circumstances;
+mod compare;
 mod hold;
 mod inside;
 mod intersections;
@@ -146,7 +147,9 @@ impl MutualContact {
             self.counts.is_lost = true;
             return;
         }
-        if is_same && self.is_known && !was_lost && self.motion.is_of(cloths) {
+        let is_new = !(self.is_known && self.motion.is_of(cloths));
+        if is_same && !is_new && !was_lost {
+            self.near.begin_tick(&mut self.motion);
             if self.passed.approach(cloths) == self.approach {
                 return;
             }
@@ -159,6 +162,7 @@ impl MutualContact {
             self.motion.reset(cloths);
             self.rooms.reset(cloths, self.motion.patches.len());
             self.near.clear();
+            self.near.begins = is_new;
             self.hold.clear(cloths);
             self.contacts.clear();
             self.is_known = true;
@@ -271,7 +275,8 @@ impl MutualContact {
             };
             self.free = free;
             if round == 0 && !self.near.has_changed {
-                self.members.gather(cloths, &self.motion, &self.before_colliders);
+                self.members
+                    .gather(cloths, &self.motion, &self.before_colliders);
             } else if self.near.has_changed {
                 self.list(cloths, round == 0);
             } else {
@@ -359,7 +364,8 @@ impl MutualContact {
                 weights: nearest.weights,
                 is_pushed: split == VERTEX_AND_FACE || !nearest.is_at_border(),
                 before,
-                may_pass: candidate.nearest.distance <= near + LEFT_OF_THICKNESS * candidate.thickness,
+                may_pass: candidate.nearest.distance
+                    <= near + LEFT_OF_THICKNESS * candidate.thickness,
             });
         };
         near.contacts(motion, add);
@@ -380,7 +386,8 @@ impl MutualContact {
                 let is_nearer = other.distance < pair.distance
                     || (other.distance == pair.distance && (next as usize) < index);
                 let has = |corner: usize| {
-                    pair.weights[corner] == 0.0 || other.members[1..].contains(&pair.members[corner])
+                    pair.weights[corner] == 0.0
+                        || other.members[1..].contains(&pair.members[corner])
                 };
                 self.counts.work = self.counts.work.saturating_sub(1);
                 is_implied = next as usize != index

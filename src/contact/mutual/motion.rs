@@ -71,7 +71,7 @@ pub(super) struct PatchMotion {
     /// Largest offset of a particle along each axis at the reference (m).
     half: Vec3A,
     /// Deviations of particles from earlier references in all, and from this one at the beginning and at the end (m).
-    earlier: f32,
+    pub earlier: f32,
     deviation: [f32; 2],
 }
 
@@ -243,7 +243,10 @@ impl Motion {
                 continue;
             }
             let [first_particle, first_patch, first_offset] = self.firsts[patch.cloth as usize];
-            let (sheet, own) = (&cloths[patch.cloth as usize].sheet, index as u32 - first_patch);
+            let (sheet, own) = (
+                &cloths[patch.cloth as usize].sheet,
+                index as u32 - first_patch,
+            );
             let particles = sheet.particles_of(own);
             let first = (first_offset + sheet.first_of(own)) as usize;
             let offsets = &mut self.offsets[first..first + particles.len()];

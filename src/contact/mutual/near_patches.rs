@@ -58,12 +58,7 @@ impl Rooms {
 
     /// Makes boxes for patches that have left theirs, but for a `reserve` (m). Returns whether there are any, and how far
     /// any patch may move before it leaves its box (m).
-    pub fn renew(
-        &mut self,
-        cloths: &[Participant],
-        motion: &Motion,
-        reserve: f32,
-    ) -> (bool, f32) {
+    pub fn renew(&mut self, cloths: &[Participant], motion: &Motion, reserve: f32) -> (bool, f32) {
         let (before, after) = (motion.drift - motion.drifted, motion.drift);
         self.left.clear();
         let mut free = f32::INFINITY;
@@ -143,7 +138,8 @@ impl Rooms {
                 }
                 let first = motion.firsts[other][1];
                 self.stack.clear();
-                self.stack.extend((!cloth.sheet.nodes().is_empty()).then_some(0));
+                self.stack
+                    .extend((!cloth.sheet.nodes().is_empty()).then_some(0));
                 while let Some(node) = self.stack.pop() {
                     *work = work.saturating_sub(1);
                     if !self.nodes[other][node as usize].overlaps(&room) {

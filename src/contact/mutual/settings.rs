@@ -17,7 +17,8 @@ const MAX_OF_SPACING: f32 = 0.5;
 /// edges, each with its own mass. Friction between them follows Coulomb's law. Between two cloths, the mean of their
 /// thicknesses and the geometric mean of their friction coefficients count.
 ///
-/// Spawn cloths at least a thickness apart: those that begin inside each other cost seconds a tick. The log names them.
+/// Spawn cloths at least a thickness apart: where they begin inside each other they are left alone until they have come
+/// apart. The log names them.
 ///
 /// ```
 /// use bevy_drape::prelude::*;

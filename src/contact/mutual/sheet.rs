@@ -79,7 +79,10 @@ impl Sheet {
         let mut leaves = vec![0; tree.len()];
         for index in (0..tree.len()).rev() {
             let children = tree.node(index as u32);
-            let below = children.children().iter().map(|&child| leaves[child as usize]);
+            let below = children
+                .children()
+                .iter()
+                .map(|&child| leaves[child as usize]);
             leaves[index] = below.sum::<u32>().max(1);
         }
         let mut seen = HashSet::new();
@@ -88,7 +91,13 @@ impl Sheet {
     }
 
     /// Adds a node of the tree and all below it. Returns its index.
-    fn add(&mut self, tree: &QuadTree, of: u32, leaves: &[u32], seen: &mut HashSet<[u32; 2]>) -> u32 {
+    fn add(
+        &mut self,
+        tree: &QuadTree,
+        of: u32,
+        leaves: &[u32],
+        seen: &mut HashSet<[u32; 2]>,
+    ) -> u32 {
         let index = self.nodes.len();
         let mut node = Node {
             children: [0; 4],
@@ -187,7 +196,11 @@ impl Sheet {
         if size.iter().any(|&size| size > LARGEST) {
             return None;
         }
-        let gap = |axis: usize| a[0][axis].max(b[0][axis]).saturating_sub(a[1][axis].min(b[1][axis]));
+        let gap = |axis: usize| {
+            a[0][axis]
+                .max(b[0][axis])
+                .saturating_sub(a[1][axis].min(b[1][axis]))
+        };
         let spacing = grid.spacing();
         let apart = spacing * Vec2::new(gap(1) as f32, gap(0) as f32);
         let columns = grid.columns() as usize;

@@ -33,12 +33,7 @@ impl Sheeted {
     }
 
     /// The same, of a grid or of an irregular mesh.
-    pub fn of_kind(
-        side: u32,
-        width: f32,
-        is_mesh: bool,
-        place: impl Fn(Vec3) -> Vec3,
-    ) -> Self {
+    pub fn of_kind(side: u32, width: f32, is_mesh: bool, place: impl Fn(Vec3) -> Vec3) -> Self {
         let spacing = width / (side - 1) as f32;
         let surface = if is_mesh {
             Surface::of_mesh(&irregular(side, spacing), 0.0, Vec3::ONE).expect("a surface")

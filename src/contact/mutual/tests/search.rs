@@ -117,12 +117,20 @@ impl Brute {
     /// Calls `near` with all features of which a vertex is nearer than `reach` to a face, or an edge nearer than half of
     /// that to another.
     fn near(&self, places: &[DVec3], reach: f64, mut near: impl FnMut(Feature, f64)) {
-        let at = |of: &[u32]| -> Vec<DVec3> { of.iter().map(|&each| places[each as usize]).collect() };
+        let at =
+            |of: &[u32]| -> Vec<DVec3> { of.iter().map(|&each| places[each as usize]).collect() };
         let mut check = |first: &[u32], second: &[u32], reach: f64| {
             let box_of = |of: &[u32]| {
                 let places = at(of);
-                let low = places.iter().copied().reduce(DVec3::min).expect("a feature");
-                (low, places.into_iter().reduce(DVec3::max).expect("a feature"))
+                let low = places
+                    .iter()
+                    .copied()
+                    .reduce(DVec3::min)
+                    .expect("a feature");
+                (
+                    low,
+                    places.into_iter().reduce(DVec3::max).expect("a feature"),
+                )
             };
             let ((low, high), (from, to)) = (box_of(first), box_of(second));
             let is_far = (low - reach).cmpgt(to).any() || (high + reach).cmplt(from).any();
@@ -173,10 +181,17 @@ fn no_pair_is_lost() {
             let known: HashSet<Feature> = contact.near.all().map(feature).collect();
             assert_eq!(known.len(), contact.near.len(), "{name}: each once");
             let mut near = 0;
-            brute.near(&places, f64::from(thickness) - ROUNDING, |feature, apart| {
-                near += 1;
-                assert!(known.contains(&feature), "{name}: {feature:?}, {apart} m apart");
-            });
+            brute.near(
+                &places,
+                f64::from(thickness) - ROUNDING,
+                |feature, apart| {
+                    near += 1;
+                    assert!(
+                        known.contains(&feature),
+                        "{name}: {feature:?}, {apart} m apart"
+                    );
+                },
+            );
             assert_eq!(
                 near == 0,
                 ["flat", "wavy"].contains(&name),
@@ -227,13 +242,17 @@ fn no_pair_is_lost_on_the_way() {
             });
             contact.motion.pass(&of, 0.05 * thickness);
             let places = places(&cloths[0]);
-            brute.near(&places, f64::from(thickness) - ROUNDING, |feature, apart| {
-                met += 1;
-                assert!(
-                    known.contains(&feature),
-                    "step {step} at {speed}, mesh {is_mesh}: {feature:?}, {apart} m apart"
-                );
-            });
+            brute.near(
+                &places,
+                f64::from(thickness) - ROUNDING,
+                |feature, apart| {
+                    met += 1;
+                    assert!(
+                        known.contains(&feature),
+                        "step {step} at {speed}, mesh {is_mesh}: {feature:?}, {apart} m apart"
+                    );
+                },
+            );
         }
         assert!(met > 0, "something meets");
     }

@@ -25,7 +25,11 @@ impl Draw {
 /// and irregular meshes of other resolutions, in any attitude, 2 to 16 mm thick, from 1 to 20 m/s.
 #[test]
 fn sheets_thrown_at_each_other_do_not_intersect() {
-    let every = if std::env::var_os("BEVY_DRAPE_LONG").is_some() { 1 } else { 20 };
+    let every = if std::env::var_os("BEVY_DRAPE_LONG").is_some() {
+        1
+    } else {
+        20
+    };
     let mut touched = 0;
     for seed in (0..1000).step_by(every) {
         let mut draw = Draw(seed * 7919 + 1);
@@ -63,7 +67,10 @@ fn sheets_thrown_at_each_other_do_not_intersect() {
             has_touched |= scene.contact.has_touched();
         }
         touched += u32::from(has_touched);
-        assert_eq!(scene.worst, 0, "pair {seed}: {speed} m/s, {thickness} m thick");
+        assert_eq!(
+            scene.worst, 0,
+            "pair {seed}: {speed} m/s, {thickness} m thick"
+        );
         assert_eq!(scene.contact.lost(), 0, "pair {seed}");
     }
     assert!(touched > 800 / every as u32, "{touched} have met");

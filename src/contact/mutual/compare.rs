@@ -1,0 +1,272 @@
+//! Compares the features of two patches: vertices with faces, and edges with edges.
+
+use bevy::math::{Vec3, Vec3A};
+
+use super::{
+    lanes::{Eight, Points, edge_to_edges, vertex_to_faces},
+    motion::{Bounds, Motion},
+    near_features::{Candidate, PatchPair, Place},
+    pair::{Nearest, TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
+    participant::Participant,
+    sheet::Sheet,
+};
+
+/// Distance of edges, as a fraction of the thickness. Vertices and faces keep flat layers apart. Edges that cross
+/// between them show where both bend, and only must not pass.
+const EDGES: f32 = 0.5;
+
+/// Largest distance that a pair of one cloth is kept apart, as a fraction of its distance at rest.
+const OF_REST: f32 = 0.5;
+
+/// Number of sub-steps of motion that a list of features lasts; at least this fraction of the thickness, at most this
+/// fraction of the shortest spacing.
+const AHEAD: f32 = 5.0;
+const LEAST_AHEAD: f32 = 0.25;
+const MOST_AHEAD: f32 = 0.5;
+
+/// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
+const ENOUGH: f32 = 2.0;
+
+/// Compares two patches, and lists their near features.
+pub(super) fn compare(
+    pair: &mut PatchPair,
+    cloths: &[Participant],
+    motion: &Motion,
+    place: &Place,
+    candidates: &mut Vec<Candidate>,
+    work: &mut usize,
+) {
+    let Place {
+        thickness,
+        spacing,
+        used,
+        reserve,
+    } = *place;
+    let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
+    let ahead = (AHEAD * used)
+        .min(MOST_AHEAD * spacing)
+        .max(LEAST_AHEAD * thickness);
+    let listed = used + ahead;
+    *work = work.saturating_sub(1);
+    let apart = a.bounds_at_start().distance_squared(&b.bounds_at_start());
+    let apart = apart.sqrt() - thickness;
+    if pair.of[0] != pair.of[1] && apart > ENOUGH * used + reserve {
+        pair.slack = apart;
+        return;
+    }
+    let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
+    let is_one_cloth = a.cloth == b.cloth;
+    let mut features = Features {
+        sides: &sides,
+        is_one_cloth,
+        is_one_patch: pair.of[0] == pair.of[1],
+        thickness,
+        listed,
+        least: f32::INFINITY,
+        candidates,
+    };
+    *work = work.saturating_sub(features.count() / 2);
+    features.compare();
+    let apart = features.least.sqrt() * (1.0 - ROUNDING) - thickness;
+    pair.slack = apart.max(listed).min(LONGEST * listed);
+}
+
+/// Largest slack that is looked for, as a multiple of the distance up to which features are listed.
+const LONGEST: f32 = 3.0;
+
+/// Relative error of distances in lanes, more than it is.
+const ROUNDING: f32 = 1.0e-3;
+
+/// A patch in a comparison.
+struct Side<'a> {
+    sheet: &'a Sheet,
+    patch: u32,
+    first_particle: u32,
+    /// Its particles, and the positions of its cloth's at the beginning of the sub-step (m).
+    particles: &'a [u32],
+    places: &'a [Vec3A],
+    bounds: Bounds,
+}
+
+impl<'a> Side<'a> {
+    fn of(motion: &'a Motion, cloths: &'a [Participant], patch: u32) -> Self {
+        let state = &motion.patches[patch as usize];
+        let [first_particle, first_patch, _] = motion.firsts[state.cloth as usize];
+        let sheet = &**cloths[state.cloth as usize].sheet;
+        let patch = patch - first_patch;
+        Self {
+            sheet,
+            patch,
+            first_particle,
+            particles: sheet.particles_of(patch),
+            places: &motion.start[first_particle as usize..],
+            bounds: state.bounds_at_start(),
+        }
+    }
+
+    fn place(&self, local: u16) -> Vec3A {
+        self.places[self.particles[usize::from(local)] as usize]
+    }
+
+    fn particle(&self, local: u16) -> u32 {
+        self.particles[usize::from(local)]
+    }
+
+    /// The points of up to eight features; the last one fills the rest.
+    fn points<const N: usize>(&self, features: &[[u16; N]]) -> [Points; N] {
+        let mut points = [[[0.0; 8]; 3]; N];
+        for l in 0..8 {
+            let feature = features[l.min(features.len() - 1)];
+            for (point, local) in points.iter_mut().zip(feature) {
+                let place = self.place(local);
+                (point[0][l], point[1][l], point[2][l]) = (place.x, place.y, place.z);
+            }
+        }
+        points
+    }
+}
+
+/// The features of two patches in a comparison.
+struct Features<'a> {
+    sides: &'a [Side<'a>; 2],
+    is_one_cloth: bool,
+    is_one_patch: bool,
+    thickness: f32,
+    /// How far apart features are that are listed (m).
+    listed: f32,
+    /// The least squared distance of others (m²).
+    least: f32,
+    candidates: &'a mut Vec<Candidate>,
+}
+
+impl Features<'_> {
+    /// Number of pairs of features.
+    fn count(&self) -> usize {
+        let [a, b] = self.sides.each_ref().map(|side| {
+            let vertices = usize::from(side.sheet.owned_of(side.patch));
+            let faces = side.sheet.faces_of(side.patch).len();
+            [vertices, faces, side.sheet.edges_of(side.patch).len()]
+        });
+        a[0] * b[1] + b[0] * a[1] + a[2] * b[2]
+    }
+
+    fn compare(&mut self) {
+        self.vertices_with_faces([0, 1]);
+        if !self.is_one_patch {
+            self.vertices_with_faces([1, 0]);
+        }
+        self.edges_with_edges();
+    }
+
+    /// Whether a feature within these bounds is too far from the other patch for its features to be listed.
+    fn is_far(&mut self, bounds: Bounds, other: usize) -> bool {
+        let square = bounds.distance_squared(&self.sides[other].bounds);
+        let far = self.listed + self.thickness;
+        let is_far = square > far * far;
+        if is_far {
+            self.least = self.least.min(square);
+        }
+        is_far
+    }
+
+    /// Takes the squared distances of a feature from the first `count` of eight (m²): calls `list` with those that are
+    /// to be listed.
+    fn sort(
+        &mut self,
+        squares: Eight,
+        count: usize,
+        thickness: f32,
+        mut list: impl FnMut(&mut Self, usize),
+    ) {
+        let far = self.listed + thickness;
+        for (l, &square) in squares.iter().enumerate().take(count) {
+            if square > far * far {
+                self.least = self.least.min(square);
+            } else {
+                // Also for NaN.
+                list(self, l);
+            }
+        }
+    }
+
+    fn vertices_with_faces(&mut self, [own_side, other_side]: [usize; 2]) {
+        let sides = self.sides;
+        let [own, other] = [&sides[own_side], &sides[other_side]];
+        for faces in other.sheet.faces_of(other.patch).chunks(8) {
+            let points = other.points(faces);
+            for local in 0..own.sheet.owned_of(own.patch) {
+                let (vertex, place) = (own.particle(local), own.place(local));
+                if self.is_far(Bounds::at(place), other_side) {
+                    continue;
+                }
+                let squares = vertex_to_faces(place, &points);
+                self.sort(squares, faces.len(), self.thickness, |features, l| {
+                    let corners = faces[l].map(|corner| other.particle(corner));
+                    if features.is_one_cloth && corners.contains(&vertex) {
+                        return;
+                    }
+                    let thickness = features.allowed(features.thickness, |rest| {
+                        let at_rest = |particle: u32| rest[particle as usize];
+                        vertex_to_face(at_rest(vertex), corners.map(at_rest))
+                    });
+                    let [a, b, c] = corners.map(|corner| other.first_particle + corner);
+                    let particles = [own.first_particle + vertex, a, b, c];
+                    features.list(particles, VERTEX_AND_FACE, thickness);
+                });
+            }
+        }
+    }
+
+    fn edges_with_edges(&mut self) {
+        let [own, other] = self.sides;
+        let wanted = EDGES * self.thickness;
+        for (chunk, seconds) in other.sheet.edges_of(other.patch).chunks(8).enumerate() {
+            let points = other.points(seconds);
+            for (index, &first) in own.sheet.edges_of(own.patch).iter().enumerate() {
+                let ends = first.map(|end| own.particle(end));
+                let places = first.map(|end| own.place(end));
+                if self.is_far(Bounds::at(places[0]).with(places[1]), 1) {
+                    continue;
+                }
+                let squares = edge_to_edges(places, &points);
+                self.sort(squares, seconds.len(), wanted, |features, l| {
+                    let others = seconds[l].map(|end| other.particle(end));
+                    let is_known = features.is_one_patch && 8 * chunk + l <= index;
+                    let is_joined =
+                        features.is_one_cloth && ends.iter().any(|end| others.contains(end));
+                    if is_known || is_joined {
+                        return;
+                    }
+                    let thickness = features.allowed(wanted, |rest| {
+                        let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
+                        edge_to_edge(at_rest(ends), at_rest(others))
+                    });
+                    let [p, q] = ends.map(|end| own.first_particle + end);
+                    let [r, s] = others.map(|end| other.first_particle + end);
+                    features.list([p, q, r, s], TWO_EDGES, thickness);
+                });
+            }
+        }
+    }
+
+    /// Distance at which two features touch, from their squared distance at rest if they are of one cloth.
+    fn allowed(&self, thickness: f32, rest_square: impl FnOnce(&[Vec3]) -> f32) -> f32 {
+        let sheet = self.sides[0].sheet;
+        if self.is_one_cloth && OF_REST * sheet.closest() < thickness {
+            let square = rest_square(sheet.surface().rest_positions());
+            thickness.min(square.sqrt() * OF_REST)
+        } else {
+            thickness
+        }
+    }
+
+    fn list(&mut self, particles: [u32; 4], split: usize, thickness: f32) {
+        self.candidates.push(Candidate {
+            particles,
+            split: split as u32,
+            thickness,
+            nearest: Nearest::default(),
+            apart: f32::NEG_INFINITY,
+        });
+    }
+}
