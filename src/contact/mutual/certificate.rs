@@ -52,7 +52,7 @@ impl Zones {
         let (mut has_zones, mut has_moved) = (false, false);
         for round in 0..PUSHES + ZONES {
             let mut is_certain = true;
-            *work = work.saturating_sub(pairs.len());
+            *work = work.saturating_sub(2 * pairs.len());
             if *work == 0 {
                 break;
             }
@@ -75,6 +75,7 @@ impl Zones {
                 break;
             }
             if has_zones {
+                *work = work.saturating_sub(4 * members.len());
                 self.move_as_one(members);
             }
         }

@@ -53,10 +53,13 @@ pub(crate) use sheet::Sheet;
 const ROUNDS: u32 = 4;
 
 /// Work limits of a tick for each particle and in total, in units of some 5 ns: two pairs of features compared, or a
-/// node visited. A sheet that collapses into a pile needs two thirds of that.
-const MOST_WORK: usize = 3 << 12;
+/// node visited. A sheet that runs into itself at 20 m/s needs half of that (`cargo run --example lab -- self`).
+const MOST_WORK: usize = 1 << 17;
 const LEAST_WORK_OF_ALL: usize = 1 << 22;
-const MOST_WORK_OF_ALL: usize = 1 << 25;
+const MOST_WORK_OF_ALL: usize = 1 << 28;
+
+/// Largest number of listed pairs of features for each particle. Piles and twisted strips have 90.
+const MOST_LISTED: usize = 512;
 
 /// Units of work for a contact that is listed and pushed.
 const WORK_OF_CONTACT: usize = 8;

@@ -16,7 +16,7 @@ use std::ops::Range;
 use bevy::math::Vec3A;
 
 use super::{
-    Counts,
+    Counts, MOST_LISTED,
     compare::compare,
     motion::Motion,
     near_patches::{Meets, Rooms},
@@ -289,6 +289,9 @@ impl NearFeatures {
             }
             self.has_changed |= had_contacts || pair.has_contacts();
             left = left.min(pair.until - place.used);
+            if self.listed > MOST_LISTED * motion.end.len() {
+                counts.work = 0;
+            }
             if counts.work == 0 {
                 break;
             }
