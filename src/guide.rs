@@ -17,7 +17,7 @@ chapter!(first_cloth);
 chapter!(own_model);
 chapter!(characters, "lab/lod");
 chapter!(wind);
-chapter!(contact, "lab/self", "lab/colliders");
+chapter!(contact, "lab/games", "lab/self", "lab/colliders");
 chapter!(schedule);
 chapter!(recipes);
 chapter!(saving);

@@ -3,11 +3,12 @@
 use bevy::math::{Vec3, Vec3A};
 
 use super::{
+    bounds::Bounds,
     lanes::{Eight, Points, edge_to_edges, vertex_to_faces},
-    motion::{Bounds, Motion},
-    near_features::{Candidate, PatchPair, Place},
+    motion::Motion,
     pair::{Nearest, TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
     participant::Participant,
+    patch_pair::{Candidate, PatchPair, Place},
     sheet::Sheet,
 };
 

@@ -22,8 +22,8 @@ pub(crate) struct Inside {
 }
 
 impl MutualContact {
-    /// Which cloths begin inside each other, of those that the search has just found near each other and of which at least one
-    /// is new. Looks at all that was found, and allocates: not for each tick.
+    /// Returns which cloths begin inside each other, of those that are near each other and of which at least one is new.
+    /// Looks at all listed pairs, and allocates: not for each tick.
     pub fn begin_inside(
         &self,
         cloths: &[Participant],

@@ -1,14 +1,32 @@
 //! Contact of cloth with cloth: with itself, and with others.
 //!
-//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart. A surface is cut into
-//! [patches](sheet) of a few faces. [Boxes](near_patches) around patches, searched from the top down, find the pairs of
-//! patches that are near. Each pair knows how far it may move before [features](near_features) that are not listed can
-//! touch, and is compared again only when [its own motion](motion) has used that up.
+//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart.
 //!
-//! At the end of each sub-step, pairs that may touch are [pushed](response) apart in proportion to their inverse masses,
-//! with friction. Then [a plane](certificate) between each pair proves that nothing has passed through. Resting layers
-//! are [held](hold) for a few sub-steps, while none can have come near enough to pass.
+//! ```text
+//!   cloth → patches of a few faces (sheet)
+//!   boxes with room around patches, trees searched from the top down (near_patches) → near pairs of patches
+//!   features of near pairs, compared eight at a time (compare, lanes)               → slack, listed pairs of features
+//!   the pair's own motion since then (motion): used > until?                        → look again (near_features)
+//!   listed pairs that may touch in this sub-step                                    → contacts: push, certify
+//! ```
+//!
+//! # The guarantee
+//! At the end of a sub-step no two triangles intersect, if they did not at its beginning:
+//!
+//! 1. Two patches whose boxes do not overlap are a thickness apart.
+//! 2. Of two patches whose boxes overlap, features that are not listed were farther apart than a thickness by at least
+//!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
+//!    less, they are a thickness apart.
+//! 3. Two patches of a grid whose [tangents](tangents) differ little are apart, however they moved.
+//! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
+//!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
+//!    it has not passed, or it is stopped.
+//! 5. A push moves particles: 1 to 4 are done again, until nothing new is near.
+//!
+//! Cloths that begin intersected are left alone where they are, until they are apart. More work than the [limit](work) is not
+//! done, and reported. Resting layers are [held](hold) for a few sub-steps, while none can have come near enough to pass.
 
+mod bounds;
 mod certificate;
 mod circumstances;
 mod compare;
@@ -23,12 +41,14 @@ mod near_patches;
 mod origin;
 mod pair;
 mod participant;
+mod patch_pair;
 mod response;
 mod settings;
 mod sheet;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod work;
 
 use self::{
     certificate::{LEFT_OF_THICKNESS, Zones},
@@ -36,11 +56,13 @@ use self::{
     hold::Hold,
     members::{Members, NOBODY},
     motion::Motion,
-    near_features::{Candidate, NearFeatures},
+    near_features::NearFeatures,
     near_patches::{Meets, Rooms},
     origin::Origin,
     pair::{NearPair, VERTEX_AND_FACE},
+    patch_pair::Candidate,
     response::push,
+    work::Counts,
 };
 
 pub(crate) use inside::Inside;
@@ -51,15 +73,6 @@ pub(crate) use sheet::Sheet;
 
 /// Largest number of times that features are looked for in a sub-step near those that were pushed.
 const ROUNDS: u32 = 4;
-
-/// Work limits of a tick for each particle and in total, in units of some 5 ns: two pairs of features compared, or a
-/// node visited. A sheet that runs into itself at 20 m/s needs half of that (`cargo run --example lab -- self`).
-const MOST_WORK: usize = 1 << 17;
-const LEAST_WORK_OF_ALL: usize = 1 << 22;
-const MOST_WORK_OF_ALL: usize = 1 << 28;
-
-/// Largest number of listed pairs of features for each particle. Piles and twisted strips have 90.
-const MOST_LISTED: usize = 512;
 
 /// Units of work for a contact that is listed and pushed.
 const WORK_OF_CONTACT: usize = 8;
@@ -72,6 +85,9 @@ const TICKS_OFF: u32 = 8;
 const HELD: f32 = 0.08;
 const LONGEST_HOLD: u32 = 3;
 const PART_OF_WAY: f32 = 0.5;
+
+/// While nothing may touch, the longest wait between tests in sub-steps. A test looks at all motion since the last one.
+const LONGEST_WAIT: u32 = 16;
 
 /// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
 const RESTING_SPEED: f32 = 0.25;
@@ -92,39 +108,32 @@ pub(crate) struct MutualContact {
     too_near: Vec<u32>,
     members: Members,
     zones: Zones,
-    /// The pushes that hold particles between tests, and the number of sub-steps left without a test.
+    /// The pushes that hold particles between tests.
     hold: Hold,
-    wait: u32,
-    /// Number of sub-steps since the last test, and positions of all particles then: up to there, layers are apart.
-    waited: u32,
-    passed: Origin,
-    /// The largest approach of any two particles since (m).
-    approach: f32,
+    last: LastTest,
     /// Positions before colliders push particles in the sub-step, if noted.
     before_colliders: Origin,
-    /// Largest approach of any two particles from there before others can touch (m).
-    free: f32,
-    /// The part of it that resting layers keep, to be held (m).
-    reserve: f32,
     is_known: bool,
     /// Number of ticks left without contact.
     ticks_off: u32,
     counts: Counts,
 }
 
-/// What happened in a tick.
-#[derive(Debug, Default, Clone, Copy)]
+/// The last sub-step in which pairs were tested.
+#[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-struct Counts {
-    has_touched: bool,
-    /// Number of pairs of patches compared.
-    compared: u32,
-    /// Work left in the tick.
-    work: usize,
-    /// Whether there was too much work: nothing is kept apart for the rest of the tick.
-    is_lost: bool,
-    /// Number of sub-steps of the tick in which that was so.
-    lost: u32,
+struct LastTest {
+    /// Positions of all particles at its end: up to there, layers are apart.
+    passed: Origin,
+    /// Number of sub-steps since, and of those left without a test.
+    waited: u32,
+    wait: u32,
+    /// The largest approach of any two particles since (m).
+    approach: f32,
+    /// Largest approach before others can touch (m).
+    free: f32,
+    /// The part of it that resting layers keep, to be held (m).
+    reserve: f32,
 }
 
 impl MutualContact {
@@ -138,12 +147,7 @@ impl MutualContact {
         let was_lost = self.counts.is_lost;
         let particles = cloths.iter().map(|cloth| cloth.particles.len());
         let particles = particles.sum::<usize>();
-        self.counts = Counts {
-            work: MOST_WORK
-                .saturating_mul(particles)
-                .clamp(LEAST_WORK_OF_ALL, MOST_WORK_OF_ALL),
-            ..Counts::default()
-        };
+        self.counts = Counts::new(particles);
         let is_same = self.circumstances.renew(cloths, &meets);
         if is_same && self.ticks_off > 0 {
             self.ticks_off -= 1;
@@ -153,7 +157,8 @@ impl MutualContact {
         let is_new = !(self.is_known && self.motion.is_of(cloths));
         if is_same && !is_new && !was_lost {
             self.near.begin_tick(&mut self.motion);
-            if self.passed.approach(cloths) == self.approach {
+            let approach = self.last.passed.approach(cloths);
+            if approach == self.last.approach || self.has_none() && approach <= self.last.free {
                 return;
             }
             // Something else has moved them.
@@ -170,13 +175,18 @@ impl MutualContact {
             self.contacts.clear();
             self.is_known = true;
         }
-        (self.wait, self.waited, self.approach) = (0, 0, 0.0);
-        self.passed.set(cloths);
+        (self.last.wait, self.last.waited, self.last.approach) = (0, 0, 0.0);
+        self.last.passed.set(cloths);
         match self.look(cloths, &meets) {
-            Some(free) => self.free = free,
+            Some(free) => self.last.free = free,
             None => self.lose(),
         }
         self.near.begins = false;
+    }
+
+    /// Whether nothing may touch before particles have used up what they may.
+    fn has_none(&self) -> bool {
+        self.contacts.is_empty() && !self.near.has_changed
     }
 
     /// Number of times that the features of two patches were compared in the tick.
@@ -222,19 +232,28 @@ impl MutualContact {
             self.counts.lost += 1;
             return 0.0;
         }
-        self.waited += 1;
-        let is_held = self.wait > 0;
-        let (held, approach) = if is_held {
-            self.wait -= 1;
-            self.hold.apply(cloths, &self.passed, is_pushed)
+        self.last.waited += 1;
+        let is_waiting = self.last.wait > 0;
+        self.last.wait = self.last.wait.saturating_sub(1);
+        let has_none = self.has_none();
+        if is_waiting && has_none {
+            return 0.0;
+        }
+        let (held, approach) = if is_waiting {
+            self.hold.apply(cloths, &self.last.passed, is_pushed)
         } else {
-            (0.0, self.passed.approach(cloths))
+            (0.0, self.last.passed.approach(cloths))
         };
-        let has_none = self.contacts.is_empty() && !self.near.has_changed;
-        if (is_held || has_none) && approach <= self.free {
-            self.approach = self.passed.approach(cloths);
+        if (is_waiting || has_none) && approach <= self.last.free {
+            self.last.approach = self.last.passed.approach(cloths);
+            if has_none {
+                let pace = approach / self.last.waited as f32;
+                let left = PART_OF_WAY * (self.last.free - approach);
+                self.last.wait = ((left / pace) as u32).min(LONGEST_WAIT);
+            }
             return held;
         }
+        self.last.wait = 0;
         self.motion.read(cloths);
         self.motion.measure_drift();
         self.motion.measure(cloths);
@@ -249,18 +268,18 @@ impl MutualContact {
         }
         let thinnest = thinnest(cloths);
         self.motion.pass(cloths, REFERENCE * thinnest);
-        self.reserve = 0.0;
+        self.last.reserve = 0.0;
         if !self.contacts.is_empty() {
             let most = HELD * thinnest;
-            self.free = self.free.min(most);
-            let pace = self.passed.approach(cloths) / self.waited as f32;
+            self.last.free = self.last.free.min(most);
+            let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
             if self.members.are_resting(RESTING_SPEED * dt) {
-                self.reserve = most.min(LONGEST_HOLD as f32 * pace / PART_OF_WAY);
-                self.wait = ((PART_OF_WAY * self.free / pace) as u32).min(LONGEST_HOLD);
+                self.last.reserve = most.min(LONGEST_HOLD as f32 * pace / PART_OF_WAY);
+                self.last.wait = ((PART_OF_WAY * self.last.free / pace) as u32).min(LONGEST_HOLD);
             }
         }
-        self.passed.set(cloths);
-        (self.waited, self.approach) = (0, 0.0);
+        self.last.passed.set(cloths);
+        (self.last.waited, self.last.approach) = (0, 0.0);
         pushed + held
     }
 
@@ -276,7 +295,7 @@ impl MutualContact {
             let Some(free) = self.look(cloths, &meets) else {
                 return false;
             };
-            self.free = free;
+            self.last.free = free;
             if round == 0 && !self.near.has_changed {
                 self.members
                     .gather(cloths, &self.motion, &self.before_colliders);
@@ -285,8 +304,7 @@ impl MutualContact {
             } else {
                 break;
             }
-            let work = WORK_OF_CONTACT * self.contacts.len();
-            self.counts.work = self.counts.work.saturating_sub(work);
+            self.counts.take(WORK_OF_CONTACT * self.contacts.len());
             let mut has_moved = false;
             if round == 0 {
                 let (too_near, members) = (&mut self.too_near, &mut self.members);
@@ -300,7 +318,7 @@ impl MutualContact {
             }
             self.members.put(&mut self.motion);
             self.motion.measure(cloths);
-            self.free = f32::NEG_INFINITY;
+            self.last.free = f32::NEG_INFINITY;
         }
         true
     }
@@ -316,16 +334,16 @@ impl MutualContact {
             motion,
             rooms,
             near,
-            reserve,
+            last,
             counts,
             ..
         } = self;
-        let (have_left, room) = rooms.renew(cloths, motion, *reserve);
+        let (have_left, room) = rooms.renew(cloths, motion, last.reserve);
         if have_left {
             let among = Meets { cloths, meets };
             near.renew(rooms, &among, motion, &mut counts.work);
         }
-        let slack = near.look(cloths, motion, *reserve, counts)?;
+        let slack = near.look(cloths, motion, last.reserve, counts)?;
         Some(slack.min(2.0 * room))
     }
 
@@ -392,7 +410,7 @@ impl MutualContact {
                     pair.weights[corner] == 0.0
                         || other.members[1..].contains(&pair.members[corner])
                 };
-                self.counts.work = self.counts.work.saturating_sub(1);
+                self.counts.take(1);
                 is_implied = next as usize != index
                     && other.thickness >= pair.thickness
                     && is_nearer

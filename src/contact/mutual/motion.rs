@@ -12,54 +12,7 @@
 
 use bevy::math::Vec3A;
 
-use super::participant::Participant;
-
-/// A box (m).
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Bounds {
-    pub min: Vec3A,
-    pub max: Vec3A,
-}
-
-impl Bounds {
-    /// The empty box.
-    pub const EMPTY: Self = Self {
-        min: Vec3A::INFINITY,
-        max: Vec3A::NEG_INFINITY,
-    };
-
-    pub fn at(point: Vec3A) -> Self {
-        Self {
-            min: point,
-            max: point,
-        }
-    }
-
-    pub fn with(&self, point: Vec3A) -> Self {
-        Self {
-            min: self.min.min(point),
-            max: self.max.max(point),
-        }
-    }
-
-    pub fn join(&self, other: &Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
-    }
-
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
-    }
-
-    /// Squared distance between two boxes (m²), 0 if they overlap.
-    pub fn distance_squared(&self, other: &Self) -> f32 {
-        let gap = (self.min - other.max).max(other.min - self.max);
-        gap.max(Vec3A::ZERO).length_squared()
-    }
-}
+use super::{bounds::Bounds, participant::Participant};
 
 /// A patch at the beginning and at the end of a sub-step.
 #[derive(Debug, Default, Clone, Copy)]
@@ -81,12 +34,12 @@ impl PatchMotion {
         self.earlier + self.deviation[1]
     }
 
-    /// What [`used`](Self::used) is measured from, for a comparison at the beginning of the sub-step (m).
+    /// Zero of [`used`](Self::used) for a comparison at the beginning of the sub-step (m).
     pub fn used_before(&self) -> f32 {
         self.earlier - self.deviation[0]
     }
 
-    /// What [`used`](Self::used) is measured from, for a comparison at the end of the sub-step (m).
+    /// Zero of [`used`](Self::used) for a comparison at the end of the sub-step (m).
     pub fn used_to_end(&self) -> f32 {
         self.earlier - self.deviation[1]
     }

@@ -3,11 +3,7 @@
 
 use bevy::math::Vec3A;
 
-use super::{
-    motion::{Bounds, Motion},
-    participant::Participant,
-    sheet::Node,
-};
+use super::{bounds::Bounds, motion::Motion, participant::Participant, sheet::Node};
 
 /// Room around a patch, as a fraction of the shortest spacing, and the number of sub-steps of motion ahead.
 const ROOM: f32 = 0.25;

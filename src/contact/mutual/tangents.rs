@@ -2,7 +2,7 @@
 
 use bevy::math::{Vec2, Vec3A};
 
-use super::motion::Bounds;
+use super::bounds::Bounds;
 
 /// Bounds of the tangents of a patch of a grid, along rows and columns, per metre at rest.
 ///

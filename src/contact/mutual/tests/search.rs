@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{Scene, Sheeted, participants, settings};
-use crate::contact::mutual::{MutualContact, near_features::Candidate, tangents::Tangents};
+use crate::contact::mutual::{MutualContact, patch_pair::Candidate, tangents::Tangents};
 
 /// What a square of 1 m is bent into: flat, rolled up more and more, folded, wavy, crumpled.
 fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {

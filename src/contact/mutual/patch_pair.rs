@@ -1,0 +1,197 @@
+//! Two near patches: what they have used of their distance, and their listed features.
+
+use std::ops::Range;
+
+use bevy::math::Vec3A;
+
+use super::{motion::Motion, pair::Nearest, participant::Participant};
+
+/// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
+const FRESH: f32 = 0.12;
+
+/// Distance of features that begin inside each other, and approach after which they are measured again, as fractions of
+/// the thickness.
+const INSIDE: f32 = 0.01;
+const LEFT_ALONE: f32 = 0.25;
+
+/// Two patches whose boxes overlap.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct PatchPair {
+    pub of: [u32; 2],
+    /// The vector between them, and what they had used, when they were last looked at (m).
+    between: Vec3A,
+    pub since: f32,
+    /// How far they may approach each other before features that are not listed can touch (m).
+    pub slack: f32,
+    /// How far they may approach each other before their features are measured again, and the largest `apart` of
+    /// contacts (m).
+    pub until: f32,
+    pub near: f32,
+    /// The listed features.
+    pub first: u32,
+    pub count: u32,
+    /// The number of these that are contacts: the first ones.
+    pub contacts: u32,
+    /// Whether they began inside each other: they are left alone until they are apart.
+    pub is_tangled: bool,
+}
+
+/// Two features that may touch.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Candidate {
+    pub particles: [u32; 4],
+    pub split: u32,
+    pub thickness: f32,
+    /// Their nearest points when they were last measured, and the distance less the thickness (m).
+    pub nearest: Nearest,
+    pub apart: f32,
+}
+
+impl PatchPair {
+    pub fn new(of: [u32; 2]) -> Self {
+        Self {
+            of,
+            between: Vec3A::ZERO,
+            since: 0.0,
+            slack: f32::NEG_INFINITY,
+            until: f32::NEG_INFINITY,
+            near: 0.0,
+            first: 0,
+            count: 0,
+            contacts: 0,
+            is_tangled: false,
+        }
+    }
+
+    pub fn has_contacts(&self) -> bool {
+        self.contacts > 0
+    }
+
+    pub fn candidates(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+
+    /// Starts anew at the end of the sub-step, at which all their features are `apart` (m).
+    pub fn stay_unfolded(&mut self, apart: f32, motion: &Motion) {
+        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
+        self.between = a.end - b.end;
+        self.since = a.used_to_end() + b.used_to_end();
+        (self.slack, self.until) = (apart, apart);
+        (self.count, self.contacts) = (0, 0);
+    }
+
+    /// Whether they are inside each other, as they may begin.
+    pub fn has_tangled(&self, candidates: &[Candidate]) -> bool {
+        let is_inside = |of: &Candidate| of.nearest.distance < INSIDE * of.thickness;
+        candidates.iter().any(is_inside)
+    }
+
+    /// Has no contacts, unless they have come apart.
+    pub fn leave_alone(&mut self, place: &Place) {
+        self.is_tangled = self.has_contacts();
+        if self.is_tangled {
+            self.contacts = 0;
+            self.until = self.slack.min(place.used + LEFT_ALONE * place.thickness);
+        }
+    }
+
+    /// Upper bound of their approach since they were last looked at (m).
+    pub fn used(&self, motion: &Motion) -> f32 {
+        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
+        (a.end - b.end - self.between).length() + a.used() + b.used() - self.since
+    }
+
+    /// The same, up to the beginning of the sub-step.
+    pub fn used_at_start(&self, motion: &Motion) -> f32 {
+        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
+        (a.start - b.start - self.between).length() + a.used_at_start() + b.used_at_start()
+            - self.since
+    }
+}
+
+/// By how much the features of two patches of a grid are farther apart than the thickness at the end of the sub-step
+/// (m), from the tangents around them. It does not matter how they got there: a sheet that is unfolded has not passed
+/// through itself.
+pub(super) fn unfolded_by(
+    pair: &PatchPair,
+    cloths: &[Participant],
+    motion: &Motion,
+) -> Option<f32> {
+    let [a, b] = pair
+        .of
+        .map(|patch| motion.patches[patch as usize].cloth as usize);
+    let [first_particle, first_patch, _] = motion.firsts[a];
+    let of = pair.of.map(|patch| patch - first_patch);
+    let cloth = (a == b).then(|| &cloths[a])?;
+    let places = &motion.end[first_particle as usize..];
+    Some(cloth.sheet.unfolded(of, places)? - cloth.settings.thickness)
+}
+
+/// Two patches that are looked at, at the beginning of the sub-step.
+pub(super) struct Place {
+    pub thickness: f32,
+    pub spacing: f32,
+    /// Upper bound of their approach in the sub-step (m).
+    pub used: f32,
+    /// The reserve of resting layers (m).
+    pub reserve: f32,
+}
+
+impl Place {
+    /// Takes their places for those that their motion is measured from.
+    pub fn of(pair: &mut PatchPair, cloths: &[Participant], motion: &Motion, reserve: f32) -> Self {
+        let of = pair
+            .of
+            .map(|patch| &cloths[motion.patches[patch as usize].cloth as usize]);
+        let thickness = (of[0].settings.thickness + of[1].settings.thickness) / 2.0;
+        let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
+        pair.between = a.start - b.start;
+        pair.since = a.used_before() + b.used_before();
+        let spacing = of.map(|cloth| cloth.sheet.surface().spacing().shortest);
+        Self {
+            thickness,
+            spacing: spacing[0].min(spacing[1]),
+            used: pair.used(motion),
+            reserve,
+        }
+    }
+}
+
+/// Measures the listed features of two patches that have come nearer by no more than `used_before` (m). Those that are
+/// still far stay as they are.
+pub(super) fn measure(
+    pair: &mut PatchPair,
+    candidates: &mut [Candidate],
+    motion: &Motion,
+    place: &Place,
+    used_before: f32,
+) {
+    pair.near = place.used + FRESH * place.thickness;
+    pair.contacts = 0;
+    let mut least = f32::INFINITY;
+    for index in 0..candidates.len() {
+        let candidate = &mut candidates[index];
+        candidate.apart -= used_before;
+        if candidate.apart <= pair.near {
+            let places = candidate
+                .particles
+                .map(|particle| motion.start[particle as usize]);
+            candidate.nearest = Nearest::of(candidate.split as usize, places);
+            candidate.apart = candidate.nearest.distance - candidate.thickness;
+        }
+        if candidate.apart <= pair.near {
+            candidates.swap(index, pair.contacts as usize);
+            pair.contacts += 1;
+        } else {
+            least = least.min(candidate.apart);
+        }
+    }
+    let until = if pair.has_contacts() {
+        pair.near
+    } else {
+        least
+    };
+    pair.until = until.min(pair.slack);
+}

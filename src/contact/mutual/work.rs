@@ -1,0 +1,41 @@
+//! The limits of a tick's work.
+
+/// Work limits of a tick for each particle and in total, in units of some 5 ns: two pairs of features compared, or a
+/// node visited. A sheet that runs into itself at 20 m/s needs half of that (`cargo run --example lab -- self`).
+const MOST_WORK: usize = 1 << 17;
+const LEAST_WORK_OF_ALL: usize = 1 << 22;
+const MOST_WORK_OF_ALL: usize = 1 << 28;
+
+/// Largest number of listed pairs of features for each particle. Piles and twisted strips have 90.
+pub(super) const MOST_LISTED: usize = 512;
+
+/// The work and the events of a tick.
+#[derive(Debug, Default, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Counts {
+    pub has_touched: bool,
+    /// Number of pairs of patches compared.
+    pub compared: u32,
+    /// Work left in the tick.
+    pub work: usize,
+    /// Whether there was too much work: nothing is kept apart for the rest of the tick.
+    pub is_lost: bool,
+    /// Number of sub-steps of the tick in which that was so.
+    pub lost: u32,
+}
+
+impl Counts {
+    /// Those of a new tick of so many particles.
+    pub fn new(particles: usize) -> Self {
+        let work = MOST_WORK.saturating_mul(particles);
+        Self {
+            work: work.clamp(LEAST_WORK_OF_ALL, MOST_WORK_OF_ALL),
+            ..Self::default()
+        }
+    }
+
+    /// Takes this much work from the rest.
+    pub fn take(&mut self, work: usize) {
+        self.work = self.work.saturating_sub(work);
+    }
+}
