@@ -87,7 +87,7 @@ const LONGEST_HOLD: u32 = 3;
 const PART_OF_WAY: f32 = 0.5;
 
 /// While nothing may touch, the longest wait between tests in sub-steps. A test looks at all motion since the last one.
-const LONGEST_WAIT: u32 = 16;
+const LONGEST_WAIT: u32 = 4;
 
 /// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
 const RESTING_SPEED: f32 = 0.25;
@@ -216,6 +216,13 @@ impl MutualContact {
             self.before_colliders.set(cloths);
         } else {
             self.before_colliders.clear();
+        }
+    }
+
+    /// Tests pairs at the end of this sub-step if nothing touched before it: colliders have pushed particles.
+    pub fn note_push(&mut self) {
+        if self.has_none() {
+            self.last.wait = 0;
         }
     }
 
