@@ -86,9 +86,6 @@ const HELD: f32 = 0.08;
 const LONGEST_HOLD: u32 = 3;
 const PART_OF_WAY: f32 = 0.5;
 
-/// While nothing may touch, the longest wait between tests in sub-steps. A test looks at all motion since the last one.
-const LONGEST_WAIT: u32 = 4;
-
 /// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
 const RESTING_SPEED: f32 = 0.25;
 
@@ -242,22 +239,15 @@ impl MutualContact {
         self.last.waited += 1;
         let is_waiting = self.last.wait > 0;
         self.last.wait = self.last.wait.saturating_sub(1);
-        let has_none = self.has_none();
-        if is_waiting && has_none {
-            return 0.0;
-        }
         let (held, approach) = if is_waiting {
-            self.hold.apply(cloths, &self.last.passed, is_pushed)
-        } else {
-            (0.0, self.last.passed.approach(cloths))
-        };
-        if (is_waiting || has_none) && approach <= self.last.free {
+            let (held, approach) = self.hold.apply(cloths, &self.last.passed, is_pushed);
             self.last.approach = self.last.passed.approach(cloths);
-            if has_none {
-                let pace = approach / self.last.waited as f32;
-                let left = PART_OF_WAY * (self.last.free - approach);
-                self.last.wait = ((left / pace) as u32).min(LONGEST_WAIT);
-            }
+            (held, approach)
+        } else {
+            self.last.approach = self.last.passed.approach(cloths);
+            (0.0, self.last.approach)
+        };
+        if (is_waiting || self.has_none()) && approach <= self.last.free {
             return held;
         }
         self.last.wait = 0;
