@@ -33,37 +33,37 @@ pub const SCENES: [Scene; 21] = [
     scene("cape behind a runner", 240, cape),
     scene("flag, 8 to 15 m/s", 240, flag),
     scene("skirt, 3,072 vertices", 240, |world, layers| {
-        skirt(world, layers, 96, 32)
+        skirt(world, layers, 96, 32);
     }),
     scene("skirt, 1,152 vertices", 240, |world, layers| {
-        skirt(world, layers, 48, 24)
+        skirt(world, layers, 48, 24);
     }),
     scene("30 capes apart", 180, capes),
     scene("dropped on edge, 32²", 360, |world, layers| {
-        dropped(world, layers, 32)
+        dropped(world, layers, 32);
     }),
     scene("dropped on edge, 48²", 360, |world, layers| {
-        dropped(world, layers, 48)
+        dropped(world, layers, 48);
     }),
     scene("tablecloth on a box", 240, |world, layers| {
-        tablecloth(world, layers, ClothCollider::cuboid(1.0, 0.1, 1.0))
+        tablecloth(world, layers, ClothCollider::cuboid(1.0, 0.1, 1.0));
     }),
     scene("tablecloth on a cylinder", 240, |world, layers| {
-        tablecloth(world, layers, ClothCollider::cylinder(0.5, 0.1))
+        tablecloth(world, layers, ClothCollider::cylinder(0.5, 0.1));
     }),
     scene("32² on 40²", 240, on_another),
     inside(scene("panels, edges meet", 180, |world, layers| {
-        panels(world, layers, 0.0)
+        panels(world, layers, 0.0);
     })),
     inside(scene("panels, overlap of 10 cm", 180, |world, layers| {
-        panels(world, layers, 0.1)
+        panels(world, layers, 0.1);
     })),
     inside(scene("two in one place", 120, in_one_place)),
     scene("half on half, 64²", 120, |world, layers| {
-        folded(world, layers, 64)
+        folded(world, layers, 64);
     }),
     scene("half on half, 32²", 120, |world, layers| {
-        folded(world, layers, 32)
+        folded(world, layers, 32);
     }),
     scene("flat, 64²", 120, flat),
     scene("50 far apart", 120, fifty),

@@ -25,7 +25,7 @@ macro_rules! operator {
             #[inline(always)]
             fn $function(mut self, other: Self) -> Self {
                 for l in 0..8 {
-                    self.0[l] = self.0[l] $symbol other.0[l];
+                    self.0[l] $symbol other.0[l];
                 }
                 self
             }
@@ -33,9 +33,9 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
+operator!(Add, add, +=);
+operator!(Sub, sub, -=);
+operator!(Mul, mul, *=);
 
 impl Lanes {
     #[inline(always)]
@@ -54,7 +54,7 @@ impl Lanes {
     }
 
     #[inline(always)]
-    fn from_0_to_1(mut self) -> Self {
+    fn clamped(mut self) -> Self {
         for l in 0..8 {
             let least = if self.0[l] > 0.0 { self.0[l] } else { 0.0 };
             self.0[l] = if least < 1.0 { least } else { 1.0 };
@@ -122,7 +122,7 @@ fn off(from: &Vectors, along: &Vectors, by: Lanes) -> Vectors {
 /// Squared distance of a point from a segment: from its first end, of its own length squared, and along it.
 #[inline(always)]
 fn from_segment(from: &Vectors, along: &Vectors, square: Lanes, product: Lanes) -> Lanes {
-    let rest = off(from, along, (product * square.inverse()).from_0_to_1());
+    let rest = off(from, along, (product * square.inverse()).clamped());
     dot(&rest, &rest)
 }
 
@@ -165,9 +165,9 @@ pub(super) fn edge_to_edges([p, q]: [Vec3A; 2], edges: &[Points; 2]) -> Eight {
     let product = a * e;
     let sine = product - b * b;
     let sine = sine.where_positive(sine - product * Lanes::all(1.0e-6), Lanes::all(0.0));
-    let first = ((b * f - c * e) * sine.inverse()).from_0_to_1();
-    let second = ((b * first + f) * e.inverse()).from_0_to_1();
-    let first = ((b * second - c) * a.inverse()).from_0_to_1();
+    let first = ((b * f - c * e) * sine.inverse()).clamped();
+    let second = ((b * first + f) * e.inverse()).clamped();
+    let first = ((b * second - c) * a.inverse()).clamped();
     let rest = [
         from[0] + along[0] * first - other[0] * second,
         from[1] + along[1] * first - other[1] * second,

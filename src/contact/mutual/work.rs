@@ -25,7 +25,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Those of a new tick of so many particles.
+    /// Begins a tick of cloths with this many particles.
     pub fn new(particles: usize) -> Self {
         let work = MOST_WORK.saturating_mul(particles);
         Self {
