@@ -307,3 +307,24 @@ fn stop(mut clock: ResMut<Clock>) {
     let passed = clock.0.elapsed().as_secs_f64();
     clock.1.push(1.0e3 * passed);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{experiment::quick, view::View};
+
+    #[test]
+    fn each_scene_is_played_with_layers_and_without() {
+        let columns = "scene,particles,layers,ms_per_tick,ms_p99,ms_max,ms_without,\
+                       searches_per_tick,pairs,intersections";
+        let rows = quick::<Games>(View::Nothing, columns);
+        assert_eq!(rows.len(), 2 * SCENES.len());
+        for [without, with] in rows.as_chunks::<2>().0 {
+            assert_eq!((without.layers, without.pairs), (0, 0));
+            assert_eq!((with.layers, &with.scene), (1, &without.scene));
+            assert!(with.particles > 0 && with.particles == without.particles);
+        }
+        let pairs = rows.iter().filter(|row| row.pairs > 0).count();
+        assert!(pairs > 10, "layers touch in {pairs} scenes");
+    }
+}
