@@ -49,6 +49,7 @@ mod shared {
 mod scaling;
 mod stability;
 mod table1;
+mod timed;
 #[path = "../shared/view.rs"]
 mod view;
 mod waves;

@@ -268,9 +268,6 @@ impl IntegratingItem<'_, '_> {
                     let itself = Participant::alone(particles, sheet, *layers);
                     mutual.note_before_colliders(&[itself]);
                     let is_touched = detection.respond(particles, &settings, substep, numbered);
-                    if is_touched {
-                        mutual.note_push();
-                    }
                     let mut is_pushed = [false];
                     let itself = Participant::alone(particles, sheet, *layers);
                     let farthest = mutual.respond(&mut [itself], |_, _| true, dt, &mut is_pushed);

@@ -165,7 +165,6 @@ fn advance(
                 && member.cloth.touch(substep, colliders)
             {
                 tick.note_push(&mut member.cloth.particles);
-                contact.note_push();
             }
         }
         is_pushed.fill(false);

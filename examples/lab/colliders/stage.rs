@@ -1,9 +1,9 @@
 //! Apps without a renderer, with many cloths and many colliders.
 
-use std::time::Instant;
-
-use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, time::TimeUpdateStrategy};
+use bevy::prelude::*;
 use bevy_drape::prelude::*;
+
+use crate::timed::{Clock, TimedTicks};
 
 /// How far cloths are from each other, and colliders (m).
 const APART: f32 = 3.0;
@@ -42,10 +42,6 @@ impl State {
     }
 }
 
-/// When the fixed tick began, and how long each took (ms).
-#[derive(Resource)]
-struct Clock(Instant, Vec<f64>);
-
 #[derive(Component)]
 struct Mover;
 
@@ -65,19 +61,8 @@ impl Stage {
     ) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .insert_resource(Clock(Instant::now(), Vec::new()))
-            .edit_schedule(FixedUpdate, |schedule| {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            })
-            .add_systems(FixedFirst, move_colliders)
-            .add_systems(
-                FixedUpdate,
-                (
-                    start.before(ClothSystems::Prepare),
-                    stop.after(ClothSystems::WriteBack),
-                ),
-            );
+            .add_plugins(TimedTicks)
+            .add_systems(FixedFirst, move_colliders);
         let is_touching = state == State::Touching;
         let settings = ClothSettings {
             sleeps: state.sleeps(),
@@ -149,15 +134,6 @@ fn places(count: u32) -> impl Iterator<Item = Vec3> {
     let side = f64::from(count).sqrt().ceil() as u32;
     (0..count)
         .map(move |index| Vec3::new((index % side) as f32, 0.0, (index / side) as f32) * APART)
-}
-
-fn start(mut clock: ResMut<Clock>) {
-    clock.0 = Instant::now();
-}
-
-fn stop(mut clock: ResMut<Clock>) {
-    let passed = clock.0.elapsed().as_secs_f64();
-    clock.1.push(1.0e3 * passed);
 }
 
 /// Back and forth by 1.3 m/s.

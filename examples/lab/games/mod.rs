@@ -3,20 +3,22 @@
 //! An app without a renderer, 60 ticks a second, its systems one after the other on one thread, at default settings. After each
 //! tick with layers, all pairs of triangles are compared by brute force in f64.
 
+mod cast;
+mod garments;
 mod scenes;
 
-use std::time::Instant;
-
-use bevy::{
-    asset::AssetPlugin, ecs::schedule::SingleThreadedExecutor, prelude::*, time::TimeUpdateStrategy,
-};
-use bevy_drape::{contact::intersections, plugin::ClothBuilt, prelude::*};
+use bevy::{asset::AssetPlugin, prelude::*};
+use bevy_drape::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use self::scenes::{Layers, Moved, RATE, SCENES, Scene, follow};
+use self::{
+    cast::{Layers, Moved, RATE, follow},
+    scenes::{SCENES, Scene},
+};
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
     experiment::{Experiment, Run, Table},
+    timed::{self, Clock, TimedTicks},
 };
 
 pub struct Games;
@@ -181,10 +183,6 @@ impl Experiment for Games {
     }
 }
 
-/// When the fixed tick began, and how long each took (ms).
-#[derive(Resource)]
-struct Clock(Instant, Vec<f64>);
-
 /// An app in which a scene plays.
 struct Play {
     app: App,
@@ -199,18 +197,7 @@ impl Play {
             .init_asset::<Mesh>()
             .add_plugins(DrapePlugins::default())
             .insert_resource(Time::<Fixed>::from_hz(f64::from(RATE)))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .insert_resource(Clock(Instant::now(), Vec::new()))
-            .edit_schedule(FixedUpdate, |schedule| {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            })
-            .add_systems(
-                FixedUpdate,
-                (
-                    start.before(ClothSystems::Prepare),
-                    stop.after(ClothSystems::WriteBack),
-                ),
-            );
+            .add_plugins(TimedTicks);
         let layers = Layers(has_layers.then(ClothSelfCollision::default));
         scene.spawn(app.world_mut(), &layers);
         app.finish();
@@ -247,7 +234,7 @@ impl Play {
             follow(self.app.world_mut(), tick as u32);
             self.app.update();
             if self.has_layers {
-                crossed = crossed.max(self.intersections());
+                crossed = crossed.max(timed::crossed(self.app.world_mut()));
             }
             let world = self.app.world_mut();
             let mut all = world.query::<&ClothStats>();
@@ -279,33 +266,6 @@ impl Play {
             intersections: crossed,
         }
     }
-
-    /// Pairs of triangles that intersect, by brute force in f64.
-    fn intersections(&mut self) -> usize {
-        let world = self.app.world_mut();
-        let mut cloths = world.query::<(&ClothBuilt, &ClothParticles, &ClothFrame)>();
-        let placed: Vec<(_, Vec<Vec3>)> = cloths
-            .iter(world)
-            .map(|(built, particles, frame)| {
-                let places = particles.positions().map(|place| frame.to_world(place));
-                (built.surface().clone(), places.collect())
-            })
-            .collect();
-        let cloths: Vec<_> = placed
-            .iter()
-            .map(|(surface, places)| (&**surface, places.clone()))
-            .collect();
-        intersections(&cloths)
-    }
-}
-
-fn start(mut clock: ResMut<Clock>) {
-    clock.0 = Instant::now();
-}
-
-fn stop(mut clock: ResMut<Clock>) {
-    let passed = clock.0.elapsed().as_secs_f64();
-    clock.1.push(1.0e3 * passed);
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! The scenes: what touches itself, and how it is moved.
 
-use std::{f32::consts::TAU, sync::Arc, time::Instant};
+use std::{f32::consts::TAU, sync::Arc};
 
-use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, time::TimeUpdateStrategy};
-use bevy_drape::{contact::intersections, plugin::ClothBuilt, prelude::*};
+use bevy::prelude::*;
+use bevy_drape::{plugin::ClothBuilt, prelude::*};
+
+use crate::timed::{Clock, TimedTicks, crossed};
 
 /// Ticks a second.
 const RATE: f32 = 64.0;
@@ -67,10 +69,6 @@ impl Scene {
 const POLE: f32 = 0.1;
 const BALL: f32 = 0.2;
 
-/// When the fixed tick began, and how long each took (ms).
-#[derive(Resource)]
-struct Clock(Instant, Vec<f64>);
-
 /// What the scene moves, in an order that it knows.
 #[derive(Component)]
 struct Moved(f32);
@@ -88,18 +86,7 @@ impl Play {
     pub fn new(scene: Scene, side: u32, speed: f32, thickness: Option<f32>) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .insert_resource(Clock(Instant::now(), Vec::new()))
-            .edit_schedule(FixedUpdate, |schedule| {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            })
-            .add_systems(
-                FixedUpdate,
-                (
-                    start.before(ClothSystems::Prepare),
-                    stop.after(ClothSystems::WriteBack),
-                ),
-            );
+            .add_plugins(TimedTicks);
         let layers = thickness.map(ClothSelfCollision::of_thickness);
         scene.spawn(app.world_mut(), side, layers);
         app.finish();
@@ -220,22 +207,9 @@ impl Play {
         (built.surface().clone(), particles.clone(), frame.isometry())
     }
 
-    /// Pairs of triangles that intersect, by brute force in f64.
+    /// Pairs of triangles that intersect.
     pub fn intersections(&mut self) -> usize {
-        let world = self.app.world_mut();
-        let mut cloths = world.query::<(&ClothBuilt, &ClothParticles, &ClothFrame)>();
-        let placed: Vec<(_, Vec<Vec3>)> = cloths
-            .iter(world)
-            .map(|(built, particles, frame)| {
-                let places = particles.positions().map(|place| frame.to_world(place));
-                (built.surface().clone(), places.collect())
-            })
-            .collect();
-        let cloths: Vec<_> = placed
-            .iter()
-            .map(|(surface, places)| (&**surface, places.clone()))
-            .collect();
-        intersections(&cloths)
+        crossed(self.app.world_mut())
     }
 }
 
@@ -366,13 +340,4 @@ impl Draw {
         }
         (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
     }
-}
-
-fn start(mut clock: ResMut<Clock>) {
-    clock.0 = Instant::now();
-}
-
-fn stop(mut clock: ResMut<Clock>) {
-    let passed = clock.0.elapsed().as_secs_f64();
-    clock.1.push(1.0e3 * passed);
 }

@@ -1,9 +1,9 @@
 //! An app without a renderer, with flags in a row away from a camera.
 
-use std::time::Instant;
-
-use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, time::TimeUpdateStrategy};
+use bevy::prelude::*;
 use bevy_drape::prelude::*;
+
+use crate::timed::{Clock, TimedTicks};
 
 /// Particles of a flag, and how far apart they are (m).
 const FLAG: [u32; 2] = [24, 16];
@@ -37,10 +37,6 @@ impl Flags {
     }
 }
 
-/// When the fixed tick began, and how long each took (ms).
-#[derive(Resource)]
-struct Clock(Instant, Vec<f64>);
-
 /// An app, and what was measured of it.
 pub struct Stage {
     app: App,
@@ -54,18 +50,7 @@ impl Stage {
     pub fn new(count: u32, near: u32, flags: Flags) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .insert_resource(Clock(Instant::now(), Vec::new()))
-            .edit_schedule(FixedUpdate, |schedule| {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            })
-            .add_systems(
-                FixedUpdate,
-                (
-                    start.before(ClothSystems::Prepare),
-                    stop.after(ClothSystems::WriteBack),
-                ),
-            );
+            .add_plugins(TimedTicks);
         if flags == Flags::ByDistance {
             app.insert_resource(GlobalClothLod(ClothLod::default()));
         }
@@ -147,13 +132,4 @@ impl Stage {
                 count
             }
     }
-}
-
-fn start(mut clock: ResMut<Clock>) {
-    clock.0 = Instant::now();
-}
-
-fn stop(mut clock: ResMut<Clock>) {
-    let passed = clock.0.elapsed().as_secs_f64();
-    clock.1.push(1.0e3 * passed);
 }

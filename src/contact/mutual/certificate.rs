@@ -1,12 +1,12 @@
 //! Proves in each sub-step that no features have passed through each other, and corrects those without a proof.
 //!
 //! The nearest points of two features define a separating plane across the line between them, with one feature on
-//! either side. Particles move along straight lines. Let all of them be on the same sides of a plane with
-//! that normal at the end of a sub-step. Then they were so all along, and the features have not met. The same normal serves in
-//! the next sub-step, until nearest points are found again.
+//! either side. Particles move along straight lines. Let all of them be on the same sides of a plane with that normal
+//! at the end of a sub-step. Then they were so all along, and the features have not met. The same normal serves in the
+//! next sub-step, until nearest points are found again.
 //!
-//! Features that were farther apart than the approach of any two particles since have such a plane without a test. If
-//! that holds for all vertices with faces and all edges with edges, no two triangles intersect.
+//! Pairs that are not contacts are a thickness apart without a test. If all vertices with faces and all edges with
+//! edges are apart, no two triangles intersect.
 
 use bevy::math::Vec3A;
 

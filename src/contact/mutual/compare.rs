@@ -57,25 +57,32 @@ pub(super) fn compare(
     }
     let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
     let is_one_cloth = a.cloth == b.cloth;
+    let longest = pair.of.map(|patch| {
+        let cloth = motion.patches[patch as usize].cloth as usize;
+        cloths[cloth].sheet.surface().spacing().longest
+    });
+    let longest = longest[0].max(longest[1]);
+    let tolerance = ROUNDING * (LONGEST * listed + thickness + longest);
     let mut features = Features {
         sides: &sides,
         is_one_cloth,
         is_one_patch: pair.of[0] == pair.of[1],
         thickness,
-        listed,
+        listed: listed + tolerance,
         least: f32::INFINITY,
         candidates,
     };
     *work = work.saturating_sub(features.count() / 2);
     features.compare();
-    let apart = features.least.sqrt() * (1.0 - ROUNDING) - thickness;
-    pair.slack = apart.max(listed).min(LONGEST * listed);
+    let apart = features.least.sqrt() - thickness - tolerance;
+    pair.slack = apart.min(LONGEST * listed);
 }
 
 /// Largest slack that is looked for, as a multiple of the distance up to which features are listed.
 const LONGEST: f32 = 3.0;
 
-/// Relative error of distances in lanes, more than it is.
+/// Error of distances in lanes, as a fraction of the distance and of the longest edge. Edges at an angle of 10⁻³ are taken
+/// for parallel.
 const ROUNDING: f32 = 1.0e-3;
 
 /// A patch in a comparison.

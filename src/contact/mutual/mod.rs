@@ -125,8 +125,6 @@ struct LastTest {
     /// Number of sub-steps since, and of those left without a test.
     waited: u32,
     wait: u32,
-    /// The largest approach of any two particles since (m).
-    approach: f32,
     /// Largest approach before others can touch (m).
     free: f32,
     /// The part of it that resting layers keep, to be held (m).
@@ -155,7 +153,7 @@ impl MutualContact {
         if is_same && !is_new && !was_lost {
             self.near.begin_tick(&mut self.motion);
             let approach = self.last.passed.approach(cloths);
-            if approach == self.last.approach || self.has_none() && approach <= self.last.free {
+            if approach == 0.0 || approach <= self.last.free {
                 return;
             }
             // Something else has moved them.
@@ -170,20 +168,15 @@ impl MutualContact {
             self.near.begins = is_new;
             self.hold.clear(cloths);
             self.contacts.clear();
-            self.is_known = true;
+            (self.is_known, self.ticks_off) = (true, 0);
         }
-        (self.last.wait, self.last.waited, self.last.approach) = (0, 0, 0.0);
+        (self.last.wait, self.last.waited) = (0, 0);
         self.last.passed.set(cloths);
         match self.look(cloths, &meets) {
             Some(free) => self.last.free = free,
             None => self.lose(),
         }
         self.near.begins = false;
-    }
-
-    /// Whether nothing may touch before particles have used up what they may.
-    fn has_none(&self) -> bool {
-        self.contacts.is_empty() && !self.near.has_changed
     }
 
     /// Number of times that the features of two patches were compared in the tick.
@@ -216,13 +209,6 @@ impl MutualContact {
         }
     }
 
-    /// Tests pairs at the end of this sub-step if nothing touched before it: colliders have pushed particles.
-    pub fn note_push(&mut self) {
-        if self.has_none() {
-            self.last.wait = 0;
-        }
-    }
-
     /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s). Marks the cloths that were pushed.
     /// Returns the largest push (m).
     pub fn respond(
@@ -240,14 +226,12 @@ impl MutualContact {
         let is_waiting = self.last.wait > 0;
         self.last.wait = self.last.wait.saturating_sub(1);
         let (held, approach) = if is_waiting {
-            let (held, approach) = self.hold.apply(cloths, &self.last.passed, is_pushed);
-            self.last.approach = self.last.passed.approach(cloths);
-            (held, approach)
+            self.hold.apply(cloths, &self.last.passed, is_pushed)
         } else {
-            self.last.approach = self.last.passed.approach(cloths);
-            (0.0, self.last.approach)
+            (0.0, self.last.passed.approach(cloths))
         };
-        if (is_waiting || self.has_none()) && approach <= self.last.free {
+        let has_none = self.contacts.is_empty() && !self.near.has_changed;
+        if (is_waiting || has_none) && approach <= self.last.free {
             return held;
         }
         self.last.wait = 0;
@@ -276,7 +260,7 @@ impl MutualContact {
             }
         }
         self.last.passed.set(cloths);
-        (self.last.waited, self.last.approach) = (0, 0.0);
+        self.last.waited = 0;
         pushed + held
     }
 

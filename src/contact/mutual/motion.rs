@@ -109,20 +109,10 @@ impl Motion {
         self.read(cloths);
         self.start.clone_from(&self.end);
         self.offsets.clear();
-        for (index, cloth) in cloths.iter().enumerate() {
-            for patch in 0..cloth.sheet.patch_count() as u32 {
-                let (first, particles) = (self.firsts[index], cloth.sheet.particles_of(patch));
-                let place = |&particle: &u32| self.start[(first[0] + particle) as usize];
-                let center = particles.iter().map(place).sum::<Vec3A>() / particles.len() as f32;
-                let mut half = Vec3A::ZERO;
-                for offset in particles.iter().map(place).map(|place| place - center) {
-                    self.offsets.push(offset);
-                    half = half.max(offset.abs());
-                }
-                let state = &mut self.patches[(first[1] + patch) as usize];
-                (state.start, state.end, state.half) = (center, center, half);
-            }
-        }
+        self.offsets.resize(next[2] as usize, Vec3A::ZERO);
+        self.measure(cloths);
+        // Each patch gets a reference.
+        self.pass(cloths, f32::NEG_INFINITY);
     }
 
     /// Whether the numbers of particles match.

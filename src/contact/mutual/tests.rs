@@ -1,6 +1,7 @@
 //! Scenes in which cloth touches cloth, with no plugin around them.
 
 mod hold;
+mod lanes;
 mod response;
 mod scenes;
 mod search;

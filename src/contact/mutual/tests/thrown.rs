@@ -5,10 +5,10 @@ use bevy::math::Vec3;
 use super::{Scene, Sheeted, turned};
 
 /// Numbers from −1 to 1, as if drawn.
-struct Draw(u32);
+pub(super) struct Draw(pub u32);
 
 impl Draw {
-    fn next(&mut self) -> f32 {
+    pub fn next(&mut self) -> f32 {
         // Numerical Recipes' generator of 32 bits.
         for _ in 0..3 {
             self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -16,7 +16,7 @@ impl Draw {
         (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
     }
 
-    fn vector(&mut self) -> Vec3 {
+    pub fn vector(&mut self) -> Vec3 {
         Vec3::from_array(std::array::from_fn(|_| self.next()))
     }
 }
