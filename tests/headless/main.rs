@@ -5,6 +5,7 @@ mod cape;
 mod characters;
 mod clones;
 mod components;
+mod crammed;
 mod damping;
 mod drawing;
 mod envelope;
