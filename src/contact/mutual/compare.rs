@@ -74,8 +74,9 @@ pub(super) fn compare(
     };
     *work = work.saturating_sub(features.count() / 2);
     features.compare();
+    // Edges have a smaller thickness. But all that are not listed are apart by more than `listed`.
     let apart = features.least.sqrt() - thickness - tolerance;
-    pair.slack = apart.min(LONGEST * listed);
+    pair.slack = apart.max(listed).min(LONGEST * listed);
 }
 
 /// Largest slack that is looked for, as a multiple of the distance up to which features are listed.

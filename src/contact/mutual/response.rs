@@ -4,8 +4,13 @@ use bevy::math::Vec3A;
 
 use super::{members::Members, pair::NearPair};
 
-/// Largest release speed of layers that were too near at the beginning of the sub-step (m/s). It counts as motion: in a
-/// pile it carries the layers above.
+/// Number of times that all pairs are pushed in a sub-step: the weight of a pile has to reach the floor through its
+/// layers. With 1, ten sheets shake each other by so much that friction does not hold them.
+const PASSES: usize = 3;
+
+/// Fraction of an older overlap that is released in a pass, and the largest release speed (m/s). It counts as motion: in
+/// a pile it carries the layers above.
+const RELEASED: f32 = 0.5;
 const RELEASE: f32 = 0.25;
 
 /// Tolerated overlap of touching layers, as a fraction of their thickness: within it they are stopped, but not pushed.
@@ -40,14 +45,16 @@ pub(super) fn push(
     let mut has_touched = false;
     let part = pairs.len().div_ceil(APART);
     let order = (0..part).flat_map(|first| (first..pairs.len()).step_by(part));
-    for index in order {
-        let pair = &pairs[index];
-        if pair.is_pushed
-            && let Some(gap) = push_pair(pair, pair.thickness, members, dt)
-        {
-            has_touched = true;
-            if gap < LISTED * pair.thickness {
-                listed.push(index as u32);
+    for pass in 0..PASSES {
+        for index in order.clone() {
+            let pair = &pairs[index];
+            if pair.is_pushed
+                && let Some(gap) = push_pair(pair, pair.thickness, members, dt)
+            {
+                has_touched = true;
+                if pass == 0 && gap < LISTED * pair.thickness {
+                    listed.push(index as u32);
+                }
             }
         }
     }
@@ -105,22 +112,22 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
         .min(normal.dot(start) - gap)
         .max(0.0);
     let stopped = depth.min(nearing).max(0.0);
-    let released = (depth - LEFT * pair.thickness - came).clamp(0.0, RELEASE * dt);
+    let older = depth - LEFT * pair.thickness - came;
+    let released = (RELEASED * older).clamp(0.0, RELEASE * dt);
     let least = (KEPT * pair.thickness - gap - came - released).max(0.0);
     let pushed = (came + released + least) / mobility;
     let slowed = (stopped + released) / mobility;
-    let held = |slid: Vec3A, pressed: f32| {
-        let tangential = slid - normal * normal.dot(slid);
-        let (square, most) = (tangential.length_squared(), pair.friction * pressed);
-        let grip = if square > most * most {
-            most / square.sqrt()
-        } else {
-            1.0
-        };
-        tangential * (-grip / free)
+    // What friction takes from the velocity has not moved in this sub-step either: otherwise it creeps.
+    let slid = motion - normal * normal.dot(motion);
+    let (square, most) = (slid.length_squared(), pair.friction * (stopped + released));
+    let grip = if square > most * most {
+        most / square.sqrt()
+    } else {
+        1.0
     };
-    let place = normal * pushed + held(between - start, came + released);
-    let moved = normal * slowed + held(motion, stopped + released);
+    let friction = slid * (-grip / free);
+    let place = normal * pushed + friction;
+    let moved = normal * slowed + friction;
     for (index, member) in pair.members.into_iter().enumerate() {
         let state = &mut members.states[member as usize];
         let (along, share) = (along[index], weights[index] * state.inverse_mass);
