@@ -1,6 +1,6 @@
 //! What a push gives and takes.
 
-use bevy::math::{DVec3, Quat, Vec3};
+use bevy::math::{DVec3, Vec3};
 
 use super::{Scene, Sheeted};
 
@@ -120,41 +120,5 @@ fn layers_slide_from_the_angle_of_friction_on() {
         } else {
             assert!(speed.abs() < 2.0e-3, "{slope}: {speed} m/s");
         }
-    }
-}
-
-/// Three sheets on one that leans by less than the angle of friction.
-#[test]
-fn a_stack_on_a_slope_does_not_creep() {
-    let lean = |at: Vec3| {
-        let (sin, cos) = 0.2_f32.atan().sin_cos();
-        Vec3::new(at.x * cos - at.y * sin, at.x * sin + at.y * cos, at.z)
-    };
-    let mut cloths = vec![Sheeted::new(15, 1.4, lean)];
-    cloths.extend((1..4).map(|layer| {
-        let above = Vec3::new(0.2, 0.0099 * layer as f32, 0.0);
-        let turn = Quat::from_rotation_y(0.3 * layer as f32);
-        Sheeted::new(5, 0.3, move |at| lean(turn * at + above))
-    }));
-    let mut scene = Scene::new(cloths, 0.01);
-    let fixed = &mut scene.cloths[0].particles;
-    for index in 0..fixed.len() {
-        fixed.set_inverse_mass(index, 0.0).expect("it exists");
-    }
-    let middle = |cloth: &Sheeted| {
-        let places = cloth.particles.positions();
-        places.sum::<Vec3>() / cloth.particles.len() as f32
-    };
-    let mut tick = |times: usize| {
-        for _ in 0..times {
-            scene.tick(|_, _, _| {});
-        }
-        let above = &scene.cloths[1..];
-        above.iter().map(middle).collect::<Vec<_>>()
-    };
-    let before = tick(120);
-    let after = tick(600);
-    for (before, after) in before.iter().zip(&after) {
-        println!("{:.3} mm", 1.0e3 * before.distance(*after));
     }
 }
