@@ -102,7 +102,7 @@ pub(crate) struct MutualContact {
     near: NearFeatures,
     /// The pairs that may touch in the sub-step.
     contacts: Vec<NearPair>,
-    too_near: Vec<u32>,
+    overlapping: Vec<u32>,
     members: Members,
     zones: Zones,
     /// The pushes that hold particles between tests.
@@ -288,8 +288,8 @@ impl MutualContact {
             self.counts.take(WORK_OF_CONTACT * self.contacts.len());
             let mut has_moved = false;
             if round == 0 {
-                let (too_near, members) = (&mut self.too_near, &mut self.members);
-                has_moved = push(&self.contacts, too_near, members, dt);
+                let (overlapping, members) = (&mut self.overlapping, &mut self.members);
+                has_moved = push(&self.contacts, overlapping, members, dt);
                 self.counts.has_touched |= has_moved;
             }
             let (members, work) = (&mut self.members, &mut self.counts.work);

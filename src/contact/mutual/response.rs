@@ -4,8 +4,8 @@ use bevy::math::Vec3A;
 
 use super::{members::Members, pair::NearPair};
 
-/// Number of times that all pairs are pushed in a sub-step: the weight of a pile has to reach the floor through its
-/// layers. With 1, ten sheets shake each other by so much that friction does not hold them.
+/// Number of times that overlapping pairs are pushed in a sub-step: the weight of a pile has to reach the floor through its layers.
+/// With 1, ten sheets shake each other by so much that friction does not hold them.
 const PASSES: usize = 3;
 
 /// Fraction of an older overlap that is released in a pass, and the largest release speed (m/s). It counts as motion: in
@@ -23,10 +23,8 @@ const LEFT: f32 = 0.04;
 /// Fraction of the thickness that is restored at once, in the same sub-step.
 const KEPT: f32 = 0.3;
 
-/// Pairs are pushed again if they are still nearer than the first fraction of their thickness. Only pairs that were
-/// nearer than the second fraction before are tested: others are hardly pushed that far.
+/// At last, pairs are pushed again that are still nearer than this fraction of their thickness.
 const AGAIN: f32 = 0.5;
-const LISTED: f32 = 0.75;
 
 /// Number of interleaved groups of pairs: neighbouring pairs share particles, and would have to wait for each other.
 const APART: usize = 4;
@@ -34,33 +32,34 @@ const APART: usize = 4;
 /// Smallest fraction of a pair's mobility that colliders must leave.
 const LEAST_FREE: f32 = 0.01;
 
-/// Pushes near pairs apart. Lists those that were much too near. Returns whether any touched.
+/// Pushes near pairs apart. Lists those that overlap by more than layers at rest. Returns whether any touched.
 pub(super) fn push(
     pairs: &[NearPair],
-    listed: &mut Vec<u32>,
+    overlapping: &mut Vec<u32>,
     members: &mut Members,
     dt: f32,
 ) -> bool {
-    listed.clear();
+    overlapping.clear();
     let mut has_touched = false;
     let part = pairs.len().div_ceil(APART);
     let order = (0..part).flat_map(|first| (first..pairs.len()).step_by(part));
-    for pass in 0..PASSES {
-        for index in order.clone() {
-            let pair = &pairs[index];
-            if pair.is_pushed
-                && let Some(gap) = push_pair(pair, pair.thickness, members, dt)
-            {
-                has_touched = true;
-                if pass == 0 && gap < LISTED * pair.thickness {
-                    listed.push(index as u32);
-                }
+    for index in order {
+        let pair = &pairs[index];
+        if pair.is_pushed
+            && let Some(gap) = push_pair(pair, pair.thickness, members, dt)
+        {
+            has_touched = true;
+            if gap < (1.0 - LEFT) * pair.thickness {
+                overlapping.push(index as u32);
             }
         }
     }
-    for &index in &*listed {
-        let pair = &pairs[index as usize];
-        push_pair(pair, AGAIN * pair.thickness, members, dt);
+    let floors = (1..PASSES).map(|_| 1.0).chain([AGAIN]);
+    for floor in floors {
+        for &index in &*overlapping {
+            let pair = &pairs[index as usize];
+            push_pair(pair, floor * pair.thickness, members, dt);
+        }
     }
     has_touched
 }
