@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use clap::{CommandFactory, FromArgMatches, Parser};
+use clap::{CommandFactory, FromArgMatches, Parser, parser::ValueSource};
 
 use super::{stage::Grid, view::View};
 
@@ -35,6 +35,9 @@ pub struct Options {
     pub json: bool,
 }
 
+/// The options of headless runs.
+const HEADLESS: [&str; 6] = ["seconds", "out", "frames", "from", "to", "json"];
+
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
@@ -64,13 +67,19 @@ impl Example {
             .name(self.name)
             .about(self.about)
             .mut_arg("seconds", |seconds| seconds.default_value(self.seconds));
-        let options = match Options::from_arg_matches(&command.get_matches()) {
+        let matches = command.get_matches();
+        let options = match Options::from_arg_matches(&matches) {
             Ok(options) => options,
             Err(error) => error.exit(),
         };
         let grid = Grid(options.particles.unwrap_or(self.particles));
         if !options.headless {
             if View::Window.can_be_had() {
+                for option in HEADLESS {
+                    if matches.value_source(option) == Some(ValueSource::CommandLine) {
+                        eprintln!("--{option} counts only with --headless.");
+                    }
+                }
                 return (self.window)(grid);
             }
             eprintln!("No window opens here: running headless.");

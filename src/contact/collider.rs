@@ -23,7 +23,7 @@ use crate::cloth::{ClothError, FARTHEST};
 ///
 /// Its velocity, and so its friction, comes from the change of its transform since the last tick. Move it in the
 /// cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To teleport it without a velocity,
-/// insert this component again.
+/// insert [`ClothTeleport`](crate::plugin::ClothTeleport).
 ///
 /// Fast colliders do not tunnel: if one moves farther in a sub-step than half of its thickness, it is tested along its
 /// whole path.

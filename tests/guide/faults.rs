@@ -1,7 +1,7 @@
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
-fn mend(faults: Query<(Entity, &Name, &ClothFault)>, mut commands: Commands) {
+fn mend(faults: Query<(Entity, &Name, &ClothFault), With<Cloth>>, mut commands: Commands) {
     for (entity, name, fault) in &faults {
         // sail: spacing (m) must be positive, not -0.1
         println!("{name}: {}", fault.error);
