@@ -1,4 +1,4 @@
-//! What experiments with apps share: the time of each tick, and the intersections of cloths after it.
+//! Measurements of apps: the time of each tick, and the intersections of cloths after it.
 
 use std::time::Instant;
 

@@ -222,7 +222,7 @@ fn what_was_found_may_be_forgotten() {
 }
 
 /// They lie across each other, turned by this angle from one to the next (rad), and fall asleep within this many ticks
-/// of landing. A minute later none has moved.
+/// of the drop. A minute later none has moved.
 fn pile_sleeps(turn: f32, ticks: usize) {
     let mut app = app();
     app.world_mut().spawn(ClothCollider::plane());

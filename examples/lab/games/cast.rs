@@ -1,4 +1,4 @@
-//! What scenes are made of: cloths with layers or without, things that follow a path, and where particles begin.
+//! Parts of scenes: cloths with layers or without, things that follow a path, and where particles begin.
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;

@@ -1,15 +1,16 @@
-//! What happens near cloths, in an app without a renderer: the time of all of the plugin's systems in a tick.
+//! Cloths and a ball in an app without a renderer: the time of all of the plugin's systems in a tick.
 
-use std::time::Instant;
-
-use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, time::TimeUpdateStrategy};
+use bevy::prelude::*;
 use bevy_drape::{
     hierarchy::{Probe, brute_force},
     prelude::*,
 };
 
 use super::{INSIDE, Row};
-use crate::experiment::Run;
+use crate::{
+    experiment::Run,
+    timed::{Clock, TimedTicks},
+};
 
 pub const ONE: &str = "one cloth, 64²";
 pub const FAR: &str = "awake, ball far";
@@ -26,10 +27,6 @@ pub const ALL_ASLEEP: &str = "all asleep";
 const RADIUS: f32 = 0.3;
 /// Deeper than rounding (m).
 const DEEP: f32 = 1.0e-5;
-
-/// When the plugin's systems began in this tick, and how long they took (s).
-#[derive(Resource)]
-struct Clock(Instant, f64);
 
 /// An app with cloths and one ball.
 struct Stage {
@@ -49,18 +46,7 @@ impl Stage {
     fn new(place: fn(u32) -> Vec3, cloths: u32, cloth: &Cloth, sleeps: bool) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .insert_resource(Clock(Instant::now(), 0.0))
-            .edit_schedule(FixedUpdate, |schedule| {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            })
-            .add_systems(
-                FixedUpdate,
-                (
-                    start.before(ClothSystems::Prepare),
-                    stop.after(ClothSystems::WriteBack),
-                ),
-            );
+            .add_plugins(TimedTicks);
         let material = ClothMaterial {
             damping: 0.1,
             ..default()
@@ -127,8 +113,8 @@ impl Stage {
     /// A tick, with its time, and a look at what the ball has not pushed out.
     fn turn(&mut self) {
         self.update();
-        let seconds = self.app.world().resource::<Clock>().1;
-        self.ms.push(1.0e3 * seconds);
+        let times = &self.app.world().resource::<Clock>().1;
+        self.ms.extend(times.last());
         let centre = (self.place)(self.tick);
         let world = self.app.world_mut();
         let mut cloths =
@@ -145,14 +131,6 @@ impl Stage {
     fn row(&self, scene: &str, choice: &str) -> Row {
         Row::new(scene, choice, &self.ms, (self.left_inside as f64, INSIDE))
     }
-}
-
-fn start(mut clock: ResMut<Clock>) {
-    clock.0 = Instant::now();
-}
-
-fn stop(mut clock: ResMut<Clock>) {
-    clock.1 = clock.0.elapsed().as_secs_f64();
 }
 
 fn far(_: u32) -> Vec3 {

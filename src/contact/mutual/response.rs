@@ -4,8 +4,8 @@ use bevy::math::Vec3A;
 
 use super::{members::Members, pair::NearPair};
 
-/// Number of times that overlapping pairs are pushed in a sub-step: the weight of a pile has to reach the floor through its layers.
-/// With 1, ten sheets shake each other by so much that friction does not hold them.
+/// Number of times that overlapping pairs are pushed in a sub-step: the weight of a pile has to reach the floor through
+/// its layers. With 1, ten sheets shake each other by so much that friction does not hold them.
 const PASSES: usize = 3;
 
 /// Fraction of an older overlap that is released in a pass, and the largest release speed (m/s). It counts as motion: in
@@ -116,7 +116,7 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
     let least = (KEPT * pair.thickness - gap - came - released).max(0.0);
     let pushed = (came + released + least) / mobility;
     let slowed = (stopped + released) / mobility;
-    // What friction takes from the velocity has not moved in this sub-step either: otherwise it creeps.
+    // Friction changes the velocity and the way in this sub-step alike: otherwise layers creep.
     let slid = motion - normal * normal.dot(motion);
     let (square, most) = (slid.length_squared(), pair.friction * (stopped + released));
     let grip = if square > most * most {
