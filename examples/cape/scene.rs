@@ -123,6 +123,7 @@ fn dress(
                 tethers: true,
                 ..ClothSettings::substeps(24)
             },
+            ClothSelfCollision::default(),
             ShowClothGizmos::nothing(),
             MeshMaterial3d(materials.add(StandardMaterial {
                 uv_transform: Affine2::from_scale(Vec2::new(2.0, 1.0)),

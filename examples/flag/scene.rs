@@ -116,6 +116,7 @@ fn spawn_flag(
             ..ClothMaterial::COTTON
         },
         ClothSettings::substeps(20),
+        ClothSelfCollision::default(),
         MeshMaterial3d(materials.add(stripes)),
         ShowClothGizmos::nothing(),
         Transform::from_xyz(0.0, TOP, 0.0),

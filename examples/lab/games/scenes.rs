@@ -20,7 +20,7 @@ pub struct Scene {
 }
 
 /// All scenes.
-pub const SCENES: [Scene; 21] = [
+pub const SCENES: [Scene; 24] = [
     scene("cape behind a runner", 240, cape),
     scene("flag, 8 to 15 m/s", 240, flag),
     scene("skirt, 3,072 vertices", 240, |world, layers| {
@@ -42,7 +42,21 @@ pub const SCENES: [Scene; 21] = [
     scene("tablecloth on a cylinder", 240, |world, layers| {
         tablecloth(world, layers, ClothCollider::cylinder(0.5, 0.1));
     }),
-    scene("32² on 40²", 240, on_another),
+    scene("32² on 40²", 240, |world, layers| {
+        let falls = Cloth::new(32, 32, 0.025).lying().centred();
+        on_another(world, layers, 40, falls);
+    }),
+    scene("16² on 64²", 240, |world, layers| {
+        let falls = Cloth::new(16, 16, 0.05).lying().centred();
+        on_another(world, layers, 64, falls);
+    }),
+    scene("mesh on grid, 32² on 40²", 240, |world, layers| {
+        let square = Plane3d::default().mesh().size(0.775, 0.775);
+        let square = Mesh::from(square.subdivisions(30));
+        let square = world.resource_mut::<Assets<Mesh>>().add(square);
+        on_another(world, layers, 40, (Cloth::mesh(), Mesh3d(square)));
+    }),
+    scene("towel on a sheet asleep", 300, lowered),
     inside(scene("panels, edges meet", 180, |world, layers| {
         panels(world, layers, 0.0);
     })),
@@ -117,26 +131,35 @@ fn tablecloth(world: &mut World, layers: &Layers, table: ClothCollider) {
     );
 }
 
-/// A sheet falls on one that hangs by its corners.
-fn on_another(world: &mut World, layers: &Layers) {
-    let hung = Cloth::new(40, 40, 0.025).lying().centred();
-    layers.spawn(
-        world,
-        (
-            hung,
-            Pins::new([
-                Pin::Cell(0, 0),
-                Pin::Cell(0, 39),
-                Pin::Cell(39, 0),
-                Pin::Cell(39, 39),
-            ]),
-            Transform::default(),
-        ),
-    );
+/// A sheet falls on one of `side`² particles that hangs by its corners.
+fn on_another(world: &mut World, layers: &Layers, side: u32, falls: impl Bundle) {
+    let last = side - 1;
+    let hung = Cloth::new(side, side, 0.975 / last as f32);
+    let corners = [0, last].map(|row| [0, last].map(|column| Pin::Cell(row, column)));
+    let hung = (hung.lying().centred(), Pins::new(corners.concat()));
+    layers.spawn(world, (hung, Transform::default()));
     let turn = Quat::from_euler(EulerRot::XYZ, 0.1, 0.45, 0.05);
     let place = Transform::from_xyz(0.05, 0.2, 0.02).with_rotation(turn);
-    let falls = Cloth::new(32, 32, 0.025).lying().centred();
     layers.spawn(world, (falls, Pins::none(), place));
+}
+
+/// A towel is lowered on a sheet that sleeps on the floor.
+fn lowered(world: &mut World, layers: &Layers) {
+    world.spawn(ClothCollider::plane());
+    let sheet = Cloth::new(32, 32, 0.04).lying().centred();
+    let place = Transform::from_xyz(0.0, 0.01, 0.0);
+    let sheet = layers.spawn(world, (sheet, Pins::none(), place));
+    world.entity_mut(sheet).insert(ClothSettings::default());
+    let path = |seconds: f32, _: usize| {
+        let height = (1.4 - 0.4 * seconds).max(0.02);
+        Transform::from_xyz(0.0, height, 0.0)
+    };
+    let hand = world.spawn((path(0.0, 0), Path(path, 0))).id();
+    let held = ClothAttachments::new([(Pin::Row(0), hand)]);
+    let towel = Cloth::new(24, 24, 0.03).centred();
+    // It hangs from the hand.
+    let place = Transform::from_xyz(0.0, 1.4 - 0.345, 0.0);
+    layers.spawn(world, (towel, Pins::none(), held, place));
 }
 
 /// Two panels of a curtain whose tops are held.

@@ -17,13 +17,6 @@ impl Bounds {
         max: Vec3A::NEG_INFINITY,
     };
 
-    pub fn at(point: Vec3A) -> Self {
-        Self {
-            min: point,
-            max: point,
-        }
-    }
-
     pub fn with(&self, point: Vec3A) -> Self {
         Self {
             min: self.min.min(point),

@@ -32,6 +32,8 @@ const MET: f32 = 1.0e-7;
 pub(super) struct Zones {
     parent: Vec<u32>,
     sums: Vec<Sum>,
+    /// The first round after a member's last motion: pairs of others need no second test.
+    moved: Vec<u32>,
 }
 
 /// Sums over a zone.
@@ -50,17 +52,23 @@ impl Zones {
     /// the tests from `work`.
     pub fn certify(&mut self, pairs: &[NearPair], members: &mut Members, work: &mut usize) -> bool {
         let (mut has_zones, mut has_moved) = (false, false);
+        self.moved.clear();
+        self.moved.resize(members.len(), 0);
         for round in 0..PUSHES + ZONES {
-            let mut is_certain = true;
-            *work = work.saturating_sub(2 * pairs.len());
-            if *work == 0 {
-                break;
-            }
+            let (mut is_certain, mut tests) = (true, 0);
             for pair in pairs {
+                let has_moved_since = |&member: &u32| self.moved[member as usize] >= round;
+                if !pair.members.iter().any(has_moved_since) {
+                    continue;
+                }
+                tests += 1;
                 let Some(lack) = lack(pair, members) else {
                     continue;
                 };
                 (is_certain, has_moved) = (false, true);
+                for member in pair.members {
+                    self.moved[member as usize] = round + 1;
+                }
                 if round < PUSHES {
                     part(pair, lack, members);
                 } else {
@@ -75,8 +83,12 @@ impl Zones {
                 break;
             }
             if has_zones {
-                *work = work.saturating_sub(4 * members.len());
-                self.move_as_one(members);
+                tests += 2 * members.len();
+                self.move_as_one(members, round + 1);
+            }
+            *work = work.saturating_sub(pairs.len() / 2 + 2 * tests);
+            if *work == 0 {
+                break;
             }
         }
         has_moved
@@ -104,8 +116,9 @@ impl Zones {
         }
     }
 
-    /// Moves each zone from its start by the mean of its motions, which conserves momentum, or with its pins.
-    fn move_as_one(&mut self, members: &mut Members) {
+    /// Moves each zone from its start by the mean of its motions, which conserves momentum, or with its pins. The `round`
+    /// is the next one.
+    fn move_as_one(&mut self, members: &mut Members, round: u32) {
         let count = members.len() as u32;
         self.sums.clear();
         self.sums.resize(count as usize, Sum::default());
@@ -137,6 +150,7 @@ impl Zones {
             } else {
                 sum.momentum / sum.mass
             };
+            self.moved[index] = round;
             let state = &mut members.states[index];
             state.place = state.start + moved;
             state.moved = moved;

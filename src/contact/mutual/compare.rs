@@ -28,13 +28,14 @@ const MOST_AHEAD: f32 = 0.5;
 /// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
 const ENOUGH: f32 = 2.0;
 
-/// Compares two patches, and lists their near features.
+/// Compares two patches, and lists their near features. `near` is memory.
 pub(super) fn compare(
     pair: &mut PatchPair,
     cloths: &[Participant],
     motion: &Motion,
     place: &Place,
     candidates: &mut Vec<Candidate>,
+    near: &mut [Vec<u16>; 2],
     work: &mut usize,
 ) {
     let Place {
@@ -71,9 +72,11 @@ pub(super) fn compare(
         listed: listed + tolerance,
         least: f32::INFINITY,
         candidates,
+        near,
+        compared: 0,
     };
-    *work = work.saturating_sub(features.count() / 2);
     features.compare();
+    *work = work.saturating_sub(features.compared / 2);
     // Edges have a smaller thickness. But all that are not listed are apart by more than `listed`.
     let apart = features.least.sqrt() - thickness - tolerance;
     pair.slack = apart.max(listed).min(LONGEST * listed);
@@ -121,11 +124,16 @@ impl<'a> Side<'a> {
         self.particles[usize::from(local)]
     }
 
+    fn bounds<const N: usize>(&self, feature: [u16; N]) -> Bounds {
+        let add = |bounds: Bounds, local: &u16| bounds.with(self.place(*local));
+        feature.iter().fold(Bounds::EMPTY, add)
+    }
+
     /// The points of up to eight features; the last one fills the rest.
-    fn points<const N: usize>(&self, features: &[[u16; N]]) -> [Points; N] {
+    fn points<const N: usize>(&self, features: &[[u16; N]], of: &[u16]) -> [Points; N] {
         let mut points = [[[0.0; 8]; 3]; N];
         for l in 0..8 {
-            let feature = features[l.min(features.len() - 1)];
+            let feature = features[usize::from(of[l.min(of.len() - 1)])];
             for (point, local) in points.iter_mut().zip(feature) {
                 let place = self.place(local);
                 (point[0][l], point[1][l], point[2][l]) = (place.x, place.y, place.z);
@@ -146,19 +154,13 @@ struct Features<'a> {
     /// The least squared distance of others (m²).
     least: f32,
     candidates: &'a mut Vec<Candidate>,
+    /// The features of each side that are near the other one.
+    near: &'a mut [Vec<u16>; 2],
+    /// Number of pairs of features compared.
+    compared: usize,
 }
 
 impl Features<'_> {
-    /// Number of pairs of features.
-    fn count(&self) -> usize {
-        let [a, b] = self.sides.each_ref().map(|side| {
-            let vertices = usize::from(side.sheet.owned_of(side.patch));
-            let faces = side.sheet.faces_of(side.patch).len();
-            [vertices, faces, side.sheet.edges_of(side.patch).len()]
-        });
-        a[0] * b[1] + b[0] * a[1] + a[2] * b[2]
-    }
-
     fn compare(&mut self) {
         self.vertices_with_faces([0, 1]);
         if !self.is_one_patch {
@@ -167,15 +169,21 @@ impl Features<'_> {
         self.edges_with_edges();
     }
 
-    /// Whether a feature within these bounds is too far from the other patch for its features to be listed.
-    fn is_far(&mut self, bounds: Bounds, other: usize) -> bool {
-        let square = bounds.distance_squared(&self.sides[other].bounds);
+    /// Finds the features of a side, from their bounds, that are not too far from the other patch to be listed.
+    fn find_near(&mut self, side: usize, features: impl Iterator<Item = Bounds>) {
         let far = self.listed + self.thickness;
-        let is_far = square > far * far;
-        if is_far {
-            self.least = self.least.min(square);
+        let other = &self.sides[1 - side].bounds;
+        let near = &mut self.near[side];
+        near.clear();
+        for (index, bounds) in features.enumerate() {
+            let square = bounds.distance_squared(other);
+            if square > far * far {
+                self.least = self.least.min(square);
+            } else {
+                // Also for NaN.
+                near.push(index as u16);
+            }
         }
-        is_far
     }
 
     /// Takes the squared distances of a feature from the first `count` of eight (m²): calls `list` with those that are
@@ -188,12 +196,23 @@ impl Features<'_> {
         mut list: impl FnMut(&mut Self, usize),
     ) {
         let far = self.listed + thickness;
-        for (l, &square) in squares.iter().enumerate().take(count) {
-            if square > far * far {
-                self.least = self.least.min(square);
+        let (mut least, mut are_far) = (self.least, true);
+        for square in squares {
+            let is_far = square > far * far;
+            least = if is_far && square < least {
+                square
             } else {
+                least
+            };
+            are_far &= is_far;
+        }
+        self.least = least;
+        if !are_far {
+            for (l, &square) in squares.iter().enumerate().take(count) {
                 // Also for NaN.
-                list(self, l);
+                if !(square > far * far) {
+                    list(self, l);
+                }
             }
         }
     }
@@ -201,16 +220,23 @@ impl Features<'_> {
     fn vertices_with_faces(&mut self, [own_side, other_side]: [usize; 2]) {
         let sides = self.sides;
         let [own, other] = [&sides[own_side], &sides[other_side]];
-        for faces in other.sheet.faces_of(other.patch).chunks(8) {
-            let points = other.points(faces);
-            for local in 0..own.sheet.owned_of(own.patch) {
+        let vertices = 0..own.sheet.owned_of(own.patch);
+        self.find_near(own_side, vertices.map(|local| own.bounds([local])));
+        if self.near[own_side].is_empty() {
+            return;
+        }
+        let faces = other.sheet.faces_of(other.patch);
+        self.find_near(other_side, faces.iter().map(|face| other.bounds(*face)));
+        let near = std::mem::take(self.near);
+        self.compared += near[0].len() * near[1].len();
+        for indices in near[other_side].chunks(8) {
+            let points = other.points(faces, indices);
+            for &local in &near[own_side] {
                 let (vertex, place) = (own.particle(local), own.place(local));
-                if self.is_far(Bounds::at(place), other_side) {
-                    continue;
-                }
                 let squares = vertex_to_faces(place, &points);
-                self.sort(squares, faces.len(), self.thickness, |features, l| {
-                    let corners = faces[l].map(|corner| other.particle(corner));
+                self.sort(squares, indices.len(), self.thickness, |features, l| {
+                    let face = faces[usize::from(indices[l])];
+                    let corners = face.map(|corner| other.particle(corner));
                     if features.is_one_cloth && corners.contains(&vertex) {
                         return;
                     }
@@ -224,23 +250,30 @@ impl Features<'_> {
                 });
             }
         }
+        *self.near = near;
     }
 
     fn edges_with_edges(&mut self) {
         let [own, other] = self.sides;
+        let edges = [own, other].map(|side| side.sheet.edges_of(side.patch));
+        self.find_near(0, edges[0].iter().map(|edge| own.bounds(*edge)));
+        if self.near[0].is_empty() {
+            return;
+        }
+        self.find_near(1, edges[1].iter().map(|edge| other.bounds(*edge)));
+        let near = std::mem::take(self.near);
+        self.compared += near[0].len() * near[1].len();
         let wanted = EDGES * self.thickness;
-        for (chunk, seconds) in other.sheet.edges_of(other.patch).chunks(8).enumerate() {
-            let points = other.points(seconds);
-            for (index, &first) in own.sheet.edges_of(own.patch).iter().enumerate() {
-                let ends = first.map(|end| own.particle(end));
-                let places = first.map(|end| own.place(end));
-                if self.is_far(Bounds::at(places[0]).with(places[1]), 1) {
-                    continue;
-                }
-                let squares = edge_to_edges(places, &points);
-                self.sort(squares, seconds.len(), wanted, |features, l| {
-                    let others = seconds[l].map(|end| other.particle(end));
-                    let is_known = features.is_one_patch && 8 * chunk + l <= index;
+        for indices in near[1].chunks(8) {
+            let points = other.points(edges[1], indices);
+            for &index in &near[0] {
+                let first = edges[0][usize::from(index)];
+                let squares = edge_to_edges(first.map(|end| own.place(end)), &points);
+                self.sort(squares, indices.len(), wanted, |features, l| {
+                    let ends = first.map(|end| own.particle(end));
+                    let second = edges[1][usize::from(indices[l])];
+                    let others = second.map(|end| other.particle(end));
+                    let is_known = features.is_one_patch && indices[l] <= index;
                     let is_joined =
                         features.is_one_cloth && ends.iter().any(|end| others.contains(end));
                     if is_known || is_joined {
@@ -256,6 +289,7 @@ impl Features<'_> {
                 });
             }
         }
+        *self.near = near;
     }
 
     /// Distance at which two features touch, from their squared distance at rest if they are of one cloth.

@@ -23,8 +23,9 @@
 //!    it has not passed, or it is stopped.
 //! 5. A push moves particles: 1 to 4 are done again, until nothing new is near.
 //!
-//! Cloths that begin intersected are left alone where they are, until they are apart. More work than the [limit](work) is not
-//! done, and reported. Resting layers are [held](hold) for a few sub-steps, while none can have come near enough to pass.
+//! Cloths that begin intersected are left alone where they are, until they are apart. More work than the [limit](work) is
+//! not done, and reported; the limit is lower while cloths that began intersected still are. Resting layers are
+//! [held](hold) for a few sub-steps, while none can have come near enough to pass.
 
 mod bounds;
 mod certificate;
@@ -152,6 +153,9 @@ impl MutualContact {
         let is_new = !(self.is_known && self.motion.is_of(cloths));
         if is_same && !is_new && !was_lost {
             self.near.begin_tick(&mut self.motion);
+            if self.near.is_tangled() {
+                self.counts.tighten(particles);
+            }
             let approach = self.last.passed.approach(cloths);
             if approach == 0.0 || approach <= self.last.free {
                 return;
@@ -165,7 +169,7 @@ impl MutualContact {
             self.motion.reset(cloths);
             self.rooms.reset(cloths, self.motion.patches.len());
             self.near.clear();
-            self.near.begins = is_new;
+            self.near.begins = is_new || was_lost;
             self.hold.clear(cloths);
             self.contacts.clear();
             (self.is_known, self.ticks_off) = (true, 0);
@@ -177,6 +181,9 @@ impl MutualContact {
             None => self.lose(),
         }
         self.near.begins = false;
+        if self.near.is_tangled() {
+            self.counts.tighten(particles);
+        }
     }
 
     /// Number of times that the features of two patches were compared in the tick.

@@ -35,6 +35,8 @@ pub(super) struct NearFeatures {
     soon: Vec<u32>,
     #[cfg_attr(feature = "serialize", serde(skip))]
     spare: Vec<Candidate>,
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    near: [Vec<u16>; 2],
     /// Whether the contacts have changed.
     pub has_changed: bool,
     /// Whether this is the first look at cloths that may be inside each other.
@@ -52,6 +54,11 @@ impl NearFeatures {
     /// Number of pairs of features that may touch.
     pub fn len(&self) -> usize {
         self.listed
+    }
+
+    /// Whether some patches began inside each other, and still are.
+    pub fn is_tangled(&self) -> bool {
+        self.pairs.iter().any(|pair| pair.is_tangled)
     }
 
     /// All pairs of features that may touch.
@@ -146,6 +153,7 @@ impl NearFeatures {
                     motion,
                     &place,
                     &mut self.candidates,
+                    &mut self.near,
                     &mut counts.work,
                 );
                 pair.count = (self.candidates.len() - first) as u32;
