@@ -135,7 +135,11 @@ impl Experiment for Games {
         let mut panel = Panel::new(
             "",
             Axis::log("ms a tick, log").between(0.02, 3000.0),
-            Axis::linear("scene").between(0.0, count + 1.0),
+            Axis::linear("").between(0.0, count + 1.0).named(
+                with.iter()
+                    .enumerate()
+                    .map(|(index, row)| (count - index as f64, row.scene.as_str())),
+            ),
         );
         let each = || {
             with.iter()
@@ -145,9 +149,7 @@ impl Experiment for Games {
         let points = |of: fn(&Row) -> f64| each().map(|(y, row)| [of(row), y]).collect::<Vec<_>>();
         for (y, row) in each() {
             let line = vec![[row.ms_without, y], [row.ms_max, y]];
-            panel = panel
-                .with(Series::new("", Look::Grey, Kind::Line, line))
-                .note([row.ms_max, y], row.scene.as_str());
+            panel = panel.with(Series::new("", Look::Grey, Kind::Line, line));
         }
         let panel = panel
             .with(Series::new(
