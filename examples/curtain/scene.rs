@@ -146,7 +146,6 @@ fn spawn_curtains(
                 ..ClothMaterial::COTTON
             },
             ClothSettings::substeps(24),
-            ClothSelfCollision::default(),
             MeshMaterial3d(fabric.clone()),
             ShowClothGizmos::nothing(),
             Transform::from_translation(wall).with_rotation(turn),

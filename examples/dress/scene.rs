@@ -142,7 +142,6 @@ fn spawn_figure(
             ..ClothMaterial::COTTON
         },
         ClothSettings::substeps(24),
-        ClothSelfCollision::default(),
         ShowClothGizmos::nothing(),
         MeshMaterial3d(materials.add(StandardMaterial {
             // As long around as from the waist to the hem.

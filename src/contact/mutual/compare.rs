@@ -209,10 +209,11 @@ impl Features<'_> {
         self.least = least;
         if !are_far {
             for (l, &square) in squares.iter().enumerate().take(count) {
-                // Also for NaN.
-                if !(square > far * far) {
-                    list(self, l);
+                // NaN is listed.
+                if square > far * far {
+                    continue;
                 }
+                list(self, l);
             }
         }
     }
