@@ -32,8 +32,9 @@ const MET: f32 = 1.0e-7;
 pub(super) struct Zones {
     parent: Vec<u32>,
     sums: Vec<Sum>,
-    /// The first round after a member's last motion: pairs of others need no second test.
-    moved: Vec<u32>,
+    /// Of each member the last round in which its pairs have to be tested: the one after it was moved.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    retest_in: Vec<u32>,
 }
 
 /// Sums over a zone.
@@ -52,13 +53,13 @@ impl Zones {
     /// the tests from `work`.
     pub fn certify(&mut self, pairs: &[NearPair], members: &mut Members, work: &mut usize) -> bool {
         let (mut has_zones, mut has_moved) = (false, false);
-        self.moved.clear();
-        self.moved.resize(members.len(), 0);
+        self.retest_in.clear();
+        self.retest_in.resize(members.len(), 0);
         for round in 0..PUSHES + ZONES {
             let (mut is_certain, mut tests) = (true, 0);
             for pair in pairs {
-                let has_moved_since = |&member: &u32| self.moved[member as usize] >= round;
-                if !pair.members.iter().any(has_moved_since) {
+                let is_due = |&member: &u32| self.retest_in[member as usize] >= round;
+                if !pair.members.iter().any(is_due) {
                     continue;
                 }
                 tests += 1;
@@ -67,7 +68,7 @@ impl Zones {
                 };
                 (is_certain, has_moved) = (false, true);
                 for member in pair.members {
-                    self.moved[member as usize] = round + 1;
+                    self.retest_in[member as usize] = round + 1;
                 }
                 if round < PUSHES {
                     part(pair, lack, members);
@@ -79,15 +80,12 @@ impl Zones {
                     self.join(pair.members);
                 }
             }
-            if is_certain {
-                break;
-            }
-            if has_zones {
+            if has_zones && !is_certain {
                 tests += 2 * members.len();
                 self.move_as_one(members, round + 1);
             }
             *work = work.saturating_sub(pairs.len() / 2 + 2 * tests);
-            if *work == 0 {
+            if is_certain || *work == 0 {
                 break;
             }
         }
@@ -116,9 +114,8 @@ impl Zones {
         }
     }
 
-    /// Moves each zone from its start by the mean of its motions, which conserves momentum, or with its pins. The `round`
-    /// is the next one.
-    fn move_as_one(&mut self, members: &mut Members, round: u32) {
+    /// Moves each zone from its start by the mean of its motions, which conserves momentum, or with its pins.
+    fn move_as_one(&mut self, members: &mut Members, next_round: u32) {
         let count = members.len() as u32;
         self.sums.clear();
         self.sums.resize(count as usize, Sum::default());
@@ -150,7 +147,7 @@ impl Zones {
             } else {
                 sum.momentum / sum.mass
             };
-            self.moved[index] = round;
+            self.retest_in[index] = next_round;
             let state = &mut members.states[index];
             state.place = state.start + moved;
             state.moved = moved;

@@ -4,6 +4,7 @@ use bevy::math::{Vec3, Vec3A};
 
 use super::{
     bounds::Bounds,
+    intersections::passes,
     lanes::{Eight, Points, edge_to_edges, vertex_to_faces},
     motion::Motion,
     pair::{Nearest, TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
@@ -28,14 +29,14 @@ const MOST_AHEAD: f32 = 0.5;
 /// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
 const ENOUGH: f32 = 2.0;
 
-/// Compares two patches, and lists their near features. `near` is memory.
+/// Compares two patches, and lists their near features. `culled` is scratch: its contents do not matter.
 pub(super) fn compare(
     pair: &mut PatchPair,
     cloths: &[Participant],
     motion: &Motion,
     place: &Place,
     candidates: &mut Vec<Candidate>,
-    near: &mut [Vec<u16>; 2],
+    culled: &mut [Vec<u32>; 2],
     work: &mut usize,
 ) {
     let Place {
@@ -72,14 +73,47 @@ pub(super) fn compare(
         listed: listed + tolerance,
         least: f32::INFINITY,
         candidates,
-        near,
-        compared: 0,
+        culled,
+        tests: 0,
     };
     features.compare();
-    *work = work.saturating_sub(features.compared / 2);
+    *work = work.saturating_sub(features.tests / 2);
     // Edges have a smaller thickness. But all that are not listed are apart by more than `listed`.
     let apart = features.least.sqrt() - thickness - tolerance;
     pair.slack = apart.max(listed).min(LONGEST * listed);
+}
+
+/// Whether an edge of one patch passes through a face of the other at the beginning of the sub-step.
+pub(super) fn cross(
+    pair: &PatchPair,
+    cloths: &[Participant],
+    motion: &Motion,
+    work: &mut usize,
+) -> bool {
+    let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
+    if !sides[0].bounds.overlaps(&sides[1].bounds) {
+        return false;
+    }
+    let [a, b] = pair.of.map(|patch| motion.patches[patch as usize].cloth);
+    [[0, 1], [1, 0]].iter().any(|of| {
+        let [own, other] = of.map(|side| &sides[side]);
+        let edges = own.sheet.edges_of(own.patch);
+        let faces = other.sheet.faces_of(other.patch);
+        *work = work.saturating_sub(edges.len() * faces.len());
+        edges.iter().any(|edge| {
+            let bounds = own.bounds(*edge);
+            let ends = edge.map(|end| own.particle(end));
+            let places = edge.map(|end| own.place(end).as_dvec3());
+            bounds.overlaps(&other.bounds)
+                && faces.iter().any(|face| {
+                    let corners = face.map(|corner| other.particle(corner));
+                    let is_joined = a == b && ends.iter().any(|end| corners.contains(end));
+                    !is_joined
+                        && other.bounds(*face).overlaps(&bounds)
+                        && passes(places, face.map(|corner| other.place(corner).as_dvec3()))
+                })
+        })
+    })
 }
 
 /// Largest slack that is looked for, as a multiple of the distance up to which features are listed.
@@ -130,10 +164,10 @@ impl<'a> Side<'a> {
     }
 
     /// The points of up to eight features; the last one fills the rest.
-    fn points<const N: usize>(&self, features: &[[u16; N]], of: &[u16]) -> [Points; N] {
+    fn points<const N: usize>(&self, features: &[[u16; N]], of: &[u32]) -> [Points; N] {
         let mut points = [[[0.0; 8]; 3]; N];
         for l in 0..8 {
-            let feature = features[usize::from(of[l.min(of.len() - 1)])];
+            let feature = features[of[l.min(of.len() - 1)] as usize];
             for (point, local) in points.iter_mut().zip(feature) {
                 let place = self.place(local);
                 (point[0][l], point[1][l], point[2][l]) = (place.x, place.y, place.z);
@@ -154,10 +188,10 @@ struct Features<'a> {
     /// The least squared distance of others (m²).
     least: f32,
     candidates: &'a mut Vec<Candidate>,
-    /// The features of each side that are near the other one.
-    near: &'a mut [Vec<u16>; 2],
-    /// Number of pairs of features compared.
-    compared: usize,
+    /// The features of each side that are near the other patch's box.
+    culled: &'a mut [Vec<u32>; 2],
+    /// Number of boxes of features, and of pairs of features, that were compared.
+    tests: usize,
 }
 
 impl Features<'_> {
@@ -169,25 +203,25 @@ impl Features<'_> {
         self.edges_with_edges();
     }
 
-    /// Finds the features of a side, from their bounds, that are not too far from the other patch to be listed.
-    fn find_near(&mut self, side: usize, features: impl Iterator<Item = Bounds>) {
+    /// Culls the features of a side, from their bounds: keeps those that are near enough to the other patch to be listed.
+    fn cull(&mut self, side: usize, features: impl Iterator<Item = Bounds>) {
         let far = self.listed + self.thickness;
         let other = &self.sides[1 - side].bounds;
-        let near = &mut self.near[side];
+        let near = &mut self.culled[side];
         near.clear();
         for (index, bounds) in features.enumerate() {
             let square = bounds.distance_squared(other);
+            self.tests += 1;
             if square > far * far {
                 self.least = self.least.min(square);
             } else {
-                // Also for NaN.
-                near.push(index as u16);
+                near.push(index as u32);
             }
         }
     }
 
-    /// Takes the squared distances of a feature from the first `count` of eight (m²): calls `list` with those that are
-    /// to be listed.
+    /// Takes the squared distances of a feature from eight others (m²): calls `list` with those of the first `count` that
+    /// are to be listed. The rest repeats the last one.
     fn sort(
         &mut self,
         squares: Eight,
@@ -195,26 +229,27 @@ impl Features<'_> {
         thickness: f32,
         mut list: impl FnMut(&mut Self, usize),
     ) {
-        let far = self.listed + thickness;
-        let (mut least, mut are_far) = (self.least, true);
+        let far = (self.listed + thickness).powi(2);
+        let mut are_far = true;
         for square in squares {
-            let is_far = square > far * far;
-            least = if is_far && square < least {
-                square
-            } else {
+            let is_far = square > far;
+            let least = if is_far { square } else { f32::INFINITY };
+            self.least = if least < self.least {
                 least
+            } else {
+                self.least
             };
             are_far &= is_far;
         }
-        self.least = least;
-        if !are_far {
-            for (l, &square) in squares.iter().enumerate().take(count) {
-                // NaN is listed.
-                if square > far * far {
-                    continue;
-                }
-                list(self, l);
+        if are_far {
+            return;
+        }
+        for (l, &square) in squares.iter().enumerate().take(count) {
+            // Not `square <= far`: NaN is listed.
+            if square > far {
+                continue;
             }
+            list(self, l);
         }
     }
 
@@ -222,21 +257,22 @@ impl Features<'_> {
         let sides = self.sides;
         let [own, other] = [&sides[own_side], &sides[other_side]];
         let vertices = 0..own.sheet.owned_of(own.patch);
-        self.find_near(own_side, vertices.map(|local| own.bounds([local])));
-        if self.near[own_side].is_empty() {
+        self.cull(own_side, vertices.map(|local| own.bounds([local])));
+        if self.culled[own_side].is_empty() {
             return;
         }
         let faces = other.sheet.faces_of(other.patch);
-        self.find_near(other_side, faces.iter().map(|face| other.bounds(*face)));
-        let near = std::mem::take(self.near);
-        self.compared += near[0].len() * near[1].len();
+        self.cull(other_side, faces.iter().map(|face| other.bounds(*face)));
+        let near = std::mem::take(self.culled);
+        self.tests += near[0].len() * near[1].len();
         for indices in near[other_side].chunks(8) {
             let points = other.points(faces, indices);
-            for &local in &near[own_side] {
-                let (vertex, place) = (own.particle(local), own.place(local));
+            for &index in &near[own_side] {
+                let vertex = own.particles[index as usize];
+                let place = own.places[vertex as usize];
                 let squares = vertex_to_faces(place, &points);
                 self.sort(squares, indices.len(), self.thickness, |features, l| {
-                    let face = faces[usize::from(indices[l])];
+                    let face = faces[indices[l] as usize];
                     let corners = face.map(|corner| other.particle(corner));
                     if features.is_one_cloth && corners.contains(&vertex) {
                         return;
@@ -251,28 +287,28 @@ impl Features<'_> {
                 });
             }
         }
-        *self.near = near;
+        *self.culled = near;
     }
 
     fn edges_with_edges(&mut self) {
         let [own, other] = self.sides;
         let edges = [own, other].map(|side| side.sheet.edges_of(side.patch));
-        self.find_near(0, edges[0].iter().map(|edge| own.bounds(*edge)));
-        if self.near[0].is_empty() {
+        self.cull(0, edges[0].iter().map(|edge| own.bounds(*edge)));
+        if self.culled[0].is_empty() {
             return;
         }
-        self.find_near(1, edges[1].iter().map(|edge| other.bounds(*edge)));
-        let near = std::mem::take(self.near);
-        self.compared += near[0].len() * near[1].len();
+        self.cull(1, edges[1].iter().map(|edge| other.bounds(*edge)));
+        let near = std::mem::take(self.culled);
+        self.tests += near[0].len() * near[1].len();
         let wanted = EDGES * self.thickness;
         for indices in near[1].chunks(8) {
             let points = other.points(edges[1], indices);
             for &index in &near[0] {
-                let first = edges[0][usize::from(index)];
+                let first = edges[0][index as usize];
                 let squares = edge_to_edges(first.map(|end| own.place(end)), &points);
                 self.sort(squares, indices.len(), wanted, |features, l| {
                     let ends = first.map(|end| own.particle(end));
-                    let second = edges[1][usize::from(indices[l])];
+                    let second = edges[1][indices[l] as usize];
                     let others = second.map(|end| other.particle(end));
                     let is_known = features.is_one_patch && indices[l] <= index;
                     let is_joined =
@@ -290,7 +326,7 @@ impl Features<'_> {
                 });
             }
         }
-        *self.near = near;
+        *self.culled = near;
     }
 
     /// Distance at which two features touch, from their squared distance at rest if they are of one cloth.

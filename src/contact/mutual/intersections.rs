@@ -64,22 +64,22 @@ impl Triangle {
 
     /// Whether an edge of one passes through the other.
     fn intersects(&self, other: &Self) -> bool {
-        let passes = |a: &Self, b: &Self| {
+        let pass = |a: &Self, b: &Self| {
             let [p, q, r] = a.corners;
-            [[p, q], [q, r], [r, p]]
-                .into_iter()
-                .any(|edge| b.is_passed_by(edge))
+            let mut edges = [[p, q], [q, r], [r, p]].into_iter();
+            edges.any(|edge| passes(edge, b.corners))
         };
-        passes(self, other) || passes(other, self)
+        pass(self, other) || pass(other, self)
     }
+}
 
-    fn is_passed_by(&self, [p, q]: [DVec3; 2]) -> bool {
-        let [a, b, c] = self.corners;
-        let volume = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| (b - a).cross(c - a).dot(d - a);
-        if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
-            return false;
-        }
-        let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
-        sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
+/// Whether an edge passes through a face: its ends are on both sides, and the face's edges all pass it on one side. In
+/// f64, as edges of a flat sheet lie in the planes of its faces but for rounding.
+pub(super) fn passes([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
+    let volume = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| (b - a).cross(c - a).dot(d - a);
+    if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
+        return false;
     }
+    let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+    sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
 }

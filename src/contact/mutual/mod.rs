@@ -5,7 +5,7 @@
 //! ```text
 //!   cloth → patches of a few faces (sheet)
 //!   boxes with room around patches, trees searched from the top down (near_patches) → near pairs of patches
-//!   features of near pairs, compared eight at a time (compare, lanes)               → slack, listed pairs of features
+//!   features of near pairs, culled by boxes, compared eight at a time (compare, lanes) → slack, listed features
 //!   the pair's own motion since then (motion): used > until?                        → look again (near_features)
 //!   listed pairs that may touch in this sub-step                                    → contacts: push, certify
 //! ```
@@ -23,9 +23,9 @@
 //!    it has not passed, or it is stopped.
 //! 5. A push moves particles: 1 to 4 are done again, until nothing new is near.
 //!
-//! Cloths that begin intersected are left alone where they are, until they are apart. More work than the [limit](work) is
-//! not done, and reported; the limit is lower while cloths that began intersected still are. Resting layers are
-//! [held](hold) for a few sub-steps, while none can have come near enough to pass.
+//! Patches that begin intersected are left alone until they are apart. More work than the [limit](work) is not done, and
+//! reported; such patches have less of it. Resting layers are [held](hold) for a few sub-steps, while none can have come
+//! near enough to pass.
 
 mod bounds;
 mod certificate;
@@ -153,9 +153,7 @@ impl MutualContact {
         let is_new = !(self.is_known && self.motion.is_of(cloths));
         if is_same && !is_new && !was_lost {
             self.near.begin_tick(&mut self.motion);
-            if self.near.is_tangled() {
-                self.counts.tighten(particles);
-            }
+            self.tighten();
             let approach = self.last.passed.approach(cloths);
             if approach == 0.0 || approach <= self.last.free {
                 return;
@@ -168,8 +166,9 @@ impl MutualContact {
         } else {
             self.motion.reset(cloths);
             self.rooms.reset(cloths, self.motion.patches.len());
+            let was_tangled = self.near.tangled(self.motion.patches.len()) > 0.0;
             self.near.clear();
-            self.near.begins = is_new || was_lost;
+            self.near.begins = is_new || was_lost || was_tangled;
             self.hold.clear(cloths);
             self.contacts.clear();
             (self.is_known, self.ticks_off) = (true, 0);
@@ -181,9 +180,13 @@ impl MutualContact {
             None => self.lose(),
         }
         self.near.begins = false;
-        if self.near.is_tangled() {
-            self.counts.tighten(particles);
-        }
+        self.tighten();
+    }
+
+    /// Lowers the limit of work by what began inside each other.
+    fn tighten(&mut self) {
+        let tangled = self.near.tangled(self.motion.patches.len());
+        self.counts.tighten(self.motion.end.len(), tangled);
     }
 
     /// Number of times that the features of two patches were compared in the tick.

@@ -12,7 +12,7 @@
 //! are measured, or all are compared if the slack is used up.
 
 use super::{
-    compare::compare,
+    compare::{compare, cross},
     motion::Motion,
     near_patches::{Meets, Rooms},
     participant::Participant,
@@ -35,8 +35,9 @@ pub(super) struct NearFeatures {
     soon: Vec<u32>,
     #[cfg_attr(feature = "serialize", serde(skip))]
     spare: Vec<Candidate>,
+    /// Scratch of comparisons.
     #[cfg_attr(feature = "serialize", serde(skip))]
-    near: [Vec<u16>; 2],
+    culled: [Vec<u32>; 2],
     /// Whether the contacts have changed.
     pub has_changed: bool,
     /// Whether this is the first look at cloths that may be inside each other.
@@ -56,9 +57,14 @@ impl NearFeatures {
         self.listed
     }
 
-    /// Whether some patches began inside each other, and still are.
-    pub fn is_tangled(&self) -> bool {
-        self.pairs.iter().any(|pair| pair.is_tangled)
+    /// The share of so many patches that began inside others, and still are (0 to 1).
+    pub fn tangled(&mut self, patches: usize) -> f32 {
+        let tangled = self.pairs.iter().filter(|pair| pair.is_tangled);
+        self.soon.clear();
+        self.soon.extend(tangled.flat_map(|pair| pair.of));
+        self.soon.sort_unstable();
+        self.soon.dedup();
+        self.soon.len() as f32 / patches.max(1) as f32
     }
 
     /// All pairs of features that may touch.
@@ -153,7 +159,7 @@ impl NearFeatures {
                     motion,
                     &place,
                     &mut self.candidates,
-                    &mut self.near,
+                    &mut self.culled,
                     &mut counts.work,
                 );
                 pair.count = (self.candidates.len() - first) as u32;
@@ -161,10 +167,13 @@ impl NearFeatures {
                 let candidates = &mut self.candidates[first..];
                 counts.take(4 * candidates.len());
                 measure(pair, candidates, motion, &place, 0.0);
-                pair.is_tangled |= self.begins && pair.has_tangled(&self.candidates[first..]);
+                pair.is_tangled |= self.begins
+                    && (pair.has_tangled(&self.candidates[first..])
+                        || cross(pair, cloths, motion, &mut counts.work));
             }
             if pair.is_tangled {
-                pair.leave_alone(&place);
+                let cross = cross(pair, cloths, motion, &mut counts.work);
+                pair.leave_alone(cross, &place);
             }
             self.has_changed |= had_contacts || pair.has_contacts();
             left = left.min(pair.until - place.used);

@@ -80,6 +80,7 @@ impl PatchPair {
         self.since = a.used_to_end() + b.used_to_end();
         (self.slack, self.until) = (apart, apart);
         (self.count, self.contacts) = (0, 0);
+        self.is_tangled = false;
     }
 
     /// Whether they are inside each other, as they may begin.
@@ -88,9 +89,9 @@ impl PatchPair {
         candidates.iter().any(is_inside)
     }
 
-    /// Has no contacts, unless they have come apart.
-    pub fn leave_alone(&mut self, place: &Place) {
-        self.is_tangled = self.has_contacts();
+    /// Has no contacts, unless they neither touch nor `cross`: then they have come apart.
+    pub fn leave_alone(&mut self, cross: bool, place: &Place) {
+        self.is_tangled = cross || self.has_contacts();
         if self.is_tangled {
             self.contacts = 0;
             self.until = self.slack.min(place.used + LEFT_ALONE * place.thickness);

@@ -5,6 +5,7 @@ mod lanes;
 mod response;
 mod scenes;
 mod search;
+mod tangled;
 mod thrown;
 
 use std::sync::Arc;

@@ -6,8 +6,7 @@ const MOST_WORK: usize = 1 << 17;
 const LEAST_WORK_OF_ALL: usize = 1 << 22;
 const MOST_WORK_OF_ALL: usize = 1 << 28;
 
-/// Work limit of a tick for each particle of cloths that began inside each other: they have no guarantee to keep. Clothes that
-/// begin so need a third of that (`cargo run --example lab -- games`).
+/// The same for each particle of patches that began inside each other: these have no guarantee to keep.
 const MOST_WORK_TANGLED: usize = 1 << 13;
 
 /// Largest number of listed pairs of features for each particle. Piles and twisted strips have 90.
@@ -38,9 +37,11 @@ impl Counts {
         }
     }
 
-    /// Lowers the limit: some of the cloths began inside each other.
-    pub fn tighten(&mut self, particles: usize) {
-        self.work = self.work.min(MOST_WORK_TANGLED.saturating_mul(particles));
+    /// Lowers the limit of so many particles: this share of them (0 to 1) began inside each other.
+    pub fn tighten(&mut self, particles: usize, tangled: f32) {
+        let each = MOST_WORK_TANGLED as f32 * tangled + MOST_WORK as f32 * (1.0 - tangled);
+        let most = (each as usize).saturating_mul(particles);
+        self.work = self.work.min(most.max(LEAST_WORK_OF_ALL));
     }
 
     /// Takes this much work from the rest.
