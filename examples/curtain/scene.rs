@@ -17,6 +17,8 @@ pub const PARTICLES: u32 = 41;
 const WIDTH: f32 = 1.5;
 const CLOSED: f32 = 0.62;
 const OPEN: f32 = 0.22;
+/// Gap between the halves (m).
+const GAP: f32 = 0.01;
 /// Height of the rings above the floor (m).
 const TOP: f32 = 2.2;
 /// Particles from one ring to the next.
@@ -75,10 +77,14 @@ struct Ring {
 impl Ring {
     /// Where it is (m) if the curtain takes this share of its width.
     fn place(&self, share: f32) -> Vec3 {
-        // The wall's end stays where it is when closed.
-        let wall = CLOSED * WIDTH;
-        Vec3::new(self.side * (wall - self.along * share * WIDTH), TOP, 0.0)
+        let from_wall = self.along * share * WIDTH;
+        Vec3::new(self.side * (wall(share) - from_wall), TOP, 0.0)
     }
+}
+
+/// How far the wall's end of a half is from the middle (m). Flat halves lie side by side: they are gathered from there.
+fn wall(share: f32) -> f32 {
+    share.max(CLOSED) * WIDTH + 0.5 * GAP
 }
 
 fn spawn_curtains(
@@ -130,7 +136,7 @@ fn spawn_curtains(
         let columns_with_rings = (0..last).step_by(RING as usize).chain([last]);
         let rings: Vec<_> = columns_with_rings.map(&mut ring).collect();
         // Columns run along +x: the other half is turned round, for both to begin at their walls.
-        let wall = Vec3::new(side * CLOSED * WIDTH, TOP, 0.0);
+        let wall = Vec3::new(side * wall(1.0), TOP, 0.0);
         let turn = Quat::from_rotation_y(if side < 0.0 { 0.0 } else { PI });
         commands.spawn((
             Name::new(if side < 0.0 {
@@ -146,6 +152,7 @@ fn spawn_curtains(
                 ..ClothMaterial::COTTON
             },
             ClothSettings::substeps(24),
+            ClothSelfCollision::default(),
             MeshMaterial3d(fabric.clone()),
             ShowClothGizmos::nothing(),
             Transform::from_translation(wall).with_rotation(turn),

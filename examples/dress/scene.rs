@@ -142,6 +142,8 @@ fn spawn_figure(
             ..ClothMaterial::COTTON
         },
         ClothSettings::substeps(24),
+        // Less than half of the spacing at the waist.
+        ClothSelfCollision::of_thickness(0.003),
         ShowClothGizmos::nothing(),
         MeshMaterial3d(materials.add(StandardMaterial {
             // As long around as from the waist to the hem.

@@ -180,6 +180,7 @@ fn spawn_cloth(
             particle_radius: RADIUS,
             ..ClothSettings::substeps(24)
         },
+        ClothSelfCollision::default(),
         MeshMaterial3d(materials.add(weave)),
         ShowClothGizmos::nothing(),
         Transform::from_xyz(0.0, HEIGHT + RADIUS, 0.0),

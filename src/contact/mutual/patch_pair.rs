@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy::math::Vec3A;
 
-use super::{motion::Motion, pair::Nearest, participant::Participant};
+use super::{motion::Motion, pair::Nearest, participant::Participant, tangents::Measured};
 
 /// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
 const FRESH: f32 = 0.12;
@@ -112,13 +112,14 @@ impl PatchPair {
     }
 }
 
-/// By how much the features of two patches of a grid are farther apart than the thickness at the end of the sub-step
+/// By how much the features of two patches of a cloth are farther apart than the thickness at the end of the sub-step
 /// (m), from the tangents around them. It does not matter how they got there: a sheet that is unfolded has not passed
 /// through itself.
 pub(super) fn unfolded_by(
     pair: &PatchPair,
     cloths: &[Participant],
     motion: &Motion,
+    measured: &mut Measured,
 ) -> Option<f32> {
     let [a, b] = pair
         .of
@@ -127,7 +128,12 @@ pub(super) fn unfolded_by(
     let of = pair.of.map(|patch| patch - first_patch);
     let cloth = (a == b).then(|| &cloths[a])?;
     let places = &motion.end[first_particle as usize..];
-    Some(cloth.sheet.unfolded(of, places)? - cloth.settings.thickness)
+    let tangents_of = |patch: u32| {
+        measured.get(first_patch + patch, || {
+            cloth.sheet.tangents_of(patch, places)
+        })
+    };
+    Some(cloth.sheet.unfolded(of, places, tangents_of)? - cloth.settings.thickness)
 }
 
 /// Two patches that are looked at, at the beginning of the sub-step.

@@ -7,7 +7,10 @@ use bevy::{
     platform::collections::HashSet,
 };
 
-use super::tangents::Tangents;
+use super::{
+    charts::{Charts, Patches},
+    tangents::Tangents,
+};
 
 use crate::{
     cloth::{ClothGrid, Surface},
@@ -15,7 +18,7 @@ use crate::{
 };
 
 /// Largest number of rows and columns whose tangents are compared.
-const LARGEST: usize = 7;
+const LARGEST: u32 = 7;
 
 /// Largest number of particles that a patch owns.
 const OWNED: u32 = 4;
@@ -32,6 +35,10 @@ pub(crate) struct Sheet {
     faces: Vec<[u16; 3]>,
     edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
+    /// For a grid, the patch that owns each particle.
+    owners: Vec<u32>,
+    /// For a mesh.
+    charts: Charts,
 }
 
 /// The features that a few neighbouring particles own. Every vertex, edge and face belongs to one patch.
@@ -87,7 +94,42 @@ impl Sheet {
         }
         let mut seen = HashSet::new();
         sheet.add(tree, 0, &leaves, &mut seen);
+        if surface.as_grid().is_some() {
+            sheet.owners = sheet.owners();
+        } else {
+            sheet.charts = sheet.charts();
+        }
         sheet
+    }
+
+    fn owners(&self) -> Vec<u32> {
+        let mut owners = vec![0; self.surface.len()];
+        for (index, patch) in (0..).zip(&self.patches) {
+            for &particle in &self.particles_of(index)[..patch.owned as usize] {
+                owners[particle as usize] = index;
+            }
+        }
+        owners
+    }
+
+    fn charts(&self) -> Charts {
+        let all = 0..self.patches.len() as u32;
+        let faces = all.clone().flat_map(|patch| {
+            let particles = self.particles_of(patch);
+            let corners = move |face: &[u16; 3]| face.map(|at| particles[usize::from(at)]);
+            self.faces_of(patch).iter().map(corners)
+        });
+        Charts::new(&Patches {
+            rest: self.surface.rest_positions(),
+            shortest: self.surface.spacing().shortest,
+            particles: all.map(|patch| self.particles_of(patch)).collect(),
+            faces: self
+                .patches
+                .iter()
+                .map(|patch| patch.faces.clone())
+                .collect(),
+            corners: faces.collect(),
+        })
     }
 
     /// Adds a node of the tree and all below it. Returns its index.
@@ -186,29 +228,54 @@ impl Sheet {
         self.patches.len()
     }
 
-    /// A lower bound of the distance between two patches of a grid (m), from its tangents at these positions; `None` for
-    /// a mesh, and for patches that are far from each other at rest.
-    pub(super) fn unfolded(&self, of: [u32; 2], places: &[Vec3A]) -> Option<f32> {
+    /// The tangents of a patch of a grid at these positions; `None` for a mesh.
+    pub(super) fn tangents_of(&self, patch: u32, places: &[Vec3A]) -> Option<Tangents> {
         let grid = self.surface.as_grid()?;
+        let [low, high] = self.patches[patch as usize].rectangle;
+        let rows = (low[0]..=high[0]).map(|row| {
+            let [first, last] = [low[1], high[1]].map(|column| row * grid.columns() + column);
+            &places[first as usize..=last as usize]
+        });
+        Some(Tangents::of(rows, grid.spacing()))
+    }
+
+    /// A lower bound of the distance between two patches (m), from the tangents at these positions; `None` for patches
+    /// that are far from each other at rest, and for those of a mesh without a chart. `tangents_of` returns those of a
+    /// patch of a grid.
+    pub(super) fn unfolded(
+        &self,
+        of: [u32; 2],
+        places: &[Vec3A],
+        mut tangents_of: impl FnMut(u32) -> Option<Tangents>,
+    ) -> Option<f32> {
+        let Some(grid) = self.surface.as_grid() else {
+            return self.charts.unfolded(of, places);
+        };
         let [a, b] = of.map(|patch| self.patches[patch as usize].rectangle);
-        let low = [0, 1].map(|axis| a[0][axis].min(b[0][axis]) as usize);
-        let size = [0, 1].map(|axis| a[1][axis].max(b[1][axis]) as usize - low[axis] + 1);
-        if size.iter().any(|&size| size > LARGEST) {
+        let low = [0, 1].map(|axis| a[0][axis].min(b[0][axis]));
+        let high = [0, 1].map(|axis| a[1][axis].max(b[1][axis]));
+        if high[0] - low[0] >= LARGEST || high[1] - low[1] >= LARGEST {
             return None;
+        }
+        // All patches of the rectangle around both.
+        let mut tangents = Tangents::EMPTY;
+        let mut row = low[0];
+        while row < high[0] {
+            let (mut column, mut next) = (low[1], high[0]);
+            while column < high[1] {
+                let owner = self.owners[(row * grid.columns() + column) as usize];
+                let [_, last] = self.patches[owner as usize].rectangle;
+                tangents = tangents.join(&tangents_of(owner)?);
+                (column, next) = (last[1], next.min(last[0]));
+            }
+            row = next;
         }
         let gap = |axis: usize| {
             a[0][axis]
                 .max(b[0][axis])
                 .saturating_sub(a[1][axis].min(b[1][axis]))
         };
-        let spacing = grid.spacing();
-        let apart = spacing * Vec2::new(gap(1) as f32, gap(0) as f32);
-        let columns = grid.columns() as usize;
-        let rows = (0..size[0]).map(|row| {
-            let first = (low[0] + row) * columns + low[1];
-            &places[first..first + size[1]]
-        });
-        let tangents = Tangents::of(rows, spacing);
+        let apart = grid.spacing() * Vec2::new(gap(1) as f32, gap(0) as f32);
         Some(tangents.unfolded() * apart.length().max(self.closest()))
     }
 

@@ -1,14 +1,14 @@
-//! Bounds of the tangents of a patch of a grid: proof that it does not touch itself.
+//! Bounds of the tangents of a patch: proof that it does not touch itself.
 
 use bevy::math::{Vec2, Vec3A};
 
 use super::bounds::Bounds;
 
-/// Bounds of the tangents of a patch of a grid, along rows and columns, per metre at rest.
+/// Bounds of the tangents of a patch along two axes at rest, as those of a grid, per metre at rest.
 ///
 /// # The proof that a patch does not touch itself
-/// A patch of rows × columns is convex at rest, so the straight line between two of its points u and v stays in it.
-/// Along that line the surface follows its tangents F = (∂x/∂across, ∂x/∂down), which are all within ε of their middle
+/// A patch of rows × columns is convex at rest, so the straight line between two of its points u and v stays in it; as in
+/// a [chart](super::charts) of a mesh. Along that line the surface follows its tangents F = (∂x/∂across, ∂x/∂down), which are all within ε of their middle
 /// F₀:
 ///
 /// ```text
@@ -26,6 +26,19 @@ pub(super) struct Tangents {
 }
 
 impl Tangents {
+    /// Those of nothing.
+    pub const EMPTY: Self = Self {
+        across: Bounds::EMPTY,
+        down: Bounds::EMPTY,
+    };
+
+    /// Adds the tangents of a triangle.
+    #[inline]
+    pub fn add(&mut self, across: Vec3A, down: Vec3A) {
+        self.across = self.across.with(across);
+        self.down = self.down.with(down);
+    }
+
     /// The tangents of a rectangle of particles, from its rows, at these distances at rest.
     pub fn of<'a>(rows: impl Iterator<Item = &'a [Vec3A]>, spacing: Vec2) -> Self {
         let (mut across, mut down) = (Bounds::EMPTY, Bounds::EMPTY);
@@ -50,6 +63,13 @@ impl Tangents {
         }
     }
 
+    pub fn join(&self, other: &Self) -> Self {
+        Self {
+            across: self.across.join(&other.across),
+            down: self.down.join(&other.down),
+        }
+    }
+
     /// σ − ε: a lower bound of the ratio of any two points' distance to that at rest; 0 or less where they may meet.
     pub fn unfolded(&self) -> f32 {
         let middle = |of: &Bounds| (of.min + of.max) * 0.5;
@@ -64,9 +84,40 @@ impl Tangents {
         );
         let half = (a - b) * 0.5;
         let least = (a + b) * 0.5 - (half * half + mixed * mixed).sqrt();
-        least.max(0.0).sqrt() * (1.0 - ROUNDING) - off * (1.0 + ROUNDING)
+        least.max(0.0).sqrt() * (1.0 - ROUNDING) - off * (1.0 + LONGER)
     }
 }
 
 /// More than the rounding errors.
 const ROUNDING: f32 = 1.0e-5;
+
+/// A path between two points of a patch may be longer than the straight line by this fraction of it, at most.
+pub(super) const LONGER: f32 = 0.01;
+
+/// The tangents of patches in a sub-step: each is measured when it is first asked for.
+#[derive(Debug, Default, Clone)]
+pub(super) struct Measured {
+    /// Of each patch, and the sub-step in which they were measured.
+    tangents: Vec<(u64, Tangents)>,
+    now: u64,
+}
+
+impl Measured {
+    /// Begins a sub-step of so many patches.
+    pub fn begin(&mut self, patches: usize) {
+        self.now += 1;
+        self.tangents.resize(patches, (0, Tangents::EMPTY));
+    }
+
+    pub fn get(
+        &mut self,
+        patch: u32,
+        measure: impl FnOnce() -> Option<Tangents>,
+    ) -> Option<Tangents> {
+        let (when, tangents) = &mut self.tangents[patch as usize];
+        if *when != self.now {
+            (*when, *tangents) = (self.now, measure()?);
+        }
+        Some(*tangents)
+    }
+}
