@@ -34,8 +34,8 @@ pub struct ClothState {
     /// Control of the coming tick's sub-steps.
     pub(super) control: Control,
     pub(super) rest: Rest,
-    /// Whether layers of it, or it and other cloth, touched in the last tick.
-    pub(super) touches_cloth: bool,
+    /// Number of pairs of features of it and its neighbours that touched in the last tick, for each particle.
+    pub(super) layer_contacts: f32,
     /// Stretch at the current positions: `RestShape` relies on it.
     pub(super) stretch: Stretch,
     /// Speed of the fastest particle as the tick begins (m/s).
@@ -86,7 +86,7 @@ impl ClothState {
             lod,
             control,
             ref rest,
-            touches_cloth,
+            layer_contacts,
             stretch,
             largest_speed,
             written,
@@ -113,7 +113,7 @@ impl ClothState {
         self.rests_on.clone_from(rests_on);
         self.carriers.clone_from(carriers);
         (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
-        (self.touches_cloth, self.stretch) = (touches_cloth, stretch);
+        (self.layer_contacts, self.stretch) = (layer_contacts, stretch);
         (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
         (self.written, self.known, self.first_target) = (written, known, first_target);
         (self.resumes, self.excess) = (resumes, excess);

@@ -51,13 +51,13 @@ pub(super) fn compare(
         .max(LEAST_AHEAD * thickness);
     let listed = used + ahead;
     *work = work.saturating_sub(1);
-    let apart = a.bounds_at_start().distance_squared(&b.bounds_at_start());
-    let apart = apart.sqrt() - thickness;
-    if pair.of[0] != pair.of[1] && apart > ENOUGH * used + reserve {
+    let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
+    let boxes = sides[0].bounds.distance_squared(&sides[1].bounds).sqrt();
+    let apart = boxes.max(separation(&sides, a.start - b.start)) - thickness;
+    if apart > ENOUGH * used + reserve {
         pair.slack = apart;
         return;
     }
-    let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
     let is_one_cloth = a.cloth == b.cloth;
     let longest = pair.of.map(|patch| {
         let cloth = motion.patches[patch as usize].cloth as usize;
@@ -81,6 +81,15 @@ pub(super) fn compare(
     // Edges have a smaller thickness. But all that are not listed are apart by more than `listed`.
     let apart = features.least.sqrt() - thickness - tolerance;
     pair.slack = apart.max(listed).min(LONGEST * listed);
+}
+
+/// Distance of two patches along a line (m), less than 0 if they overlap there.
+fn separation(sides: &[Side; 2], along: Vec3A) -> f32 {
+    let along = along.normalize_or_zero();
+    let [ahead, behind] = sides;
+    let front = ahead.all().map(|place| along.dot(place));
+    let back = behind.all().map(|place| along.dot(place));
+    front.fold(f32::INFINITY, f32::min) - back.fold(f32::NEG_INFINITY, f32::max)
 }
 
 /// Whether an edge of one patch passes through a face of the other at the beginning of the sub-step.
@@ -152,6 +161,12 @@ impl<'a> Side<'a> {
 
     fn place(&self, local: u16) -> Vec3A {
         self.places[self.particles[usize::from(local)] as usize]
+    }
+
+    fn all(&self) -> impl Iterator<Item = Vec3A> {
+        let places = self.places;
+        let particles = self.particles.iter();
+        particles.map(move |&particle| places[particle as usize])
     }
 
     fn particle(&self, local: u16) -> u32 {

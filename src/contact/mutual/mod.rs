@@ -195,9 +195,9 @@ impl MutualContact {
         self.counts.compared
     }
 
-    /// Whether anything touched in the tick.
-    pub fn has_touched(&self) -> bool {
-        self.counts.has_touched
+    /// Number of pairs of features that touched, the most of any sub-step of the tick, for each particle.
+    pub fn touched_each(&self) -> f32 {
+        self.counts.touched as f32 / self.motion.end.len().max(1) as f32
     }
 
     /// Number of sub-steps of the tick in which nothing was kept apart, because there was too much work.
@@ -300,8 +300,9 @@ impl MutualContact {
             let mut has_moved = false;
             if round == 0 {
                 let (overlapping, members) = (&mut self.overlapping, &mut self.members);
-                has_moved = push(&self.contacts, overlapping, members, dt);
-                self.counts.has_touched |= has_moved;
+                let touched = push(&self.contacts, overlapping, members, dt);
+                self.counts.touched = self.counts.touched.max(touched);
+                has_moved = touched > 0;
             }
             let (members, work) = (&mut self.members, &mut self.counts.work);
             has_moved |= self.zones.certify(&self.contacts, members, work);

@@ -32,15 +32,15 @@ const APART: usize = 4;
 /// Smallest fraction of a pair's mobility that colliders must leave.
 const LEAST_FREE: f32 = 0.01;
 
-/// Pushes near pairs apart. Lists those that overlap by more than layers at rest. Returns whether any touched.
+/// Pushes near pairs apart. Lists those that overlap by more than layers at rest. Returns how many touched.
 pub(super) fn push(
     pairs: &[NearPair],
     overlapping: &mut Vec<u32>,
     members: &mut Members,
     dt: f32,
-) -> bool {
+) -> u32 {
     overlapping.clear();
-    let mut has_touched = false;
+    let mut touched = 0;
     let part = pairs.len().div_ceil(APART);
     let order = (0..part).flat_map(|first| (first..pairs.len()).step_by(part));
     for index in order {
@@ -48,7 +48,7 @@ pub(super) fn push(
         if pair.is_pushed
             && let Some(gap) = push_pair(pair, pair.thickness, members, dt)
         {
-            has_touched = true;
+            touched += 1;
             if gap < (1.0 - LEFT) * pair.thickness {
                 overlapping.push(index as u32);
             }
@@ -61,7 +61,7 @@ pub(super) fn push(
             push_pair(pair, floor * pair.thickness, members, dt);
         }
     }
-    has_touched
+    touched
 }
 
 /// Pushes two features apart that are nearer than `floor` (m), with Coulomb friction. Velocity loses the approach of

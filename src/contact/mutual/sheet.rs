@@ -21,7 +21,7 @@ use crate::{
 const LARGEST: u32 = 7;
 
 /// Largest number of particles that a patch owns.
-const OWNED: u32 = 4;
+const OWNED: u32 = 8;
 
 /// A surface in patches of a few faces, and a tree over them, for contact of cloth with cloth. It depends only on the
 /// rest shape, is built once, and is shared.

@@ -16,7 +16,8 @@ pub(super) const MOST_LISTED: usize = 512;
 #[derive(Debug, Default, Clone, Copy)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Counts {
-    pub has_touched: bool,
+    /// Number of pairs of features that touched, the most of any sub-step.
+    pub touched: u32,
     /// Number of pairs of patches compared.
     pub compared: u32,
     /// Work left in the tick.
