@@ -34,8 +34,8 @@ pub struct ClothState {
     /// Control of the coming tick's sub-steps.
     pub(super) control: Control,
     pub(super) rest: Rest,
-    /// Number of pairs of features of it and its neighbours that touched in the last tick, for each particle.
-    pub(super) layer_contacts: f32,
+    /// Number of sub-steps that its layers want; 0 if none touched in the last tick.
+    pub(super) layer_substeps: u32,
     /// Stretch at the current positions: `RestShape` relies on it.
     pub(super) stretch: Stretch,
     /// Speed of the fastest particle as the tick begins (m/s).
@@ -86,7 +86,7 @@ impl ClothState {
             lod,
             control,
             ref rest,
-            layer_contacts,
+            layer_substeps,
             stretch,
             largest_speed,
             written,
@@ -113,7 +113,7 @@ impl ClothState {
         self.rests_on.clone_from(rests_on);
         self.carriers.clone_from(carriers);
         (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
-        (self.layer_contacts, self.stretch) = (layer_contacts, stretch);
+        (self.layer_substeps, self.stretch) = (layer_substeps, stretch);
         (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
         (self.written, self.known, self.first_target) = (written, known, first_target);
         (self.resumes, self.excess) = (resumes, excess);

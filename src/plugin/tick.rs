@@ -275,7 +275,7 @@ impl IntegratingItem<'_, '_> {
                     is_held | is_touched | is_pushed[0]
                 });
         if let Some((mutual, _)) = alone {
-            self.state.layer_contacts = mutual.touched_each();
+            self.state.layer_substeps = mutual.wanted_substeps();
             self.stats.layer_pairs = mutual.pairs();
             self.stats.layer_searches = mutual.searches();
             self.scratch.mutual = Some(mutual);

@@ -107,7 +107,7 @@ pub(super) fn integrate_together(
             let lost = island.contact.lost();
             cloth.scratch.limit_inputs = Some(LimitInputs { lost, ..own });
             cloth.finish(milliseconds);
-            cloth.state.layer_contacts = island.contact.touched_each();
+            cloth.state.layer_substeps = island.contact.wanted_substeps();
             cloth.stats.layer_pairs = island.contact.pairs();
             cloth.stats.layer_searches = island.contact.searches();
         }

@@ -79,6 +79,9 @@ const ROUNDS: u32 = 4;
 /// Units of work for a contact that is listed and pushed.
 const WORK_OF_CONTACT: usize = 8;
 
+/// Largest number of sub-steps that layers want: that of a pile in which a pair of features touches for each particle.
+const MOST_SUBSTEPS: f32 = 16.0;
+
 /// Number of ticks without contact after one with too much work.
 const TICKS_OFF: u32 = 8;
 
@@ -195,9 +198,21 @@ impl MutualContact {
         self.counts.compared
     }
 
-    /// Number of pairs of features that touched, the most of any sub-step of the tick, for each particle.
-    pub fn touched_each(&self) -> f32 {
-        self.counts.touched as f32 / self.motion.end.len().max(1) as f32
+    /// Number of sub-steps that these layers want in the next tick, 0 if none touched: a pile, to carry its weight, and
+    /// fast cloth, to move by a thickness in each.
+    pub fn wanted_substeps(&self) -> u32 {
+        let Counts {
+            touched,
+            substeps,
+            motion,
+            ..
+        } = self.counts;
+        if touched == 0 {
+            return 0;
+        }
+        let pile = MOST_SUBSTEPS * touched as f32 / self.motion.end.len() as f32;
+        let fast = motion * substeps as f32;
+        pile.max(fast).clamp(1.0, MOST_SUBSTEPS) as u32
     }
 
     /// Number of sub-steps of the tick in which nothing was kept apart, because there was too much work.
@@ -233,6 +248,7 @@ impl MutualContact {
             self.counts.lost += 1;
             return 0.0;
         }
+        self.counts.substeps += 1;
         self.last.waited += 1;
         let is_waiting = self.last.wait > 0;
         self.last.wait = self.last.wait.saturating_sub(1);
@@ -259,12 +275,13 @@ impl MutualContact {
             return pushed + held;
         }
         let thinnest = thinnest(cloths);
+        let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
+        self.counts.motion = self.counts.motion.max(0.5 * pace / thinnest);
         self.motion.pass(cloths, REFERENCE * thinnest);
         self.last.reserve = 0.0;
         if !self.contacts.is_empty() {
             let most = HELD * thinnest;
             self.last.free = self.last.free.min(most);
-            let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
             if self.members.are_resting(RESTING_SPEED * dt) {
                 self.last.reserve = most.min(LONGEST_HOLD as f32 * pace / PART_OF_WAY);
                 self.last.wait = ((PART_OF_WAY * self.last.free / pace) as u32).min(LONGEST_HOLD);

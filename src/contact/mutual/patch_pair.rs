@@ -7,7 +7,7 @@ use bevy::math::Vec3A;
 use super::{motion::Motion, pair::Nearest, participant::Participant, tangents::Measured};
 
 /// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
-const FRESH: f32 = 0.12;
+const FRESH: f32 = 0.22;
 
 /// Distance of features that begin inside each other, and approach after which they are measured again, as fractions of
 /// the thickness.

@@ -18,6 +18,9 @@ pub(super) const MOST_LISTED: usize = 512;
 pub(super) struct Counts {
     /// Number of pairs of features that touched, the most of any sub-step.
     pub touched: u32,
+    /// Number of sub-steps, and the largest motion in one, as a fraction of the smallest thickness.
+    pub substeps: u32,
+    pub motion: f32,
     /// Number of pairs of patches compared.
     pub compared: u32,
     /// Work left in the tick.

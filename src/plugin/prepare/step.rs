@@ -17,9 +17,6 @@ use crate::{
     solver::{Substepping, TickStep},
 };
 
-/// Sub-steps of a pile in which a pair of features touches for each particle, unless its settings give a number.
-const FOR_PILE: f32 = 16.0;
-
 /// Decides whether the cloth may sleep, and wakes it if other forces act on it than before.
 pub(super) fn see_whether_it_rests(
     cloth: &mut PreparingItem,
@@ -48,7 +45,7 @@ pub(super) fn see_whether_it_rests(
         state.rest.disturb();
     } else if !state.rest.is_asleep() {
         let scale = (built.surface().diagonal(), acceleration.length());
-        let lies_on_cloth = inputs.self_collision.is_some() && state.layer_contacts > 0.0;
+        let lies_on_cloth = inputs.self_collision.is_some() && state.layer_substeps > 0;
         state.rest.observe(seconds, particles, scale, lies_on_cloth);
     }
     // The plugin's own writing, up to here.
@@ -83,14 +80,13 @@ pub(super) fn prepare_step(
         Substepping::Fixed(substeps) => substeps,
         _ => (built.solver).needed(particles, along, one, settings.order),
     };
-    // The more layers lie on each other, the more sub-steps carry their weight.
     let needed = match inputs.self_collision {
-        Some(_) => needed.max((FOR_PILE * state.layer_contacts.min(1.0)) as u32),
+        Some(_) => needed.max(state.layer_substeps),
         None => needed,
     };
     if !state.rest.is_asleep() {
         // The tick says so again.
-        state.layer_contacts = 0.0;
+        state.layer_substeps = 0;
     }
     scratch.step = Some(TickStep {
         seconds,
