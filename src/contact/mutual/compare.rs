@@ -70,6 +70,7 @@ pub(super) fn compare(
         is_one_cloth,
         is_one_patch: pair.of[0] == pair.of[1],
         thickness,
+        tolerance,
         listed: listed + tolerance,
         least: f32::INFINITY,
         candidates,
@@ -198,6 +199,8 @@ struct Features<'a> {
     is_one_cloth: bool,
     is_one_patch: bool,
     thickness: f32,
+    /// Error of the distances (m).
+    tolerance: f32,
     /// How far apart features are that are listed (m).
     listed: f32,
     /// The least squared distance of others (m²).
@@ -236,13 +239,13 @@ impl Features<'_> {
     }
 
     /// Takes the squared distances of a feature from eight others (m²): calls `list` with those of the first `count` that
-    /// are to be listed. The rest repeats the last one.
+    /// are to be listed, and their distances, at least (m). The rest repeats the last one.
     fn sort(
         &mut self,
         squares: Eight,
         count: usize,
         thickness: f32,
-        mut list: impl FnMut(&mut Self, usize),
+        mut list: impl FnMut(&mut Self, usize, f32),
     ) {
         let far = (self.listed + thickness).powi(2);
         let mut are_far = true;
@@ -264,7 +267,7 @@ impl Features<'_> {
             if square > far {
                 continue;
             }
-            list(self, l);
+            list(self, l, square.sqrt() - self.tolerance);
         }
     }
 
@@ -286,20 +289,25 @@ impl Features<'_> {
                 let vertex = own.particles[index as usize];
                 let place = own.places[vertex as usize];
                 let squares = vertex_to_faces(place, &points);
-                self.sort(squares, indices.len(), self.thickness, |features, l| {
-                    let face = faces[indices[l] as usize];
-                    let corners = face.map(|corner| other.particle(corner));
-                    if features.is_one_cloth && corners.contains(&vertex) {
-                        return;
-                    }
-                    let thickness = features.allowed(features.thickness, |rest| {
-                        let at_rest = |particle: u32| rest[particle as usize];
-                        vertex_to_face(at_rest(vertex), corners.map(at_rest))
-                    });
-                    let [a, b, c] = corners.map(|corner| other.first_particle + corner);
-                    let particles = [own.first_particle + vertex, a, b, c];
-                    features.list(particles, VERTEX_AND_FACE, thickness);
-                });
+                self.sort(
+                    squares,
+                    indices.len(),
+                    self.thickness,
+                    |features, l, distance| {
+                        let face = faces[indices[l] as usize];
+                        let corners = face.map(|corner| other.particle(corner));
+                        if features.is_one_cloth && corners.contains(&vertex) {
+                            return;
+                        }
+                        let thickness = features.allowed(features.thickness, |rest| {
+                            let at_rest = |particle: u32| rest[particle as usize];
+                            vertex_to_face(at_rest(vertex), corners.map(at_rest))
+                        });
+                        let [a, b, c] = corners.map(|corner| other.first_particle + corner);
+                        let particles = [own.first_particle + vertex, a, b, c];
+                        features.list(particles, VERTEX_AND_FACE, thickness, distance);
+                    },
+                );
             }
         }
         *self.culled = near;
@@ -321,7 +329,7 @@ impl Features<'_> {
             for &index in &near[0] {
                 let first = edges[0][index as usize];
                 let squares = edge_to_edges(first.map(|end| own.place(end)), &points);
-                self.sort(squares, indices.len(), wanted, |features, l| {
+                self.sort(squares, indices.len(), wanted, |features, l, distance| {
                     let ends = first.map(|end| own.particle(end));
                     let second = edges[1][indices[l] as usize];
                     let others = second.map(|end| other.particle(end));
@@ -337,7 +345,7 @@ impl Features<'_> {
                     });
                     let [p, q] = ends.map(|end| own.first_particle + end);
                     let [r, s] = others.map(|end| other.first_particle + end);
-                    features.list([p, q, r, s], TWO_EDGES, thickness);
+                    features.list([p, q, r, s], TWO_EDGES, thickness, distance);
                 });
             }
         }
@@ -355,13 +363,13 @@ impl Features<'_> {
         }
     }
 
-    fn list(&mut self, particles: [u32; 4], split: usize, thickness: f32) {
+    fn list(&mut self, particles: [u32; 4], split: usize, thickness: f32, distance: f32) {
         self.candidates.push(Candidate {
             particles,
             split: split as u32,
             thickness,
             nearest: Nearest::default(),
-            apart: f32::NEG_INFINITY,
+            apart: distance - thickness,
         });
     }
 }

@@ -44,8 +44,9 @@ pub(super) struct Candidate {
     pub particles: [u32; 4],
     pub split: u32,
     pub thickness: f32,
-    /// Their nearest points when they were last measured, and the distance less the thickness (m).
+    /// Their nearest points when they were last measured, if they were near enough to touch.
     pub nearest: Nearest,
+    /// The distance less the thickness, at least (m).
     pub apart: f32,
 }
 
@@ -85,7 +86,7 @@ impl PatchPair {
 
     /// Whether they are inside each other, as they may begin.
     pub fn has_tangled(&self, candidates: &[Candidate]) -> bool {
-        let is_inside = |of: &Candidate| of.nearest.distance < INSIDE * of.thickness;
+        let is_inside = |of: &Candidate| of.apart < (INSIDE - 1.0) * of.thickness;
         candidates.iter().any(is_inside)
     }
 

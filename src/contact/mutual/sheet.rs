@@ -35,6 +35,7 @@ pub(crate) struct Sheet {
     faces: Vec<[u16; 3]>,
     edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
+    closest: f32,
     /// For a grid, the patch that owns each particle.
     owners: Vec<u32>,
     /// For a mesh.
@@ -76,8 +77,13 @@ impl Sheet {
             tree.validate(surface.len()).is_ok(),
             "the tree belongs to another surface"
         );
+        let closest = surface.as_grid().map_or(0.0, |grid| {
+            let [across, down] = grid.spacing().to_array();
+            across * down / across.hypot(down)
+        });
         let mut sheet = Self {
             surface: surface.clone(),
+            closest,
             ..Self::default()
         };
         if tree.is_empty() {
@@ -213,10 +219,7 @@ impl Sheet {
     /// For a grid, the smallest distance at rest between two features without a common particle (m): from a corner of a
     /// cell to its diagonal. 0 for a mesh.
     pub(super) fn closest(&self) -> f32 {
-        self.surface.as_grid().map_or(0.0, |grid| {
-            let [across, down] = grid.spacing().to_array();
-            across * down / across.hypot(down)
-        })
+        self.closest
     }
 
     /// The nodes of the tree over its patches, each before its children.
