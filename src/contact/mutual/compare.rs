@@ -22,7 +22,7 @@ const OF_REST: f32 = 0.5;
 
 /// Number of sub-steps of motion that a list of features lasts; at least this fraction of the thickness, at most this
 /// fraction of the shortest spacing.
-const AHEAD: f32 = 5.0;
+const AHEAD: f32 = 10.0;
 const LEAST_AHEAD: f32 = 0.25;
 const MOST_AHEAD: f32 = 0.5;
 

@@ -10,7 +10,7 @@
 //! `used` only grows: by the deviation from the reference, however often that is taken anew. Trembling around the
 //! reference does not add up. Patches that move alike use nothing up.
 
-use bevy::math::Vec3A;
+use bevy::math::{Vec3A, Vec4};
 
 use super::{bounds::Bounds, participant::Participant};
 
@@ -76,6 +76,9 @@ pub(super) struct Motion {
     pub start: Vec<Vec3A>,
     pub end: Vec<Vec3A>,
     pub patches: Vec<PatchMotion>,
+    /// The middle of each patch at its end, and what its particles have [used](PatchMotion::used), side by side.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub ends: Vec<Vec4>,
     /// Offsets of each patch's particles at its reference (m).
     offsets: Vec<Vec3A>,
     /// The motion that all had in common, in all and in the sub-step (m).
@@ -153,6 +156,7 @@ impl Motion {
     pub fn measure(&mut self, cloths: &[Participant]) {
         let mut offsets = self.offsets.iter();
         let mut patches = self.patches.iter_mut();
+        self.ends.clear();
         for (cloth, first) in cloths.iter().zip(&self.firsts) {
             let places = &self.end[first[0] as usize..];
             for patch in 0..cloth.sheet.patch_count() as u32 {
@@ -169,6 +173,7 @@ impl Motion {
                     square = square.max(moved.length_squared());
                 }
                 state.deviation[1] = square.sqrt();
+                self.ends.push(state.end.extend(state.used()));
             }
         }
     }

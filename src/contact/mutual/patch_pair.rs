@@ -101,8 +101,8 @@ impl PatchPair {
 
     /// Upper bound of their approach since they were last looked at (m).
     pub fn used(&self, motion: &Motion) -> f32 {
-        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
-        (a.end - b.end - self.between).length() + a.used() + b.used() - self.since
+        let [a, b] = self.of.map(|patch| motion.ends[patch as usize]);
+        (Vec3A::from_vec4(a - b) - self.between).length() + a.w + b.w - self.since
     }
 
     /// The same, up to the beginning of the sub-step.
