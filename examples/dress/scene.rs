@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Particles from the waist to the hem.
-pub const PARTICLES: u32 = 22;
+pub const PARTICLES: u32 = 18;
 /// Height and radius of the waist, and radius of the hem and how far below the waist it is as the skirt is cut (m). Hardly wider than
 /// where it flies: all that is wider would hang in the air in folds that are too sharp for the mesh.
 const WAIST: f32 = 1.02;

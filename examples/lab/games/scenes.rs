@@ -56,7 +56,7 @@ pub const SCENES: [Scene; 24] = [
         let square = world.resource_mut::<Assets<Mesh>>().add(square);
         on_another(world, layers, 40, (Cloth::mesh(), Mesh3d(square)));
     }),
-    scene("towel on a sheet asleep", 300, lowered),
+    scene("towel lowered on a sheet", 300, lowered),
     inside(scene("panels, edges meet", 180, |world, layers| {
         panels(world, layers, 0.0);
     })),
@@ -143,7 +143,7 @@ fn on_another(world: &mut World, layers: &Layers, side: u32, falls: impl Bundle)
     layers.spawn(world, (falls, Pins::none(), place));
 }
 
-/// A towel is lowered on a sheet that sleeps on the floor.
+/// A towel is lowered on a sheet on the floor. The sheet sleeps until the towel is near.
 fn lowered(world: &mut World, layers: &Layers) {
     world.spawn(ClothCollider::plane());
     let sheet = Cloth::new(32, 32, 0.04).lying().centred();

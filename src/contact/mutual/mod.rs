@@ -79,8 +79,10 @@ const ROUNDS: u32 = 4;
 /// Units of work for a contact that is listed and pushed.
 const WORK_OF_CONTACT: usize = 8;
 
-/// Largest number of sub-steps that layers want: that of a pile in which a pair of features touches for each particle.
+/// Largest number of sub-steps that layers want, and the number of pairs that touch for each particle of a pile that wants
+/// so many.
 const MOST_SUBSTEPS: f32 = 16.0;
+const PILE: f32 = 0.25;
 
 /// Number of ticks without contact after one with too much work.
 const TICKS_OFF: u32 = 8;
@@ -210,7 +212,7 @@ impl MutualContact {
         if touched == 0 {
             return 0;
         }
-        let pile = MOST_SUBSTEPS * touched as f32 / self.motion.end.len() as f32;
+        let pile = MOST_SUBSTEPS / PILE * touched as f32 / self.motion.end.len() as f32;
         let fast = motion * substeps as f32;
         pile.max(fast).clamp(1.0, MOST_SUBSTEPS) as u32
     }
