@@ -70,7 +70,7 @@ impl Flat {
 }
 
 /// The convex hull as a closed polygon: its lower chain, then its upper chain (Andrew 1979).
-pub(crate) fn hull(places: &[DVec2]) -> Vec<DVec2> {
+fn hull(places: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let chain = |points: &mut dyn Iterator<Item = DVec2>| {

@@ -37,7 +37,7 @@ pub use triangles::{TriangleMesh, VertexAttribute};
 #[cfg(feature = "mesh")]
 pub(crate) use asset::skin_of_asset;
 pub(crate) use faces::Faces;
-pub(crate) use flat::{Flat, hull};
+pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;

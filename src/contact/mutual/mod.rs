@@ -17,7 +17,7 @@
 //! 2. Of two patches whose boxes overlap, features that are not listed were farther apart than a thickness by at least
 //!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
 //!    less, they are a thickness apart.
-//! 3. Two neighbouring patches whose [tangents](tangents) differ little are apart, however they moved.
+//! 3. Two patches of a grid whose [tangents](tangents) differ little are apart, however they moved.
 //! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
 //!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
 //!    it has not passed, or it is stopped.
@@ -29,7 +29,6 @@
 
 mod bounds;
 mod certificate;
-mod charts;
 mod circumstances;
 mod compare;
 mod hold;

@@ -113,7 +113,7 @@ impl PatchPair {
     }
 }
 
-/// By how much the features of two patches of a cloth are farther apart than the thickness at the end of the sub-step
+/// By how much the features of two patches of a grid are farther apart than the thickness at the end of the sub-step
 /// (m), from the tangents around them. It does not matter how they got there: a sheet that is unfolded has not passed
 /// through itself.
 pub(super) fn unfolded_by(
@@ -134,7 +134,7 @@ pub(super) fn unfolded_by(
             cloth.sheet.tangents_of(patch, places)
         })
     };
-    Some(cloth.sheet.unfolded(of, places, tangents_of)? - cloth.settings.thickness)
+    Some(cloth.sheet.unfolded(of, tangents_of)? - cloth.settings.thickness)
 }
 
 /// Two patches that are looked at, at the beginning of the sub-step.

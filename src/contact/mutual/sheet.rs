@@ -7,10 +7,7 @@ use bevy::{
     platform::collections::HashSet,
 };
 
-use super::{
-    charts::{Charts, Patches},
-    tangents::Tangents,
-};
+use super::tangents::Tangents;
 
 use crate::{
     cloth::{ClothGrid, Surface},
@@ -36,10 +33,8 @@ pub(crate) struct Sheet {
     edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
     closest: f32,
-    /// For a grid, the patch that owns each particle.
+    /// The patch that owns each particle.
     owners: Vec<u32>,
-    /// For a mesh.
-    charts: Charts,
 }
 
 /// The features that a few neighbouring particles own. Every vertex, edge and face belongs to one patch.
@@ -100,11 +95,7 @@ impl Sheet {
         }
         let mut seen = HashSet::new();
         sheet.add(tree, 0, &leaves, &mut seen);
-        if surface.as_grid().is_some() {
-            sheet.owners = sheet.owners();
-        } else {
-            sheet.charts = sheet.charts();
-        }
+        sheet.owners = sheet.owners();
         sheet
     }
 
@@ -116,26 +107,6 @@ impl Sheet {
             }
         }
         owners
-    }
-
-    fn charts(&self) -> Charts {
-        let all = 0..self.patches.len() as u32;
-        let faces = all.clone().flat_map(|patch| {
-            let particles = self.particles_of(patch);
-            let corners = move |face: &[u16; 3]| face.map(|at| particles[usize::from(at)]);
-            self.faces_of(patch).iter().map(corners)
-        });
-        Charts::new(&Patches {
-            rest: self.surface.rest_positions(),
-            shortest: self.surface.spacing().shortest,
-            particles: all.map(|patch| self.particles_of(patch)).collect(),
-            faces: self
-                .patches
-                .iter()
-                .map(|patch| patch.faces.clone())
-                .collect(),
-            corners: faces.collect(),
-        })
     }
 
     /// Adds a node of the tree and all below it. Returns its index.
@@ -242,18 +213,14 @@ impl Sheet {
         Some(Tangents::of(rows, grid.spacing()))
     }
 
-    /// A lower bound of the distance between two patches (m), from the tangents at these positions; `None` for patches
-    /// that are far from each other at rest, and for those of a mesh without a chart. `tangents_of` returns those of a
-    /// patch of a grid.
+    /// A lower bound of the distance between two patches of a grid (m), from the tangents of each, which `tangents_of`
+    /// returns; `None` for a mesh, and for patches that are far from each other at rest.
     pub(super) fn unfolded(
         &self,
         of: [u32; 2],
-        places: &[Vec3A],
         mut tangents_of: impl FnMut(u32) -> Option<Tangents>,
     ) -> Option<f32> {
-        let Some(grid) = self.surface.as_grid() else {
-            return self.charts.unfolded(of, places);
-        };
+        let grid = self.surface.as_grid()?;
         let [a, b] = of.map(|patch| self.patches[patch as usize].rectangle);
         let low = [0, 1].map(|axis| a[0][axis].min(b[0][axis]));
         let high = [0, 1].map(|axis| a[1][axis].max(b[1][axis]));

@@ -1,14 +1,14 @@
-//! Bounds of the tangents of a patch: proof that it does not touch itself.
+//! Bounds of the tangents of a patch of a grid: proof that it does not touch itself.
 
 use bevy::math::{Vec2, Vec3A};
 
 use super::bounds::Bounds;
 
-/// Bounds of the tangents of a patch along two axes at rest, as those of a grid, per metre at rest.
+/// Bounds of the tangents of a patch of a grid, along rows and columns, per metre at rest.
 ///
 /// # The proof that a patch does not touch itself
-/// A patch of rows × columns is convex at rest, so the straight line between two of its points u and v stays in it; as in
-/// a [chart](super::charts) of a mesh. Along that line the surface follows its tangents F = (∂x/∂across, ∂x/∂down), which are all within ε of their middle
+/// A patch of rows × columns is convex at rest, so the straight line between two of its points u and v stays in it.
+/// Along that line the surface follows its tangents F = (∂x/∂across, ∂x/∂down), which are all within ε of their middle
 /// F₀:
 ///
 /// ```text
@@ -31,13 +31,6 @@ impl Tangents {
         across: Bounds::EMPTY,
         down: Bounds::EMPTY,
     };
-
-    /// Adds the tangents of a triangle.
-    #[inline]
-    pub fn add(&mut self, across: Vec3A, down: Vec3A) {
-        self.across = self.across.with(across);
-        self.down = self.down.with(down);
-    }
 
     /// The tangents of a rectangle of particles, from its rows, at these distances at rest.
     pub fn of<'a>(rows: impl Iterator<Item = &'a [Vec3A]>, spacing: Vec2) -> Self {
@@ -84,15 +77,12 @@ impl Tangents {
         );
         let half = (a - b) * 0.5;
         let least = (a + b) * 0.5 - (half * half + mixed * mixed).sqrt();
-        least.max(0.0).sqrt() * (1.0 - ROUNDING) - off * (1.0 + LONGER)
+        least.max(0.0).sqrt() * (1.0 - ROUNDING) - off * (1.0 + ROUNDING)
     }
 }
 
 /// More than the rounding errors.
 const ROUNDING: f32 = 1.0e-5;
-
-/// A path between two points of a patch may be longer than the straight line by this fraction of it, at most.
-pub(super) const LONGER: f32 = 0.01;
 
 /// The tangents of patches in a sub-step: each is measured when it is first asked for.
 #[derive(Debug, Default, Clone)]

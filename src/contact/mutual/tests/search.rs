@@ -258,55 +258,53 @@ fn no_pair_is_lost_on_the_way() {
     }
 }
 
-/// Whatever a grid or a mesh is bent into, no two points of two patches are nearer than the bound says, but for features
+/// Whatever a grid is bent into, no two points of two patches are nearer than the bound says, but for features
 /// with a common particle. Points are vertices, middles of edges and middles of faces.
 #[test]
 fn what_is_hardly_bent_keeps_its_points_apart() {
-    for is_mesh in [false, true] {
-        let mut has_bound = 0;
-        for (name, shape) in shapes() {
-            for scale in [1.0, 0.4, 0.1] {
-                let shape = move |at: Vec3| shape(at * scale) / scale;
-                let cloth = Sheeted::of_kind(9, 1.0, is_mesh, shape);
-                let places: Vec<Vec3A> = cloth.particles.positions().map(Vec3A::from).collect();
-                let points = |patch: u32| {
-                    let particles = cloth.sheet.particles_of(patch);
-                    let named = |of: &[u16]| -> Vec<u32> {
-                        of.iter().map(|&at| particles[usize::from(at)]).collect()
-                    };
-                    let vertices = particles.iter().map(|&particle| vec![particle]);
-                    let edges = cloth.sheet.edges_of(patch).iter().map(|of| named(of));
-                    let faces = cloth.sheet.faces_of(patch).iter().map(|of| named(of));
-                    let all = vertices.chain(edges).chain(faces);
-                    all.map(|of| {
-                        let sum = of.iter().map(|&each| places[each as usize]).sum::<Vec3A>();
-                        (sum / of.len() as f32, of)
-                    })
-                    .collect::<Vec<_>>()
+    let mut has_bound = 0;
+    for (name, shape) in shapes() {
+        for scale in [1.0, 0.4, 0.1] {
+            let shape = move |at: Vec3| shape(at * scale) / scale;
+            let cloth = Sheeted::new(9, 1.0, shape);
+            let places: Vec<Vec3A> = cloth.particles.positions().map(Vec3A::from).collect();
+            let points = |patch: u32| {
+                let particles = cloth.sheet.particles_of(patch);
+                let named = |of: &[u16]| -> Vec<u32> {
+                    of.iter().map(|&at| particles[usize::from(at)]).collect()
                 };
-                let patches = cloth.sheet.patch_count() as u32;
-                let all: Vec<_> = (0..patches).map(points).collect();
-                for (a, first) in (0..).zip(&all) {
-                    for (b, second) in (a..).zip(&all[a as usize..]) {
-                        let tangents_of = |patch| cloth.sheet.tangents_of(patch, &places);
-                        let bound = cloth.sheet.unfolded([b, a], &places, tangents_of);
-                        let Some(bound) = bound else { continue };
-                        has_bound += usize::from(bound > 0.0);
-                        for (at, of) in first {
-                            for (to, others) in second {
-                                let apart = at.distance(*to);
-                                assert!(
-                                    apart >= bound || of.iter().any(|each| others.contains(each)),
-                                    "{name}, mesh {is_mesh}: {apart}, {bound}, {of:?}, {others:?}"
-                                );
-                            }
+                let vertices = particles.iter().map(|&particle| vec![particle]);
+                let edges = cloth.sheet.edges_of(patch).iter().map(|of| named(of));
+                let faces = cloth.sheet.faces_of(patch).iter().map(|of| named(of));
+                let all = vertices.chain(edges).chain(faces);
+                all.map(|of| {
+                    let sum = of.iter().map(|&each| places[each as usize]).sum::<Vec3A>();
+                    (sum / of.len() as f32, of)
+                })
+                .collect::<Vec<_>>()
+            };
+            let patches = cloth.sheet.patch_count() as u32;
+            let all: Vec<_> = (0..patches).map(points).collect();
+            for (a, first) in (0..).zip(&all) {
+                for (b, second) in (a..).zip(&all[a as usize..]) {
+                    let tangents_of = |patch| cloth.sheet.tangents_of(patch, &places);
+                    let bound = cloth.sheet.unfolded([b, a], tangents_of);
+                    let Some(bound) = bound else { continue };
+                    has_bound += usize::from(bound > 0.0);
+                    for (at, of) in first {
+                        for (to, others) in second {
+                            let apart = at.distance(*to);
+                            assert!(
+                                apart >= bound || of.iter().any(|each| others.contains(each)),
+                                "{name}: {apart}, {bound}, {of:?}, {others:?}"
+                            );
                         }
                     }
                 }
             }
         }
-        assert!(has_bound > 100, "mesh {is_mesh}: {has_bound}");
     }
+    assert!(has_bound > 300, "{has_bound}");
 }
 
 /// A search ends, however many features are near each other, and finds no more than it may: of a sheet that is crammed into a tenth of a
