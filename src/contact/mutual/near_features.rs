@@ -17,7 +17,6 @@ use super::{
     near_patches::{Meets, Rooms},
     participant::Participant,
     patch_pair::{Candidate, PatchPair, Place, measure, unfolded_by},
-    tangents::Measured,
     work::{Counts, MOST_LISTED},
 };
 
@@ -39,8 +38,6 @@ pub(super) struct NearFeatures {
     /// Scratch of comparisons.
     #[cfg_attr(feature = "serialize", serde(skip))]
     culled: [Vec<u32>; 2],
-    #[cfg_attr(feature = "serialize", serde(skip))]
-    measured: Measured,
     /// Whether the contacts have changed.
     pub has_changed: bool,
     /// Whether this is the first look at cloths that may be inside each other.
@@ -131,11 +128,10 @@ impl NearFeatures {
     ) -> Option<f32> {
         let mut left = self.find_due(motion, reserve);
         let due = std::mem::take(&mut self.due);
-        self.measured.begin(motion.patches.len());
         for &index in &due {
             let pair = &mut self.pairs[index as usize];
             let had_contacts = pair.has_contacts();
-            if let Some(apart) = unfolded_by(pair, cloths, motion, &mut self.measured)
+            if let Some(apart) = unfolded_by(pair, cloths, motion)
                 && apart > reserve
             {
                 self.listed -= pair.count as usize;

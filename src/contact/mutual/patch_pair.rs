@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy::math::Vec3A;
 
-use super::{motion::Motion, pair::Nearest, participant::Participant, tangents::Measured};
+use super::{motion::Motion, pair::Nearest, participant::Participant};
 
 /// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
 const FRESH: f32 = 0.22;
@@ -120,7 +120,6 @@ pub(super) fn unfolded_by(
     pair: &PatchPair,
     cloths: &[Participant],
     motion: &Motion,
-    measured: &mut Measured,
 ) -> Option<f32> {
     let [a, b] = pair
         .of
@@ -129,12 +128,7 @@ pub(super) fn unfolded_by(
     let of = pair.of.map(|patch| patch - first_patch);
     let cloth = (a == b).then(|| &cloths[a])?;
     let places = &motion.end[first_particle as usize..];
-    let tangents_of = |patch: u32| {
-        measured.get(first_patch + patch, || {
-            cloth.sheet.tangents_of(patch, places)
-        })
-    };
-    Some(cloth.sheet.unfolded(of, tangents_of)? - cloth.settings.thickness)
+    Some(cloth.sheet.unfolded(of, places)? - cloth.settings.thickness)
 }
 
 /// Two patches that are looked at, at the beginning of the sub-step.

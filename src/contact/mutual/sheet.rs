@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Largest number of rows and columns whose tangents are compared.
-const LARGEST: u32 = 7;
+const LARGEST: usize = 7;
 
 /// Largest number of particles that a patch owns.
 const OWNED: u32 = 8;
@@ -33,8 +33,6 @@ pub(crate) struct Sheet {
     edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
     closest: f32,
-    /// The patch that owns each particle.
-    owners: Vec<u32>,
 }
 
 /// The features that a few neighbouring particles own. Every vertex, edge and face belongs to one patch.
@@ -95,18 +93,7 @@ impl Sheet {
         }
         let mut seen = HashSet::new();
         sheet.add(tree, 0, &leaves, &mut seen);
-        sheet.owners = sheet.owners();
         sheet
-    }
-
-    fn owners(&self) -> Vec<u32> {
-        let mut owners = vec![0; self.surface.len()];
-        for (index, patch) in (0..).zip(&self.patches) {
-            for &particle in &self.particles_of(index)[..patch.owned as usize] {
-                owners[particle as usize] = index;
-            }
-        }
-        owners
     }
 
     /// Adds a node of the tree and all below it. Returns its index.
@@ -202,51 +189,30 @@ impl Sheet {
         self.patches.len()
     }
 
-    /// The tangents of a patch of a grid at these positions; `None` for a mesh.
-    pub(super) fn tangents_of(&self, patch: u32, places: &[Vec3A]) -> Option<Tangents> {
-        let grid = self.surface.as_grid()?;
-        let [low, high] = self.patches[patch as usize].rectangle;
-        let rows = (low[0]..=high[0]).map(|row| {
-            let [first, last] = [low[1], high[1]].map(|column| row * grid.columns() + column);
-            &places[first as usize..=last as usize]
-        });
-        Some(Tangents::of(rows, grid.spacing()))
-    }
-
-    /// A lower bound of the distance between two patches of a grid (m), from the tangents of each, which `tangents_of`
-    /// returns; `None` for a mesh, and for patches that are far from each other at rest.
-    pub(super) fn unfolded(
-        &self,
-        of: [u32; 2],
-        mut tangents_of: impl FnMut(u32) -> Option<Tangents>,
-    ) -> Option<f32> {
+    /// A lower bound of the distance between two patches of a grid (m), from its tangents at these positions; `None` for
+    /// a mesh, and for patches that are far from each other at rest.
+    pub(super) fn unfolded(&self, of: [u32; 2], places: &[Vec3A]) -> Option<f32> {
         let grid = self.surface.as_grid()?;
         let [a, b] = of.map(|patch| self.patches[patch as usize].rectangle);
-        let low = [0, 1].map(|axis| a[0][axis].min(b[0][axis]));
-        let high = [0, 1].map(|axis| a[1][axis].max(b[1][axis]));
-        if high[0] - low[0] >= LARGEST || high[1] - low[1] >= LARGEST {
+        let low = [0, 1].map(|axis| a[0][axis].min(b[0][axis]) as usize);
+        let size = [0, 1].map(|axis| a[1][axis].max(b[1][axis]) as usize - low[axis] + 1);
+        if size.iter().any(|&size| size > LARGEST) {
             return None;
-        }
-        // All patches of the rectangle around both.
-        let mut tangents = Tangents::EMPTY;
-        let mut row = low[0];
-        while row < high[0] {
-            let (mut column, mut next) = (low[1], high[0]);
-            while column < high[1] {
-                let owner = self.owners[(row * grid.columns() + column) as usize];
-                let [_, last] = self.patches[owner as usize].rectangle;
-                tangents = tangents.join(&tangents_of(owner)?);
-                (column, next) = (last[1], next.min(last[0]));
-            }
-            row = next;
         }
         let gap = |axis: usize| {
             a[0][axis]
                 .max(b[0][axis])
                 .saturating_sub(a[1][axis].min(b[1][axis]))
         };
-        let apart = grid.spacing() * Vec2::new(gap(1) as f32, gap(0) as f32);
-        Some(tangents.unfolded() * apart.length().max(self.closest()))
+        let spacing = grid.spacing();
+        let apart = spacing * Vec2::new(gap(1) as f32, gap(0) as f32);
+        let columns = grid.columns() as usize;
+        let rows = (0..size[0]).map(|row| {
+            let first = (low[0] + row) * columns + low[1];
+            &places[first..first + size[1]]
+        });
+        let tangents = Tangents::of(rows, spacing);
+        Some(tangents.unfolded() * apart.length().max(self.closest))
     }
 
     /// The particles of a patch's features.

@@ -26,12 +26,6 @@ pub(super) struct Tangents {
 }
 
 impl Tangents {
-    /// Those of nothing.
-    pub const EMPTY: Self = Self {
-        across: Bounds::EMPTY,
-        down: Bounds::EMPTY,
-    };
-
     /// The tangents of a rectangle of particles, from its rows, at these distances at rest.
     pub fn of<'a>(rows: impl Iterator<Item = &'a [Vec3A]>, spacing: Vec2) -> Self {
         let (mut across, mut down) = (Bounds::EMPTY, Bounds::EMPTY);
@@ -56,13 +50,6 @@ impl Tangents {
         }
     }
 
-    pub fn join(&self, other: &Self) -> Self {
-        Self {
-            across: self.across.join(&other.across),
-            down: self.down.join(&other.down),
-        }
-    }
-
     /// σ − ε: a lower bound of the ratio of any two points' distance to that at rest; 0 or less where they may meet.
     pub fn unfolded(&self) -> f32 {
         let middle = |of: &Bounds| (of.min + of.max) * 0.5;
@@ -83,31 +70,3 @@ impl Tangents {
 
 /// More than the rounding errors.
 const ROUNDING: f32 = 1.0e-5;
-
-/// The tangents of patches in a sub-step: each is measured when it is first asked for.
-#[derive(Debug, Default, Clone)]
-pub(super) struct Measured {
-    /// Of each patch, and the sub-step in which they were measured.
-    tangents: Vec<(u64, Tangents)>,
-    now: u64,
-}
-
-impl Measured {
-    /// Begins a sub-step of so many patches.
-    pub fn begin(&mut self, patches: usize) {
-        self.now += 1;
-        self.tangents.resize(patches, (0, Tangents::EMPTY));
-    }
-
-    pub fn get(
-        &mut self,
-        patch: u32,
-        measure: impl FnOnce() -> Option<Tangents>,
-    ) -> Option<Tangents> {
-        let (when, tangents) = &mut self.tangents[patch as usize];
-        if *when != self.now {
-            (*when, *tangents) = (self.now, measure()?);
-        }
-        Some(*tangents)
-    }
-}
