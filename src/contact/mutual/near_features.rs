@@ -57,7 +57,7 @@ impl NearFeatures {
         self.listed
     }
 
-    /// The share of so many patches that began inside others, and still are (0 to 1).
+    /// The share of the patches that began inside others, and still are (0 to 1).
     pub fn tangled(&mut self, patches: usize) -> f32 {
         let tangled = self.pairs.iter().filter(|pair| pair.is_tangled);
         self.soon.clear();

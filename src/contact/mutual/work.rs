@@ -41,7 +41,7 @@ impl Counts {
         }
     }
 
-    /// Lowers the limit of so many particles: this share of them (0 to 1) began inside each other.
+    /// Lowers the limit. A share of the particles, `tangled` (0 to 1), began inside each other.
     pub fn tighten(&mut self, particles: usize, tangled: f32) {
         let each = MOST_WORK_TANGLED as f32 * tangled + MOST_WORK as f32 * (1.0 - tangled);
         let most = (each as usize).saturating_mul(particles);
