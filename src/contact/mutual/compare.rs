@@ -29,6 +29,9 @@ const MOST_AHEAD: f32 = 0.5;
 /// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
 const ENOUGH: f32 = 2.0;
 
+/// Units of work for an edge and a face that may cross, in f64.
+const CROSSING: usize = 3;
+
 /// Compares two patches, and lists their near features. `culled` is scratch: its contents do not matter.
 pub(super) fn compare(
     pair: &mut PatchPair,
@@ -109,7 +112,7 @@ pub(super) fn cross(
         let [own, other] = of.map(|side| &sides[side]);
         let edges = own.sheet.edges_of(own.patch);
         let faces = other.sheet.faces_of(other.patch);
-        *work = work.saturating_sub(edges.len() * faces.len());
+        *work = work.saturating_sub(CROSSING * edges.len() * faces.len());
         edges.iter().any(|edge| {
             let bounds = own.bounds(*edge);
             let ends = edge.map(|end| own.particle(end));

@@ -167,13 +167,13 @@ impl NearFeatures {
                 let candidates = &mut self.candidates[first..];
                 counts.take(4 * candidates.len());
                 measure(pair, candidates, motion, &place, 0.0);
-                pair.is_tangled |= self.begins
-                    && (pair.has_tangled(&self.candidates[first..])
-                        || cross(pair, cloths, motion, &mut counts.work));
+                pair.is_tangled |= self.begins && pair.has_tangled(&self.candidates[first..]);
             }
-            if pair.is_tangled {
+            if pair.is_tangled || self.begins {
                 let cross = cross(pair, cloths, motion, &mut counts.work);
-                pair.leave_alone(cross, &place);
+                if pair.is_tangled || cross {
+                    pair.leave_alone(cross, &place);
+                }
             }
             self.has_changed |= had_contacts || pair.has_contacts();
             left = left.min(pair.until - place.used);

@@ -73,3 +73,18 @@ fn what_touches_otherwise_than_before_is_searched_for_anew() {
     assert!(scene.contact.searches() > 0);
     assert!(scene.contact.pairs() > 81, "each vertex has met a face");
 }
+
+/// A pile wants as many sub-steps as there are, a corner on a corner hardly any, and sheets apart from each other none.
+#[test]
+fn layers_want_substeps_by_what_touches() {
+    let wanted = |[across, up]: [f32; 2]| {
+        let second = move |at: Vec3| at + Vec3::new(across, up, across);
+        let sheets = vec![Sheeted::new(9, 0.4, |at| at), Sheeted::new(9, 0.4, second)];
+        let mut scene = Scene::new(sheets, 0.01);
+        scene.tick(|_, _, _| {});
+        scene.contact.wanted_substeps()
+    };
+    assert_eq!(wanted([0.0, 0.007]), 16);
+    assert!((1..5).contains(&wanted([0.39, 0.007])));
+    assert_eq!(wanted([0.0, 0.5]), 0);
+}
