@@ -78,8 +78,7 @@ const ROUNDS: u32 = 4;
 /// Units of work for a contact that is listed and pushed.
 const WORK_OF_CONTACT: usize = 8;
 
-/// Largest number of sub-steps that layers want, and the number of pairs that touch for each particle of a pile that wants
-/// so many.
+/// Largest number of sub-steps that layers want. A pile wants that many if `PILE` pairs touch for each particle.
 const MOST_SUBSTEPS: f32 = 16.0;
 const PILE: f32 = 0.25;
 
@@ -168,6 +167,8 @@ impl MutualContact {
             self.motion.measure_drift();
             self.motion.measure(cloths);
             self.motion.pass(cloths, REFERENCE * thinnest(cloths));
+            // Both ends of the sub-step are here.
+            self.motion.end.clone_from(&self.motion.start);
         } else {
             self.motion.reset(cloths);
             self.rooms.reset(cloths, self.motion.patches.len());

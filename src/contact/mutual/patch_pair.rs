@@ -176,7 +176,9 @@ pub(super) fn measure(
     for index in 0..candidates.len() {
         let candidate = &mut candidates[index];
         candidate.apart -= used_before;
-        if candidate.apart <= pair.near {
+        // Also for NaN.
+        let is_far = candidate.apart > pair.near;
+        if !is_far {
             let places = candidate
                 .particles
                 .map(|particle| motion.start[particle as usize]);

@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Largest number of rows and columns whose tangents are compared.
-const LARGEST: usize = 7;
+const LARGEST: usize = 9;
 
 /// Largest number of particles that a patch owns.
 const OWNED: u32 = 8;
