@@ -82,7 +82,7 @@ impl Ring {
     }
 }
 
-/// How far the wall's end of a half is from the middle (m). Flat halves lie side by side: they are gathered from there.
+/// How far the wall's end of a half is from the middle (m): farther out while the half is wider than when closed.
 fn wall(share: f32) -> f32 {
     share.max(CLOSED) * WIDTH + 0.5 * GAP
 }

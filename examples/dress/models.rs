@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use crate::turned::turned;
 
 /// Particles around the skirt for one from its waist to its hem.
-const AROUND: u32 = 5;
+pub const AROUND: u32 = 5;
 
 /// A flared skirt: a cone of cloth from the radius `waist` down to the radius `hem` at `drop` below it (m), of `rings` rings of
 /// triangles. It begins and ends along a seam with vertices of its own on either side, as its texture does.

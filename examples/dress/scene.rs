@@ -7,7 +7,7 @@ use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
 
 use crate::{
-    models::skirt,
+    models::{AROUND, skirt},
     shared::{
         stage::{Grid, Shot, StagePlugin},
         woven::{Weave, woven},
@@ -23,6 +23,8 @@ const WAIST: f32 = 1.02;
 const WAIST_RADIUS: f32 = 0.125;
 const HEM_RADIUS: f32 = 0.58;
 const DROP: f32 = 0.42;
+/// Thickness of the cloth (m), unless that is too much for the spacing at the waist.
+const THICKNESS: f32 = 0.003;
 /// How fast the figure turns (rad/s), and how much faster it gets in a second (rad/s²).
 const SPEED: f32 = 6.0;
 const PICK_UP: f32 = 5.0;
@@ -130,6 +132,7 @@ fn spawn_figure(
             (false, _) => Color::srgb(0.48, 0.06, 0.16),
         }
     });
+    let spacing_at_waist = TAU * WAIST_RADIUS / (AROUND * grid.0) as f32;
     let inner_edge = Pin::at_rest(|place| place.length() < WAIST_RADIUS + 1.0e-3);
     commands.spawn((
         Name::new("skirt"),
@@ -142,8 +145,7 @@ fn spawn_figure(
             ..ClothMaterial::COTTON
         },
         ClothSettings::substeps(24),
-        // Less than half of the spacing at the waist.
-        ClothSelfCollision::of_thickness(0.003),
+        ClothSelfCollision::of_thickness(THICKNESS.min(0.4 * spacing_at_waist)),
         ShowClothGizmos::nothing(),
         MeshMaterial3d(materials.add(StandardMaterial {
             // As long around as from the waist to the hem.

@@ -19,8 +19,7 @@ use bevy_drape::{
 
 use super::{hash::Hash, play::Play};
 
-/// Sub-steps while balls may push, at least: what the plugin takes where layers touch. Without contact both take as many as the cloth
-/// needs.
+/// Sub-steps while balls may push, at least: what the plugin takes in piles. Without contact both take as many as the cloth needs.
 const FOR_LAYERS: u32 = 16;
 
 /// The margin of a search, at least and at most, as a part of the thickness; between these it is what particles may come nearer to

@@ -56,7 +56,7 @@ pub(super) fn compare(
     *work = work.saturating_sub(1);
     let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
     let boxes = sides[0].bounds.distance_squared(&sides[1].bounds).sqrt();
-    let apart = boxes.max(separation(&sides, a.start - b.start)) - thickness;
+    let apart = boxes.max(separation(&sides, a.start - b.start, b.start)) - thickness;
     if apart > ENOUGH * used + reserve {
         pair.slack = apart;
         return;
@@ -87,12 +87,14 @@ pub(super) fn compare(
     pair.slack = apart.max(listed).min(LONGEST * listed);
 }
 
-/// Distance of two patches along a line (m), less than 0 if they overlap there.
-fn separation(sides: &[Side; 2], along: Vec3A) -> f32 {
+/// Distance of two patches along a line (m), less than 0 if they overlap there. Places are taken from `origin`, which is
+/// near: so the error does not grow with the distance from the frame's.
+fn separation(sides: &[Side; 2], along: Vec3A, origin: Vec3A) -> f32 {
     let along = along.normalize_or_zero();
-    let [ahead, behind] = sides;
-    let front = ahead.all().map(|place| along.dot(place));
-    let back = behind.all().map(|place| along.dot(place));
+    let [front, back] = sides.each_ref().map(|side| {
+        let places = side.all();
+        places.map(|place| along.dot(place - origin))
+    });
     front.fold(f32::INFINITY, f32::min) - back.fold(f32::NEG_INFINITY, f32::max)
 }
 
@@ -108,7 +110,8 @@ pub(super) fn cross(
         return false;
     }
     let [a, b] = pair.of.map(|patch| motion.patches[patch as usize].cloth);
-    [[0, 1], [1, 0]].iter().any(|of| {
+    let ways = 1 + usize::from(pair.of[0] != pair.of[1]);
+    [[0, 1], [1, 0]][..ways].iter().any(|of| {
         let [own, other] = of.map(|side| &sides[side]);
         let edges = own.sheet.edges_of(own.patch);
         let faces = other.sheet.faces_of(other.patch);

@@ -78,9 +78,8 @@ const ROUNDS: u32 = 4;
 /// Units of work for a contact that is listed and pushed.
 const WORK_OF_CONTACT: usize = 8;
 
-/// Largest number of sub-steps that layers want. A pile wants that many if `PILE` pairs touch for each particle.
+/// Largest number of sub-steps that layers want.
 const MOST_SUBSTEPS: f32 = 16.0;
-const PILE: f32 = 0.25;
 
 /// Number of ticks without contact after one with too much work.
 const TICKS_OFF: u32 = 8;
@@ -170,11 +169,13 @@ impl MutualContact {
             // Both ends of the sub-step are here.
             self.motion.end.clone_from(&self.motion.start);
         } else {
+            let begins = is_new || was_lost;
+            if !begins {
+                self.tighten();
+            }
+            self.near.restart(begins);
             self.motion.reset(cloths);
             self.rooms.reset(cloths, self.motion.patches.len());
-            let was_tangled = self.near.tangled(self.motion.patches.len()) > 0.0;
-            self.near.clear();
-            self.near.begins = is_new || was_lost || was_tangled;
             self.hold.clear(cloths);
             self.contacts.clear();
             (self.is_known, self.ticks_off) = (true, 0);
@@ -191,7 +192,7 @@ impl MutualContact {
 
     /// Lowers the limit of work by what began inside each other.
     fn tighten(&mut self) {
-        let tangled = self.near.tangled(self.motion.patches.len());
+        let tangled = self.near.tangled_share(self.motion.patches.len());
         self.counts.tighten(self.motion.end.len(), tangled);
     }
 
@@ -200,20 +201,14 @@ impl MutualContact {
         self.counts.compared
     }
 
-    /// Number of sub-steps that these layers want in the next tick, 0 if none touched: a pile, to carry its weight, and
-    /// fast cloth, to move by a thickness in each.
+    /// Number of sub-steps that these layers want in the next tick, 0 if none touched. In a pile they carry its weight. In
+    /// each, fast layers move by a thickness.
     pub fn wanted_substeps(&self) -> u32 {
-        let Counts {
-            touched,
-            substeps,
-            motion,
-            ..
-        } = self.counts;
-        if touched == 0 {
+        if self.counts.touched == 0.0 {
             return 0;
         }
-        let pile = MOST_SUBSTEPS / PILE * touched as f32 / self.motion.end.len() as f32;
-        let fast = motion * substeps as f32;
+        let pile = MOST_SUBSTEPS * self.counts.touched;
+        let fast = self.counts.motion * self.counts.substeps as f32;
         pile.max(fast).clamp(1.0, MOST_SUBSTEPS) as u32
     }
 
@@ -320,7 +315,8 @@ impl MutualContact {
             if round == 0 {
                 let (overlapping, members) = (&mut self.overlapping, &mut self.members);
                 let touched = push(&self.contacts, overlapping, members, dt);
-                self.counts.touched = self.counts.touched.max(touched);
+                let each = touched as f32 / members.len().max(1) as f32;
+                self.counts.touched = self.counts.touched.max(each);
                 has_moved = touched > 0;
             }
             let (members, work) = (&mut self.members, &mut self.counts.work);

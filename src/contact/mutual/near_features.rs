@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Features touch only once `used > apart`. Patches are looked at again once `used > until`, at the beginning of the
-//! sub-step in which that happens: up to there, nothing has touched that was not a contact. Then their listed features
-//! are measured, or all are compared if the slack is used up.
+//! sub-step in which that happens: up to there, nothing has touched that was not a contact. Then those of
+//! their listed features are measured that may touch, or all are compared if the slack is used up.
 
 use super::{
     compare::{compare, cross},
@@ -31,7 +31,9 @@ pub(super) struct NearFeatures {
     candidates: Vec<Candidate>,
     /// Number of candidates that belong to pairs of patches.
     listed: usize,
+    #[cfg_attr(feature = "serialize", serde(skip))]
     due: Vec<u32>,
+    #[cfg_attr(feature = "serialize", serde(skip))]
     soon: Vec<u32>,
     #[cfg_attr(feature = "serialize", serde(skip))]
     spare: Vec<Candidate>,
@@ -42,6 +44,9 @@ pub(super) struct NearFeatures {
     pub has_changed: bool,
     /// Whether this is the first look at cloths that may be inside each other.
     pub begins: bool,
+    /// Pairs of patches that were inside each other as all pairs were cleared, in order.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    were_tangled: Vec<[u32; 2]>,
 }
 
 impl NearFeatures {
@@ -52,13 +57,27 @@ impl NearFeatures {
         self.has_changed = true;
     }
 
+    /// Clears all, to look at the same patches anew. If they `begin`, any may be inside each other, otherwise those that
+    /// still were.
+    pub fn restart(&mut self, begins: bool) {
+        self.begins = begins;
+        self.were_tangled.clear();
+        if !begins {
+            let tangled = self.pairs.iter().filter(|pair| pair.is_tangled);
+            self.were_tangled
+                .extend(tangled.map(|pair| in_order(pair.of)));
+            self.were_tangled.sort_unstable();
+        }
+        self.clear();
+    }
+
     /// Number of pairs of features that may touch.
     pub fn len(&self) -> usize {
         self.listed
     }
 
     /// The share of the patches that began inside others, and still are (0 to 1).
-    pub fn tangled(&mut self, patches: usize) -> f32 {
+    pub fn tangled_share(&mut self, patches: usize) -> f32 {
         let tangled = self.pairs.iter().filter(|pair| pair.is_tangled);
         self.soon.clear();
         self.soon.extend(tangled.flat_map(|pair| pair.of));
@@ -101,8 +120,12 @@ impl NearFeatures {
             }
             is_near
         });
-        let pairs = &mut self.pairs;
-        rooms.search(among, motion, work, |of| pairs.push(PatchPair::new(of)));
+        let (pairs, were_tangled) = (&mut self.pairs, &self.were_tangled);
+        rooms.search(among, motion, work, |of| {
+            let is_tangled = were_tangled.binary_search(&in_order(of)).is_ok();
+            pairs.push(PatchPair::new(of, is_tangled));
+        });
+        self.were_tangled.clear();
     }
 
     /// Measures what is used from zero again: sums of years would round.
@@ -230,4 +253,8 @@ impl NearFeatures {
         }
         std::mem::swap(&mut self.spare, &mut self.candidates);
     }
+}
+
+fn in_order([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }

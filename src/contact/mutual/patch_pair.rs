@@ -44,14 +44,14 @@ pub(super) struct Candidate {
     pub particles: [u32; 4],
     pub split: u32,
     pub thickness: f32,
-    /// Their nearest points when they were last measured, if they were near enough to touch.
+    /// Their nearest points when they were last measured. The default until they are near enough to touch.
     pub nearest: Nearest,
     /// The distance less the thickness, at least (m).
     pub apart: f32,
 }
 
 impl PatchPair {
-    pub fn new(of: [u32; 2]) -> Self {
+    pub fn new(of: [u32; 2], is_tangled: bool) -> Self {
         Self {
             of,
             between: Vec3A::ZERO,
@@ -62,7 +62,7 @@ impl PatchPair {
             first: 0,
             count: 0,
             contacts: 0,
-            is_tangled: false,
+            is_tangled,
         }
     }
 

@@ -17,6 +17,9 @@ use crate::{
 /// Largest number of rows and columns whose tangents are compared.
 const LARGEST: usize = 9;
 
+/// Largest number of rows or columns that a patch owns: with those of its faces, two in a row have [`LARGEST`].
+const LONGEST: u32 = 4;
+
 /// Largest number of particles that a patch owns.
 const OWNED: u32 = 8;
 
@@ -111,9 +114,11 @@ impl Sheet {
             patch: self.patches.len() as u32,
         };
         self.nodes.push(node);
+        let mut owned = Vec::new();
         if leaves[of as usize] <= OWNED {
-            let mut owned = Vec::new();
             collect(tree, of, &mut owned);
+        }
+        if !owned.is_empty() && !self.is_long(&owned) {
             self.add_patch(&owned, seen);
         } else {
             for &child in tree.node(of).children() {
@@ -149,17 +154,7 @@ impl Sheet {
             }
         }
         let range = |from: usize, to: usize| from as u32..to as u32;
-        let columns = self.surface.as_grid().map_or(1, ClothGrid::columns);
-        let of_patch = self.particles[from[0]..].iter();
-        let cells = of_patch.map(|particle| [particle / columns, particle % columns]);
-        let rectangle = cells.fold([[u32::MAX; 2], [0; 2]], |[low, high], at| {
-            [0, 1].map(|end| {
-                [0, 1].map(|axis| match end {
-                    0 => low[axis].min(at[axis]),
-                    _ => high[axis].max(at[axis]),
-                })
-            })
-        });
+        let rectangle = self.rectangle(&self.particles[from[0]..]);
         self.patches.push(Patch {
             owned: owned.len() as u32,
             particles: range(from[0], self.particles.len()),
@@ -167,6 +162,29 @@ impl Sheet {
             edges: range(from[2], self.edges.len()),
             rectangle,
         });
+    }
+
+    /// The first row and column of these particles of a grid, and the last.
+    fn rectangle(&self, particles: &[u32]) -> [[u32; 2]; 2] {
+        let columns = self.surface.as_grid().map_or(1, ClothGrid::columns);
+        let cells = particles
+            .iter()
+            .map(|particle| [particle / columns, particle % columns]);
+        cells.fold([[u32::MAX; 2], [0; 2]], |[low, high], at| {
+            [0, 1].map(|end| {
+                [0, 1].map(|axis| match end {
+                    0 => low[axis].min(at[axis]),
+                    _ => high[axis].max(at[axis]),
+                })
+            })
+        })
+    }
+
+    /// Whether a patch of a grid would be so long that the tangents of it and its neighbour are not compared.
+    fn is_long(&self, owned: &[u32]) -> bool {
+        let [low, high] = self.rectangle(owned);
+        let is_long = |axis: usize| high[axis] - low[axis] >= LONGEST;
+        self.surface.as_grid().is_some() && (is_long(0) || is_long(1))
     }
 
     /// The surface.
@@ -194,8 +212,11 @@ impl Sheet {
     pub(super) fn unfolded(&self, of: [u32; 2], places: &[Vec3A]) -> Option<f32> {
         let grid = self.surface.as_grid()?;
         let [a, b] = of.map(|patch| self.patches[patch as usize].rectangle);
-        let low = [0, 1].map(|axis| a[0][axis].min(b[0][axis]) as usize);
-        let size = [0, 1].map(|axis| a[1][axis].max(b[1][axis]) as usize - low[axis] + 1);
+        let last = [0, 1].map(|axis| a[1][axis].max(b[1][axis]) as usize);
+        // Two rows and columns, at least, have tangents.
+        let first = |axis: usize| a[0][axis].min(b[0][axis]) as usize;
+        let low = [0, 1].map(|axis| first(axis).min(last[axis].saturating_sub(1)));
+        let size = [0, 1].map(|axis| last[axis] - low[axis] + 1);
         if size.iter().any(|&size| size > LARGEST) {
             return None;
         }

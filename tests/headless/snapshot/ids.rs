@@ -120,17 +120,15 @@ fn ids_may_be_in_another_order() {
     let mut ids: EntityHashMap<Entity> = before.iter().copied().zip(after.clone()).collect();
     saved.map_entities(&mut ids);
     saved.restore(other.world_mut()).expect("the same entities");
-    // They fall by 20 mm in a tick at the end.
-    for (ticks, most) in [(1, 2.0e-4), (9, 5.0e-3)] {
+    for (ticks, most) in [(1, 1.0e-3), (9, 1.0e-2)] {
         tick(&mut app, ticks);
         tick(&mut other, ticks);
         for (cloth, twin) in before.iter().zip(&after).skip(3) {
             assert!(other.world().get::<ClothFault>(*twin).is_none());
             let pairs = particles(&app, *cloth).positions();
             let pairs = pairs.zip(particles(&other, *twin).positions());
-            let off = pairs.map(|(a, b)| a.distance(b)).sum::<f32>() / 144.0;
-            println!("off by {off} m in the mean after {ticks} ticks more");
-            assert!(off < most, "{off} m after {ticks} ticks more");
+            let farthest = pairs.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+            assert!(farthest < most, "{farthest} m after {ticks} ticks more");
         }
     }
 }

@@ -1,11 +1,15 @@
 //! No pair of near features is lost, and patches that are skipped cannot touch.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, sync::Arc};
 
 use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{Scene, Sheeted, participants, settings};
-use crate::contact::mutual::{MutualContact, patch_pair::Candidate};
+use crate::{
+    cloth::{Cloth, Surface},
+    contact::mutual::{MutualContact, Sheet, patch_pair::Candidate},
+    hierarchy::QuadTree,
+};
 
 /// What a square of 1 m is bent into: flat, rolled up more and more, folded, wavy, crumpled.
 fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {
@@ -255,6 +259,73 @@ fn no_pair_is_lost_on_the_way() {
             );
         }
         assert!(met > 0, "something meets");
+    }
+}
+
+/// What has been folded by something else since the last tick, without a word, is found.
+#[test]
+fn no_pair_is_lost_after_a_sudden_fold() {
+    let thickness = 0.03;
+    let mut cloths = vec![Sheeted::new(11, 1.0, |at| at)];
+    let mut contact = MutualContact::default();
+    contact.begin(&participants(&mut cloths, settings(thickness)), |_, _| true);
+    assert_eq!(contact.near.all().count(), 0, "flat");
+    // A sharp fold between neighbouring patches.
+    let folded = Sheeted::new(11, 1.0, |at| {
+        Vec3::new(at.x, 0.2 * at.z.abs(), at.z.abs() + 0.02 * at.x)
+    });
+    cloths[0].particles.copy_from(&folded.particles);
+    contact.begin(&participants(&mut cloths, settings(thickness)), |_, _| true);
+    let known: HashSet<Feature> = contact.near.all().map(feature).collect();
+    let mut near = 0;
+    Brute::new(&cloths[0]).near(
+        &places(&cloths[0]),
+        f64::from(thickness) - ROUNDING,
+        |feature, apart| {
+            near += 1;
+            assert!(known.contains(&feature), "{feature:?}, {apart} m apart");
+        },
+    );
+    assert!(near > 0);
+}
+
+/// Long grids and strips need no search either: all patches that share particles are proved apart.
+#[test]
+fn long_sheets_are_proved_flat() {
+    for [columns, rows] in [
+        [64, 32],
+        [32, 64],
+        [64, 8],
+        [8, 64],
+        [30, 20],
+        [24, 32],
+        [7, 100],
+    ] {
+        let cloth = Cloth::new(columns, rows, 0.04).lying();
+        let surface = Surface::of_grid(&cloth.grid(Vec3::ONE).expect("a valid grid"));
+        let surface = Arc::new(surface);
+        let sheet = Sheet::new(&surface, &QuadTree::of_surface(&surface, true));
+        let bent = surface.rest_positions().iter();
+        let bent = bent.map(|at| Vec3A::from(*at + 0.01 * (7.0 * at.x).sin() * Vec3::Y));
+        let places: Vec<Vec3A> = bent.collect();
+        let patches = 0..sheet.patch_count() as u32;
+        for (a, b) in patches
+            .clone()
+            .flat_map(|a| (a..patches.end).map(move |b| (a, b)))
+        {
+            let others = sheet.particles_of(b);
+            if sheet
+                .particles_of(a)
+                .iter()
+                .any(|each| others.contains(each))
+            {
+                let bound = sheet.unfolded([a, b], &places);
+                assert!(
+                    bound > Some(0.01),
+                    "{columns} × {rows}, {a} and {b}: {bound:?}"
+                );
+            }
+        }
     }
 }
 

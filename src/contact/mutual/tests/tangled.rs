@@ -7,7 +7,7 @@ use crate::contact::mutual::{MutualContact, work::Counts};
 
 /// The share of a scene's patches that are inside each other.
 fn tangled(contact: &mut MutualContact) -> f32 {
-    contact.near.tangled(contact.motion.patches.len())
+    contact.near.tangled_share(contact.motion.patches.len())
 }
 
 fn begin(scene: &mut Scene) {
@@ -82,4 +82,36 @@ fn what_is_tangled_has_less_work() {
     let (share, work) = left([0.0, 0.0].map(apart).into());
     assert!(share > 0.9, "{share} of two in one place");
     assert!(work < 0.2, "{work} of the work of two in one place");
+}
+
+/// The limit is lower for large cloths, too.
+#[test]
+fn large_cloths_that_are_tangled_have_less_work() {
+    let particles = 100_000;
+    let all = Counts::new(particles);
+    let mut tangled = all;
+    tangled.tighten(particles, 1.0);
+    assert!(tangled.work < all.work / 10);
+}
+
+/// Two sheets begin through each other, and two others are squeezed later. After a change of circumstances the first are left
+/// alone, still, and the others are not.
+#[test]
+fn only_what_was_tangled_is_left_alone_when_circumstances_change() {
+    let upright = |at: Vec3| Vec3::new(at.x, at.z, 0.0);
+    let lying = |off: f32| Sheeted::new(12, 0.5, move |at| at + off * Vec3::Y);
+    let through = [lying(0.0), Sheeted::new(12, 0.5, upright)];
+    let far = |height: f32| Sheeted::new(12, 0.5, move |at| at + Vec3::new(2.0, height, 0.0));
+    let thickness = 0.008;
+    let mut scene = Scene::new(through.into(), thickness);
+    scene.cloths.extend([far(0.0), far(0.05)]);
+    begin(&mut scene);
+    let before = tangled(&mut scene.contact);
+    assert!(before > 0.0);
+    // Nearer than what counts as tangled at the beginning.
+    let squeezed = far(0.005 * thickness);
+    scene.cloths[3].particles.copy_from(&squeezed.particles);
+    scene.settings.friction = 0.2;
+    begin(&mut scene);
+    assert_eq!(tangled(&mut scene.contact), before);
 }
