@@ -12,12 +12,13 @@ use bevy::{
     time::TimeUpdateStrategy,
 };
 use bevy_drape::{
-    cloth::{Cloth, ClothParticles},
+    cloth::{Cloth, ClothMaterial, ClothParticles},
     prelude::{
         ClothAttachments, ClothBody, ClothCollider, ClothGravity, ClothInertia, ClothLod,
-        ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings, ClothSkin, ClothStats,
-        DrapePlugins, Pin, Pins,
+        ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings, ClothSkin, DrapePlugins, Pin,
+        Pins,
     },
+    solver::methods::meshes,
 };
 use stats_alloc::Region;
 
