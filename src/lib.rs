@@ -44,9 +44,9 @@ pub mod prelude {
     pub use crate::plugin::{
         ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothBuilt,
         ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothInertia,
-        ClothLimitExceeded, ClothLod, ClothLodLevel, ClothPush, ClothSnapshot, ClothStats,
-        ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
-        ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
+        ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothSnapshot,
+        ClothStats, ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped,
+        ClothWind, ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
         SnapshotError, shift_cloths,
     };
     #[cfg(feature = "gizmos")]

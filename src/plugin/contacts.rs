@@ -10,13 +10,13 @@ use bevy::{
         observer::On,
         query::Allow,
         reflect::{ReflectComponent, ReflectMapEntities},
-        system::Query,
+        system::{Local, Query},
     },
     math::{Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::ClothState;
+use super::{ClothOrder, ClothState, order::Ordered};
 use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};
 
 /// A collider that a cloth touches.
@@ -165,14 +165,20 @@ pub struct ClothTouchStopped {
 
 /// Sends messages of the difference between this tick and the last.
 pub(super) fn send_touch_messages(
-    mut cloths: Query<(Entity, &ClothState, &mut ClothContacts)>,
+    mut cloths: Query<(Entity, Option<&ClothOrder>, &ClothState, &mut ClothContacts)>,
     mut started: MessageWriter<ClothTouchStarted>,
     mut stopped: MessageWriter<ClothTouchStopped>,
+    mut touching: Local<Vec<Ordered>>,
 ) {
-    for (cloth, state, mut contacts) in &mut cloths {
-        if contacts.now.is_empty() && contacts.reported.is_empty() {
-            continue;
+    touching.clear();
+    for (cloth, order, _, contacts) in &cloths {
+        if !(contacts.now.is_empty() && contacts.reported.is_empty()) {
+            touching.push((order.copied().unwrap_or_default(), cloth));
         }
+    }
+    touching.sort_unstable();
+    let mut each = cloths.iter_many_mut(touching.iter().map(|(_, cloth)| cloth));
+    while let Some((cloth, _, state, mut contacts)) = each.fetch_next() {
         let ClothContacts { now, reported, .. } = &mut *contacts;
         if !state.is_valid {
             now.clear();

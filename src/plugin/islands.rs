@@ -10,7 +10,10 @@ use bevy::{
     math::{Mat3, Vec3},
 };
 
-use super::{ClothBuilt, ClothFrame, ClothScratch, ClothState, components::BroadPhaseBounds};
+use super::{
+    ClothBuilt, ClothFrame, ClothOrder, ClothScratch, ClothState, components::BroadPhaseBounds,
+    order::Ordered,
+};
 use crate::{
     cloth::ClothParticles,
     contact::{ClothLayers, ClothSelfCollision, MutualContact},
@@ -34,14 +37,14 @@ pub(super) struct Islands {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Island {
     /// Ascending.
-    pub cloths: Vec<Entity>,
+    pub cloths: Vec<Ordered>,
     pub contact: MutualContact,
 }
 
 /// Where a cloth may be.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
-    pub entity: Entity,
+    pub cloth: Ordered,
     pub centre: Vec3,
     pub radius: f32,
     pub layers: ClothLayers,
@@ -62,6 +65,7 @@ pub(super) struct Neighbour {
     state: &'static mut ClothState,
     scratch: &'static mut ClothScratch,
     layers: Option<&'static ClothLayers>,
+    order: Option<&'static ClothOrder>,
 }
 
 /// Those that touch cloth at all.
@@ -77,7 +81,7 @@ pub(super) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours)
             && cloth.bounds.takes_part
         {
             islands.spans.push(Span {
-                entity: cloth.entity,
+                cloth: (cloth.order.copied().unwrap_or_default(), cloth.entity),
                 centre: cloth.bounds.centre,
                 radius: cloth.bounds.radius + settings.thickness,
                 layers: cloth.layers.copied().unwrap_or_default(),
@@ -105,10 +109,10 @@ impl Islands {
     }
 
     /// Each cloth, with one that all have in common that it was joined with.
-    pub fn roots(&mut self) -> impl Iterator<Item = (Entity, Entity)> {
+    pub fn roots(&mut self) -> impl Iterator<Item = (Ordered, Ordered)> {
         (0..self.spans.len()).map(|span| {
             let root = self.find(span as u32) as usize;
-            (self.spans[span].entity, self.spans[root].entity)
+            (self.spans[span].cloth, self.spans[root].cloth)
         })
     }
 
@@ -116,7 +120,7 @@ impl Islands {
     pub fn join(&mut self, bounds: impl Fn(Entity) -> Option<[Vec3; 2]>) {
         let first = |span: &Span| span.centre.x - span.radius;
         self.spans
-            .sort_unstable_by(|a, b| first(a).total_cmp(&first(b)).then(a.entity.cmp(&b.entity)));
+            .sort_unstable_by(|a, b| first(a).total_cmp(&first(b)).then(a.cloth.cmp(&b.cloth)));
         self.parent.clear();
         self.parent.extend(0..self.spans.len() as u32);
         for a in 0..self.spans.len() {
@@ -148,7 +152,7 @@ impl Islands {
     ) -> bool {
         let [a, b] = spans.map(|index| {
             let span = &mut self.spans[index];
-            span.bounds = span.bounds.or_else(|| bounds(span.entity));
+            span.bounds = span.bounds.or_else(|| bounds(span.cloth.1));
             span.bounds
         });
         match (a, b) {
@@ -181,11 +185,11 @@ impl Islands {
             if self.island_of[root] == NONE {
                 self.island_of[root] = self.all.len() as u32;
                 let mut island = Island::default();
-                island.cloths.push(self.spans[root].entity);
+                island.cloths.push(self.spans[root].cloth);
                 self.all.push(island);
             }
             let island = &mut self.all[self.island_of[root] as usize];
-            island.cloths.push(self.spans[span].entity);
+            island.cloths.push(self.spans[span].cloth);
         }
         for island in &mut self.all {
             island.cloths.sort_unstable();
@@ -205,14 +209,15 @@ impl Islands {
 /// Wakes all cloths of an island in which one moves.
 fn wake(island: &mut Island, cloths: &mut Neighbours) {
     let mut is_moving = false;
-    for cloth in cloths.iter_many(&island.cloths) {
+    let entities = || island.cloths.iter().map(|(_, cloth)| cloth);
+    for cloth in cloths.iter_many(entities()) {
         let rest = &cloth.state.rest;
         is_moving |= !rest.is_asleep() && !rest.is_calm();
         if cloth.scratch.was_put {
             island.contact.forget();
         }
     }
-    let mut each = cloths.iter_many_mut(&island.cloths);
+    let mut each = cloths.iter_many_mut(entities());
     while let Some(mut cloth) = each.fetch_next() {
         cloth.scratch.is_in_island = true;
         // Its contact with itself is part of its island's.

@@ -11,12 +11,13 @@ use bevy::{
 };
 
 use super::{
-    ClothBuilt, ClothFrame, ClothState, ClothTeleport,
+    ClothBuilt, ClothFrame, ClothOrder, ClothState, ClothTeleport,
     cameras::Cameras,
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
     islands::{Islands, Span},
     lod::{ClothLod, ClothLodLevel, GlobalClothLod},
+    order::Ordered,
 };
 use crate::{
     cloth::ClothParticles,
@@ -39,13 +40,14 @@ pub(super) struct Levelled {
     self_collision: Option<&'static ClothSelfCollision>,
     state: &'static mut ClothState,
     layers: Option<&'static ClothLayers>,
+    order: Option<&'static ClothOrder>,
     teleports: Has<ClothTeleport>,
 }
 
 /// A cloth, and its wanted level.
 #[derive(Debug, Clone, Copy)]
 struct Wanted {
-    entity: Entity,
+    cloth: Ordered,
     level: ClothLodLevel,
     /// Around the whole of it, as far as it may get until it is moved again, in the world (m).
     centre: Vec3,
@@ -114,9 +116,9 @@ pub(super) fn choose_levels(
         }
         wanted.push(own);
     }
-    wanted.sort_unstable_by_key(|own| own.entity);
+    wanted.sort_unstable_by_key(|own| own.cloth);
     for (place, own) in wanted.iter_mut().enumerate() {
-        own.group = place;
+        (own.group, own.phase) = (place, place as u32);
     }
     let is_coarse = |own: &Wanted| own.touches_cloth && own.level != ClothLodLevel::Full;
     if wanted.iter().any(is_coarse) {
@@ -125,7 +127,7 @@ pub(super) fn choose_levels(
     for place in 0..wanted.len() {
         let own = wanted[place];
         let of_group = wanted[own.group];
-        let Ok(mut cloth) = cloths.get_mut(own.entity) else {
+        let Ok(mut cloth) = cloths.get_mut(own.cloth.1) else {
             continue;
         };
         // Sleeping cloth costs next to nothing.
@@ -150,15 +152,16 @@ impl LevelledItem<'_, '_> {
     /// The level that it would have alone.
     fn wanted(&mut self, global: Option<&ClothLod>, cameras: &Cameras) -> Wanted {
         let layers = self.layers.copied().unwrap_or_default();
+        let order = self.order.copied().unwrap_or_default();
         let mut wanted = Wanted {
-            entity: self.entity,
+            cloth: (order, self.entity),
             level: ClothLodLevel::Full,
             centre: Vec3::ZERO,
             radius: 0.0,
             layers,
             touches_cloth: false,
             group: 0,
-            phase: self.entity.index_u32(),
+            phase: 0,
             is_due: true,
         };
         // Errors of a level of detail are reported when the cloth is prepared.
@@ -199,17 +202,16 @@ impl LevelledItem<'_, '_> {
 fn group(wanted: &mut [Wanted], groups: &mut Islands) {
     let spans = wanted.iter().filter(|own| own.touches_cloth);
     groups.begin(spans.map(|own| Span {
-        entity: own.entity,
+        cloth: own.cloth,
         centre: own.centre,
         radius: own.radius,
         layers: own.layers,
         bounds: None,
     }));
     groups.join(|_| None);
-    let place_of =
-        |wanted: &[Wanted], entity| wanted.binary_search_by_key(&entity, |own| own.entity);
-    for (entity, root) in groups.roots() {
-        let (Ok(place), Ok(root)) = (place_of(wanted, entity), place_of(wanted, root)) else {
+    let place_of = |wanted: &[Wanted], cloth| wanted.binary_search_by_key(&cloth, |own| own.cloth);
+    for (cloth, root) in groups.roots() {
+        let (Ok(place), Ok(root)) = (place_of(wanted, cloth), place_of(wanted, root)) else {
             continue;
         };
         let own = wanted[place];

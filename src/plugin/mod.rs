@@ -41,6 +41,7 @@ mod lod_state;
 mod mesh;
 mod naming;
 mod notices;
+mod order;
 mod origin;
 #[cfg(feature = "egui")]
 mod panel;
@@ -94,6 +95,7 @@ pub use inertia::ClothInertia;
 pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
 #[cfg(feature = "mesh")]
 pub use mesh::{ClothMesh, ClothMeshPlugin};
+pub use order::ClothOrder;
 pub use origin::shift_cloths;
 #[cfg(feature = "egui")]
 #[doc(hidden)]

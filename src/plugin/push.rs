@@ -12,7 +12,9 @@ use bevy::{
     transform::components::Transform,
 };
 
-use super::{ClothBody, ClothPush, ClothScratch, colliders::ColliderMotion};
+use super::{
+    ClothBody, ClothOrder, ClothPush, ClothScratch, colliders::ColliderMotion, order::Ordered,
+};
 use crate::contact::BodyChange;
 
 /// The bodies that may be pushed. One without a collider or a transform is not: its push is zero.
@@ -28,24 +30,33 @@ type Pushed = (
 /// Sums the changes of each body's motion by all cloths, and moves the body by them. A body that several cloths push is
 /// cut into equal parts, one for each cloth, which move on together.
 pub(super) fn push_bodies(
-    cloths: Query<&ClothScratch>,
+    cloths: Query<(Entity, Option<&ClothOrder>, &ClothScratch)>,
     mut bodies: Query<Pushed>,
-    mut pushes: Local<Vec<(Entity, BodyChange)>>,
+    mut pushes: Local<Vec<(Ordered, Entity, BodyChange)>>,
 ) {
     pushes.clear();
     if bodies.is_empty() {
         return;
     }
-    let pushed = cloths.iter().flat_map(|scratch| &scratch.pushed);
-    pushes.extend(pushed.copied());
+    for (cloth, order, scratch) in &cloths {
+        let cloth = (order.copied().unwrap_or_default(), cloth);
+        pushes.extend(
+            scratch
+                .pushed
+                .iter()
+                .map(|&(body, change)| (cloth, body, change)),
+        );
+    }
+    // A sum of floats is that of its order.
+    pushes.sort_unstable_by_key(|(cloth, body, _)| (*cloth, *body));
     for (entity, mut push, body, motion, transform, is_child) in &mut bodies {
         let (Some(body), Some(mut motion), Some(mut transform)) = (body, motion, transform) else {
             push.set_if_neq(ClothPush::default());
             continue;
         };
-        let of_this = pushes.iter().filter(|(pushed, _)| *pushed == entity);
+        let of_this = pushes.iter().filter(|(_, pushed, _)| *pushed == entity);
         let count = of_this.clone().count() as u32;
-        let sum = sum(of_this.map(|(_, change)| change), motion.cloths(), body);
+        let sum = sum(of_this.map(|(_, _, change)| change), motion.cloths(), body);
         push.set_if_neq(ClothPush {
             velocity: sum.velocity,
             angular_velocity: sum.angular_velocity,

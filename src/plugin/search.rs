@@ -11,9 +11,10 @@ use bevy::{
 };
 
 use super::{
-    ClothBuilt, ClothFrame, ClothScratch, ClothSearch, ClothState, ClothStats, broad_phase::cover,
-    clock::milliseconds_since, collider_tree::ColliderTree, colliders::ColliderMotion,
-    components::BroadPhaseBounds, resting::RestsOn, threads::threads,
+    ClothBuilt, ClothFrame, ClothOrder, ClothScratch, ClothSearch, ClothState, ClothStats,
+    broad_phase::cover, clock::milliseconds_since, collider_tree::ColliderTree,
+    colliders::ColliderMotion, components::BroadPhaseBounds, order::Ordered, resting::RestsOn,
+    threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
@@ -38,7 +39,11 @@ pub(super) struct Searching {
 /// A tick in which fewer cloths take part is not shared among threads: handing out work costs more than the search.
 const MIN_TO_SHARE: usize = 128;
 
-type Collider = (&'static ColliderMotion, Option<&'static ClothLayers>);
+type Collider = (
+    &'static ColliderMotion,
+    Option<&'static ClothLayers>,
+    Option<&'static ClothOrder>,
+);
 
 /// The colliders, and the tree of their bounds.
 struct Colliders<'a, 'w, 's> {
@@ -62,9 +67,16 @@ impl Colliders<'_, '_, '_> {
 
     /// The motion of a collider, if its layers match.
     fn get(&self, entity: Entity, layers: ClothLayers) -> Option<&ColliderMotion> {
-        let (motion, others) = self.all.get(entity).ok()?;
+        let (motion, others, _) = self.all.get(entity).ok()?;
         let others = others.copied().unwrap_or_default();
         others.interacts_with(layers).then_some(motion)
+    }
+
+    /// A collider's key to sort by.
+    fn order(&self, entity: Entity) -> Ordered {
+        let collider = self.all.get(entity).ok();
+        let order = collider.and_then(|(_, _, order)| order.copied());
+        (order.unwrap_or_default(), entity)
     }
 }
 
@@ -181,8 +193,8 @@ impl SearchingItem<'_, '_> {
             }
             dragged = farthest;
         }
-        // Independent of the order of the tree.
-        near.sort_unstable_by_key(|(entity, _)| entity.index_u32());
+        // Independent of the order of the tree, and of spawning.
+        near.sort_unstable_by_key(|(entity, _)| colliders.order(*entity));
         detection.begin(self.built.surface(), *reach + dragged);
         let near = near.len();
         self.stats.colliders_near = near;

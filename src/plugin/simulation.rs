@@ -29,8 +29,9 @@ use bevy::{
 use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
     ClothAir, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-    ClothInertia, ClothLimitExceeded, ClothPush, ClothScratch, ClothSearch, ClothState, ClothStats,
-    ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindZone,
+    ClothInertia, ClothLimitExceeded, ClothOrder, ClothPush, ClothScratch, ClothSearch, ClothState,
+    ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
+    ClothWindZone,
     awaited::{Deprived, note_enabled, note_removals},
     bones::{make_bone_colliders, remove_bone_colliders},
     collider_tree::ColliderTree,
@@ -46,6 +47,7 @@ use super::{
     levels::choose_levels,
     naming::Part,
     notices::{Notices, log_notices},
+    order::give_order,
     prepare::prepare_cloths,
     push::push_bodies,
     reflected::register_lists,
@@ -103,6 +105,7 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothGravity>()
             .register_type::<ClothWind>()
             .register_type::<ClothWindZone>()
+            .register_type::<ClothOrder>()
             .register_type::<ClothAir>()
             .register_type::<ClothPressure>();
         register_lists(app);
@@ -152,6 +155,7 @@ impl Plugin for ClothPlugin {
             self.schedule,
             (
                 (
+                    give_order,
                     note_removals,
                     follow_roots,
                     prepare_colliders,
@@ -199,7 +203,7 @@ impl Plugin for ClothPlugin {
 
 /// Components that the plugin adds to a cloth. They are not required components: those can't be declared any more once
 /// a cloth was spawned before the plugin was added.
-type ClothParts = (
+pub(super) type ClothParts = (
     ClothSettings,
     SearchMethod,
     NarrowPhase,

@@ -38,7 +38,7 @@ pub(super) fn integrate_together(
     names: &Query<Named>,
 ) {
     let start = Instant::now();
-    let entities: EntityIndexSet = island.cloths.iter().copied().collect();
+    let entities: EntityIndexSet = island.cloths.iter().map(|(_, cloth)| *cloth).collect();
     let mut members = Vec::new();
     let mut first = None;
     for mut cloth in cloths.iter_many_unique_mut(&entities) {

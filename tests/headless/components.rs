@@ -52,7 +52,7 @@ const WITH_ASSETS: [&str; 3] = ["ClothMesh", "RenderMeshState", "ClothSkeleton"]
 const MADE: [&str; 2] = ["ClothFault", "BoneColliderOf"];
 
 /// Written by the plugin and of one entity: a clone has its own.
-const OWN: [&str; 2] = ["ClothContacts", "ClothFault"];
+const OWN: [&str; 3] = ["ClothContacts", "ClothFault", "ClothOrder"];
 
 fn ends_with(name: &str, any: &[&str]) -> bool {
     any.iter().any(|end| name.ends_with(&format!("::{end}")))

@@ -28,6 +28,7 @@ mod meshes;
 mod motion;
 mod near;
 mod notices;
+mod order;
 mod origin;
 mod parents;
 mod pole;

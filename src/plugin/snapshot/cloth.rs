@@ -9,7 +9,7 @@ use bevy::ecs::{
 use super::{
     super::{
         ClothAttachments, ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState,
-        ClothStats,
+        ClothStats, simulation::ClothParts,
     },
     SnapshotError,
 };
@@ -142,6 +142,8 @@ impl ClothSnapshot {
     pub fn restore(&self, world: &mut World, cloth: Entity) -> Result<(), SnapshotError> {
         self.check(world, cloth)?;
         let mut entity = world.entity_mut(cloth);
+        // A game may have removed some.
+        entity.insert_if_new(<(ClothParticles, ClothParts)>::default());
         let wanted = entity.get::<ClothAttachments>().cloned();
         let last_written = entity.get::<ClothState>().and_then(|state| state.written);
         let mut weighs_the_same = false;

@@ -13,7 +13,7 @@ use bevy::{
 
 use super::{
     super::{
-        ClothState,
+        ClothOrder, ClothState,
         colliders::{ColliderMemory, ColliderMotion},
         inertia::RootMotion,
         islands::{Island, Islands},
@@ -66,6 +66,7 @@ pub struct ClothWorldSnapshot {
     /// Last place of each root.
     roots: Vec<(Entity, Option<Isometry3d>)>,
     islands: Vec<Island>,
+    orders: Vec<(Entity, ClothOrder)>,
     /// Time for which the wind has blown (s), and the distance that it has travelled (m).
     wind: (f64, DVec3),
     /// Translation (m), rotation and scale of `Transform`s.
@@ -105,6 +106,10 @@ impl ClothWorldSnapshot {
         self.roots.clear();
         self.roots
             .extend(roots.map(|(entity, root)| (entity, root.last())));
+        let mut orders = world.query::<(Entity, &ClothOrder)>();
+        let orders = orders.iter(world);
+        self.orders.clear();
+        (self.orders).extend(orders.map(|(entity, order)| (entity, *order)));
         let islands = world.get_resource::<Islands>();
         self.islands.clear();
         (self.islands).extend(
@@ -189,6 +194,11 @@ impl ClothWorldSnapshot {
                 root.recall(*last);
             }
         }
+        for (entity, order) in &self.orders {
+            if let Ok(mut entity) = world.get_entity_mut(*entity) {
+                entity.insert(*order);
+            }
+        }
         if let Some(mut islands) = world.get_resource_mut::<Islands>() {
             islands.all.clone_from(&self.islands);
         }
@@ -252,7 +262,10 @@ impl MapEntities for ClothWorldSnapshot {
         let roots = self.roots.iter_mut().map(|(entity, _)| entity);
         let transforms = self.transforms.iter_mut().map(|(entity, _)| entity);
         let islands = (self.islands.iter_mut()).flat_map(|island| &mut island.cloths);
-        for entity in colliders.chain(roots).chain(transforms).chain(islands) {
+        let islands = islands.map(|(_, cloth)| cloth);
+        let orders = self.orders.iter_mut().map(|(entity, _)| entity);
+        let all = colliders.chain(roots).chain(transforms);
+        for entity in all.chain(islands).chain(orders) {
             *entity = mapper.get_mapped(*entity);
         }
     }

@@ -13,12 +13,13 @@ use super::{
     field::WindField,
     zone::{ClothWindZone, PlacedZone},
 };
-use crate::plugin::{ClothFault, frame::Places, naming::Part};
+use crate::plugin::{ClothFault, ClothOrder, frame::Places, naming::Part};
 
 /// Moves the world's wind on, reads the places of the zones, and reports the faults of zones.
 pub(in crate::plugin) fn prepare_wind(
     wind: Option<Res<ClothWind>>,
     zones: Query<(Entity, &ClothWindZone, Option<&ClothFault>)>,
+    orders: Query<&ClothOrder>,
     places: Places,
     time: Res<Time>,
     mut field: ResMut<WindField>,
@@ -31,6 +32,7 @@ pub(in crate::plugin) fn prepare_wind(
         let outcome = placed.map(|placed| field.zones.push(placed));
         ClothFault::report(&mut commands, entity, fault, Part::WindZone, outcome);
     }
-    // Independent of the order of the world's tables.
-    field.zones.sort_unstable_by_key(|zone| zone.entity);
+    // Independent of the order of the world's tables, and of spawning.
+    let order = |zone: Entity| (orders.get(zone).copied().unwrap_or_default(), zone);
+    field.zones.sort_unstable_by_key(|zone| order(zone.entity));
 }

@@ -110,7 +110,7 @@ fn layer(height: f32) -> impl Bundle {
     )
 }
 
-/// Where ids are in another order contacts are resolved in another order: the motion goes on, and differs a little.
+/// Contacts between cloths, and with colliders, are resolved in an order that does not depend on ids.
 #[test]
 fn ids_may_be_in_another_order() {
     let (mut app, before) = layers(false);
@@ -120,15 +120,13 @@ fn ids_may_be_in_another_order() {
     let mut ids: EntityHashMap<Entity> = before.iter().copied().zip(after.clone()).collect();
     saved.map_entities(&mut ids);
     saved.restore(other.world_mut()).expect("the same entities");
-    for (ticks, most) in [(1, 1.0e-3), (9, 1.0e-2)] {
-        tick(&mut app, ticks);
-        tick(&mut other, ticks);
+    for ticks in 1..100 {
+        tick(&mut app, 1);
+        tick(&mut other, 1);
         for (cloth, twin) in before.iter().zip(&after).skip(3) {
             assert!(other.world().get::<ClothFault>(*twin).is_none());
-            let pairs = particles(&app, *cloth).positions();
-            let pairs = pairs.zip(particles(&other, *twin).positions());
-            let farthest = pairs.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
-            assert!(farthest < most, "{farthest} m after {ticks} ticks more");
+            let [a, b] = [particles(&app, *cloth), particles(&other, *twin)];
+            assert!(a == b, "{ticks} ticks on");
         }
     }
 }

@@ -264,3 +264,26 @@ fn what_stood_still_moves_in_an_app_without_levels() {
         stats(&app, cloth)
     );
 }
+
+/// A cloth that has lost its particles gets them back.
+#[test]
+fn particles_that_are_gone_come_back() {
+    let (mut app, cloths) = everything();
+    tick(&mut app, 40);
+    let saved = ClothWorldSnapshot::of(app.world_mut());
+    let clock = *app.world().resource::<Clock>();
+    forget_messages(&mut app);
+    let seen: Vec<Seen> = (0..20).map(|_| next(&mut app, &cloths)).collect();
+    for (index, cloth) in cloths.iter().enumerate() {
+        let mut cloth = app.world_mut().entity_mut(*cloth);
+        match index % 3 {
+            0 => cloth.remove::<ClothParticles>(),
+            1 => cloth.remove::<(ClothParticles, ClothFrame)>(),
+            _ => &mut cloth,
+        };
+    }
+    saved.restore(app.world_mut()).expect("the same world");
+    app.insert_resource(clock);
+    forget_messages(&mut app);
+    compare(&seen, &mut app, &cloths, "with particles again");
+}
