@@ -243,7 +243,6 @@ impl Detection {
         mut others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
         self.moved += substep.farthest_move;
-        self.shapes.travelled += substep.farthest_move;
         self.moved_now = substep.farthest_move;
         self.odometer += substep.farthest_move;
         self.measured = 0;
@@ -296,6 +295,8 @@ impl Detection {
                     let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
                     let of = (touch.id, &collider.shape, self.surface.len());
                     let of = by_triangles.then_some(of);
+                    let guard = &mut self.shapes.guard;
+                    guard.measure(particles, &self.origin, contacts, touch.traveled);
                     let known = self.shapes.of(touch.of.candidates.clone(), of);
                     let edges = by_triangles.then(|| (&*fans, self.surface.spacing().longest));
                     let mut pushing = Pushing {
@@ -347,7 +348,6 @@ impl Detection {
             self.moved += found.farthest_push;
             self.moved_now += found.farthest_push;
             self.odometer += found.farthest_push;
-            self.shapes.travelled += found.farthest_push;
             is_pushed |= found.farthest_push > 0.0;
             touch.deepest = touch.deepest.max(found.deepest);
             let seconds = f64::from(particles.substep());

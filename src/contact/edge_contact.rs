@@ -303,25 +303,30 @@ fn within(weights: Vec3) -> [f32; 3] {
 }
 
 /// The distance of the nearest edge from a triangle in the shape's frame, if it is within a distance (m), with the
-/// vector from the edge and its nearest point.
+/// vector from the edge and its nearest point. Edges of a surface with a radius of at least `smooth` (m) are none.
 pub(super) fn nearest_edge(
     shape: &ColliderShape,
     triangle: [Vec3; 3],
     around: f32,
+    smooth: f32,
 ) -> (f32, Vec3, Vec3) {
     let mut found = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO);
-    shape.edges_near(bounds_of(triangle, around), |_, edge: &SharpEdge| {
-        let near = nearest(triangle, edge.ends);
-        let distance = near.offset.length() - edge.radius;
-        if distance < found.0 {
-            let [from, to] = edge.ends;
-            let outwards = near.offset.normalize_or_zero() * edge.radius;
-            found = (
-                distance,
-                near.offset - outwards,
-                from.lerp(to, near.along) + outwards,
-            );
-        }
-    });
+    shape.edges_near(
+        bounds_of(triangle, around),
+        smooth,
+        |_, edge: &SharpEdge| {
+            let near = nearest(triangle, edge.ends);
+            let distance = near.offset.length() - edge.radius;
+            if distance < found.0 {
+                let [from, to] = edge.ends;
+                let outwards = near.offset.normalize_or_zero() * edge.radius;
+                found = (
+                    distance,
+                    near.offset - outwards,
+                    from.lerp(to, near.along) + outwards,
+                );
+            }
+        },
+    );
     found
 }

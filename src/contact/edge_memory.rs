@@ -36,8 +36,9 @@ pub(super) struct EdgeMemory {
     /// ID and shape of the collider.
     id: usize,
     shape: ColliderShape,
-    /// Distance at which triangles touch edges, and up to which edges are remembered (m).
-    near: [f32; 2],
+    /// Distance at which triangles touch edges, up to which edges are remembered, and from which radius on there are none
+    /// (m).
+    near: [f32; 3],
     /// One entry for each particle, with the faces of those near an edge.
     places: Vec<KnownPlace>,
     faces: Vec<KnownFace>,
@@ -63,6 +64,12 @@ struct KnownPlace {
 pub(super) struct Nearness {
     pub reach: f32,
     pub slack: f32,
+    /// Edges of a round surface with at least this radius can't come through a triangle (m).
+    ///
+    /// At weights w a triangle's point is nearer to an axis than the root of Σ wᵢ ρᵢ² − Σ wᵢ wⱼ lᵢⱼ², with the distances
+    /// ρ of its corners and its sides l, and the last sum is at most l²/3. Particles keep the corners of a triangle at
+    /// R + r, with their radius r. So all of it is outside of R if 2 R r ≥ l²/3; on a cone, with the radius beside it.
+    pub smooth: f32,
     /// The current tick.
     pub tick: u32,
 }
@@ -129,7 +136,9 @@ impl KnownFace {
         near: Nearness,
         moved: f32,
     ) -> Option<EdgeContact> {
-        let Nearness { reach, slack, tick } = near;
+        let Nearness {
+            reach, slack, tick, ..
+        } = near;
         self.room = 0.0;
         let mut test = EdgeTest::new(shape, corners, reach)?;
         let strayed = farthest(corners, self.listed);
@@ -152,7 +161,8 @@ impl KnownFace {
             self.room = self.test_listed(&mut test, slack).min(left);
         } else {
             let mut room = EdgeRoom::new(&test, slack);
-            shape.edges_near(bounds_of(corners, reach + slack), |_, edge| {
+            let around = bounds_of(corners, reach + slack);
+            shape.edges_near(around, near.smooth, |_, edge| {
                 room.see(edge);
                 test.see(edge);
             });
@@ -197,7 +207,7 @@ impl KnownFace {
         self.count = 0;
         let room = EdgeRoom::new(test, near.slack);
         let around = bounds_of(corners, near.reach + near.slack);
-        test.shape.edges_near(around, |index, edge| {
+        test.shape.edges_near(around, near.smooth, |index, edge| {
             let left = room.of(edge);
             if left >= near.slack * (1.0 - 1.0e-3) {
                 return;
@@ -236,7 +246,7 @@ impl EdgeMemory {
         Self {
             id,
             shape: shape.clone(),
-            near: [0.0; 2],
+            near: [0.0; 3],
             places: vec![place; particles],
             faces: Vec::new(),
             age: 0,
@@ -246,7 +256,7 @@ impl EdgeMemory {
 
     /// Clears everything if triangles have another reach now.
     pub fn match_reach(&mut self, near: Nearness) {
-        let near = [near.reach, near.slack];
+        let near = [near.reach, near.slack, near.smooth];
         if near != self.near {
             let fresh = Self::new(self.id, &self.shape, self.places.len());
             let tick = self.tick;
@@ -260,7 +270,8 @@ impl EdgeMemory {
 
     /// Displacement of everything before a triangle that a particle owns can touch an edge (m). The particle is at a
     /// position in the shape's frame, and `extent` is the reach of its triangles (m).
-    pub fn room(&mut self, particle: u32, at: Vec3, extent: f32, reach: f32) -> f32 {
+    pub fn room(&mut self, particle: u32, at: Vec3, extent: f32, near: Nearness) -> f32 {
+        let reach = near.reach;
         let known = &mut self.places[particle as usize];
         let room = |distance: f32| (distance - extent) * (1.0 - 1.0e-4) - reach;
         let moved = at.distance(known.at);
@@ -272,7 +283,10 @@ impl EdgeMemory {
         // Far enough to skip it for a while.
         let within = 8.0 * extent + 2.0 * reach;
         known.at = at;
-        known.distance = self.shape.edge_distance(at, within).min(within);
+        known.distance = self
+            .shape
+            .edge_distance(at, within, near.smooth)
+            .min(within);
         room(known.distance)
     }
 

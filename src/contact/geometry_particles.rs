@@ -5,6 +5,7 @@ use bevy::math::{Isometry3d, Vec3};
 
 use super::{
     MovingCollider,
+    guard::Guard,
     nearest::Nearest,
     particle::Found,
     pushing::Pushing,
@@ -26,6 +27,8 @@ pub(super) struct KnownParticle {
     /// Position in the shape's frame (m); NaN before the first test.
     pub at: Vec3,
     pub nearest: Nearest,
+    /// Until when it cannot touch, by the guard.
+    clear: f32,
 }
 
 impl Default for KnownParticle {
@@ -36,6 +39,7 @@ impl Default for KnownParticle {
                 distance: 0.0,
                 normal: Vec3::Y,
             },
+            clear: f32::NEG_INFINITY,
         }
     }
 }
@@ -45,6 +49,7 @@ pub(super) fn push_particles_out(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
     known: &mut [KnownParticle],
+    guard: &Guard,
 ) -> Found {
     let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
     let radius = settings.particle_radius;
@@ -54,7 +59,11 @@ pub(super) fn push_particles_out(
     let way = Way::new(collider, substep, settings);
     let mut found = Found::default();
     for (candidate, known) in pushing.candidates.iter().zip(known) {
-        let (index, Slot { block: at, lane }) = pushing.place(candidate);
+        let (index, slot) = pushing.place(candidate);
+        if guard.is_clear(known.clear, &[slot]) {
+            continue;
+        }
+        let Slot { block: at, lane } = slot;
         let block = &particles.blocks()[at];
         let inverse_mass = block.inverse_mass(lane);
         if inverse_mass == 0.0 {
@@ -68,14 +77,13 @@ pub(super) fn push_particles_out(
         let left = known.nearest.distance - moved - swept;
         if left > radius {
             pushing.note_depth(index, lane, radius - known.nearest.distance - moved);
+            known.clear = guard.until(known.nearest.distance - moved - radius, &[slot]);
             continue;
         }
         let is_same = moved <= SAME_PLANE * radius;
         if !is_same {
-            *known = KnownParticle {
-                at: local,
-                nearest: collider.shape.nearest(Isometry3d::IDENTITY, local),
-            };
+            known.at = local;
+            known.nearest = collider.shape.nearest(Isometry3d::IDENTITY, local);
         }
         let Nearest { distance, normal } = known.nearest;
         let distance = distance + normal.dot(local - known.at);

@@ -18,6 +18,7 @@ mod fan_view;
 mod friction;
 mod geometry;
 mod geometry_particles;
+mod guard;
 mod held;
 mod kept;
 mod lanes;

@@ -134,25 +134,31 @@ impl ColliderShape {
         }
     }
 
-    /// Visits the edges that may overlap a box of the shape's frame, with their indices, always in the same order.
-    pub(super) fn edges_near(&self, within: [Vec3; 2], mut visit: impl FnMut(u32, &SharpEdge)) {
+    /// Visits the edges that may overlap a box of the shape's frame, with their indices, always in the same order; none
+    /// of a surface with a radius of at least `smooth` (m).
+    pub(super) fn edges_near(
+        &self,
+        within: [Vec3; 2],
+        smooth: f32,
+        mut visit: impl FnMut(u32, &SharpEdge),
+    ) {
         match self {
             Self::Cuboid { half_size } => {
                 for index in 0..boxes::EDGES {
                     visit(index, &boxes::edge(*half_size, index));
                 }
             }
-            Self::Geometry(geometry) => geometry.edges_near(within, visit),
+            Self::Geometry(geometry) => geometry.edges_near(within, smooth, visit),
             Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => {}
         }
     }
 
-    /// Distance of a point of the shape's frame from its nearest edge (m); infinite if none is within the given
+    /// Distance of a point of the shape's frame from the nearest of these edges (m); infinite if none is within the given
     /// distance.
-    pub(super) fn edge_distance(&self, point: Vec3, within: f32) -> f32 {
+    pub(super) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
         match self {
             Self::Cuboid { half_size } => boxes::edge_distance(*half_size, point),
-            Self::Geometry(geometry) => geometry.edge_distance(point, within),
+            Self::Geometry(geometry) => geometry.edge_distance(point, within, smooth),
             Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => f32::INFINITY,
         }
     }

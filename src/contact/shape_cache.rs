@@ -8,6 +8,7 @@ use super::{
     edge_memory::{EdgeMemories, EdgeMemory},
     fan_view::FanView,
     geometry_particles::{KnownParticle, push_particles_out},
+    guard::Guard,
     particle::{Found, push_particles},
     pushing::Pushing,
     sharp::{EdgeMotion, push_off_edges},
@@ -18,10 +19,9 @@ use crate::cloth::ClothParticles;
 #[derive(Debug, Default, Clone)]
 pub(super) struct ShapeCache {
     particles: Vec<KnownParticle>,
-    /// Displacement of anything before a candidate's triangles can touch an edge (m), on the scale of `travelled`.
+    /// Until when a candidate's triangles can touch no edge, by the guard.
     clear: Vec<f32>,
-    /// Largest displacement of any particle since the search (m).
-    pub travelled: f32,
+    pub guard: Guard,
     /// Memories of edges, across ticks.
     pub memories: EdgeMemories,
     view: FanView,
@@ -32,7 +32,6 @@ impl ShapeCache {
     pub fn clear(&mut self) {
         self.particles.clear();
         self.clear.clear();
-        self.travelled = 0.0;
     }
 
     /// Clears the memory of edges.
@@ -61,7 +60,7 @@ impl ShapeCache {
         Known {
             particles: &mut self.particles[candidates.clone()],
             clear: &mut self.clear[candidates],
-            travelled: self.travelled,
+            guard: &mut self.guard,
             memory: edges.map(|(id, shape, count)| memories.of(id, shape, count)),
             view: &mut self.view,
         }
@@ -72,7 +71,7 @@ impl ShapeCache {
 pub(super) struct Known<'a> {
     particles: &'a mut [KnownParticle],
     clear: &'a mut [f32],
-    travelled: f32,
+    guard: &'a mut Guard,
     memory: Option<&'a mut EdgeMemory>,
     view: &'a mut FanView,
 }
@@ -90,12 +89,14 @@ pub(super) fn push_shape(
     if let Some((fans, spacing)) = triangles
         && let Some(memory) = known.memory
     {
-        let motion = EdgeMotion::new(pushing, spacing, known.travelled, memory.tick);
-        let of = (known.clear, memory, known.view);
+        let motion = EdgeMotion::new(pushing, spacing, memory.tick);
+        let of = (known.clear, &mut *known.guard, memory, known.view);
         by_edges = push_off_edges(particles, pushing, fans, of, &motion);
     }
     let mut found = match pushing.collider.shape {
-        ColliderShape::Geometry(_) => push_particles_out(particles, pushing, known.particles),
+        ColliderShape::Geometry(_) => {
+            push_particles_out(particles, pushing, known.particles, known.guard)
+        }
         _ => {
             let at = (pushing.collider, pushing.settings, pushing.substep);
             push_particles(particles, pushing.contacts, at, pushing.lanes)

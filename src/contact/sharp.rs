@@ -12,6 +12,7 @@ use super::{
     edge_contact::{EdgeContact, nearest_edge},
     edge_memory::{EdgeMemory, KnownFace, Nearness},
     fan_view::{FanView, Frame},
+    guard::Guard,
     particle::Found,
     pushing::Pushing,
     response::{Contact, Given, PushOut, first_touch},
@@ -27,6 +28,8 @@ use crate::{
 const SKIN: f32 = 0.02;
 /// Edges are remembered up to this fraction of a spacing beyond a triangle's reach, or up to the reach itself.
 const SLACK: f32 = 0.25;
+/// Largest side of a triangle, in spacings: a diagonal of a grid, stretched by 6 %.
+const SIDE: f32 = 1.5;
 /// Largest push of a corner, relative to that of a triangle's point.
 const MAX_SHARE: f32 = 2.0;
 
@@ -44,13 +47,11 @@ pub(super) struct EdgeMotion<'a> {
     slide: Vec3,
     swing: f32,
     push_out: PushOut,
-    /// Displacement of its surface in the tick so far (m).
-    carried: f32,
 }
 
 impl<'a> EdgeMotion<'a> {
-    /// On a cloth with a spacing (m), whose particles have moved by `travelled` since the search (m), in a tick.
-    pub fn new(pushing: &Pushing<'a>, spacing: f32, travelled: f32, tick: u32) -> Self {
+    /// On a cloth with a spacing (m), in a tick.
+    pub fn new(pushing: &Pushing<'a>, spacing: f32, tick: u32) -> Self {
         let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
         let count = substep.count as f32;
         let pose = collider.pose_at(substep.end());
@@ -65,6 +66,7 @@ impl<'a> EdgeMotion<'a> {
             near: Nearness {
                 reach,
                 slack: reach.max(SLACK * spacing),
+                smooth: (SIDE * spacing).powi(2) / (6.0 * settings.particle_radius),
                 tick,
             },
             pose,
@@ -72,7 +74,6 @@ impl<'a> EdgeMotion<'a> {
             slide,
             swing,
             push_out: pushing.lanes.push_out,
-            carried: travelled + substep.end() * collider.max_surface_travel(f32::INFINITY),
         }
     }
 
@@ -103,7 +104,8 @@ impl<'a> EdgeMotion<'a> {
                 let gone = corners.displacements[corner] * (1.0 - part);
                 pose.inverse() * (corners.positions[corner] - gone)
             });
-            let (distance, offset, centre) = nearest_edge(&self.collider.shape, triangle, around);
+            let (distance, offset, centre) =
+                nearest_edge(&self.collider.shape, triangle, around, self.near.smooth);
             (distance, pose.rotation * offset, pose * centre)
         };
         // For an edge that cut the triangle already, the original side is unknown.
@@ -120,12 +122,12 @@ impl<'a> EdgeMotion<'a> {
 }
 
 /// Pushes triangles off the edges of a shape that pass through them. Moves their corners by their weights and their
-/// inverse masses. `clear` stores the displacement before a candidate's triangles can touch any.
+/// inverse masses. `clear` stores until when a candidate's triangles can touch none.
 pub(super) fn push_off_edges(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
     fans: &Fans,
-    (clear, memory, view): (&mut [f32], &mut EdgeMemory, &mut FanView),
+    (clear, guard, memory, view): (&mut [f32], &mut Guard, &mut EdgeMemory, &mut FanView),
     motion: &EdgeMotion,
 ) -> Found {
     let mut found = Found::default();
@@ -134,16 +136,16 @@ pub(super) fn push_off_edges(
     memory.match_reach(motion.near);
     let candidates = pushing.candidates;
     for (candidate, clear) in candidates.iter().zip(clear) {
-        let carried = motion.carried + farthest * fans.max_faces;
-        if *clear > carried {
+        let corners = fans.corners(candidate.corners);
+        if guard.is_clear(*clear, corners) {
             continue;
         }
-        let corners = fans.corners(candidate.corners);
         view.look(particles.blocks(), corners, &motion.frame);
-        let mut room = memory.room(candidate.particle, view.own, view.extent, motion.reach);
+        let mut room = memory.room(candidate.particle, view.own, view.extent, motion.near);
         if room <= motion.swept(view.speed) {
             let fan = (candidate, corners, fans.faces(candidate.faces));
-            let of = (memory.faces(candidate.particle, fan.2, corners), &mut *view);
+            let known = memory.faces(candidate.particle, fan.2, corners);
+            let of = (known, &mut *guard, &mut *view);
             room = push_fan(
                 particles,
                 pushing,
@@ -153,7 +155,7 @@ pub(super) fn push_off_edges(
                 (&mut found, &mut farthest),
             );
         }
-        *clear = carried + room;
+        *clear = guard.until(room, corners);
     }
     found.farthest_push = farthest * fans.max_faces;
     found
@@ -168,7 +170,7 @@ fn push_fan(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
     (candidate, all_corners, faces): Fan,
-    (known, view): (&mut [KnownFace], &mut FanView),
+    (known, guard, view): (&mut [KnownFace], &mut Guard, &mut FanView),
     motion: &EdgeMotion,
     (found, farthest): (&mut Found, &mut f32),
 ) -> f32 {
@@ -203,6 +205,9 @@ fn push_fan(
             continue;
         };
         room = 0.0;
+        for slot in slots {
+            guard.note(slot, pushed);
+        }
         view.look(particles.blocks(), all_corners, &motion.frame);
         let (index, slot) = pushing.place(candidate);
         pushing.note_depth(index, slot.lane, depth);

@@ -119,7 +119,6 @@ impl Detection {
         self.moved += farthest;
         self.moved_now += farthest;
         self.odometer += farthest;
-        self.shapes.travelled += farthest;
     }
 
     /// Clears the memory of edges.

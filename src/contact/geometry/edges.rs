@@ -19,6 +19,8 @@ pub(in crate::contact) struct SharpEdge {
     pub outward: Vec3,
     /// Radius of the shape around the line (m).
     pub radius: f32,
+    /// Smallest radius of the round surface that it is a line of (m); 0 for a sharp edge.
+    pub round: f32,
 }
 
 /// The edges of a shape in a tree.
@@ -72,21 +74,33 @@ impl SharpEdges {
         &self.edges
     }
 
-    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order.
-    pub fn near(&self, [lower, upper]: [Vec3; 2], mut visit: impl FnMut(u32, &SharpEdge)) {
+    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order; none of a surface with
+    /// a radius of at least `smooth` (m).
+    pub fn near(
+        &self,
+        [lower, upper]: [Vec3; 2],
+        smooth: f32,
+        mut visit: impl FnMut(u32, &SharpEdge),
+    ) {
         let around = Aabb::new(lower, upper);
-        for edge in self.tree.intersect_aabb(&around) {
-            visit(edge, &self.edges[edge as usize]);
+        for index in self.tree.intersect_aabb(&around) {
+            let edge = &self.edges[index as usize];
+            if edge.round < smooth {
+                visit(index, edge);
+            }
         }
     }
 
-    /// Distance of the nearest edge (m); infinite if none is within the given distance.
-    pub fn distance(&self, point: Vec3, within: f32) -> f32 {
+    /// Distance of the nearest of these edges (m); infinite if none is within the given distance.
+    pub fn distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
         self.tree
             .find_best(
                 within,
                 |node: &BvhNode, _| node.aabb().distance_to_local_point(point, true),
-                |edge, _| Some(self.edges[edge as usize].distance(point).max(0.0)),
+                |index, _| {
+                    let edge = &self.edges[index as usize];
+                    (edge.round < smooth).then(|| edge.distance(point).max(0.0))
+                },
             )
             .map_or(f32::INFINITY, |(_, distance)| distance)
     }
@@ -150,6 +164,7 @@ impl MeshEdges {
                     ends,
                     outward,
                     radius: 0.0,
+                    round: 0.0,
                 })
             };
             let [a, b] = sides else {

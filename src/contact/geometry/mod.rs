@@ -111,13 +111,19 @@ impl ColliderGeometry {
         *self.0.edges.get(index)
     }
 
-    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order.
-    pub(super) fn edges_near(&self, [lower, upper]: [Vec3; 2], visit: impl FnMut(u32, &SharpEdge)) {
-        self.0.edges.near([lower, upper], visit);
+    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order; none of a surface with
+    /// a radius of at least `smooth` (m).
+    pub(super) fn edges_near(
+        &self,
+        within: [Vec3; 2],
+        smooth: f32,
+        visit: impl FnMut(u32, &SharpEdge),
+    ) {
+        self.0.edges.near(within, smooth, visit);
     }
 
     /// Distance of the nearest edge (m); infinite if none is within the given distance.
-    pub(super) fn edge_distance(&self, point: Vec3, within: f32) -> f32 {
-        self.0.edges.distance(point, within)
+    pub(super) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
+        self.0.edges.distance(point, within, smooth)
     }
 }

@@ -107,10 +107,10 @@ impl Parts {
         &mut self,
         pose: Pose,
         shape: SharedShape,
-        (vertices, triangles): Triangles,
+        triangles: Triangles,
         radius: f32,
     ) -> Result<(), ClothError> {
-        let (_, _, edges) = mesh::build(vertices, triangles, false)?;
+        let (_, _, edges) = build(triangles)?;
         self.add_convex(pose, shape);
         self.add_edges(pose, &edges, radius);
         Ok(())
@@ -122,6 +122,7 @@ impl Parts {
             ends,
             outward: Vec3::ZERO,
             radius,
+            round: 0.0,
         };
         self.add_edges(pose, &[line], 0.0);
     }
@@ -131,6 +132,7 @@ impl Parts {
             ends: edge.ends.map(|end| pose.transform_point(end)),
             outward: pose.rotation * edge.outward,
             radius: edge.radius + radius,
+            round: edge.round,
         }));
     }
 
@@ -205,10 +207,17 @@ impl Parts {
             TypedShape::ConvexPolyhedron(hull) => self.add_hull(pose, hull.to_trimesh())?,
             TypedShape::Cuboid(cuboid) => self.add_round(pose, shape, cuboid.to_trimesh(), 0.0)?,
             TypedShape::Cylinder(cylinder) => {
-                self.add_round(pose, shape, cylinder.to_trimesh(SIDES), 0.0)?;
+                let (_, _, mut edges) = build(cylinder.to_trimesh(SIDES))?;
+                for edge in edges.iter_mut().filter(|edge| is_upright(edge)) {
+                    edge.round = cylinder.radius;
+                }
+                self.add_convex(pose, shape);
+                self.add_edges(pose, &edges, 0.0);
             }
             TypedShape::Cone(cone) => {
-                self.add_round(pose, shape, cone.to_trimesh(SIDES), 0.0)?;
+                let (_, _, edges) = build(cone.to_trimesh(SIDES))?;
+                self.add_convex(pose, shape);
+                self.add_edges(pose, &in_pieces(&edges, cone.radius), 0.0);
             }
             TypedShape::RoundCuboid(round) => {
                 let inner = round.inner_shape.to_trimesh();
@@ -243,6 +252,42 @@ impl Parts {
         }
         Ok(())
     }
+}
+
+fn build(
+    (vertices, triangles): Triangles,
+) -> Result<(TriMesh, MeshSides, Vec<SharpEdge>), ClothError> {
+    mesh::build(vertices, triangles, false)
+}
+
+/// Whether an edge runs along the side of a cylinder or cone, and not around it.
+fn is_upright(edge: &SharpEdge) -> bool {
+    let [a, b] = edge.ends;
+    a.y != b.y
+}
+
+/// The edges of a cone of `radius` (m), those along its side in pieces: at the upper end of each, the cone is half as wide as at the
+/// lower. Where it is narrow, some of them are left out, and its flat sides are again at most 0.2 % of the radius below.
+fn in_pieces(edges: &[SharpEdge], radius: f32) -> Vec<SharpEdge> {
+    let (side, mut pieces): (Vec<SharpEdge>, Vec<SharpEdge>) =
+        edges.iter().partition(|edge| is_upright(edge));
+    for (index, edge) in side.into_iter().enumerate() {
+        let [a, b] = edge.ends;
+        let (base, tip) = if a.y < b.y { (a, b) } else { (b, a) };
+        let mut wide = 1.0;
+        for (piece, each) in [1, 1, 2, 2, 4].into_iter().enumerate() {
+            let narrow = if piece == 4 { 0.0 } else { wide / 2.0 };
+            if index % each == 0 {
+                pieces.push(SharpEdge {
+                    ends: [tip.lerp(base, wide), tip.lerp(base, narrow)],
+                    round: narrow * radius,
+                    ..edge
+                });
+            }
+            wide = narrow;
+        }
+    }
+    pieces
 }
 
 /// Turns the triangles of a height field so that their normals point up.
