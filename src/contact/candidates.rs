@@ -63,11 +63,6 @@ impl ContactBlock {
     pub fn has_cells(&self) -> bool {
         self.around[2] != NONE
     }
-
-    /// Whether a lane is a candidate.
-    pub fn has(&self, lane: usize) -> bool {
-        self.lanes & (1 << lane) != 0
-    }
 }
 
 /// The faces that candidates own.

@@ -16,6 +16,7 @@ use super::{
     body::{Before, Body},
     candidates::Candidates,
     carriers::Carriers,
+    embedded::{Embedding, Known},
     faces::{Pushed, ResumePoint, SubstepMotion},
     kept::Kept,
     particle::{lane_motion, push_particles},
@@ -47,6 +48,7 @@ pub struct Detection {
     /// Sorted by ID, so that the result does not depend on when they were found.
     touches: Vec<Touch>,
     candidates: Candidates,
+    embedding: Embedding,
     /// All colliders searched for, touching or not, to search again.
     colliders: Vec<(usize, MovingCollider)>,
     surface: Arc<Surface>,
@@ -88,6 +90,7 @@ impl Detection {
         self.shapes.memories.begin();
         self.touches.clear();
         self.candidates.clear();
+        self.embedding.clear();
         self.shapes.clear();
         self.colliders.clear();
         (self.spare).extend(self.bodies.drain(..).map(|body| body.carriers));
@@ -155,6 +158,32 @@ impl Detection {
         self.hold(id, collider, narrow_phase, 0, found, particles);
     }
 
+    /// Finds cloth that begins the tick deep inside a collider, among the particles that the search has found for it:
+    /// before they are [added](Self::add). `known` is what the last tick left, and `others` are all colliders near.
+    pub(crate) fn embed<'a>(
+        &mut self,
+        id: usize,
+        collider: &MovingCollider,
+        known: Known,
+        found: &[u32],
+        particles: &ClothParticles,
+        others: impl Iterator<Item = &'a MovingCollider> + Clone,
+    ) {
+        let of = (&*self.surface, particles, self.particle_radius);
+        self.embedding
+            .find((id, collider), known, found, of, others);
+    }
+
+    /// Whether cloth is embedded in a collider in this tick.
+    pub(crate) fn is_embedded(&self, id: usize) -> bool {
+        self.embedding.blocks(id).len() > 0
+    }
+
+    /// Depth of the deepest particle that is embedded in this tick (m).
+    pub(crate) fn embedded(&self) -> f32 {
+        self.embedding.deepest()
+    }
+
     /// The change of a collider's motion by the cloth so far, if it is dynamic and was near.
     pub fn body_change(&self, id: usize) -> Option<BodyChange> {
         self.bodies
@@ -176,6 +205,12 @@ impl Detection {
         if found.is_empty() {
             return;
         }
+        let is_embedded = self.is_embedded(id);
+        let narrow_phase = match narrow_phase {
+            // The triangles of what is inside would be pushed the nearest way.
+            NarrowPhase::Triangles if is_embedded => NarrowPhase::Particles,
+            other => other,
+        };
         if self.bodies.iter().all(|body| body.id != id) {
             (self.bodies).extend(Body::of(id, collider, &mut self.spare));
         }
@@ -276,7 +311,8 @@ impl Detection {
             let body = self.bodies.iter_mut().find(|body| body.id == touch.id);
             if body.is_some() {
                 let blocks = contacts.iter().map(|contact| contact.block as usize);
-                self.before.save(blocks, particles);
+                let embedded = self.embedding.blocks(touch.id);
+                self.before.save(blocks.chain(embedded), particles);
             }
             let odometer = self.odometer + touch.traveled;
             let travel = (collider.travel() + collider.swing()) / substep.count as f32;
@@ -289,6 +325,7 @@ impl Detection {
             let is_measured = touch.area == 0.0
                 || (substep.index + 1).is_multiple_of(MEASURED_EACH)
                 || substep.index + 1 == substep.count;
+            self.embedding.hide(touch.id, particles);
             let (found, stopped) = match touch.narrow_phase {
                 _ if collider.shape.has_edges() => {
                     self.shapes.make_room(count);
@@ -328,6 +365,9 @@ impl Detection {
                     (push_particles(particles, contacts, at, &lanes), None)
                 }
             };
+            let of = (touch.id, &touch.collider);
+            let embedded = (self.embedding).push(particles, of, settings, substep);
+            let found = found.and(&embedded);
             let mut given = found.given;
             if let Some(body) = body
                 && found.farthest_push > 0.0

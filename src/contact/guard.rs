@@ -94,3 +94,89 @@ fn measure(
     }
     most
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::Vec3;
+
+    use super::*;
+    use crate::{
+        cloth::{Cloth, ClothMaterial},
+        contact::tests::Random,
+    };
+
+    fn at(particles: &ClothParticles, slot: Slot) -> Vec3 {
+        particles.blocks()[slot.block].position(slot.lane)
+    }
+
+    /// Until when it is clear, its room (m), around whom, where they were, and how far the surface had been carried (m).
+    type Tested = (f32, f32, [Slot; 3], [Vec3; 3], f32);
+
+    /// Particles that walk at random, one of them far: what is said to be clear has not moved by its room since, from any
+    /// test to any later one, and most of what is far from the fast one is clear.
+    #[test]
+    fn what_is_clear_has_not_used_its_room() {
+        let surface = Cloth::new(20, 20, 0.1).surface(Vec3::ONE).expect("a grid");
+        let mut particles =
+            ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("particles");
+        let origin = particles.clone();
+        let layout = particles.layout();
+        let contacts: Vec<ContactBlock> = (0..particles.blocks().len() as u32)
+            .map(ContactBlock::new)
+            .collect();
+        let mut random = Random(5);
+        let mut guard = Guard::default();
+        let mut tested: Vec<Tested> = Vec::new();
+        let (mut clear, mut carried) = (0, 0.0);
+        for step in 0..40 {
+            for index in 0..particles.len() {
+                let way = random.within(if index == 77 { 0.1 } else { 0.002 });
+                particles.put(index, particles.position_at(index) + way);
+            }
+            carried += random.between(0.0, 0.001);
+            guard.measure(&particles, &origin, &contacts, carried);
+            // One is pushed after the measurement.
+            let (slot, push) = (layout.slot_of(33), random.within(0.01));
+            particles.put(33, particles.position_at(33) + push);
+            guard.note(slot, push.length() * (1.0 + 1.0e-5));
+            for (until, room, around, places, then) in &tested {
+                if !guard.is_clear(*until, around) {
+                    continue;
+                }
+                clear += 1;
+                for (slot, place) in around.iter().zip(places) {
+                    let moved = at(&particles, *slot).distance(*place) + carried - then;
+                    assert!(moved < *room, "{moved} m of {room} m in step {step}");
+                }
+            }
+            for _ in 0..20 {
+                let first = random.below(380) as usize;
+                let around =
+                    [first, first + 1, first + 20].map(|index| layout.slot_of(index.min(399)));
+                let room = random.between(0.0, 0.06);
+                let places = around.map(|slot| at(&particles, slot));
+                let until = guard.until(room, &around);
+                tested.push((until, room, around, places, carried));
+            }
+        }
+        assert!(clear > 1000, "{clear} tests were spared");
+    }
+
+    /// A position that is no number makes nothing clear.
+    #[test]
+    fn no_number_is_never_clear() {
+        let surface = Cloth::new(3, 3, 0.1).surface(Vec3::ONE).expect("a grid");
+        let mut particles =
+            ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("particles");
+        let origin = particles.clone();
+        let slot = particles.layout().slot_of(4);
+        particles.put(4, Vec3::NAN);
+        let contacts: Vec<ContactBlock> = (0..particles.blocks().len() as u32)
+            .map(ContactBlock::new)
+            .collect();
+        let mut guard = Guard::default();
+        guard.measure(&particles, &origin, &contacts, 0.0);
+        assert!(!guard.is_clear(1.0, &[slot]));
+        assert!(!guard.is_clear(guard.until(1.0, &[slot]), &[slot]));
+    }
+}

@@ -13,6 +13,7 @@ mod edge_contact;
 mod edge_memory;
 mod edge_room;
 mod eight;
+mod embedded;
 mod faces;
 mod fan_view;
 mod friction;
@@ -50,6 +51,7 @@ pub use corners::meets_triangles;
 pub use depth::deepest_penetration;
 #[doc(hidden)]
 pub use detection::Detection;
+pub(crate) use embedded::Known as KnownEmbedding;
 pub use geometry::ColliderGeometry;
 pub use layers::ClothLayers;
 #[doc(hidden)]

@@ -6,7 +6,7 @@ use super::{
     ColliderShape, MovingCollider,
     candidates::ContactBlock,
     lanes::{Cuboid, HalfSpace, LaneMotion, Round, Sums, push_cuboid, push_half_space, push_round},
-    response::{Contact, Given, MAX_STEPS, PushOut, first_touch},
+    response::{Contact, Given, PushOut, first_touch},
     shape::Nearest,
     touch::ContactSettings,
 };
@@ -31,6 +31,14 @@ pub(super) struct Found {
 }
 
 impl Found {
+    /// This and what was pushed after it.
+    pub fn and(mut self, other: &Self) -> Self {
+        self.deepest = self.deepest.max(other.deepest);
+        self.farthest_push += other.farthest_push;
+        self.given.merge(&other.given);
+        self
+    }
+
     /// Adds the sums of blocks of lanes.
     pub fn add(&mut self, sums: &Sums) {
         let largest = |lanes: &Lanes| lanes.iter().copied().fold(0.0, f32::max);
@@ -186,7 +194,6 @@ fn push_left(
     let centre = Vec3::from(pose.translation);
     let thickness = collider.shape.thickness() + particle_radius;
     let sweep = Sweep::new(collider, substep, settings, thickness);
-    let mut side = None;
     for index in 0..contacts.len() {
         if !contacts[index].is_left {
             continue;
@@ -205,22 +212,6 @@ fn push_left(
             let mut depth = particle_radius - distance;
             if let Some((hit_normal, hit_depth)) = sweep.hit(position, displacement) {
                 (normal, depth) = (hit_normal, hit_depth);
-            } else if depth > thickness / 2.0 {
-                // So deep that the nearest way out may be on the other side.
-                let side = *side.get_or_insert_with(|| {
-                    side_of(
-                        particles.blocks(),
-                        contacts,
-                        collider,
-                        pose,
-                        thickness,
-                        particle_radius,
-                    )
-                });
-                if normal.dot(side) < 0.0 {
-                    let way = way_out(collider, pose, position, side, particle_radius);
-                    (normal, depth) = way.map_or((normal, depth), |depth| (side, depth));
-                }
             }
             let contact = &mut contacts[index];
             contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));
@@ -316,50 +307,4 @@ impl<'a> Sweep<'a> {
         let depth = normal.dot(carried - position) + (self.particle_radius - distance);
         (depth > 0.0).then_some((normal, depth))
     }
-}
-
-/// The side on which most particles would leave: the mean of the normals, of length 1; 0 if there is none.
-fn side_of(
-    blocks: &[Block],
-    contacts: &[ContactBlock],
-    collider: &MovingCollider,
-    pose: Isometry3d,
-    thickness: f32,
-    particle_radius: f32,
-) -> Vec3 {
-    let places = contacts.iter().flat_map(|contact| {
-        let block = &blocks[contact.block as usize];
-        (0..LANES)
-            .filter(|lane| contact.has(*lane))
-            .map(|lane| block.position(lane))
-    });
-    let inside = places.filter_map(|position| {
-        let nearest = collider.shape.nearest(pose, position);
-        // Particles that were pushed out already are on the surface.
-        (nearest.distance < particle_radius + 1.0e-3 * thickness).then_some(nearest.normal)
-    });
-    inside.sum::<Vec3>().normalize_or_zero()
-}
-
-/// Distance along `side` to the surface (m), unless it is too far along the inside of a box.
-fn way_out(
-    collider: &MovingCollider,
-    pose: Isometry3d,
-    position: Vec3,
-    side: Vec3,
-    particle_radius: f32,
-) -> Option<f32> {
-    let mut gone = 0.0;
-    for _ in 0..MAX_STEPS {
-        let depth = particle_radius
-            - collider
-                .shape
-                .nearest(pose, position + side * gone)
-                .distance;
-        if depth <= 1.0e-6 * gone {
-            return Some(gone);
-        }
-        gone += depth;
-    }
-    None
 }

@@ -93,7 +93,7 @@ pub(super) fn push_shape(
         let of = (known.clear, &mut *known.guard, memory, known.view);
         by_edges = push_off_edges(particles, pushing, fans, of, &motion);
     }
-    let mut found = match pushing.collider.shape {
+    let found = match pushing.collider.shape {
         ColliderShape::Geometry(_) => {
             push_particles_out(particles, pushing, known.particles, known.guard)
         }
@@ -102,8 +102,5 @@ pub(super) fn push_shape(
             push_particles(particles, pushing.contacts, at, pushing.lanes)
         }
     };
-    found.deepest = found.deepest.max(by_edges.deepest);
-    found.farthest_push += by_edges.farthest_push;
-    found.given.merge(&by_edges.given);
-    found
+    found.and(&by_edges)
 }

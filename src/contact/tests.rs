@@ -13,6 +13,7 @@ mod moving;
 mod particle;
 mod random;
 mod rest;
+mod round;
 mod shapes;
 mod shots;
 mod sweep;

@@ -43,6 +43,9 @@ pub struct ClothContact {
     pub angular_impulse: Vec3,
     /// Whether the collider was tested against particles or triangles.
     pub narrow_phase: NarrowPhase,
+    /// Whether the cloth began inside of it, and is let out on one side or left alone:
+    /// [`ClothLimit::Embedded`](crate::solver::ClothLimit::Embedded).
+    pub is_embedded: bool,
     /// The range of its points.
     points: [usize; 2],
 }
@@ -110,7 +113,9 @@ impl ClothContacts {
                 .iter()
                 .filter(|point| point.depth > 0.0)
                 .count();
-            let Some((collider, _)) = near.get(touch.id).filter(|_| particles > 0) else {
+            let is_embedded = detection.is_embedded(touch.id);
+            let is_touching = particles > 0 || is_embedded;
+            let Some((collider, _)) = near.get(touch.id).filter(|_| is_touching) else {
                 self.points.truncate(first);
                 continue;
             };
@@ -124,6 +129,7 @@ impl ClothContacts {
                 impulse: finite(rotation * touch.impulse),
                 angular_impulse: finite(rotation * touch.angular_impulse),
                 narrow_phase: touch.narrow_phase,
+                is_embedded,
                 points: [first, self.points.len()],
             });
         }

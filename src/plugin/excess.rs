@@ -29,7 +29,10 @@ impl Excess {
         // A collider passes through in a single tick, and a tolerance holds in each tick or not at all.
         let is_at_once = matches!(
             limit,
-            ClothLimit::SmallFastCollider | ClothLimit::Tolerance | ClothLimit::Layers
+            ClothLimit::SmallFastCollider
+                | ClothLimit::Tolerance
+                | ClothLimit::Layers
+                | ClothLimit::Embedded
         );
         let lasts = self.ticks >= TICKS || is_at_once;
         let is_reported = self.reported == 0.0 || quantity >= WORSE * self.reported;

@@ -11,14 +11,14 @@ use bevy::{
 };
 
 use super::{
-    ClothBuilt, ClothFrame, ClothOrder, ClothScratch, ClothSearch, ClothState, ClothStats,
-    broad_phase::cover, clock::milliseconds_since, collider_tree::ColliderTree,
+    ClothBuilt, ClothContacts, ClothFrame, ClothOrder, ClothScratch, ClothSearch, ClothState,
+    ClothStats, broad_phase::cover, clock::milliseconds_since, collider_tree::ColliderTree,
     colliders::ColliderMotion, components::BroadPhaseBounds, order::Ordered, resting::RestsOn,
     threads::threads,
 };
 use crate::{
     cloth::ClothParticles,
-    contact::{ClothLayers, Detection, NarrowPhase, Touch, meets_triangles},
+    contact::{ClothLayers, Detection, KnownEmbedding, NarrowPhase, Touch, meets_triangles},
     hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
 };
 
@@ -34,6 +34,7 @@ pub(super) struct Searching {
     stats: &'static mut ClothStats,
     broad_phase: &'static mut BroadPhaseBounds,
     layers: Option<&'static ClothLayers>,
+    contacts: &'static ClothContacts,
 }
 
 /// A tick in which fewer cloths take part is not shared among threads: handing out work costs more than the search.
@@ -292,7 +293,7 @@ impl SearchingItem<'_, '_> {
         let cover = cover(&scratch.contact_settings, self.state.stretch.bound, surface);
         query.clear();
         let mut is_dragged = false;
-        for (id, (_, collider)) in scratch.near.iter().enumerate() {
+        for (id, &(entity, ref collider)) in scratch.near.iter().enumerate() {
             let (probe, narrow_phase) =
                 scratch
                     .detection
@@ -303,6 +304,15 @@ impl SearchingItem<'_, '_> {
             };
             is_dragged |= !found.is_empty() && collider.max_surface_travel(1.0) > 0.0;
             let found = &query.candidates()[found];
+            let known = match self.contacts.with(entity) {
+                None => KnownEmbedding::Apart,
+                Some(contact) if contact.is_embedded => KnownEmbedding::Embedded,
+                Some(contact) => KnownEmbedding::Touching {
+                    deepest: contact.deepest_penetration,
+                },
+            };
+            let others = scratch.near.iter().map(|(_, other)| other);
+            (scratch.detection).embed(id, collider, known, found, self.particles, others);
             scratch
                 .detection
                 .add(id, collider, narrow_phase, found, self.particles);

@@ -206,6 +206,7 @@ impl IntegratingItem<'_, '_> {
         let mutual = self.scratch.mutual.as_ref();
         LimitInputs {
             lost: mutual.map_or(0, |mutual| mutual.lost()),
+            embedded: self.scratch.detection.embedded(),
             collider_travel: travels.fold(0.0, f32::max),
             stretch: self.state.stretch.structural,
             substepping: self.scratch.substepping,

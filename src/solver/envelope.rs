@@ -33,6 +33,9 @@ pub enum ClothLimit {
     /// the rest of the tick and the next eight. For each particle, a tick compares at most some 260,000 pairs of
     /// features and lists 512; for all particles, at most some 540 million.
     Layers,
+    /// The cloth began deep inside a collider, where the nearest ways out lead apart. Each piece of it is let out on one
+    /// side, or left alone where another collider or a pin inside bars the way.
+    Embedded,
 }
 
 /// Largest length / rest length − 1 beyond what the material gives.
@@ -53,7 +56,7 @@ const SMALL: f32 = 0.5;
 
 impl ClothLimit {
     /// All limits.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Stretch,
         Self::Tolerance,
         Self::MassRatio,
@@ -61,6 +64,7 @@ impl ClothLimit {
         Self::Damping,
         Self::SmallFastCollider,
         Self::Layers,
+        Self::Embedded,
     ];
 
     /// The remedy, as a part of a sentence in the log.
@@ -82,6 +86,9 @@ impl ClothLimit {
             Self::SmallFastCollider => "a thicker or slower collider, or a finer cloth",
             Self::Layers => {
                 "slower cloth or more sub-steps; a thickness (`ClothSelfCollision`) that is no larger than the spacing"
+            }
+            Self::Embedded => {
+                "a cloth or a collider that appears beside the other; `ClothLayers` if they shall not meet"
             }
         }
     }
@@ -113,6 +120,7 @@ impl ClothLimit {
             Self::Damping => "D ",
             Self::SmallFastCollider => "radii a sub-step ",
             Self::Layers => "sub-steps without ",
+            Self::Embedded => "metres deep ",
         };
         format!("{what}{found} (limit {good})")
     }
@@ -128,6 +136,7 @@ impl fmt::Display for ClothLimit {
             Self::Distance => "too far from its frame's origin",
             Self::Damping => "damped too much",
             Self::SmallFastCollider => "hit by too small and fast a collider",
+            Self::Embedded => "inside of a collider that appeared in it",
             Self::Layers => "too fast, too thick or too crowded for its layers to be kept apart",
         })
     }
@@ -160,6 +169,8 @@ pub(crate) struct LimitInputs {
     pub collider_travel: f32,
     /// Sub-steps of the tick in which its layers were not kept apart.
     pub lost: u32,
+    /// Depth of the deepest particle inside of a collider that appeared there (m).
+    pub embedded: f32,
 }
 
 impl LimitInputs {
@@ -193,6 +204,7 @@ impl LimitInputs {
             }
             ClothLimit::SmallFastCollider => [self.collider_travel, MAX_TRAVEL],
             ClothLimit::Layers => [self.lost as f32, 0.0],
+            ClothLimit::Embedded => [self.embedded, 0.0],
             ClothLimit::Stretch | ClothLimit::Tolerance | ClothLimit::MassRatio => return None,
         };
         (quantity[0] > quantity[1]).then_some(quantity)
@@ -217,6 +229,7 @@ mod tests {
         spacing: 0.03,
         collider_travel: MAX_TRAVEL,
         lost: 0,
+        embedded: 0.0,
     };
 
     fn beyond(limit_inputs: LimitInputs) -> Vec<ClothLimit> {
@@ -271,6 +284,13 @@ mod tests {
                 ClothLimit::SmallFastCollider,
             ),
             (LimitInputs { lost: 1, ..WITHIN }, ClothLimit::Layers),
+            (
+                LimitInputs {
+                    embedded: 0.1,
+                    ..WITHIN
+                },
+                ClothLimit::Embedded,
+            ),
         ];
         for (limit_inputs, limit) in exceeded {
             assert_eq!(beyond(limit_inputs), [limit]);

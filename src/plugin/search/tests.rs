@@ -114,11 +114,15 @@ fn make(world: &mut World, entity: Entity, change: Change, parents: [Entity; 2])
     }
 }
 
-/// What a scan of all colliders finds near a cloth, as far as they drag it to others, in the order of their entities.
-fn scanned(
-    cloth: &SearchingReadOnlyItem,
-    colliders: &Query<(Entity, &ColliderMotion, Option<&ClothLayers>)>,
-) -> Vec<Entity> {
+type Scanned = (
+    Entity,
+    &'static ColliderMotion,
+    Option<&'static ClothLayers>,
+    Option<&'static ClothOrder>,
+);
+
+/// What a scan of all colliders finds near a cloth, as far as they drag it to others, in their order.
+fn scanned(cloth: &SearchingReadOnlyItem, colliders: &Query<Scanned>) -> Vec<Entity> {
     let BroadPhaseBounds { centre, radius, .. } = *cloth.broad_phase;
     let root = cloth
         .built
@@ -128,19 +132,19 @@ fn scanned(
     loop {
         let mut farthest = 0.0_f32;
         let mut found = Vec::new();
-        for (entity, motion, layers) in colliders {
+        for (entity, motion, layers, order) in colliders {
             let layers = layers.copied().unwrap_or_default();
             if layers.interacts_with(cloth.layers.copied().unwrap_or_default())
                 && motion.comes_near(centre, radius + dragged)
                 && let Some(near) = motion.seen_from(cloth.frame, None)
             {
                 farthest = farthest.max(near.max_surface_travel(near.farthest_distance(&root)));
-                found.push(entity);
+                found.push((order.copied(), entity));
             }
         }
         if farthest <= dragged || !farthest.is_finite() {
-            found.sort_unstable_by_key(|entity| entity.index_u32());
-            return found;
+            found.sort_unstable();
+            return found.into_iter().map(|(_, entity)| entity).collect();
         }
         dragged = farthest;
     }
@@ -151,11 +155,7 @@ fn scanned(
 struct Found(Vec<(Vec<Entity>, Vec<Entity>)>);
 
 /// Scans for each cloth that has looked around, before anything moves it: a collider may throw it far within the tick.
-fn scan(
-    cloths: Query<Searching>,
-    colliders: Query<(Entity, &ColliderMotion, Option<&ClothLayers>)>,
-    mut found: ResMut<Found>,
-) {
+fn scan(cloths: Query<Searching>, colliders: Query<Scanned>, mut found: ResMut<Found>) {
     found.0 = cloths
         .iter()
         .map(|cloth| {
