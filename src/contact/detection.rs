@@ -16,7 +16,7 @@ use super::{
     body::{Before, Body},
     candidates::Candidates,
     carriers::Carriers,
-    embedded::{Embedding, Known},
+    embedded::Embedding,
     faces::{Pushed, ResumePoint, SubstepMotion},
     kept::Kept,
     particle::{lane_motion, push_particles},
@@ -159,19 +159,20 @@ impl Detection {
     }
 
     /// Finds cloth that begins the tick deep inside a collider, among the particles that the search has found for it:
-    /// before they are [added](Self::add). `known` is what the last tick left, and `others` are all colliders near.
-    pub(crate) fn embed<'a>(
+    /// before they are [added](Self::add). Only for a collider that did not touch it in the last tick, or if cloth
+    /// `was_embedded` in it then. `others` are all colliders near.
+    pub fn embed<'a>(
         &mut self,
         id: usize,
         collider: &MovingCollider,
-        known: Known,
+        was_embedded: bool,
         found: &[u32],
         particles: &ClothParticles,
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) {
         let of = (&*self.surface, particles, self.particle_radius);
         self.embedding
-            .find((id, collider), known, found, of, others);
+            .find((id, collider), was_embedded, found, of, others);
     }
 
     /// Whether cloth is embedded in a collider in this tick.
@@ -227,6 +228,7 @@ impl Detection {
         let by_triangles = narrow_phase == NarrowPhase::Triangles;
         let triangles = by_triangles.then_some(&is_left_out);
         let of = self.candidates.add(found, &self.surface, layout, triangles);
+        (self.embedding).note_places(id, &self.candidates.all[of.candidates.clone()]);
         match self.touches.binary_search_by_key(&id, |touch| touch.id) {
             Ok(at) => self.touches[at].of = of,
             Err(at) => self.touches.insert(
@@ -366,7 +368,7 @@ impl Detection {
                 }
             };
             let of = (touch.id, &touch.collider);
-            let embedded = (self.embedding).push(particles, of, settings, substep);
+            let embedded = (self.embedding).push(particles, blocks, of, settings, substep);
             let found = found.and(&embedded);
             let mut given = found.given;
             if let Some(body) = body

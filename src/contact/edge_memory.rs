@@ -66,9 +66,9 @@ pub(super) struct Nearness {
     pub slack: f32,
     /// Edges of a round surface with at least this radius can't come through a triangle (m).
     ///
-    /// At weights w a triangle's point is nearer to an axis than the root of Σ wᵢ ρᵢ² − Σ wᵢ wⱼ lᵢⱼ², with the distances
-    /// ρ of its corners and its sides l, and the last sum is at most l²/3. Particles keep the corners of a triangle at
-    /// R + r, with their radius r. So all of it is outside of R if 2 R r ≥ l²/3; on a cone, with the radius beside it.
+    /// A triangle's corners are ρᵢ from an axis, and its sides are lᵢⱼ. Its point at weights w is at least √(Σ wᵢ ρᵢ² − Σ wᵢ wⱼ
+    /// lᵢⱼ²) from the axis, and the last sum is at most l²/3. Particles keep the corners at R + r, with their radius r. So
+    /// all of it is outside of R if 2 R r ≥ l²/3; on a cone, with the radius beside it.
     pub smooth: f32,
     /// The current tick.
     pub tick: u32,

@@ -1,13 +1,17 @@
 //! Cloth that begins a tick deep inside a collider, which appeared or was teleported there.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::math::Vec3;
 
 use super::{
-    ColliderShape, MovingCollider, nearest::Nearest, particle::Found, response::MAX_STEPS,
+    ColliderShape, MovingCollider,
+    candidates::{Candidate, ContactBlock},
+    nearest::Nearest,
+    particle::Found,
+    response::MAX_STEPS,
     touch::ContactSettings,
 };
 use crate::{
-    cloth::{ClothParticles, Slot, Surface},
+    cloth::{ClothParticles, LANES, Slot, Surface},
     solver::SubStep,
 };
 
@@ -20,7 +24,7 @@ const DEEP: f32 = 0.25;
 /// Speed on a common way (m/s), and the largest acceleration towards it (m/s²): against taut cloth it is a force, so it
 /// stretches nothing far.
 const SPEED: f32 = 0.18;
-const ACCELERATION: f32 = 150.0;
+const ACCELERATION: f32 = 400.0;
 
 /// Time in which the motion inside decays to 1/e (s).
 const SLOWED_FOR: f32 = 0.1;
@@ -28,22 +32,14 @@ const SLOWED_FOR: f32 = 0.1;
 /// Largest number of particles by which the common way of a piece is chosen.
 const SAMPLES: usize = 64;
 
-/// What the last tick left of a cloth and a collider.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Known {
-    Apart,
-    /// They touched, and the deepest particle was so deep inside (m).
-    Touching {
-        deepest: f32,
-    },
-    Embedded,
-}
+/// In place of a lane, before the candidates are known.
+const NOWHERE: u32 = u32::MAX;
 
 /// The particles that leave colliders by another way than the nearest.
 ///
 /// The nearest ways out of a ball in a curtain lead to both of its sides. They would stretch the cloth without end, and it
 /// would whip. So all of a connected piece goes one way: along its mean normal or against it, or along the mean of the
-/// nearest ways out, whichever is shortest in the mean and ends inside no other collider. A piece that finds none, or that
+/// nearest ways out, whichever is shortest for its deepest particle and ends inside no other collider. A piece that finds none, or that
 /// hangs from a pin inside, is left alone.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Embedding {
@@ -62,7 +58,10 @@ pub(super) struct Embedding {
 struct Embedded {
     /// The caller's ID of the collider.
     id: usize,
+    particle: u32,
     slot: Slot,
+    /// Its lane, counted through the contact blocks.
+    place: u32,
     /// While it is hidden (1/kg).
     inverse_mass: f32,
     /// Direction of its way, in the cloth's frame; `None` to leave it alone.
@@ -101,22 +100,22 @@ impl Embedding {
     }
 
     /// Finds the particles that leave a collider by another way than the nearest, among those found near it as the tick
-    /// begins. `others` are all colliders near.
+    /// begins. `others` are all colliders near. Call it only for a collider that it did not touch in the last tick, or if it
+    /// `was_embedded`: what touches deeper is squeezed.
     ///
     /// They are in pieces that their nearest ways out would tear, or push into another collider.
     pub fn find<'a>(
         &mut self,
         (id, collider): (usize, &MovingCollider),
-        known: Known,
+        was_embedded: bool,
         found: &[u32],
         (surface, particles, particle_radius): (&Surface, &ClothParticles, f32),
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) {
-        let deep = particle_radius + DEEP * surface.spacing().shortest;
-        let begins_at = match known {
-            Known::Touching { deepest } if deepest <= deep => return,
-            Known::Embedded => 0.0,
-            Known::Touching { .. } | Known::Apart => deep,
+        let begins_at = if was_embedded {
+            0.0
+        } else {
+            particle_radius + DEEP * surface.spacing().shortest
         };
         // Only a half-space has one way out for all.
         if collider.shape == ColliderShape::HalfSpace
@@ -151,6 +150,8 @@ impl Embedding {
                 self.deepest = self.deepest.max(inside.out.length());
                 self.all.push(Embedded {
                     id,
+                    particle: inside.particle,
+                    place: NOWHERE,
                     slot: layout.slot_of(inside.particle as usize),
                     inverse_mass: 0.0,
                     way: piece.way,
@@ -196,10 +197,12 @@ impl Embedding {
                     place,
                     out: normal * depth,
                     is_pinned: particles.is_pinned(particle as usize) == Some(true),
-                    piece: self.inside.len() as u32,
+                    piece: 0,
                 });
             }
         }
+        // The result does not depend on the method of the search.
+        self.inside.sort_unstable_by_key(|inside| inside.particle);
         deepest
     }
 
@@ -213,7 +216,8 @@ impl Embedding {
             ..
         } = self;
         index.resize(particles.len(), 0);
-        for (at, one) in inside.iter().enumerate() {
+        for (at, one) in inside.iter_mut().enumerate() {
+            one.piece = at as u32;
             index[one.particle as usize] = at as u32 + 1;
         }
         pieces.clear();
@@ -276,20 +280,18 @@ impl Embedding {
         let ways = [normal, -normal, out.normalize_or_zero()];
         let mut best = (f32::INFINITY, None);
         for way in ways.into_iter().filter(|way| *way != Vec3::ZERO) {
-            let (mut length, mut sampled) = (0.0, 0.0);
-            let mut blocked = 0.0;
+            let (mut longest, mut sampled, mut blocked) = (0.0_f32, 0, 0);
             for member in members() {
-                sampled += 1.0;
+                sampled += 1;
                 let far = way_out(collider, member.place, way, particle_radius);
                 let end = |far: f32| member.place + way * far;
                 match far.filter(|far| !is_in_another(others.clone(), end(*far), member.place)) {
-                    Some(far) => length += far,
-                    None => blocked += 1.0,
+                    Some(far) => longest = longest.max(far),
+                    None => blocked += 1,
                 }
             }
-            let mean = length / (sampled - blocked);
-            if 2.0 * blocked < sampled && mean < best.0 {
-                best = (mean, Some(way));
+            if 2 * blocked < sampled && longest < best.0 {
+                best = (longest, Some(way));
             }
         }
         best.1
@@ -311,6 +313,16 @@ impl Embedding {
         self.of(id).iter().map(|one| one.slot.block)
     }
 
+    /// Notes where the candidates are among the contact blocks.
+    pub fn note_places(&mut self, id: usize, candidates: &[Candidate]) {
+        let [first, end] = self.range(id);
+        for one in &mut self.all[first..end] {
+            let key = one.particle;
+            let at = candidates.binary_search_by_key(&key, |candidate| candidate.particle);
+            one.place = at.map_or(NOWHERE, |at| candidates[at].place);
+        }
+    }
+
     /// Holds them in place while the collider pushes others, until [`push`](Self::push).
     pub fn hide(&mut self, id: usize, particles: &mut ClothParticles) {
         let [first, end] = self.range(id);
@@ -321,10 +333,11 @@ impl Embedding {
         }
     }
 
-    /// Moves them on along their ways.
+    /// Moves them on along their ways. `contacts` are all blocks of candidates.
     pub fn push(
         &self,
         particles: &mut ClothParticles,
+        contacts: &mut [ContactBlock],
         (id, collider): (usize, &MovingCollider),
         settings: &ContactSettings,
         substep: SubStep,
@@ -344,6 +357,11 @@ impl Embedding {
             block.set_inverse_mass(lane, one.inverse_mass);
             let (place, displacement) = (block.position(lane), block.displacement(lane));
             let depth = settings.particle_radius - collider.shape.nearest(pose, place).distance;
+            let in_contacts = one.place as usize;
+            if let Some(contact) = contacts.get_mut(in_contacts / LANES) {
+                let known = &mut contact.depth[in_contacts % LANES];
+                *known = known.max(depth);
+            }
             if depth.is_nan() || depth <= 0.0 {
                 continue;
             }
@@ -352,7 +370,7 @@ impl Embedding {
             let surface = collider.surface_motion(substep, centre, place);
             let relative = displacement - surface;
             let slowed = relative * (1.0 - seconds / (seconds + SLOWED_FOR));
-            let faster = (fastest - slowed.dot(way)).clamp(0.0, most);
+            let faster = (fastest.min(depth) - slowed.dot(way)).clamp(0.0, most);
             let push = slowed + way * faster - relative;
             let pushed = place + push;
             block.set_position(lane, pushed);
@@ -390,10 +408,9 @@ fn join(inside: &mut [Inside], first: u32, second: u32) {
 
 /// Distance along a way to the surface (m), unless it is too far along the inside of a box.
 fn way_out(collider: &MovingCollider, place: Vec3, way: Vec3, particle_radius: f32) -> Option<f32> {
-    let pose: Isometry3d = collider.from;
     let mut gone = 0.0;
     for _ in 0..MAX_STEPS {
-        let nearest = collider.shape.nearest(pose, place + way * gone);
+        let nearest = collider.nearest(0.0, place + way * gone);
         let depth = particle_radius - nearest.distance;
         if depth <= 1.0e-3 * gone {
             return Some(gone);

@@ -51,7 +51,6 @@ pub use corners::meets_triangles;
 pub use depth::deepest_penetration;
 #[doc(hidden)]
 pub use detection::Detection;
-pub(crate) use embedded::Known as KnownEmbedding;
 pub use geometry::ColliderGeometry;
 pub use layers::ClothLayers;
 #[doc(hidden)]

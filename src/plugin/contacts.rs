@@ -113,9 +113,7 @@ impl ClothContacts {
                 .iter()
                 .filter(|point| point.depth > 0.0)
                 .count();
-            let is_embedded = detection.is_embedded(touch.id);
-            let is_touching = particles > 0 || is_embedded;
-            let Some((collider, _)) = near.get(touch.id).filter(|_| is_touching) else {
+            let Some((collider, _)) = near.get(touch.id).filter(|_| particles > 0) else {
                 self.points.truncate(first);
                 continue;
             };
@@ -129,7 +127,7 @@ impl ClothContacts {
                 impulse: finite(rotation * touch.impulse),
                 angular_impulse: finite(rotation * touch.angular_impulse),
                 narrow_phase: touch.narrow_phase,
-                is_embedded,
+                is_embedded: detection.is_embedded(touch.id),
                 points: [first, self.points.len()],
             });
         }

@@ -2,25 +2,19 @@
 
 use bevy::{
     ecs::{
-        component::Component,
-        entity::Entity,
-        name::Name,
-        query::{Or, With, Without},
-        reflect::ReflectComponent,
-        system::{Commands, Query},
+        component::Component, entity::Entity, name::Name, reflect::ReflectComponent, system::Query,
     },
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{ClothWindZone, frame::Places};
-use crate::{cloth::Cloth, contact::ClothCollider};
+use super::frame::Places;
 
 /// The order in which cloths, colliders and wind zones act where several meet: lower values first. The order of results
 /// to the last bit, so it must be the same in each app that has to move alike, such as a server and its clients.
 ///
 /// The plugin adds it in an entity's first tick: a hash of the [`Name`] and of the place in the world. So the order of
 /// spawning changes nothing. Set it yourself, to any number of your own, where entities share both, or where apps spawn
-/// them in different places. Equal values go by the entity's id.
+/// them in different places. 0 stands for none yet. Equal values go by the entity's id.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
@@ -30,16 +24,12 @@ pub struct ClothOrder(pub u64);
 /// An entity, sorted by its order.
 pub(super) type Ordered = (ClothOrder, Entity);
 
-/// What has an order.
-type InOrder = Or<(With<Cloth>, With<ClothCollider>, With<ClothWindZone>)>;
-
-/// Gives an order to each entity that has none.
-pub(super) fn give_order(
-    new: Query<(Entity, Option<&Name>), (InOrder, Without<ClothOrder>)>,
-    places: Places,
-    mut commands: Commands,
-) {
-    for (entity, name) in &new {
+/// Gives an order to each entity that has none yet.
+pub(super) fn give_order(mut all: Query<(Entity, Option<&Name>, &mut ClothOrder)>, places: Places) {
+    for (entity, name, mut known) in &mut all {
+        if known.0 != 0 {
+            continue;
+        }
         let mut order = hash(OFFSET_BASIS, name.map_or(&[][..], |name| name.as_bytes()));
         if let Ok(place) = places.of(entity) {
             for number in place.affine().to_cols_array() {
@@ -47,7 +37,7 @@ pub(super) fn give_order(
                 order = hash(order, &(number + 0.0).to_bits().to_le_bytes());
             }
         }
-        commands.entity(entity).try_insert_if_new(ClothOrder(order));
+        known.0 = order;
     }
 }
 

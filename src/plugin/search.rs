@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     cloth::ClothParticles,
-    contact::{ClothLayers, Detection, KnownEmbedding, NarrowPhase, Touch, meets_triangles},
+    contact::{ClothLayers, Detection, NarrowPhase, Touch, meets_triangles},
     hierarchy::{BoundRule, BoundingVolume, SearchMethod, SearchReason},
 };
 
@@ -304,15 +304,14 @@ impl SearchingItem<'_, '_> {
             };
             is_dragged |= !found.is_empty() && collider.max_surface_travel(1.0) > 0.0;
             let found = &query.candidates()[found];
-            let known = match self.contacts.with(entity) {
-                None => KnownEmbedding::Apart,
-                Some(contact) if contact.is_embedded => KnownEmbedding::Embedded,
-                Some(contact) => KnownEmbedding::Touching {
-                    deepest: contact.deepest_penetration,
-                },
-            };
-            let others = scratch.near.iter().map(|(_, other)| other);
-            (scratch.detection).embed(id, collider, known, found, self.particles, others);
+            let known = self.contacts.with(entity);
+            if known.is_none_or(|contact| contact.is_embedded) {
+                let others = scratch.near.iter().map(|(_, other)| other);
+                let was_embedded = known.is_some();
+                scratch
+                    .detection
+                    .embed(id, collider, was_embedded, found, self.particles, others);
+            }
             scratch
                 .detection
                 .add(id, collider, narrow_phase, found, self.particles);

@@ -110,7 +110,8 @@ impl Plugin for ClothPlugin {
             .register_type::<ClothPressure>();
         register_lists(app);
         add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
-        add_parts_to_earlier::<ClothCollider, ColliderMotion>(app.world_mut());
+        add_parts_to_earlier::<ClothCollider, ColliderParts>(app.world_mut());
+        add_parts_to_earlier::<ClothWindZone, ClothOrder>(app.world_mut());
         app.init_resource::<ClothGravity>()
             .add_message::<ClothTouchStarted>()
             .add_message::<ClothTouchStopped>()
@@ -124,7 +125,8 @@ impl Plugin for ClothPlugin {
             .init_resource::<Deprived>()
             .init_resource::<Jumped>()
             .add_observer(add_parts::<Cloth, ClothParts>)
-            .add_observer(add_parts::<ClothCollider, ColliderMotion>)
+            .add_observer(add_parts::<ClothCollider, ColliderParts>)
+            .add_observer(add_parts::<ClothWindZone, ClothOrder>)
             .add_observer(send_stopped_messages)
             .add_observer(clear_removed_cloth)
             .add_observer(clear_removed_collider)
@@ -204,6 +206,7 @@ impl Plugin for ClothPlugin {
 /// Components that the plugin adds to a cloth. They are not required components: those can't be declared any more once
 /// a cloth was spawned before the plugin was added.
 pub(super) type ClothParts = (
+    ClothOrder,
     ClothSettings,
     SearchMethod,
     NarrowPhase,
@@ -217,7 +220,10 @@ pub(super) type ClothParts = (
     BroadPhaseBounds,
 );
 
-/// Adds to a new cloth or collider the components that it was not spawned with.
+/// The same for a collider.
+type ColliderParts = (ColliderMotion, ClothOrder);
+
+/// Adds to a new cloth, collider or wind zone the components that it was not spawned with.
 fn add_parts<C: Component, Parts: Bundle + Default>(added: On<Add, C>, mut commands: Commands) {
     commands
         .entity(added.entity)

@@ -8,6 +8,7 @@ mod components;
 mod crammed;
 mod damping;
 mod drawing;
+mod embedded;
 mod envelope;
 mod faults;
 mod frame;

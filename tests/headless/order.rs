@@ -3,22 +3,11 @@
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_drape::prelude::*;
 
-use crate::support::*;
+use crate::{fuzz::random::Random, support::*};
 
 /// The number of an entity in its scene.
 #[derive(Component, Clone, Copy)]
 struct Number(usize);
-
-/// A number that comes next, of a linear congruence.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
-        self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end
-    }
-}
 
 type Spawn = Box<dyn Fn(&mut World) -> Entity>;
 

@@ -234,6 +234,7 @@ fn what_snaps_back_is_not_missed() {
     for _ in 0..30 {
         let mut by_hand = particles(&app, cloth).clone();
         let from = places(&app, balls);
+        let contacts_before = app.world().get::<ClothContacts>(cloth).cloned();
         tick(&mut app, 1);
         let to = places(&app, balls);
         let built = app
@@ -248,12 +249,20 @@ fn what_snaps_back_is_not_missed() {
         };
         let mut detection = Detection::default();
         detection.begin(built.surface(), f32::INFINITY);
+        detection.set_particle_radius(settings.particle_radius);
         let everything: Vec<u32> = (0..256).collect();
-        for id in 0..2 {
-            let ball = MovingCollider::ball(0.4, from[id], to[id]);
+        let both = [0, 1].map(|id| MovingCollider::ball(0.4, from[id], to[id]));
+        for (id, ball) in both.iter().enumerate() {
+            let known = contacts_before
+                .as_ref()
+                .and_then(|known| known.with(balls[id]));
+            if known.is_none_or(|contact| contact.is_embedded) {
+                let others = both.iter();
+                detection.embed(id, ball, known.is_some(), &everything, &by_hand, others);
+            }
             detection.add(
                 id,
-                &ball,
+                ball,
                 contact_settings.narrow_phase,
                 &everything,
                 &by_hand,

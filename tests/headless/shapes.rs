@@ -93,7 +93,10 @@ fn drop_on(collider: ClothCollider, height: f32, at: impl Fn(f32) -> Transform) 
         change::<Transform>(&mut app, entity, |transform| *transform = at(step as f32));
         tick(&mut app, 1);
         deepest = deepest.max(left_inside(&app, cloth, entity));
-        most = most.max(contact(&app, cloth, entity).map_or(0, |contact| contact.particles));
+        let contact = contact(&app, cloth, entity);
+        most = most.max(contact.map_or(0, |contact| contact.particles));
+        let is_embedded = contact.is_some_and(|contact| contact.is_embedded);
+        assert!(!is_embedded, "{collider:?}: it came from outside");
     }
     assert!(deepest < LEFT, "{collider:?}: {deepest} m left inside");
     assert!(most > 4, "{collider:?}: {most} particles");

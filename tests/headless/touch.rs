@@ -237,13 +237,13 @@ fn what_a_game_stretches_is_found() {
 }
 
 /// No contact is lost for want of a candidate: with every particle a candidate in every sub-step, by hand, the
-/// motion is the same bit for bit. Two balls, one of them spawned inside of the cloth, one fast.
+/// motion is the same bit for bit. Two balls, a still one beside the cloth and a fast one.
 #[test]
 fn the_candidates_are_complete() {
     for speed in [0.5, 3.0, 12.0] {
         let mut app = app_with_moving_balls();
         let cloth = app.world_mut().spawn(Cloth::default()).id();
-        let balls = [(0.4, -0.9, -0.3, 0.0), (1.0, -1.0, -1.0, speed)].map(|(x, y, z, speed)| {
+        let balls = [(0.4, -0.9, -0.42, 0.0), (1.0, -1.0, -1.0, speed)].map(|(x, y, z, speed)| {
             let place = Transform::from_xyz(x, y, z);
             let ball = (ClothCollider::ball(0.4), Moving(speed), place);
             app.world_mut().spawn(ball).id()
