@@ -162,8 +162,9 @@ pub fn one_cloth(run: &mut Run) -> Vec<Row> {
         (ASLEEP, stage(resting, true)),
     ];
     stages[3].1.settle(1);
+    // A ball that appears in the cloth is let out slowly.
     for (_, stage) in &mut stages[..3] {
-        (0..30).for_each(|_| stage.update());
+        (0..120).for_each(|_| stage.update());
     }
     for _ in 0..turns {
         stages.iter_mut().for_each(|(_, stage)| stage.turn());
