@@ -194,12 +194,9 @@ fn push_left(
     let centre = Vec3::from(pose.translation);
     let thickness = collider.shape.thickness() + particle_radius;
     let sweep = Sweep::new(collider, substep, settings, thickness);
-    for index in 0..contacts.len() {
-        if !contacts[index].is_left {
-            continue;
-        }
+    for contact in contacts.iter_mut().filter(|contact| contact.is_left) {
         for lane in 0..LANES {
-            let block = &particles.blocks()[contacts[index].block as usize];
+            let block = &particles.blocks()[contact.block as usize];
             let inverse_mass = block.inverse_mass(lane);
             if inverse_mass == 0.0 {
                 continue;
@@ -213,7 +210,6 @@ fn push_left(
             if let Some((hit_normal, hit_depth)) = sweep.hit(position, displacement) {
                 (normal, depth) = (hit_normal, hit_depth);
             }
-            let contact = &mut contacts[index];
             contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));
             if depth <= 0.0 {
                 continue;

@@ -90,7 +90,7 @@ fn run(
                 Transform::from_xyz(0.0, other as f32, 0.0),
             ));
             let other = other.id();
-            if other.index_u32() % 2 == 0 {
+            if other.index_u32().is_multiple_of(2) {
                 app.world_mut().despawn(other);
             }
         }
@@ -166,7 +166,7 @@ fn a_game_may_set_the_order() {
     assert_ne!(order(&app, first), order(&app, third));
     let before = order(&app, third);
     change(&mut app, third, |place: &mut Transform| {
-        place.translation.x = 2.0
+        place.translation.x = 2.0;
     });
     tick(&mut app, 1);
     assert_eq!(order(&app, third), before);
