@@ -335,7 +335,13 @@ impl Detection {
                     let of = (touch.id, &collider.shape, self.surface.len());
                     let of = by_triangles.then_some(of);
                     let guard = &mut self.shapes.guard;
-                    guard.measure(particles, &self.origin, contacts, touch.traveled);
+                    let limit = collider.max_surface_travel(f32::INFINITY) + 2.0 * self.margin;
+                    guard.measure(
+                        particles,
+                        &self.origin,
+                        contacts,
+                        [touch.traveled, limit],
+                    );
                     let known = self.shapes.of(touch.of.candidates.clone(), of);
                     let edges = by_triangles.then(|| (&*fans, self.surface.spacing().longest));
                     let mut pushing = Pushing {

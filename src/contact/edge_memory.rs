@@ -9,7 +9,8 @@ use super::{
     ColliderShape,
     edge_contact::{EdgeContact, EdgeTest, bounds_of},
     edge_room::EdgeRoom,
-    fan_view::corners_of,
+    fan_view::{FanView, corners_of},
+    separation::Separation,
 };
 use crate::cloth::Slot;
 
@@ -48,13 +49,10 @@ pub(super) struct EdgeMemory {
     pub tick: u32,
 }
 
-/// The position of a particle when the nearest edge was searched for.
+/// What is known of a particle's triangles.
 #[derive(Debug, Clone, Copy)]
 struct KnownPlace {
-    /// Position in the shape's frame (m); NaN before the first test.
-    at: Vec3,
-    /// Lower bound of the distance to the nearest edge (m).
-    distance: f32,
+    separation: Separation,
     /// First of its faces, if they are known.
     faces: u32,
 }
@@ -239,8 +237,7 @@ impl EdgeMemory {
     /// An empty memory for a collider's shape and a number of particles.
     fn new(id: usize, shape: &ColliderShape, particles: usize) -> Self {
         let place = KnownPlace {
-            at: Vec3::NAN,
-            distance: 0.0,
+            separation: Separation::UNKNOWN,
             faces: NONE,
         };
         Self {
@@ -268,33 +265,17 @@ impl EdgeMemory {
         }
     }
 
-    /// Displacement of everything before a triangle that a particle owns can touch an edge (m). The particle is at a
-    /// position in the shape's frame, and `extent` is the reach of its triangles (m).
-    pub fn room(&mut self, particle: u32, at: Vec3, extent: f32, near: Nearness) -> f32 {
-        let reach = near.reach;
+    /// Displacement of everything before one of a particle's triangles, in view, can touch an edge (m).
+    pub fn room(&mut self, particle: u32, view: &FanView, near: Nearness) -> f32 {
         let known = &mut self.places[particle as usize];
-        let room = |distance: f32| (distance - extent) * (1.0 - 1.0e-4) - reach;
-        let moved = at.distance(known.at);
-        let left = room(known.distance - moved);
-        let is_near = room(known.distance + moved) <= 0.0;
-        if left > 0.0 || is_near {
-            return left;
-        }
-        // Far enough to skip it for a while.
-        let within = 8.0 * extent + 2.0 * reach;
-        known.at = at;
-        known.distance = self
-            .shape
-            .edge_distance(at, within, near.smooth)
-            .min(within);
-        room(known.distance)
+        known.separation.room(&self.shape, view, near)
     }
 
     /// Clears the positions, but not the shape's outward directions, which depend only on the shape.
     #[cfg(test)]
     pub fn forget(&mut self) {
         for place in &mut self.places {
-            place.at = Vec3::NAN;
+            place.separation = Separation::UNKNOWN;
         }
         for face in &mut self.faces {
             face.corners = [Vec3::NAN; 3];

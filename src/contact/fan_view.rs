@@ -55,6 +55,13 @@ impl FanView {
         (self.extent, self.speed) = (extent.sqrt(), speed.sqrt() + frame.swing);
     }
 
+    /// Height of the lowest corner over the origin, along a normal (m).
+    #[inline]
+    pub fn lowest(&self, normal: Vec3) -> f32 {
+        let heights = self.corners.iter().map(|&corner| normal.dot(corner));
+        heights.fold(f32::INFINITY, f32::min)
+    }
+
     /// A triangle of some of the corners (m).
     #[inline]
     pub fn triangle(&self, [a, b, c]: [u16; 3]) -> [Vec3; 3] {

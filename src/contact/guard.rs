@@ -3,43 +3,44 @@
 use multiversion::multiversion;
 
 use super::candidates::ContactBlock;
-use crate::cloth::{Block, ClothParticles, LANES, Slot, X};
+use crate::cloth::{Block, ClothParticles, LANES, Lanes, Slot, X};
 
-/// Displacements since the search: of the particles, block by block, and of a shape's surface.
+/// Displacements since the search: of each particle, and of a shape's surface.
 ///
 /// A test of positions that finds nothing within a room r (m) holds until the particles and the surface have moved by r
 /// since. With u the displacement from the search, that is so while u(now) ≤ r − u(then): the triangle inequality. So a
 /// fast corner of the cloth costs tests around it, and nowhere else.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Guard {
-    /// For each of the cloth's blocks, the largest displacement of its particles (m); only those of the shape's
-    /// candidates are up to date.
-    moved: Vec<f32>,
+    /// Displacement of each particle (m), by the cloth's blocks; only those of the shape's blocks are up to date.
+    moved: Vec<Lanes>,
     /// The largest of these (m).
     most: f32,
     /// Length of the path of the shape's surface (m).
     carried: f32,
+    /// The largest sum of both before the next search (m).
+    limit: f32,
 }
 
 impl Guard {
     /// Measures the particles of a shape's `contacts` against their places at the search, `origin`. The surface has been
-    /// `carried` this far (m).
+    /// `carried` this far (m). All are searched for again before both have moved by `limit` (m).
     pub fn measure(
         &mut self,
         particles: &ClothParticles,
         origin: &ClothParticles,
         contacts: &[ContactBlock],
-        carried: f32,
+        [carried, limit]: [f32; 2],
     ) {
         let blocks = particles.blocks();
-        self.moved.resize(blocks.len(), 0.0);
-        self.carried = carried;
+        self.moved.resize(blocks.len(), [0.0; LANES]);
+        (self.carried, self.limit) = (carried, limit);
         self.most = measure(blocks, origin.blocks(), contacts, &mut self.moved);
     }
 
     /// A particle was pushed, by at most this much (m).
     pub fn note(&mut self, slot: Slot, push: f32) {
-        let moved = &mut self.moved[slot.block];
+        let moved = &mut self.moved[slot.block][slot.lane];
         *moved += push;
         self.most = larger(self.most, *moved);
     }
@@ -47,6 +48,11 @@ impl Guard {
     /// Until when a room (m) lasts that was found around particles: for [`is_clear`](Self::is_clear).
     pub fn until(&self, room: f32, around: &[Slot]) -> f32 {
         room - self.moved(around) + self.carried
+    }
+
+    /// Whether nothing moves as far as `until` before the next search.
+    pub fn is_clear_for_good(&self, until: f32) -> bool {
+        until > self.limit
     }
 
     /// Whether none of the particles have moved as far as `until`, nor the surface. False for NaN.
@@ -58,8 +64,11 @@ impl Guard {
 
     #[inline]
     fn moved(&self, around: &[Slot]) -> f32 {
-        let of = around.iter().map(|slot| self.moved[slot.block]);
-        of.fold(0.0, larger)
+        let mut most = 0.0;
+        for slot in around {
+            most = larger(most, self.moved[slot.block][slot.lane]);
+        }
+        most
     }
 }
 
@@ -75,9 +84,9 @@ fn measure(
     blocks: &[Block],
     origin: &[Block],
     contacts: &[ContactBlock],
-    moved: &mut [f32],
+    moved: &mut [Lanes],
 ) -> f32 {
-    let mut most = 0.0_f32;
+    let mut most = [0.0_f32; LANES];
     for contact in contacts {
         let block = contact.block as usize;
         let (now, then) = (blocks[block].view(), origin[block].view());
@@ -88,11 +97,13 @@ fn measure(
                 squares[lane] += apart * apart;
             }
         }
-        let square = squares.into_iter().fold(0.0, larger);
-        moved[block] = square.sqrt() * (1.0 + 1.0e-6);
-        most = larger(most, moved[block]);
+        for lane in 0..LANES {
+            let far = squares[lane].sqrt() * (1.0 + 1.0e-6);
+            moved[block][lane] = far;
+            most[lane] = if far <= most[lane] { most[lane] } else { far };
+        }
     }
-    most
+    most.into_iter().fold(0.0, larger)
 }
 
 #[cfg(test)]
@@ -134,7 +145,7 @@ mod tests {
                 particles.put(index, particles.position_at(index) + way);
             }
             carried += random.between(0.0, 0.001);
-            guard.measure(&particles, &origin, &contacts, carried);
+            guard.measure(&particles, &origin, &contacts, [carried, 1.0]);
             // One is pushed after the measurement.
             let (slot, push) = (layout.slot_of(33), random.within(0.01));
             particles.put(33, particles.position_at(33) + push);
@@ -175,7 +186,7 @@ mod tests {
             .map(ContactBlock::new)
             .collect();
         let mut guard = Guard::default();
-        guard.measure(&particles, &origin, &contacts, 0.0);
+        guard.measure(&particles, &origin, &contacts, [0.0, 1.0]);
         assert!(!guard.is_clear(1.0, &[slot]));
         assert!(!guard.is_clear(guard.until(1.0, &[slot]), &[slot]));
     }

@@ -32,6 +32,7 @@ mod nearest;
 mod particle;
 mod pushing;
 mod response;
+mod separation;
 mod shape;
 mod shape_cache;
 mod sharp;

@@ -163,6 +163,11 @@ impl ColliderShape {
         }
     }
 
+    /// Its outward direction where it is nearest to a point of its frame.
+    pub(super) fn normal_at(&self, point: Vec3) -> Vec3 {
+        self.nearest(Isometry3d::IDENTITY, point).normal
+    }
+
     /// The surface nearest to a point, with the shape in a pose.
     #[inline]
     pub(super) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {

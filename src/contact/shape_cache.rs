@@ -15,12 +15,18 @@ use super::{
 };
 use crate::cloth::ClothParticles;
 
+/// No candidate.
+pub(super) const NONE: u32 = u32::MAX;
+
 /// The cache of each candidate of a tick. Only used for shapes with edges; empty in a scene without them.
 #[derive(Debug, Default, Clone)]
 pub(super) struct ShapeCache {
     particles: Vec<KnownParticle>,
     /// Until when a candidate's triangles can touch no edge, by the guard.
     clear: Vec<f32>,
+    /// In the places of each collider's candidates, those whose triangles may touch an edge before the next search, then
+    /// [`NONE`].
+    near_edges: Vec<u32>,
     pub guard: Guard,
     /// Memories of edges, across ticks.
     pub memories: EdgeMemories,
@@ -32,19 +38,24 @@ impl ShapeCache {
     pub fn clear(&mut self) {
         self.particles.clear();
         self.clear.clear();
+        self.near_edges.clear();
     }
 
     /// Clears the memory of edges.
     #[cfg(test)]
     pub fn forget_edges(&mut self) {
         self.memories.forget();
-        self.clear.fill(f32::NEG_INFINITY);
+        let candidates = self.clear.len();
+        self.clear();
+        self.make_room(candidates);
     }
 
     /// Resizes for a number of candidates.
     pub fn make_room(&mut self, candidates: usize) {
         if self.clear.len() < candidates {
             self.particles.resize(candidates, KnownParticle::default());
+            self.near_edges
+                .extend(self.clear.len() as u32..candidates as u32);
             self.clear.resize(candidates, f32::NEG_INFINITY);
         }
     }
@@ -58,8 +69,10 @@ impl ShapeCache {
     ) -> Known<'_> {
         let memories = &mut self.memories;
         Known {
+            first: candidates.start,
             particles: &mut self.particles[candidates.clone()],
-            clear: &mut self.clear[candidates],
+            clear: &mut self.clear[candidates.clone()],
+            near_edges: &mut self.near_edges[candidates],
             guard: &mut self.guard,
             memory: edges.map(|(id, shape, count)| memories.of(id, shape, count)),
             view: &mut self.view,
@@ -69,11 +82,14 @@ impl ShapeCache {
 
 /// The cache of a collider's candidates.
 pub(super) struct Known<'a> {
+    /// Index of its first candidate among all.
+    pub first: usize,
     particles: &'a mut [KnownParticle],
-    clear: &'a mut [f32],
-    guard: &'a mut Guard,
+    pub clear: &'a mut [f32],
+    pub near_edges: &'a mut [u32],
+    pub guard: &'a mut Guard,
     memory: Option<&'a mut EdgeMemory>,
-    view: &'a mut FanView,
+    pub view: &'a mut FanView,
 }
 
 /// Pushes particles out of a shape with edges. With the fans and the spacing (m) of its triangles, pushes those off its
@@ -81,17 +97,16 @@ pub(super) struct Known<'a> {
 pub(super) fn push_shape(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
-    known: Known,
+    mut known: Known,
     triangles: Option<(&Fans, f32)>,
 ) -> Found {
     // Particles come last, so that none is inside at the end.
     let mut by_edges = Found::default();
     if let Some((fans, spacing)) = triangles
-        && let Some(memory) = known.memory
+        && let Some(memory) = known.memory.take()
     {
         let motion = EdgeMotion::new(pushing, spacing, memory.tick);
-        let of = (known.clear, &mut *known.guard, memory, known.view);
-        by_edges = push_off_edges(particles, pushing, fans, of, &motion);
+        by_edges = push_off_edges(particles, pushing, fans, (&mut known, memory), &motion);
     }
     let found = match pushing.collider.shape {
         ColliderShape::Geometry(_) => {

@@ -16,6 +16,7 @@ use super::{
     particle::Found,
     pushing::Pushing,
     response::{Contact, Given, PushOut, first_touch},
+    shape_cache::{Known, NONE},
     touch::ContactSettings,
     triangle::at,
 };
@@ -24,6 +25,9 @@ use crate::{
     solver::SubStep,
 };
 
+/// Triangles touch edges at this fraction of a particle's radius. Where cloth lies flat on a face, particles keep it
+/// farther off, even if they sink in by a little before they are pushed out.
+const LOW: f32 = 0.9;
 /// Smallest distance of triangles from edges for particles without a radius, in spacings.
 const SKIN: f32 = 0.02;
 /// Edges are remembered up to this fraction of a spacing beyond a triangle's reach, or up to the reach itself.
@@ -55,7 +59,7 @@ impl<'a> EdgeMotion<'a> {
         let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
         let count = substep.count as f32;
         let pose = collider.pose_at(substep.end());
-        let reach = settings.particle_radius.max(SKIN * spacing);
+        let reach = (LOW * settings.particle_radius).max(SKIN * spacing);
         let slide = (collider.to - Vec3::from(collider.from.translation)) / count;
         let swing = collider.swing() / count;
         Self {
@@ -122,40 +126,64 @@ impl<'a> EdgeMotion<'a> {
 }
 
 /// Pushes triangles off the edges of a shape that pass through them. Moves their corners by their weights and their
-/// inverse masses. `clear` stores until when a candidate's triangles can touch none.
+/// inverse masses.
 pub(super) fn push_off_edges(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
     fans: &Fans,
-    (clear, guard, memory, view): (&mut [f32], &mut Guard, &mut EdgeMemory, &mut FanView),
+    (known, memory): (&mut Known, &mut EdgeMemory),
     motion: &EdgeMotion,
 ) -> Found {
     let mut found = Found::default();
     // Largest push by one triangle (m).
     let mut farthest = 0.0_f32;
     memory.match_reach(motion.near);
+    let Known {
+        clear,
+        near_edges,
+        guard,
+        view,
+        ..
+    } = known;
     let candidates = pushing.candidates;
-    for (candidate, clear) in candidates.iter().zip(clear) {
+    let mut kept = 0;
+    for at in 0..near_edges.len() {
+        let number = near_edges[at];
+        if number == NONE {
+            break;
+        }
+        near_edges[kept] = number;
+        let index = number as usize - known.first;
+        let candidate = &candidates[index];
         let corners = fans.corners(candidate.corners);
-        if guard.is_clear(*clear, corners) {
+        if corners.is_empty() {
+            continue;
+        }
+        kept += 1;
+        if guard.is_clear(clear[index], corners) {
             continue;
         }
         view.look(particles.blocks(), corners, &motion.frame);
-        let mut room = memory.room(candidate.particle, view.own, view.extent, motion.near);
+        let mut room = memory.room(candidate.particle, view, motion.near);
         if room <= motion.swept(view.speed) {
             let fan = (candidate, corners, fans.faces(candidate.faces));
-            let known = memory.faces(candidate.particle, fan.2, corners);
-            let of = (known, &mut *guard, &mut *view);
+            let faces = memory.faces(candidate.particle, fan.2, corners);
             room = push_fan(
                 particles,
                 pushing,
                 fan,
-                of,
+                (faces, guard, view),
                 motion,
                 (&mut found, &mut farthest),
             );
         }
-        *clear = guard.until(room, corners);
+        clear[index] = guard.until(room, corners);
+        if guard.is_clear_for_good(clear[index]) {
+            kept -= 1;
+        }
+    }
+    if let Some(end) = near_edges.get_mut(kept) {
+        *end = NONE;
     }
     found.farthest_push = farthest * fans.max_faces;
     found
