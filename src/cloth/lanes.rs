@@ -13,8 +13,6 @@
 
 use bevy::{math::Vec3, reflect::Reflect};
 
-use super::Surface;
-
 /// Particles in a block.
 pub(crate) const LANES: usize = 8;
 
@@ -139,14 +137,6 @@ pub(crate) struct Slot {
 }
 
 impl Layout {
-    /// Of a surface's particles: rows of a grid, or one row.
-    pub fn of(surface: &Surface) -> Self {
-        match surface.as_grid() {
-            Some(grid) => Self::new(grid.columns(), grid.rows()),
-            None => Self::new(surface.len() as u32, 1),
-        }
-    }
-
     pub fn new(columns: u32, rows: u32) -> Self {
         let strip = columns.div_ceil(LANES as u32).next_multiple_of(2).max(2);
         Self {

@@ -37,4 +37,4 @@ pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};
 #[cfg(feature = "mesh")]
 pub(crate) use surface::skin_of_asset;
-pub(crate) use surface::{Flat, Graph, JointWeights, Link, ShortestPaths, Threads};
+pub(crate) use surface::{Fan, Fans, Flat, Graph, JointWeights, Link, ShortestPaths, Threads};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::held::Held;
-use crate::cloth::{LANES, Lanes, Layout, Slot, Surface};
+use crate::cloth::{Fan, Fans, LANES, Lanes, Layout, Slot, Surface};
 
 /// A particle that a collider may touch in the tick, with the triangles that it owns.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,15 +11,22 @@ pub(super) struct Candidate {
     pub particle: u32,
     /// Its lane, counted through the [`ContactBlock`]s.
     pub place: u32,
-    /// Range of the corners and faces that it owns in the [`Fans`]; empty without triangles.
-    pub corners: [u32; 2],
-    pub faces: [u32; 2],
+    /// Whether the triangles that it owns are tested.
+    pub has_faces: bool,
 }
 
 impl Candidate {
     /// Its contact block and lane.
     pub fn lane(&self) -> (usize, usize) {
         (self.place as usize / LANES, self.place as usize % LANES)
+    }
+
+    /// The triangles that are tested for it.
+    pub fn fan<'a>(&self, fans: &'a Fans) -> Fan<'a> {
+        match self.has_faces {
+            true => fans.of(self.particle),
+            false => Fan::default(),
+        }
     }
 }
 
@@ -40,6 +47,8 @@ pub(super) struct ContactBlock {
     pub is_left: bool,
     /// Until everything has moved this far, no lane can touch (m).
     pub clear_until: f32,
+    /// Largest displacement of its particles since the search (m), where that is measured; else 0.
+    pub moved: f32,
     /// Each particle's share of the cloth's area (m²).
     pub area: Lanes,
     /// Largest depth of each (m); negative for the smallest distance.
@@ -54,6 +63,7 @@ impl ContactBlock {
             around: [NONE; 3],
             is_left: false,
             clear_until: f32::NEG_INFINITY,
+            moved: 0.0,
             area: [0.0; LANES],
             depth: [f32::NEG_INFINITY; LANES],
         }
@@ -65,75 +75,17 @@ impl ContactBlock {
     }
 }
 
-/// The faces that candidates own.
-#[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct Fans {
-    /// All corners of each candidate's faces, without repetition; the candidate itself first.
-    corners: Vec<Slot>,
-    faces: Vec<[Slot; 3]>,
-    /// Largest number of triangles at a particle, each of which may push it.
-    pub max_faces: f32,
-}
-
-impl Fans {
-    /// Clears everything.
-    pub fn clear(&mut self) {
-        self.corners.clear();
-        self.faces.clear();
-    }
-
-    /// Adds the faces that a particle owns, or none if one of them is left out. Returns the ranges of their corners and
-    /// faces.
-    pub fn add(
-        &mut self,
-        surface: &Surface,
-        layout: Layout,
-        particle: u32,
-        is_left_out: impl Fn(&[u32; 3]) -> bool,
-    ) -> [[u32; 2]; 2] {
-        let (first_corner, first_face) = (self.corners.len(), self.faces.len());
-        let mut faces = surface.faces().of(particle);
-        // All or none: the memory of a particle's faces relies on the same set.
-        if faces.iter().any(is_left_out) {
-            faces = &[];
-        }
-        if !faces.is_empty() {
-            self.corners.push(layout.slot_of(particle as usize));
-        }
-        for face in faces {
-            let slots = face.map(|corner| layout.slot_of(corner as usize));
-            for slot in slots {
-                if !self.corners[first_corner..].contains(&slot) {
-                    self.corners.push(slot);
-                }
-            }
-            self.faces.push(slots);
-        }
-        [
-            [first_corner as u32, self.corners.len() as u32],
-            [first_face as u32, self.faces.len() as u32],
-        ]
-    }
-
-    pub fn corners(&self, [first, end]: [u32; 2]) -> &[Slot] {
-        &self.corners[first as usize..end as usize]
-    }
-
-    pub fn faces(&self, [first, end]: [u32; 2]) -> &[[Slot; 3]] {
-        &self.faces[first as usize..end as usize]
-    }
-}
-
 /// Everything that colliders may touch in the tick.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Candidates {
     pub all: Vec<Candidate>,
     pub blocks: Vec<ContactBlock>,
-    pub fans: Fans,
     /// For each block of the colliders that are tested against triangles.
     pub helds: Vec<Held>,
     /// The last contact block of each of the cloth's blocks.
     marks: Vec<u32>,
+    /// A bit for each particle, to sort them.
+    found: Vec<u64>,
 }
 
 impl Candidates {
@@ -141,7 +93,6 @@ impl Candidates {
     pub fn clear(&mut self) {
         self.all.clear();
         self.blocks.clear();
-        self.fans.clear();
         self.helds.clear();
     }
 
@@ -165,25 +116,21 @@ impl Candidates {
         is_left_out: Option<&impl Fn(&[u32; 3]) -> bool>,
     ) -> Ranges {
         let first = [self.all.len(), self.blocks.len(), self.helds.len()];
-        self.all.extend(found.iter().map(|&particle| Candidate {
-            particle,
-            place: 0,
-            corners: [0; 2],
-            faces: [0; 2],
-        }));
-        self.all[first[0]..].sort_unstable_by_key(|candidate| candidate.particle);
+        self.sort(found, surface.len());
         self.marks.resize(layout.blocks(), 0);
         for index in first[0]..self.all.len() {
-            let candidate = &mut self.all[index];
-            let Slot { block, lane } = layout.slot_of(candidate.particle as usize);
-            candidate.place = (block * LANES + lane) as u32;
+            let particle = self.all[index].particle;
+            let Slot { block, lane } = layout.slot_of(particle as usize);
+            self.all[index].place = (block * LANES + lane) as u32;
             self.mark(block, first[1]);
-            if let Some(is_left_out) = is_left_out {
-                let particle = self.all[index].particle;
-                let [corners, faces] = self.fans.add(surface, layout, particle, is_left_out);
-                (self.all[index].corners, self.all[index].faces) = (corners, faces);
-                for corner in corners[0]..corners[1] {
-                    let corner = self.fans.corners([corner, corner + 1])[0];
+            let Some(is_left_out) = is_left_out else {
+                continue;
+            };
+            // All or none: the memory of a particle's faces relies on the same set.
+            if !surface.faces().of(particle).iter().any(is_left_out) {
+                let fan = surface.fans().of(particle);
+                self.all[index].has_faces = !fan.faces.is_empty();
+                for corner in fan.corners {
                     self.mark(corner.block, first[1]);
                 }
             }
@@ -199,7 +146,7 @@ impl Candidates {
             let contact = &mut self.blocks[index];
             contact.lanes |= 1 << lane;
             contact.area[lane] = surface.area_of(candidate.particle as usize);
-            if layout.rows > 1 && candidate.faces[0] < candidate.faces[1] {
+            if layout.rows > 1 && candidate.has_faces {
                 let strip = layout.strip as usize;
                 let is_last = (block + 1).is_multiple_of(strip);
                 let beside = if is_last {
@@ -219,6 +166,24 @@ impl Candidates {
             candidates: first[0]..self.all.len(),
             blocks: first[1]..self.blocks.len(),
             helds: first[2]..self.helds.len(),
+        }
+    }
+
+    /// Adds particles in the order of the cloth, each once.
+    fn sort(&mut self, found: &[u32], particles: usize) {
+        self.found.resize(particles.div_ceil(64), 0);
+        for &particle in found {
+            self.found[particle as usize / 64] |= 1 << (particle % 64);
+        }
+        for (word, bits) in (0_u32..).zip(&mut self.found) {
+            while *bits != 0 {
+                self.all.push(Candidate {
+                    particle: 64 * word + bits.trailing_zeros(),
+                    place: 0,
+                    has_faces: false,
+                });
+                *bits &= *bits - 1;
+            }
         }
     }
 

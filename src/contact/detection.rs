@@ -84,7 +84,6 @@ impl Detection {
     pub fn begin(&mut self, surface: &Arc<Surface>, margin: f32) {
         if !Arc::ptr_eq(&self.surface, surface) {
             self.surface = surface.clone();
-            self.candidates.fans.max_faces = surface.max_faces() as f32;
             self.shapes.memories.clear();
         }
         self.shapes.memories.begin();
@@ -224,7 +223,8 @@ impl Detection {
             |face: &[u32; 3]| is_sewn_on(face, collider, (passed, self.particle_radius), particles);
         // Cells are tested eight at a time, with pins or without.
         let is_by_cells = layout.rows > 1 && matches!(collider.shape, ColliderShape::Ball { .. });
-        let is_left_out = |face: &[u32; 3]| !is_by_cells && is_sewn(face);
+        let may_be_sewn = !is_by_cells && particles.has_pinned();
+        let is_left_out = |face: &[u32; 3]| may_be_sewn && is_sewn(face);
         let by_triangles = narrow_phase == NarrowPhase::Triangles;
         let triangles = by_triangles.then_some(&is_left_out);
         let of = self.candidates.add(found, &self.surface, layout, triangles);
@@ -299,13 +299,9 @@ impl Detection {
             let Some(touch) = self.touches.get_mut(at) else {
                 return is_pushed;
             };
-            let count = self.candidates.all.len();
+            let counts = [self.candidates.all.len(), self.candidates.blocks.len()];
             let Candidates {
-                all,
-                blocks,
-                fans,
-                helds,
-                ..
+                all, blocks, helds, ..
             } = &mut self.candidates;
             let collider = &touch.collider;
             let first = touch.of.blocks.start;
@@ -316,10 +312,12 @@ impl Detection {
                 let embedded = self.embedding.blocks(touch.id);
                 self.before.save(blocks.chain(embedded), particles);
             }
-            let odometer = self.odometer + touch.traveled;
+            let has_edges = collider.shape.has_edges();
+            // The guard measures the cloth.
+            let odometer = if has_edges { 0.0 } else { self.odometer } + touch.traveled;
             let travel = (collider.travel() + collider.swing()) / substep.count as f32;
             let shares = match touch.narrow_phase {
-                NarrowPhase::Triangles if !collider.shape.has_edges() => TRIANGLES_A_PUSH,
+                NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
                 _ => 1.0,
             };
             let push_out = PushOut::new(particles.substep(), travel, shares);
@@ -329,21 +327,18 @@ impl Detection {
                 || substep.index + 1 == substep.count;
             self.embedding.hide(touch.id, particles);
             let (found, stopped) = match touch.narrow_phase {
-                _ if collider.shape.has_edges() => {
-                    self.shapes.make_room(count);
+                _ if has_edges => {
+                    self.shapes.make_room(counts);
                     let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
                     let of = (touch.id, &collider.shape, self.surface.len());
                     let of = by_triangles.then_some(of);
                     let guard = &mut self.shapes.guard;
-                    let limit = collider.max_surface_travel(f32::INFINITY) + 2.0 * self.margin;
-                    guard.measure(
-                        particles,
-                        &self.origin,
-                        contacts,
-                        [touch.traveled, limit],
-                    );
-                    let known = self.shapes.of(touch.of.candidates.clone(), of);
-                    let edges = by_triangles.then(|| (&*fans, self.surface.spacing().longest));
+                    let limit = collider.max_surface_travel(f32::INFINITY) + self.margin;
+                    guard.measure(particles, &self.origin, contacts, [touch.traveled, limit]);
+                    let known = self
+                        .shapes
+                        .of([touch.of.candidates.clone(), touch.of.blocks.clone()], of);
+                    let edges = by_triangles.then_some(&*self.surface);
                     let mut pushing = Pushing {
                         candidates: &all[touch.of.candidates.clone()],
                         contacts,
@@ -361,7 +356,7 @@ impl Detection {
                         &all[touch.of.candidates.clone()],
                         (contacts, first),
                         &mut helds[touch.of.helds.clone()],
-                        fans,
+                        (self.surface.fans(), self.surface.max_faces() as f32),
                         [self.margin - self.moved - self.deviation, self.moved_now],
                         is_measured,
                     );
@@ -370,7 +365,10 @@ impl Detection {
                 }
                 NarrowPhase::Auto | NarrowPhase::Particles => {
                     let at = (collider, settings, substep);
-                    (push_particles(particles, contacts, at, &lanes), None)
+                    (
+                        push_particles(particles, contacts, &mut [], at, &lanes),
+                        None,
+                    )
                 }
             };
             let of = (touch.id, &touch.collider);

@@ -9,10 +9,10 @@ use super::{
     ColliderShape,
     edge_contact::{EdgeContact, EdgeTest, bounds_of},
     edge_room::EdgeRoom,
-    fan_view::{FanView, corners_of},
+    fan_view::FanView,
     separation::Separation,
 };
-use crate::cloth::Slot;
+use crate::cloth::Fan;
 
 /// Number of edges remembered for a triangle; with more, none is.
 const MAX_EDGES: usize = 8;
@@ -85,8 +85,6 @@ struct KnownEdge {
 /// The memory of a triangle near edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct KnownFace {
-    /// Indices of its corners in its fan.
-    pub of: [u16; 3],
     /// Positions of its corners in the shape's frame when edges were tested, and when they were listed (m); NaN before
     /// the first test.
     corners: [Vec3; 3],
@@ -104,7 +102,6 @@ pub(super) struct KnownFace {
 
 impl KnownFace {
     const UNKNOWN: Self = Self {
-        of: [0; 3],
         corners: [Vec3::NAN; 3],
         listed: [Vec3::NAN; 3],
         room: 0.0,
@@ -283,27 +280,17 @@ impl EdgeMemory {
         }
     }
 
-    /// The memory of the faces that a particle owns, with these corners.
-    pub fn faces(
-        &mut self,
-        particle: u32,
-        faces: &[[Slot; 3]],
-        corners: &[Slot],
-    ) -> &mut [KnownFace] {
-        // Faces at a pin are left out, and may come back.
-        if faces.is_empty() {
-            return &mut [];
+    /// What is known around a particle, and of each of its faces.
+    pub fn faces(&mut self, particle: u32, fan: Fan) -> (Separation, &mut [KnownFace]) {
+        let known = &mut self.places[particle as usize];
+        if known.faces == NONE {
+            known.faces = self.faces.len() as u32;
+            let end = self.faces.len() + fan.faces.len();
+            self.faces.resize(end, KnownFace::UNKNOWN);
         }
-        let known = &mut self.places[particle as usize].faces;
-        if *known == NONE {
-            *known = self.faces.len() as u32;
-            self.faces.extend(faces.iter().map(|&face| KnownFace {
-                of: corners_of(face, corners),
-                ..KnownFace::UNKNOWN
-            }));
-        }
-        let first = *known as usize;
-        &mut self.faces[first..first + faces.len()]
+        let first = known.faces as usize;
+        let faces = &mut self.faces[first..first + fan.faces.len()];
+        (known.separation, faces)
     }
 }
 

@@ -7,7 +7,7 @@ use bevy::math::Vec3;
 pub(super) use super::corners::SubstepMotion;
 use super::{
     ColliderShape,
-    candidates::{Candidate, ContactBlock, Fans},
+    candidates::{Candidate, ContactBlock},
     cells::{Place, Stop, push_cells, slots_of},
     eight::Cells,
     friction::{Axle, hold_all},
@@ -15,7 +15,7 @@ use super::{
     lanes::{LaneMotion, Sums},
     particle::Found,
 };
-use crate::cloth::{ClothParticles, Slot};
+use crate::cloth::{ClothParticles, Fans, Slot};
 
 /// Largest number of passes over all triangles while fast ones are hit: a corner's push may move a passed triangle into
 /// the way.
@@ -41,6 +41,8 @@ pub(super) struct Pushed<'a> {
     pub first: usize,
     pub helds: &'a mut [Held],
     pub fans: &'a Fans,
+    /// Number of triangles that may push each particle.
+    max_faces: f32,
     /// Largest push before candidates may be missing (m).
     pub room: f32,
     /// Largest displacement in the sub-step (m).
@@ -58,7 +60,7 @@ impl<'a> Pushed<'a> {
         candidates: &'a [Candidate],
         (contacts, first): (&'a mut [ContactBlock], usize),
         helds: &'a mut [Held],
-        fans: &'a Fans,
+        (fans, max_faces): (&'a Fans, f32),
         [room, moved]: [f32; 2],
         is_measured: bool,
     ) -> Self {
@@ -68,6 +70,7 @@ impl<'a> Pushed<'a> {
             first,
             helds,
             fans,
+            max_faces,
             room,
             moved,
             is_measured,
@@ -97,7 +100,7 @@ impl<'a> Pushed<'a> {
                 Some(centre) => self.push_cells(particles, (motion, lanes), centre, &mut resume),
                 None => self.push_each(particles, (motion, lanes), &mut resume),
             };
-            self.found.farthest_push += self.passed * self.fans.max_faces;
+            self.found.farthest_push += self.passed * self.max_faces;
             self.passed = 0.0;
             if stops {
                 self.look_again();
@@ -135,8 +138,8 @@ impl<'a> Pushed<'a> {
         for candidate in self.candidates {
             let (contact, lane) = candidate.lane();
             let contact = contact - self.first;
-            let faces = self.fans.faces(candidate.faces);
-            if faces.is_empty() {
+            let fan = candidate.fan(self.fans);
+            if fan.faces.is_empty() {
                 continue;
             }
             let now = lanes.odometer + self.pushed();
@@ -147,8 +150,7 @@ impl<'a> Pushed<'a> {
                 block: self.contacts[contact].block as usize,
                 lane,
             };
-            let corners = self.fans.corners(candidate.corners);
-            let [clear, speed] = motion.clearance(particles.blocks(), slot, corners);
+            let [clear, speed] = motion.clearance(particles.blocks(), slot, fan.corners);
             let until = if clear > 0.0 {
                 lanes.odometer * (1.0 - 1.0e-5) + clear
             } else {
@@ -159,10 +161,11 @@ impl<'a> Pushed<'a> {
             if clear > speed {
                 continue;
             }
-            for (which, &slots) in faces.iter().enumerate() {
+            for (which, &face) in fan.faces.iter().enumerate() {
                 if (candidate.particle, which) < resume.at {
                     continue;
                 }
+                let slots = fan.slots(face);
                 self.push_one(particles, motion, (contact, lane), slots, &push_out, resume);
                 if self.is_full() {
                     resume.at = (candidate.particle, which + 1);
@@ -175,7 +178,7 @@ impl<'a> Pushed<'a> {
 
     /// Largest push of a particle so far (m).
     fn pushed(&self) -> f32 {
-        self.found.farthest_push + self.passed * self.fans.max_faces
+        self.found.farthest_push + self.passed * self.max_faces
     }
 
     /// Whether that exceeds the room.
@@ -209,7 +212,7 @@ impl<'a> Pushed<'a> {
                 fastest: self.moved + motion.slide.length() + motion.swing,
                 pushed: self.found.farthest_push,
                 room: self.room,
-                max_faces: self.fans.max_faces,
+                max_faces: self.max_faces,
                 is_measured: self.is_measured && resume.pass == 0,
             };
             let blocks = particles.blocks_mut();

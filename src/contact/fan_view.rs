@@ -1,13 +1,13 @@
 //! A particle's triangles in the frame of a shape.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::math::{Affine3A, Isometry3d, Vec3};
 
 use crate::cloth::{Block, Slot};
 
 /// A shape's motion in a sub-step, and its frame at the end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
-    to_local: Isometry3d,
+    to_local: Affine3A,
     /// Displacement of the shape, and the largest one of any of its points by rotation (m).
     slide: Vec3,
     swing: f32,
@@ -16,7 +16,7 @@ pub(super) struct Frame {
 impl Frame {
     pub fn new(to_local: Isometry3d, slide: Vec3, swing: f32) -> Self {
         Self {
-            to_local,
+            to_local: to_local.into(),
             slide,
             swing,
         }
@@ -45,7 +45,7 @@ impl FanView {
         let mut own = None;
         for (known, &Slot { block, lane }) in self.corners.iter_mut().zip(corners) {
             let block = &blocks[block];
-            *known = frame.to_local * block.position(lane);
+            *known = frame.to_local.transform_point3(block.position(lane));
             let own = *own.get_or_insert(*known);
             extent = extent.max(known.distance_squared(own));
             let moved = block.displacement(lane) - frame.slide;
@@ -55,25 +55,14 @@ impl FanView {
         (self.extent, self.speed) = (extent.sqrt(), speed.sqrt() + frame.swing);
     }
 
-    /// Height of the lowest corner over the origin, along a normal (m).
-    #[inline]
-    pub fn lowest(&self, normal: Vec3) -> f32 {
-        let heights = self.corners.iter().map(|&corner| normal.dot(corner));
-        heights.fold(f32::INFINITY, f32::min)
+    /// The corners (m).
+    pub fn corners(&self) -> &[Vec3] {
+        &self.corners
     }
 
     /// A triangle of some of the corners (m).
     #[inline]
-    pub fn triangle(&self, [a, b, c]: [u16; 3]) -> [Vec3; 3] {
-        let corner = |index: u16| self.corners[usize::from(index)];
-        [corner(a), corner(b), corner(c)]
+    pub fn triangle(&self, face: [u32; 3]) -> [Vec3; 3] {
+        face.map(|corner| self.corners[corner as usize])
     }
-}
-
-/// Indices of a face's corners in its fan.
-pub(super) fn corners_of(face: [Slot; 3], corners: &[Slot]) -> [u16; 3] {
-    face.map(|slot| {
-        let at = corners.iter().position(|&corner| corner == slot);
-        at.unwrap_or_default() as u16
-    })
 }

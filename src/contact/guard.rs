@@ -38,6 +38,14 @@ impl Guard {
         self.most = measure(blocks, origin.blocks(), contacts, &mut self.moved);
     }
 
+    /// Tells blocks how far their particles have moved.
+    pub fn tell(&self, contacts: &mut [ContactBlock]) {
+        for contact in contacts {
+            let moved = &self.moved[contact.block as usize];
+            contact.moved = moved.iter().copied().fold(0.0, larger);
+        }
+    }
+
     /// A particle was pushed, by at most this much (m).
     pub fn note(&mut self, slot: Slot, push: f32) {
         let moved = &mut self.moved[slot.block][slot.lane];

@@ -53,14 +53,17 @@ pub(super) struct LaneMotion {
     /// Largest displacement of any point of its core by rotation alone (m).
     pub swing: f32,
     pub particle_radius: f32,
-    /// Larger displacements and depths are left to the caller (m).
+    /// Larger displacements are left to the caller (m).
     pub most: f32,
+    /// Larger depths are left to the caller (m).
+    pub deepest: f32,
     /// Distance at which a fast particle counts as touching (m).
     pub tolerance: f32,
     pub is_swept: bool,
     pub friction: f32,
     pub push_out: PushOut,
-    /// Largest displacement of everything so far in the tick (m).
+    /// Largest displacement of everything so far in the tick (m); of the collider alone where that of each block is
+    /// measured.
     pub odometer: f32,
     /// Largest depth that counts (m).
     pub thickness: f32,
@@ -84,12 +87,14 @@ pub(super) struct Sums {
 }
 
 /// Eight particles relative to a shape.
-struct Near {
+pub(super) struct Near {
     /// Depth inside (m), negative outside.
-    depth: Lanes,
+    pub depth: Lanes,
+    /// The largest depth that it may have, where the depth is not known (m).
+    pub bound: Lanes,
     /// Direction away from the shape, of any length.
-    offset: [Lanes; 3],
-    length: Lanes,
+    pub offset: [Lanes; 3],
+    pub length: Lanes,
 }
 
 #[inline(always)]
@@ -116,6 +121,7 @@ fn near_round(view: &View, shape: &Round) -> Near {
         near.offset[2][l] = z;
         near.length[l] = length;
         near.depth[l] = shape.reach - length;
+        near.bound[l] = near.depth[l];
     }
     near
 }
@@ -131,6 +137,7 @@ fn near_half_space(view: &View, shape: &HalfSpace) -> Near {
         near.offset[2][l] = nz;
         near.length[l] = 1.0;
         near.depth[l] = shape.reach - (x * nx + y * ny + z * nz);
+        near.bound[l] = near.depth[l];
     }
     near
 }
@@ -170,21 +177,29 @@ fn near_cuboid(view: &View, shape: &Cuboid) -> Near {
         near.length[l] = length;
         let distance = if is_in { largest } else { length };
         near.depth[l] = shape.reach - distance;
+        near.bound[l] = near.depth[l];
     }
     near
 }
 
 impl Near {
-    const NONE: Self = Self {
+    pub const NONE: Self = Self {
         depth: [0.0; LANES],
+        bound: [0.0; LANES],
         offset: [[0.0; LANES]; 3],
         length: [0.0; LANES],
     };
 }
 
+/// Whether no lane of a block can touch yet. False for NaN.
+#[inline(always)]
+pub(super) fn is_clear(contact: &ContactBlock, motion: &LaneMotion) -> bool {
+    motion.odometer + contact.moved < contact.clear_until
+}
+
 /// Stores the depth and the clearance of a block, and returns whether to push its particles.
 #[inline(always)]
-fn survey(
+pub(super) fn survey(
     view: &View,
     near: &Near,
     contact: &mut ContactBlock,
@@ -192,22 +207,28 @@ fn survey(
     sums: &mut Sums,
 ) -> bool {
     let [sx, sy, sz] = motion.slide;
-    let (mut deepest, mut size) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    let (mut deepest, mut bound) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    let mut size = [0.0_f32; LANES];
     let mut is_left = [0_u32; LANES];
     for l in 0..LANES {
         let is_free = view[W + l] > 0.0;
         let depth = near.depth[l];
         let (x, y, z) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
         let speed = (x * x + y * y + z * z).sqrt() + motion.swing;
-        let is_met = speed > motion.most && depth + speed > -motion.tolerance;
-        let is_left_out = is_free && (depth > motion.most || (is_met && motion.is_swept));
+        let is_met = speed > motion.most && near.bound[l] + speed > -motion.tolerance;
+        let is_left_out = is_free && (depth > motion.deepest || (is_met && motion.is_swept));
         is_left[l] = if is_left_out { 1 } else { 0 };
         let depth = if is_free { depth } else { f32::NEG_INFINITY };
         deepest[l] = depth;
+        bound[l] = if is_free {
+            near.bound[l]
+        } else {
+            f32::NEG_INFINITY
+        };
         let away = view[X + l].abs() + view[Y + l].abs() + view[Z + l].abs();
         size[l] = if is_free { away } else { 0.0 };
     }
-    let most = deepest.into_iter().fold(f32::NEG_INFINITY, f32::max);
+    let most = bound.into_iter().fold(f32::NEG_INFINITY, f32::max);
     let farthest = size.into_iter().fold(0.0, f32::max);
     contact.is_left = is_left != [0; LANES];
     if contact.is_left {
@@ -224,14 +245,22 @@ fn survey(
         *known = if depth > *known { depth } else { *known };
     }
     // Smaller by rounding errors and by the tolerance of a touch.
-    let clear = -most - 2.0 * motion.tolerance - 1.0e-5 * (farthest - most + motion.odometer);
-    contact.clear_until = motion.odometer + clear;
+    let moved = motion.odometer + contact.moved;
+    let clear = -most - 2.0 * motion.tolerance - 1.0e-5 * (farthest - most + moved);
+    // What has moved since the search may move back.
+    contact.clear_until = motion.odometer - contact.moved + clear;
     most > 0.0
 }
 
 /// Pushes particles out that are inside, like [`Contact::push`](super::response::Contact::push).
 #[inline(always)]
-fn push(view: &mut View, near: &Near, area: &Lanes, motion: &LaneMotion, sums: &mut Sums) {
+pub(super) fn push(
+    view: &mut View,
+    near: &Near,
+    area: &Lanes,
+    motion: &LaneMotion,
+    sums: &mut Sums,
+) {
     let ([ox, oy, oz], [sx, sy, sz]) = (motion.origin, motion.slide);
     let [wx, wy, wz] = motion.spin;
     let out = motion.push_out;
@@ -336,7 +365,7 @@ macro_rules! by_shape {
         ) {
             let mut own = *sums;
             for contact in contacts {
-                if motion.odometer < contact.clear_until {
+                if is_clear(contact, motion) {
                     continue;
                 }
                 let view = blocks[contact.block as usize].view_mut();

@@ -6,6 +6,7 @@ use super::{
     ColliderShape, MovingCollider,
     candidates::ContactBlock,
     lanes::{Cuboid, HalfSpace, LaneMotion, Round, Sums, push_cuboid, push_half_space, push_round},
+    planes::{Frame, Planes, find_planes, push_planes},
     response::{Contact, Given, PushOut, first_touch},
     shape::Nearest,
     touch::ContactSettings,
@@ -56,12 +57,12 @@ impl Found {
     }
 }
 
-/// Pushes particles out that are inside `collider`, or that passed through it in this sub-step.
-///
-/// Pinned particles do not move.
+/// Pushes particles out that are inside `collider`, or that passed through it in this sub-step. Pinned particles do not
+/// move. `planes` are those of the contacts; only a [`ColliderShape::Geometry`] needs any.
 pub(super) fn push_particles(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
+    planes: &mut [Planes],
     (collider, settings, substep): (&MovingCollider, &ContactSettings, SubStep),
     motion: &LaneMotion,
 ) -> Found {
@@ -69,7 +70,14 @@ pub(super) fn push_particles(
     let mut sums = Sums::default();
     let pose = collider.pose_at(substep.end());
     let blocks = particles.blocks_mut();
-    push_lanes(blocks, contacts, (&collider.shape, pose), motion, &mut sums);
+    let shape = &collider.shape;
+    if matches!(shape, ColliderShape::Geometry(_)) {
+        let frame = Frame::new(pose, motion.particle_radius);
+        find_planes(blocks, contacts, planes, (shape, &frame, motion));
+        push_planes(blocks, contacts, planes, (&frame, motion), &mut sums);
+    } else {
+        push_lanes(blocks, contacts, (shape, pose), motion, &mut sums);
+    }
     found.add(&sums);
     if sums.left > 0 {
         push_left(
@@ -90,6 +98,12 @@ pub(super) fn lane_motion(
     let count = substep.count as f32;
     let particle_radius = settings.particle_radius;
     let thickness = collider.shape.thickness() + particle_radius;
+    // Its nearest point is right at any depth.
+    let has_any_depth = matches!(collider.shape, ColliderShape::Geometry(_));
+    let [deepest, known] = match has_any_depth {
+        true => [f32::INFINITY; 2],
+        false => [thickness / 2.0, thickness],
+    };
     LaneMotion {
         origin: Vec3::from(collider.pose_at(substep.end()).translation).to_array(),
         slide: slide(collider, substep).to_array(),
@@ -97,12 +111,13 @@ pub(super) fn lane_motion(
         swing: collider.swing() / count,
         particle_radius,
         most: thickness / 2.0,
+        deepest,
         tolerance: tolerance(thickness),
         is_swept: settings.is_swept,
         friction: settings.friction,
         push_out,
         odometer,
-        thickness,
+        thickness: known,
     }
 }
 
@@ -155,13 +170,7 @@ fn push_lanes(
             };
             push_half_space(blocks, contacts, &half_space, motion, sums);
         }
-        // One by one.
-        ColliderShape::Geometry(_) => {
-            for contact in contacts.iter_mut() {
-                contact.is_left = true;
-            }
-            sums.left += contacts.len() as u32;
-        }
+        ColliderShape::Geometry(_) => {}
     }
 }
 
@@ -192,8 +201,8 @@ fn push_left(
     let particle_radius = settings.particle_radius;
     let pose = collider.pose_at(substep.end());
     let centre = Vec3::from(pose.translation);
-    let thickness = collider.shape.thickness() + particle_radius;
-    let sweep = Sweep::new(collider, substep, settings, thickness);
+    let thickness = motion.thickness;
+    let sweep = Sweep::new(collider, substep, settings);
     for contact in contacts.iter_mut().filter(|contact| contact.is_left) {
         for lane in 0..LANES {
             let block = &particles.blocks()[contact.block as usize];
@@ -253,17 +262,12 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    fn new(
-        collider: &'a MovingCollider,
-        substep: SubStep,
-        settings: &ContactSettings,
-        thickness: f32,
-    ) -> Self {
+    fn new(collider: &'a MovingCollider, substep: SubStep, settings: &ContactSettings) -> Self {
         Self {
             collider,
             substep,
             particle_radius: settings.particle_radius,
-            thickness,
+            thickness: collider.shape.thickness() + settings.particle_radius,
             slide: slide(collider, substep),
             swing: collider.swing() / substep.count as f32,
             is_on: settings.is_swept,

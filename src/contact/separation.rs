@@ -49,15 +49,31 @@ impl Separation {
         self.left(0.0, view, near)
     }
 
-    /// The room after a particle has `moved` this far (m).
+    /// The room of all triangles after the particle has `moved` this far (m).
     fn left(&self, moved: f32, view: &FanView, near: Nearness) -> f32 {
-        let inside = (self.distance - moved - view.extent) * (1.0 - 1.0e-4) - near.reach;
-        if self.height == f32::NEG_INFINITY {
-            return inside;
-        }
-        let rounding = 1.0e-6 * (view.own.length() + view.extent);
-        let above = view.lowest(self.normal) - self.height - near.reach - rounding;
+        let inside = self.inside(moved, view, near);
+        let above = self.above(view.corners(), view, near);
         if above < inside { above } else { inside }
+    }
+
+    /// The room of one of the triangles (m).
+    pub fn room_of(&self, triangle: [Vec3; 3], view: &FanView, near: Nearness) -> f32 {
+        let inside = self.inside(view.own.distance(self.at), view, near);
+        let above = self.above(&triangle, view, near);
+        if above < inside { above } else { inside }
+    }
+
+    /// Displacement before they come near an edge beyond the distance (m).
+    fn inside(&self, moved: f32, view: &FanView, near: Nearness) -> f32 {
+        (self.distance - moved - view.extent) * (1.0 - 1.0e-4) - near.reach
+    }
+
+    /// Displacement of corners before they come near an edge below the plane (m).
+    fn above(&self, corners: &[Vec3], view: &FanView, near: Nearness) -> f32 {
+        let heights = corners.iter().map(|&corner| self.normal.dot(corner));
+        let lowest = heights.fold(f32::INFINITY, f32::min);
+        let rounding = 1.0e-6 * (view.own.length() + view.extent);
+        lowest - self.height - near.reach - rounding
     }
 
     fn search(&mut self, shape: &ColliderShape, view: &FanView, near: Nearness) {

@@ -4,16 +4,15 @@ use std::ops::Range;
 
 use super::{
     ColliderShape,
-    candidates::Fans,
     edge_memory::{EdgeMemories, EdgeMemory},
     fan_view::FanView,
-    geometry_particles::{KnownParticle, push_particles_out},
     guard::Guard,
     particle::{Found, push_particles},
+    planes::Planes,
     pushing::Pushing,
     sharp::{EdgeMotion, push_off_edges},
 };
-use crate::cloth::ClothParticles;
+use crate::cloth::{ClothParticles, Surface};
 
 /// No candidate.
 pub(super) const NONE: u32 = u32::MAX;
@@ -21,7 +20,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The cache of each candidate of a tick. Only used for shapes with edges; empty in a scene without them.
 #[derive(Debug, Default, Clone)]
 pub(super) struct ShapeCache {
-    particles: Vec<KnownParticle>,
+    /// One for each contact block.
+    planes: Vec<Planes>,
     /// Until when a candidate's triangles can touch no edge, by the guard.
     clear: Vec<f32>,
     /// In the places of each collider's candidates, those whose triangles may touch an edge before the next search, then
@@ -36,7 +36,7 @@ pub(super) struct ShapeCache {
 impl ShapeCache {
     /// Clears everything for other candidates.
     pub fn clear(&mut self) {
-        self.particles.clear();
+        self.planes.clear();
         self.clear.clear();
         self.near_edges.clear();
     }
@@ -45,15 +45,17 @@ impl ShapeCache {
     #[cfg(test)]
     pub fn forget_edges(&mut self) {
         self.memories.forget();
-        let candidates = self.clear.len();
+        let counts = [self.clear.len(), self.planes.len()];
         self.clear();
-        self.make_room(candidates);
+        self.make_room(counts);
     }
 
-    /// Resizes for a number of candidates.
-    pub fn make_room(&mut self, candidates: usize) {
+    /// Resizes for a number of candidates and of contact blocks.
+    pub fn make_room(&mut self, [candidates, blocks]: [usize; 2]) {
+        if self.planes.len() < blocks {
+            self.planes.resize(blocks, Planes::UNKNOWN);
+        }
         if self.clear.len() < candidates {
-            self.particles.resize(candidates, KnownParticle::default());
             self.near_edges
                 .extend(self.clear.len() as u32..candidates as u32);
             self.clear.resize(candidates, f32::NEG_INFINITY);
@@ -64,13 +66,13 @@ impl ShapeCache {
     /// has an ID and a shape, and the cloth a number of particles.
     pub fn of(
         &mut self,
-        candidates: Range<usize>,
+        [candidates, blocks]: [Range<usize>; 2],
         edges: Option<(usize, &ColliderShape, usize)>,
     ) -> Known<'_> {
         let memories = &mut self.memories;
         Known {
             first: candidates.start,
-            particles: &mut self.particles[candidates.clone()],
+            planes: &mut self.planes[blocks],
             clear: &mut self.clear[candidates.clone()],
             near_edges: &mut self.near_edges[candidates],
             guard: &mut self.guard,
@@ -84,7 +86,7 @@ impl ShapeCache {
 pub(super) struct Known<'a> {
     /// Index of its first candidate among all.
     pub first: usize,
-    particles: &'a mut [KnownParticle],
+    planes: &'a mut [Planes],
     pub clear: &'a mut [f32],
     pub near_edges: &'a mut [u32],
     pub guard: &'a mut Guard,
@@ -92,30 +94,23 @@ pub(super) struct Known<'a> {
     pub view: &'a mut FanView,
 }
 
-/// Pushes particles out of a shape with edges. With the fans and the spacing (m) of its triangles, pushes those off its
-/// edges, too.
+/// Pushes particles out of a shape with edges. With a surface, pushes its triangles off the edges, too.
 pub(super) fn push_shape(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
     mut known: Known,
-    triangles: Option<(&Fans, f32)>,
+    triangles: Option<&Surface>,
 ) -> Found {
     // Particles come last, so that none is inside at the end.
     let mut by_edges = Found::default();
-    if let Some((fans, spacing)) = triangles
+    if let Some(surface) = triangles
         && let Some(memory) = known.memory.take()
     {
-        let motion = EdgeMotion::new(pushing, spacing, memory.tick);
-        by_edges = push_off_edges(particles, pushing, fans, (&mut known, memory), &motion);
+        let motion = EdgeMotion::new(pushing, surface.spacing().longest, memory.tick);
+        by_edges = push_off_edges(particles, pushing, surface, (&mut known, memory), &motion);
     }
-    let found = match pushing.collider.shape {
-        ColliderShape::Geometry(_) => {
-            push_particles_out(particles, pushing, known.particles, known.guard)
-        }
-        _ => {
-            let at = (pushing.collider, pushing.settings, pushing.substep);
-            push_particles(particles, pushing.contacts, at, pushing.lanes)
-        }
-    };
+    known.guard.tell(pushing.contacts);
+    let at = (pushing.collider, pushing.settings, pushing.substep);
+    let found = push_particles(particles, pushing.contacts, known.planes, at, pushing.lanes);
     found.and(&by_edges)
 }

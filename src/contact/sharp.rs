@@ -7,10 +7,10 @@ use bevy::math::{Isometry3d, Vec3};
 
 use super::{
     MovingCollider,
-    candidates::{Candidate, Fans},
+    candidates::Candidate,
     corners::Corners,
     edge_contact::{EdgeContact, nearest_edge},
-    edge_memory::{EdgeMemory, KnownFace, Nearness},
+    edge_memory::{EdgeMemory, Nearness},
     fan_view::{FanView, Frame},
     guard::Guard,
     particle::Found,
@@ -21,13 +21,13 @@ use super::{
     triangle::at,
 };
 use crate::{
-    cloth::{ClothParticles, Slot},
+    cloth::{ClothParticles, Fan, Surface},
     solver::SubStep,
 };
 
 /// Triangles touch edges at this fraction of a particle's radius. Where cloth lies flat on a face, particles keep it
 /// farther off, even if they sink in by a little before they are pushed out.
-const LOW: f32 = 0.9;
+const LOW: f32 = 0.5;
 /// Smallest distance of triangles from edges for particles without a radius, in spacings.
 const SKIN: f32 = 0.02;
 /// Edges are remembered up to this fraction of a spacing beyond a triangle's reach, or up to the reach itself.
@@ -42,8 +42,10 @@ pub(super) struct EdgeMotion<'a> {
     pub collider: &'a MovingCollider,
     pub settings: &'a ContactSettings,
     pub substep: SubStep,
-    /// Distance at which an edge touches (m), and the additional distance up to which it is remembered.
+    /// Distance at which an edge touches (m).
     reach: f32,
+    /// A triangle that moves farther in the sub-step may have passed an edge (m).
+    fast: f32,
     near: Nearness,
     pose: Isometry3d,
     frame: Frame,
@@ -59,7 +61,8 @@ impl<'a> EdgeMotion<'a> {
         let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
         let count = substep.count as f32;
         let pose = collider.pose_at(substep.end());
-        let reach = (LOW * settings.particle_radius).max(SKIN * spacing);
+        let skin = SKIN * spacing;
+        let reach = (LOW * settings.particle_radius).max(skin);
         let slide = (collider.to - Vec3::from(collider.from.translation)) / count;
         let swing = collider.swing() / count;
         Self {
@@ -67,6 +70,7 @@ impl<'a> EdgeMotion<'a> {
             settings,
             substep,
             reach,
+            fast: settings.particle_radius.max(skin) / 2.0,
             near: Nearness {
                 reach,
                 slack: reach.max(SLACK * spacing),
@@ -84,7 +88,7 @@ impl<'a> EdgeMotion<'a> {
     /// Displacement relative to the shape for the swept test (m); 0 without one.
     #[inline]
     fn swept(&self, speed: f32) -> f32 {
-        if self.settings.is_swept && speed > self.reach / 2.0 && speed.is_finite() {
+        if self.settings.is_swept && speed > self.fast && speed.is_finite() {
             speed
         } else {
             0.0
@@ -130,22 +134,27 @@ impl<'a> EdgeMotion<'a> {
 pub(super) fn push_off_edges(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
-    fans: &Fans,
+    surface: &Surface,
     (known, memory): (&mut Known, &mut EdgeMemory),
     motion: &EdgeMotion,
 ) -> Found {
-    let mut found = Found::default();
-    // Largest push by one triangle (m).
-    let mut farthest = 0.0_f32;
     memory.match_reach(motion.near);
     let Known {
+        first,
         clear,
         near_edges,
         guard,
         view,
         ..
     } = known;
-    let candidates = pushing.candidates;
+    let mut edges = OffEdges {
+        pushing,
+        motion,
+        guard,
+        view,
+        found: Found::default(),
+        farthest: 0.0,
+    };
     let mut kept = 0;
     for at in 0..near_edges.len() {
         let number = near_edges[at];
@@ -153,96 +162,107 @@ pub(super) fn push_off_edges(
             break;
         }
         near_edges[kept] = number;
-        let index = number as usize - known.first;
-        let candidate = &candidates[index];
-        let corners = fans.corners(candidate.corners);
-        if corners.is_empty() {
+        let index = number as usize - *first;
+        let candidate = edges.pushing.candidates[index];
+        let fan = candidate.fan(surface.fans());
+        if fan.faces.is_empty() {
             continue;
         }
         kept += 1;
-        if guard.is_clear(clear[index], corners) {
+        if edges.guard.is_clear(clear[index], fan.corners) {
             continue;
         }
-        view.look(particles.blocks(), corners, &motion.frame);
-        let mut room = memory.room(candidate.particle, view, motion.near);
-        if room <= motion.swept(view.speed) {
-            let fan = (candidate, corners, fans.faces(candidate.faces));
-            let faces = memory.faces(candidate.particle, fan.2, corners);
-            room = push_fan(
-                particles,
-                pushing,
-                fan,
-                (faces, guard, view),
-                motion,
-                (&mut found, &mut farthest),
-            );
-        }
-        clear[index] = guard.until(room, corners);
-        if guard.is_clear_for_good(clear[index]) {
+        let room = edges.push(particles, candidate, fan, memory);
+        clear[index] = edges.guard.until(room, fan.corners);
+        if edges.guard.is_clear_for_good(clear[index]) {
             kept -= 1;
         }
     }
     if let Some(end) = near_edges.get_mut(kept) {
         *end = NONE;
     }
-    found.farthest_push = farthest * fans.max_faces;
-    found
+    edges.found.farthest_push = edges.farthest * surface.max_faces() as f32;
+    edges.found
 }
 
-/// A candidate, the corners of its triangles, and the triangles.
-type Fan<'a> = (&'a Candidate, &'a [Slot], &'a [[Slot; 3]]);
+/// Pushes triangles off edges in a sub-step.
+struct OffEdges<'a, 'b> {
+    pushing: &'a mut Pushing<'b>,
+    motion: &'a EdgeMotion<'a>,
+    guard: &'a mut Guard,
+    view: &'a mut FanView,
+    found: Found,
+    /// Largest push by one triangle (m).
+    farthest: f32,
+}
 
-/// Pushes the triangles that a candidate owns. Returns the displacement of everything before one of them can touch an
-/// edge (m); 0 if one does.
-fn push_fan(
-    particles: &mut ClothParticles,
-    pushing: &mut Pushing,
-    (candidate, all_corners, faces): Fan,
-    (known, guard, view): (&mut [KnownFace], &mut Guard, &mut FanView),
-    motion: &EdgeMotion,
-    (found, farthest): (&mut Found, &mut f32),
-) -> f32 {
-    let mut room = f32::INFINITY;
-    for (&slots, known) in faces.iter().zip(known) {
-        let triangle = view.triangle(known.of);
-        let moved = known.moved(triangle);
-        let left = known.room - moved;
-        let speed = motion.swept(view.speed);
-        if left > 0.0 && speed == 0.0 {
-            room = room.min(left);
-            continue;
+impl OffEdges<'_, '_> {
+    /// Pushes the triangles that a candidate owns. Returns the displacement of everything before one of them can touch
+    /// an edge (m); 0 if one does.
+    fn push(
+        &mut self,
+        particles: &mut ClothParticles,
+        candidate: Candidate,
+        fan: Fan,
+        memory: &mut EdgeMemory,
+    ) -> f32 {
+        let (motion, near) = (self.motion, self.motion.near);
+        self.view
+            .look(particles.blocks(), fan.corners, &motion.frame);
+        let room = memory.room(candidate.particle, self.view, near);
+        if room > motion.swept(self.view.speed) {
+            return room;
         }
-        let hit = if speed > 0.0 {
-            motion.hit(&Corners::of(particles, slots))
-        } else {
-            None
-        };
-        let contact = match hit {
-            Some(_) => None,
-            None => known.deepest(&motion.collider.shape, triangle, motion.near, moved),
-        };
-        let given = &mut found.given;
-        let (pushed, depth) = if let Some((centre, normal)) = hit {
-            let corners = Corners::of(particles, slots);
-            push_in_front(particles, &corners, centre, normal, motion, given)
-        } else if let Some(contact) = contact {
-            let corners = Corners::of(particles, slots);
-            push_point(particles, &corners, &contact, motion, given)
-        } else {
-            room = room.min(known.room).max(0.0);
-            continue;
-        };
-        room = 0.0;
-        for slot in slots {
-            guard.note(slot, pushed);
+        let (separation, faces) = memory.faces(candidate.particle, fan);
+        let mut room = f32::INFINITY;
+        for (&face, known) in fan.faces.iter().zip(faces) {
+            let triangle = self.view.triangle(face);
+            let speed = motion.swept(self.view.speed);
+            let above = separation.room_of(triangle, self.view, near);
+            let moved = known.moved(triangle);
+            let left = if above > 0.0 {
+                above
+            } else {
+                known.room - moved
+            };
+            if left > speed {
+                room = room.min(left);
+                continue;
+            }
+            let slots = fan.slots(face);
+            let hit = if speed > 0.0 {
+                motion.hit(&Corners::of(particles, slots))
+            } else {
+                None
+            };
+            let contact = match hit {
+                Some(_) => None,
+                None => known.deepest(&motion.collider.shape, triangle, near, moved),
+            };
+            let given = &mut self.found.given;
+            let (pushed, depth) = if let Some((centre, normal)) = hit {
+                let corners = Corners::of(particles, slots);
+                push_in_front(particles, &corners, centre, normal, motion, given)
+            } else if let Some(contact) = contact {
+                let corners = Corners::of(particles, slots);
+                push_point(particles, &corners, &contact, motion, given)
+            } else {
+                room = room.min(known.room).max(0.0);
+                continue;
+            };
+            room = 0.0;
+            for slot in slots {
+                self.guard.note(slot, pushed);
+            }
+            let blocks = particles.blocks();
+            self.view.look(blocks, fan.corners, &motion.frame);
+            let (index, slot) = self.pushing.place(&candidate);
+            self.pushing.note_depth(index, slot.lane, depth);
+            self.found.deepest = self.found.deepest.max(depth);
+            self.farthest = self.farthest.max(pushed);
         }
-        view.look(particles.blocks(), all_corners, &motion.frame);
-        let (index, slot) = pushing.place(candidate);
-        pushing.note_depth(index, slot.lane, depth);
-        found.deepest = found.deepest.max(depth);
-        *farthest = farthest.max(pushed);
+        room
     }
-    room
 }
 
 /// Pushes a triangle's point along its normal. Returns the largest displacement of a corner and the depth (m).

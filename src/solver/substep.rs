@@ -98,7 +98,7 @@ impl Solver {
     /// # Panics
     /// See [`new`](Self::new).
     pub fn of_surface(surface: &Surface, springs: &Springs) -> Self {
-        Self::of_layout(springs, Layout::of(surface))
+        Self::of_layout(springs, surface.layout())
     }
 
     fn of_layout(springs: &Springs, layout: Layout) -> Self {

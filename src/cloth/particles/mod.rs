@@ -17,7 +17,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{Block, ClothError, ClothMaterial, Layout, Pins, Slot, Surface};
+use super::{Block, ClothError, ClothMaterial, LANES, Layout, Pins, Slot, Surface, W};
 
 pub use id::ParticleId;
 pub(crate) use load::Load;
@@ -73,7 +73,7 @@ impl ClothParticles {
     /// # Errors
     /// [`ClothError::Quantity`] for a particle mass outside 10⁻¹⁵ to 10¹⁵ kg.
     pub fn at_rest(surface: &Surface, material: &ClothMaterial) -> Result<Self, ClothError> {
-        let mut particles = Self::of_layout(Layout::of(surface));
+        let mut particles = Self::of_layout(surface.layout());
         for (&position, slot) in surface
             .rest_positions()
             .iter()
@@ -114,7 +114,7 @@ impl ClothParticles {
 
     /// One row of particles laid out in the rows of a grid of as many, by their indices; `None` of any others.
     pub(crate) fn laid_out(&self, surface: &Surface) -> Option<Self> {
-        let (from, to) = (self.sound_layout(), Layout::of(surface));
+        let (from, to) = (self.sound_layout(), surface.layout());
         if from.rows != 1 || from.len() != to.len() {
             return None;
         }
@@ -198,6 +198,13 @@ impl ClothParticles {
     pub fn inverse_mass(&self, id: impl Into<ParticleId>) -> Option<f32> {
         self.slot(id)
             .map(|Slot { block, lane }| self.blocks[block].inverse_mass(lane))
+    }
+
+    /// Whether any particle is pinned.
+    pub(crate) fn has_pinned(&self) -> bool {
+        let weights = self.blocks.iter().map(|block| &block.view()[W..W + LANES]);
+        let free = weights.map(|weights| weights.iter().filter(|&&weight| weight > 0.0).count());
+        free.sum::<usize>() < self.len()
     }
 
     /// Whether the particle is pinned: only its pin moves it.

@@ -123,7 +123,7 @@ impl ClothParticles {
 
     /// Whether the number and the layout of the particles match the surface.
     pub(crate) fn matches(&self, surface: &Surface) -> bool {
-        self.layout == Layout::of(surface) && self.blocks.len() == self.layout.blocks()
+        self.layout == surface.layout() && self.blocks.len() == self.layout.blocks()
     }
 
     /// Position (m) of a particle that exists.

@@ -44,6 +44,7 @@ impl Surface {
             grid: Some(*grid),
             uvs: OnceLock::new(),
             faces: OnceLock::new(),
+            fans: OnceLock::new(),
             graph: OnceLock::new(),
             threads: OnceLock::new(),
             flat: OnceLock::new(),

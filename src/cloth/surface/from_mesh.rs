@@ -272,6 +272,7 @@ impl Welded {
             grid: None,
             uvs: OnceLock::from(uvs),
             faces: OnceLock::from(faces),
+            fans: OnceLock::new(),
             graph: OnceLock::new(),
             threads: OnceLock::new(),
             flat: OnceLock::new(),

@@ -9,6 +9,7 @@ mod binding;
 mod bound;
 mod calibration;
 mod faces;
+mod fans;
 mod flat;
 mod from_grid;
 mod from_mesh;
@@ -28,7 +29,7 @@ use std::{fmt, sync::OnceLock};
 
 use bevy::math::{Vec2, Vec3};
 
-use super::{ClothGrid, SpringKind};
+use super::{ClothGrid, Layout, SpringKind};
 
 pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
@@ -37,6 +38,7 @@ pub use triangles::{TriangleMesh, VertexAttribute};
 #[cfg(feature = "mesh")]
 pub(crate) use asset::skin_of_asset;
 pub(crate) use faces::Faces;
+pub(crate) use fans::{Fan, Fans};
 pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
@@ -68,6 +70,7 @@ pub struct Surface {
     // Computed lazily: a cloth without contacts needs none of them.
     uvs: OnceLock<Vec<Vec2>>,
     faces: OnceLock<Faces>,
+    fans: OnceLock<Fans>,
     graph: OnceLock<Graph>,
     threads: OnceLock<Threads>,
     flat: OnceLock<Option<Flat>>,
@@ -244,6 +247,20 @@ impl Surface {
         })
     }
 
+    /// Where the corners of its faces are, by their owners.
+    pub(crate) fn fans(&self) -> &Fans {
+        self.fans
+            .get_or_init(|| Fans::new(self.faces(), self.layout()))
+    }
+
+    /// Where its particles are in memory: rows of a grid, or one row.
+    pub(crate) fn layout(&self) -> Layout {
+        match &self.grid {
+            Some(grid) => Layout::new(grid.columns(), grid.rows()),
+            None => Layout::new(self.len() as u32, 1),
+        }
+    }
+
     /// Neighbours of each particle.
     pub(crate) fn graph(&self) -> &Graph {
         self.graph.get_or_init(|| match &self.grid {
@@ -301,6 +318,7 @@ impl Default for Surface {
             grid: None,
             uvs: OnceLock::new(),
             faces: OnceLock::new(),
+            fans: OnceLock::new(),
             graph: OnceLock::new(),
             threads: OnceLock::new(),
             flat: OnceLock::new(),

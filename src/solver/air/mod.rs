@@ -127,7 +127,7 @@ pub(crate) struct AirMemory {
 
 impl Airflow {
     pub fn new(surface: &Surface, air: Air) -> Self {
-        let layout = Layout::of(surface);
+        let layout = surface.layout();
         let is_grid = surface.as_grid().is_some();
         let strip = layout.strip as usize;
         Self {

@@ -104,7 +104,7 @@ impl MeshBending {
             first[at] = first[at].max(first[at - 1]);
         }
         Self {
-            layout: Layout::of(surface),
+            layout: surface.layout(),
             first: first.into(),
             entries: entries.into(),
             diagonal: diagonal.into(),

@@ -1,0 +1,177 @@
+//! Particles against the planes of a shape's surface nearest to them, for shapes whose nearest point is expensive. It is
+//! computed where a particle has moved since; in between, its plane is reused.
+
+use bevy::math::{Isometry3d, Mat3, Vec3};
+use multiversion::multiversion;
+
+use super::{
+    ColliderShape,
+    candidates::ContactBlock,
+    lanes::{LaneMotion, Near, Sums, is_clear, push, survey},
+};
+use crate::cloth::{Block, LANES, Lanes, View, W, X, Y, Z};
+
+/// A particle that has moved less than this fraction of its radius is tested against the last plane. For a flat surface
+/// that is exact; another part of a mesh may be nearer by at most twice as much.
+const SAME_PLANE: f32 = 0.1;
+
+/// The planes nearest to eight particles, in the shape's frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Planes {
+    /// Where each particle was when its plane was found (m); NaN before.
+    at: [Lanes; 3],
+    /// Its distance then (m), and the plane's normal.
+    distance: Lanes,
+    normal: [Lanes; 3],
+}
+
+/// A shape's frame at the end of a sub-step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    centre: [f32; 3],
+    axes: [[f32; 3]; 3],
+    /// Radius of a particle, and its displacement up to which a plane is reused (m).
+    reach: f32,
+    same: f32,
+}
+
+impl Planes {
+    pub const UNKNOWN: Self = Self {
+        at: [[f32::NAN; LANES]; 3],
+        distance: [f32::INFINITY; LANES],
+        normal: [[0.0; LANES], [1.0; LANES], [0.0; LANES]],
+    };
+
+    fn set(&mut self, lane: usize, shape: &ColliderShape, local: Vec3) {
+        let nearest = shape.nearest(Isometry3d::IDENTITY, local);
+        self.distance[lane] = nearest.distance;
+        let (at, normal) = (local.to_array(), nearest.normal.to_array());
+        for axis in 0..3 {
+            self.at[axis][lane] = at[axis];
+            self.normal[axis][lane] = normal[axis];
+        }
+    }
+}
+
+impl Frame {
+    pub fn new(pose: Isometry3d, particle_radius: f32) -> Self {
+        Self {
+            centre: Vec3::from(pose.translation).to_array(),
+            axes: Mat3::from_quat(pose.rotation).to_cols_array_2d(),
+            reach: particle_radius,
+            same: SAME_PLANE * particle_radius,
+        }
+    }
+}
+
+/// A particle's position in the shape's frame (m), and its displacement since its plane was found (m).
+#[inline(always)]
+fn local(view: &View, planes: &Planes, frame: &Frame, l: usize) -> ([f32; 3], [f32; 3]) {
+    let [cx, cy, cz] = frame.centre;
+    let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
+    let at = frame.axes.map(|[u, v, w]| x * u + y * v + z * w);
+    let moved = [
+        at[0] - planes.at[0][l],
+        at[1] - planes.at[1][l],
+        at[2] - planes.at[2][l],
+    ];
+    (at, moved)
+}
+
+/// Bit mask of the particles that may touch the shape, but not their last planes.
+#[inline(always)]
+fn stale(view: &View, planes: &Planes, frame: &Frame) -> u8 {
+    let mut is_stale = [0_u32; LANES];
+    for l in 0..LANES {
+        let (_, [a, b, c]) = local(view, planes, frame, l);
+        let moved = (a * a + b * b + c * c).sqrt();
+        // True for NaN.
+        let is_near = !(planes.distance[l] - moved > frame.reach);
+        let is_new = !(moved <= frame.same);
+        is_stale[l] = if is_near & is_new & (view[W + l] > 0.0) {
+            1
+        } else {
+            0
+        };
+    }
+    (0..LANES).fold(0, |mask, l| mask | (is_stale[l] as u8) << l)
+}
+
+/// Finds the planes nearest to the particles that need new ones.
+pub(super) fn find_planes(
+    blocks: &[Block],
+    contacts: &[ContactBlock],
+    planes: &mut [Planes],
+    (shape, frame, motion): (&ColliderShape, &Frame, &LaneMotion),
+) {
+    for (contact, planes) in contacts.iter().zip(planes) {
+        if is_clear(contact, motion) {
+            continue;
+        }
+        let view = blocks[contact.block as usize].view();
+        let mask = stale(view, planes, frame) & contact.lanes;
+        for lane in (0..LANES).filter(|lane| mask & (1 << lane) != 0) {
+            let (at, _) = local(view, planes, frame, lane);
+            planes.set(lane, shape, at.into());
+        }
+    }
+}
+
+#[inline(always)]
+fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
+    let mut near = Near::NONE;
+    let [u, v, w] = frame.axes;
+    for l in 0..LANES {
+        let (_, [a, b, c]) = local(view, planes, frame, l);
+        let (na, nb, nc) = (
+            planes.normal[0][l],
+            planes.normal[1][l],
+            planes.normal[2][l],
+        );
+        let moved = (a * a + b * b + c * c).sqrt();
+        let is_same = moved <= frame.same;
+        let depth = frame.reach - (planes.distance[l] + na * a + nb * b + nc * c);
+        let bound = frame.reach - (planes.distance[l] - moved);
+        near.depth[l] = if is_same { depth } else { f32::NEG_INFINITY };
+        near.bound[l] = if is_same { depth } else { bound };
+        near.offset[0][l] = u[0] * na + v[0] * nb + w[0] * nc;
+        near.offset[1][l] = u[1] * na + v[1] * nb + w[1] * nc;
+        near.offset[2][l] = u[2] * na + v[2] * nb + w[2] * nc;
+        near.length[l] = 1.0;
+    }
+    near
+}
+
+/// Pushes the particles of blocks out of the half-spaces below their planes.
+#[multiversion(targets("x86_64+avx+avx2"))]
+pub(super) fn push_planes(
+    blocks: &mut [Block],
+    contacts: &mut [ContactBlock],
+    planes: &[Planes],
+    (frame, motion): (&Frame, &LaneMotion),
+    sums: &mut Sums,
+) {
+    push_planes_baseline(blocks, contacts, planes, (frame, motion), sums);
+}
+
+#[inline(always)]
+pub(super) fn push_planes_baseline(
+    blocks: &mut [Block],
+    contacts: &mut [ContactBlock],
+    planes: &[Planes],
+    (frame, motion): (&Frame, &LaneMotion),
+    sums: &mut Sums,
+) {
+    let mut own = *sums;
+    for (contact, planes) in contacts.iter_mut().zip(planes) {
+        if is_clear(contact, motion) {
+            continue;
+        }
+        let view = blocks[contact.block as usize].view_mut();
+        let near = near_planes(view, planes, frame);
+        if survey(view, &near, contact, motion, &mut own) {
+            push(view, &near, &contact.area, motion, &mut own);
+        }
+    }
+    *sums = own;
+}
