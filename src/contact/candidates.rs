@@ -45,6 +45,8 @@ pub(super) struct ContactBlock {
     pub around: [u32; 3],
     /// Whether it is tested lane by lane in this sub-step.
     pub is_left: bool,
+    /// Bit mask of the lanes that are.
+    pub left: u8,
     /// Until everything has moved this far, no lane can touch (m).
     pub clear_until: f32,
     /// Largest displacement of its particles since the search (m), where that is measured; else 0.
@@ -62,6 +64,7 @@ impl ContactBlock {
             lanes: 0,
             around: [NONE; 3],
             is_left: false,
+            left: 0,
             clear_until: f32::NEG_INFINITY,
             moved: 0.0,
             area: [0.0; LANES],

@@ -24,7 +24,7 @@ pub fn deepest_penetration(
         }
         ColliderShape::Geometry(geometry) => {
             let local = seen_from(pose, position).as_vec3();
-            f64::from(geometry.nearest(local).distance)
+            f64::from(geometry.nearest(local, f32::MAX).distance)
         }
         _ => core.distance(position),
     };

@@ -299,7 +299,7 @@ impl Detection {
             let Some(touch) = self.touches.get_mut(at) else {
                 return is_pushed;
             };
-            let counts = [self.candidates.all.len(), self.candidates.blocks.len()];
+            let count = self.candidates.all.len();
             let Candidates {
                 all, blocks, helds, ..
             } = &mut self.candidates;
@@ -328,16 +328,14 @@ impl Detection {
             self.embedding.hide(touch.id, particles);
             let (found, stopped) = match touch.narrow_phase {
                 _ if has_edges => {
-                    self.shapes.make_room(counts);
+                    self.shapes.make_room(count);
                     let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
                     let of = (touch.id, &collider.shape, self.surface.len());
-                    let of = by_triangles.then_some(of);
+                    let of = (by_triangles || collider.shape.is_geometry()).then_some(of);
                     let guard = &mut self.shapes.guard;
                     let limit = collider.max_surface_travel(f32::INFINITY) + self.margin;
                     guard.measure(particles, &self.origin, contacts, [touch.traveled, limit]);
-                    let known = self
-                        .shapes
-                        .of([touch.of.candidates.clone(), touch.of.blocks.clone()], of);
+                    let known = self.shapes.of(touch.of.candidates.clone(), of);
                     let edges = by_triangles.then_some(&*self.surface);
                     let mut pushing = Pushing {
                         candidates: &all[touch.of.candidates.clone()],
@@ -366,7 +364,7 @@ impl Detection {
                 NarrowPhase::Auto | NarrowPhase::Particles => {
                     let at = (collider, settings, substep);
                     (
-                        push_particles(particles, contacts, &mut [], at, &lanes),
+                        push_particles(particles, contacts, (&mut [], 0), at, &lanes),
                         None,
                     )
                 }

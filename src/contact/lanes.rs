@@ -7,6 +7,7 @@
 //! The clearance of a block is stored and compared with the largest possible displacement since, so that a clear block
 //! is not tested again. So most of a cloth costs one comparison for eight particles.
 
+use bevy::math::Vec3;
 use multiversion::multiversion;
 
 use super::{candidates::ContactBlock, response::PushOut};
@@ -201,26 +202,25 @@ pub(super) fn is_clear(contact: &ContactBlock, motion: &LaneMotion) -> bool {
 #[inline(always)]
 pub(super) fn survey(
     view: &View,
-    near: &Near,
+    near: &mut Near,
     contact: &mut ContactBlock,
     motion: &LaneMotion,
     sums: &mut Sums,
 ) -> bool {
     let [sx, sy, sz] = motion.slide;
-    let (mut deepest, mut bound) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-    let mut size = [0.0_f32; LANES];
-    let mut is_left = [0_u32; LANES];
+    let slow = motion.most - motion.swing;
+    let slow = if slow > 0.0 { slow * slow } else { -1.0 };
+    let (mut deepest, mut size) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    let mut is_unusual = [0_u32; LANES];
     for l in 0..LANES {
         let is_free = view[W + l] > 0.0;
         let depth = near.depth[l];
         let (x, y, z) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
-        let speed = (x * x + y * y + z * z).sqrt() + motion.swing;
-        let is_met = speed > motion.most && near.bound[l] + speed > -motion.tolerance;
-        let is_left_out = is_free && (depth > motion.deepest || (is_met && motion.is_swept));
-        is_left[l] = if is_left_out { 1 } else { 0 };
-        let depth = if is_free { depth } else { f32::NEG_INFINITY };
-        deepest[l] = depth;
-        bound[l] = if is_free {
+        let is_fast = x * x + y * y + z * z > slow;
+        let is_deep = depth > motion.deepest;
+        is_unusual[l] = if is_free & (is_fast | is_deep) { 1 } else { 0 };
+        near.depth[l] = if is_free { depth } else { f32::NEG_INFINITY };
+        deepest[l] = if is_free {
             near.bound[l]
         } else {
             f32::NEG_INFINITY
@@ -228,15 +228,13 @@ pub(super) fn survey(
         let away = view[X + l].abs() + view[Y + l].abs() + view[Z + l].abs();
         size[l] = if is_free { away } else { 0.0 };
     }
-    let most = bound.into_iter().fold(f32::NEG_INFINITY, f32::max);
+    let most = deepest.into_iter().fold(f32::NEG_INFINITY, f32::max);
     let farthest = size.into_iter().fold(0.0, f32::max);
-    contact.is_left = is_left != [0; LANES];
-    if contact.is_left {
-        contact.clear_until = f32::NEG_INFINITY;
-        sums.left += 1;
-        return false;
+    contact.left = 0;
+    if is_unusual != [0; LANES] {
+        leave_out(view, near, contact, motion, &is_unusual);
     }
-    for (known, depth) in contact.depth.iter_mut().zip(deepest) {
+    for (known, depth) in contact.depth.iter_mut().zip(near.depth) {
         let depth = if depth < motion.thickness {
             depth
         } else {
@@ -249,7 +247,33 @@ pub(super) fn survey(
     let clear = -most - 2.0 * motion.tolerance - 1.0e-5 * (farthest - most + moved);
     // What has moved since the search may move back.
     contact.clear_until = motion.odometer - contact.moved + clear;
+    if contact.left != 0 {
+        contact.clear_until = f32::NEG_INFINITY;
+        sums.left += 1;
+    }
     most > 0.0
+}
+
+/// Leaves deep particles, and those that move so fast that they may have passed through, to the caller.
+#[cold]
+#[inline(never)]
+fn leave_out(
+    view: &View,
+    near: &mut Near,
+    contact: &mut ContactBlock,
+    motion: &LaneMotion,
+    is_unusual: &[u32; LANES],
+) {
+    let slide = Vec3::from(motion.slide);
+    for l in (0..LANES).filter(|&l| is_unusual[l] != 0) {
+        let way = Vec3::new(view[DX + l], view[DY + l], view[DZ + l]);
+        let speed = (way - slide).length() + motion.swing;
+        let is_met = speed > motion.most && near.bound[l] + speed > -motion.tolerance;
+        if near.depth[l] > motion.deepest || (is_met && motion.is_swept) {
+            contact.left |= 1 << l;
+            near.depth[l] = f32::NEG_INFINITY;
+        }
+    }
 }
 
 /// Pushes particles out that are inside, like [`Contact::push`](super::response::Contact::push).
@@ -267,10 +291,10 @@ pub(super) fn push(
     for l in 0..LANES {
         let (weight, depth) = (view[W + l], near.depth[l]);
         let is_pushed = weight > 0.0 && depth > 0.0;
-        let length = near.length[l];
-        let nx = near.offset[0][l] / length;
-        let ny = near.offset[1][l] / length;
-        let nz = near.offset[2][l] / length;
+        let inverse = 1.0 / near.length[l];
+        let nx = near.offset[0][l] * inverse;
+        let ny = near.offset[1][l] * inverse;
+        let nz = near.offset[2][l] * inverse;
         let (px, py, pz) = (view[X + l], view[Y + l], view[Z + l]);
         let gap = depth - motion.particle_radius;
         let (ax, ay, az) = (px + nx * gap - ox, py + ny * gap - oy, pz + nz * gap - oz);
@@ -369,8 +393,8 @@ macro_rules! by_shape {
                     continue;
                 }
                 let view = blocks[contact.block as usize].view_mut();
-                let near = $near(view, shape);
-                if survey(view, &near, contact, motion, &mut own) {
+                let mut near = $near(view, shape);
+                if survey(view, &mut near, contact, motion, &mut own) {
                     push(view, &near, &contact.area, motion, &mut own);
                 }
             }

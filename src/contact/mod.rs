@@ -10,7 +10,6 @@ mod corners;
 mod depth;
 mod detection;
 mod edge_contact;
-mod edge_memory;
 mod edge_room;
 mod eight;
 mod embedded;
@@ -35,6 +34,7 @@ mod response;
 mod separation;
 mod shape;
 mod shape_cache;
+mod shape_memory;
 mod sharp;
 mod source;
 #[cfg(test)]

@@ -58,11 +58,11 @@ impl Found {
 }
 
 /// Pushes particles out that are inside `collider`, or that passed through it in this sub-step. Pinned particles do not
-/// move. `planes` are those of the contacts; only a [`ColliderShape::Geometry`] needs any.
+/// move. `planes` are those of the cloth's blocks; only a [`ColliderShape::Geometry`] needs any.
 pub(super) fn push_particles(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
-    planes: &mut [Planes],
+    (planes, tick): (&mut [Planes], u32),
     (collider, settings, substep): (&MovingCollider, &ContactSettings, SubStep),
     motion: &LaneMotion,
 ) -> Found {
@@ -71,8 +71,8 @@ pub(super) fn push_particles(
     let pose = collider.pose_at(substep.end());
     let blocks = particles.blocks_mut();
     let shape = &collider.shape;
-    if matches!(shape, ColliderShape::Geometry(_)) {
-        let frame = Frame::new(pose, motion.particle_radius);
+    if shape.is_geometry() {
+        let frame = Frame::new(pose, motion.particle_radius, tick);
         find_planes(blocks, contacts, planes, (shape, &frame, motion));
         push_planes(blocks, contacts, planes, (&frame, motion), &mut sums);
     } else {
@@ -99,8 +99,7 @@ pub(super) fn lane_motion(
     let particle_radius = settings.particle_radius;
     let thickness = collider.shape.thickness() + particle_radius;
     // Its nearest point is right at any depth.
-    let has_any_depth = matches!(collider.shape, ColliderShape::Geometry(_));
-    let [deepest, known] = match has_any_depth {
+    let [deepest, known] = match collider.shape.is_geometry() {
         true => [f32::INFINITY; 2],
         false => [thickness / 2.0, thickness],
     };
@@ -203,8 +202,8 @@ fn push_left(
     let centre = Vec3::from(pose.translation);
     let thickness = motion.thickness;
     let sweep = Sweep::new(collider, substep, settings);
-    for contact in contacts.iter_mut().filter(|contact| contact.is_left) {
-        for lane in 0..LANES {
+    for contact in contacts.iter_mut().filter(|contact| contact.left != 0) {
+        for lane in (0..LANES).filter(|lane| contact.left & (1 << lane) != 0) {
             let block = &particles.blocks()[contact.block as usize];
             let inverse_mass = block.inverse_mass(lane);
             if inverse_mass == 0.0 {

@@ -1,5 +1,7 @@
-//! Particles against the planes of a shape's surface nearest to them, for shapes whose nearest point is expensive. It is
-//! computed where a particle has moved since; in between, its plane is reused.
+//! Particles against the planes of a shape's surface nearest to them, for shapes whose nearest point is expensive.
+//!
+//! A particle's distance is a statement about positions: having moved by less since, it cannot touch, however much time
+//! has passed. One that touched is tested against the same plane while it hardly moves, in that tick.
 
 use bevy::math::{Isometry3d, Mat3, Vec3};
 use multiversion::multiversion;
@@ -23,6 +25,10 @@ pub(super) struct Planes {
     /// Its distance then (m), and the plane's normal.
     distance: Lanes,
     normal: [Lanes; 3],
+    /// Displacement up to which the plane is reused (m); negative if the particle did not touch it in this tick.
+    same: Lanes,
+    /// The tick of that.
+    tick: u32,
 }
 
 /// A shape's frame at the end of a sub-step.
@@ -33,6 +39,7 @@ pub(super) struct Frame {
     /// Radius of a particle, and its displacement up to which a plane is reused (m).
     reach: f32,
     same: f32,
+    tick: u32,
 }
 
 impl Planes {
@@ -40,11 +47,18 @@ impl Planes {
         at: [[f32::NAN; LANES]; 3],
         distance: [f32::INFINITY; LANES],
         normal: [[0.0; LANES], [1.0; LANES], [0.0; LANES]],
+        same: [-1.0; LANES],
+        tick: 0,
     };
 
-    fn set(&mut self, lane: usize, shape: &ColliderShape, local: Vec3) {
-        let nearest = shape.nearest(Isometry3d::IDENTITY, local);
+    /// Finds the plane nearest to a particle.
+    fn find(&mut self, lane: usize, shape: &ColliderShape, local: Vec3, frame: &Frame) {
+        let known = Vec3::from([0, 1, 2].map(|axis| self.at[axis][lane]));
+        let within = self.distance[lane].abs() + local.distance(known);
+        let nearest = shape.nearest_within(local, within * (1.0 + 1.0e-3) + 1.0e-3);
         self.distance[lane] = nearest.distance;
+        let is_touching = nearest.distance <= frame.reach;
+        self.same[lane] = if is_touching { frame.same } else { -1.0 };
         let (at, normal) = (local.to_array(), nearest.normal.to_array());
         for axis in 0..3 {
             self.at[axis][lane] = at[axis];
@@ -53,13 +67,24 @@ impl Planes {
     }
 }
 
+impl Planes {
+    /// Clears the positions of those that are not reused.
+    #[cfg(test)]
+    pub fn forget(&mut self) {
+        for lane in (0..LANES).filter(|&lane| self.same[lane] < 0.0) {
+            self.at[0][lane] = f32::NAN;
+        }
+    }
+}
+
 impl Frame {
-    pub fn new(pose: Isometry3d, particle_radius: f32) -> Self {
+    pub fn new(pose: Isometry3d, particle_radius: f32, tick: u32) -> Self {
         Self {
             centre: Vec3::from(pose.translation).to_array(),
             axes: Mat3::from_quat(pose.rotation).to_cols_array_2d(),
             reach: particle_radius,
             same: SAME_PLANE * particle_radius,
+            tick,
         }
     }
 }
@@ -87,7 +112,7 @@ fn stale(view: &View, planes: &Planes, frame: &Frame) -> u8 {
         let moved = (a * a + b * b + c * c).sqrt();
         // True for NaN.
         let is_near = !(planes.distance[l] - moved > frame.reach);
-        let is_new = !(moved <= frame.same);
+        let is_new = !(moved <= planes.same[l]);
         is_stale[l] = if is_near & is_new & (view[W + l] > 0.0) {
             1
         } else {
@@ -104,15 +129,19 @@ pub(super) fn find_planes(
     planes: &mut [Planes],
     (shape, frame, motion): (&ColliderShape, &Frame, &LaneMotion),
 ) {
-    for (contact, planes) in contacts.iter().zip(planes) {
+    for contact in contacts {
         if is_clear(contact, motion) {
             continue;
+        }
+        let planes = &mut planes[contact.block as usize];
+        if planes.tick != frame.tick {
+            (planes.same, planes.tick) = ([-1.0; LANES], frame.tick);
         }
         let view = blocks[contact.block as usize].view();
         let mask = stale(view, planes, frame) & contact.lanes;
         for lane in (0..LANES).filter(|lane| mask & (1 << lane) != 0) {
             let (at, _) = local(view, planes, frame, lane);
-            planes.set(lane, shape, at.into());
+            planes.find(lane, shape, at.into(), frame);
         }
     }
 }
@@ -129,7 +158,7 @@ fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
             planes.normal[2][l],
         );
         let moved = (a * a + b * b + c * c).sqrt();
-        let is_same = moved <= frame.same;
+        let is_same = moved <= planes.same[l];
         let depth = frame.reach - (planes.distance[l] + na * a + nb * b + nc * c);
         let bound = frame.reach - (planes.distance[l] - moved);
         near.depth[l] = if is_same { depth } else { f32::NEG_INFINITY };
@@ -163,13 +192,14 @@ pub(super) fn push_planes_baseline(
     sums: &mut Sums,
 ) {
     let mut own = *sums;
-    for (contact, planes) in contacts.iter_mut().zip(planes) {
+    for contact in contacts {
         if is_clear(contact, motion) {
             continue;
         }
-        let view = blocks[contact.block as usize].view_mut();
-        let near = near_planes(view, planes, frame);
-        if survey(view, &near, contact, motion, &mut own) {
+        let block = contact.block as usize;
+        let view = blocks[block].view_mut();
+        let mut near = near_planes(view, &planes[block], frame);
+        if survey(view, &mut near, contact, motion, &mut own) {
             push(view, &near, &contact.area, motion, &mut own);
         }
     }

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use super::{ColliderShape, edge_memory::Nearness, fan_view::FanView, geometry::SharpEdge};
+use super::{ColliderShape, fan_view::FanView, geometry::SharpEdge, shape_memory::Nearness};
 
 /// Edges far from a particle are searched for again when it has moved by this many reaches of its triangles.
 const FAR: f32 = 8.0;

@@ -124,6 +124,11 @@ impl ColliderShape {
         matches!(self, Self::Cuboid { .. } | Self::Geometry(_))
     }
 
+    /// Whether it is made of solids whose nearest point is expensive.
+    pub(super) fn is_geometry(&self) -> bool {
+        matches!(self, Self::Geometry(_))
+    }
+
     /// The edge with an index of [`edges_near`](Self::edges_near).
     #[inline]
     pub(super) fn edge(&self, index: u32) -> Option<SharpEdge> {
@@ -168,13 +173,21 @@ impl ColliderShape {
         self.nearest(Isometry3d::IDENTITY, point).normal
     }
 
+    /// The surface nearest to a point of its frame, probably within a distance (m).
+    pub(super) fn nearest_within(&self, point: Vec3, within: f32) -> Nearest {
+        match self {
+            Self::Geometry(geometry) => geometry.nearest(point, within),
+            _ => self.nearest(Isometry3d::IDENTITY, point),
+        }
+    }
+
     /// The surface nearest to a point, with the shape in a pose.
     #[inline]
     pub(super) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
         let offset = point - Vec3::from(pose.translation);
         match *self {
             Self::Geometry(ref geometry) => {
-                let nearest = geometry.nearest(pose.rotation.inverse() * offset);
+                let nearest = geometry.nearest(pose.rotation.inverse() * offset, f32::MAX);
                 Nearest {
                     normal: pose.rotation * nearest.normal,
                     ..nearest

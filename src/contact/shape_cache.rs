@@ -4,12 +4,11 @@ use std::ops::Range;
 
 use super::{
     ColliderShape,
-    edge_memory::{EdgeMemories, EdgeMemory},
     fan_view::FanView,
     guard::Guard,
     particle::{Found, push_particles},
-    planes::Planes,
     pushing::Pushing,
+    shape_memory::{ShapeMemories, ShapeMemory},
     sharp::{EdgeMotion, push_off_edges},
 };
 use crate::cloth::{ClothParticles, Surface};
@@ -20,8 +19,6 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The cache of each candidate of a tick. Only used for shapes with edges; empty in a scene without them.
 #[derive(Debug, Default, Clone)]
 pub(super) struct ShapeCache {
-    /// One for each contact block.
-    planes: Vec<Planes>,
     /// Until when a candidate's triangles can touch no edge, by the guard.
     clear: Vec<f32>,
     /// In the places of each collider's candidates, those whose triangles may touch an edge before the next search, then
@@ -29,14 +26,13 @@ pub(super) struct ShapeCache {
     near_edges: Vec<u32>,
     pub guard: Guard,
     /// Memories of edges, across ticks.
-    pub memories: EdgeMemories,
+    pub memories: ShapeMemories,
     view: FanView,
 }
 
 impl ShapeCache {
     /// Clears everything for other candidates.
     pub fn clear(&mut self) {
-        self.planes.clear();
         self.clear.clear();
         self.near_edges.clear();
     }
@@ -45,16 +41,13 @@ impl ShapeCache {
     #[cfg(test)]
     pub fn forget_edges(&mut self) {
         self.memories.forget();
-        let counts = [self.clear.len(), self.planes.len()];
+        let candidates = self.clear.len();
         self.clear();
-        self.make_room(counts);
+        self.make_room(candidates);
     }
 
-    /// Resizes for a number of candidates and of contact blocks.
-    pub fn make_room(&mut self, [candidates, blocks]: [usize; 2]) {
-        if self.planes.len() < blocks {
-            self.planes.resize(blocks, Planes::UNKNOWN);
-        }
+    /// Resizes for a number of candidates.
+    pub fn make_room(&mut self, candidates: usize) {
         if self.clear.len() < candidates {
             self.near_edges
                 .extend(self.clear.len() as u32..candidates as u32);
@@ -62,21 +55,20 @@ impl ShapeCache {
         }
     }
 
-    /// The cache of some candidates of a collider, with its memory of edges where triangles are tested. The collider
-    /// has an ID and a shape, and the cloth a number of particles.
+    /// The cache of some candidates of a collider, with the memory of its shape where that is needed. The collider has an
+    /// ID and a shape, and the cloth a number of particles.
     pub fn of(
         &mut self,
-        [candidates, blocks]: [Range<usize>; 2],
-        edges: Option<(usize, &ColliderShape, usize)>,
+        candidates: Range<usize>,
+        shape: Option<(usize, &ColliderShape, usize)>,
     ) -> Known<'_> {
         let memories = &mut self.memories;
         Known {
             first: candidates.start,
-            planes: &mut self.planes[blocks],
             clear: &mut self.clear[candidates.clone()],
             near_edges: &mut self.near_edges[candidates],
             guard: &mut self.guard,
-            memory: edges.map(|(id, shape, count)| memories.of(id, shape, count)),
+            memory: shape.map(|(id, shape, count)| memories.of(id, shape, count)),
             view: &mut self.view,
         }
     }
@@ -86,11 +78,10 @@ impl ShapeCache {
 pub(super) struct Known<'a> {
     /// Index of its first candidate among all.
     pub first: usize,
-    planes: &'a mut [Planes],
     pub clear: &'a mut [f32],
     pub near_edges: &'a mut [u32],
     pub guard: &'a mut Guard,
-    memory: Option<&'a mut EdgeMemory>,
+    memory: Option<&'a mut ShapeMemory>,
     pub view: &'a mut FanView,
 }
 
@@ -104,13 +95,19 @@ pub(super) fn push_shape(
     // Particles come last, so that none is inside at the end.
     let mut by_edges = Found::default();
     if let Some(surface) = triangles
-        && let Some(memory) = known.memory.take()
+        && let Some(memory) = known.memory.as_deref_mut()
     {
         let motion = EdgeMotion::new(pushing, surface.spacing().longest, memory.tick);
-        by_edges = push_off_edges(particles, pushing, surface, (&mut known, memory), &motion);
+        let of = (known.first, known.clear, known.near_edges);
+        let by = (&mut *known.guard, known.view, memory);
+        by_edges = push_off_edges(particles, pushing, surface, of, by, &motion);
     }
     known.guard.tell(pushing.contacts);
     let at = (pushing.collider, pushing.settings, pushing.substep);
-    let found = push_particles(particles, pushing.contacts, known.planes, at, pushing.lanes);
+    let planes = match known.memory {
+        Some(memory) => memory.planes(particles.layout().blocks()),
+        None => (&mut [][..], 0),
+    };
+    let found = push_particles(particles, pushing.contacts, planes, at, pushing.lanes);
     found.and(&by_edges)
 }

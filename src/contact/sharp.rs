@@ -10,13 +10,13 @@ use super::{
     candidates::Candidate,
     corners::Corners,
     edge_contact::{EdgeContact, nearest_edge},
-    edge_memory::{EdgeMemory, Nearness},
     fan_view::{FanView, Frame},
     guard::Guard,
     particle::Found,
     pushing::Pushing,
     response::{Contact, Given, PushOut, first_touch},
-    shape_cache::{Known, NONE},
+    shape_cache::NONE,
+    shape_memory::{Nearness, ShapeMemory},
     touch::ContactSettings,
     triangle::at,
 };
@@ -135,18 +135,11 @@ pub(super) fn push_off_edges(
     particles: &mut ClothParticles,
     pushing: &mut Pushing,
     surface: &Surface,
-    (known, memory): (&mut Known, &mut EdgeMemory),
+    (first, clear, near_edges): (usize, &mut [f32], &mut [u32]),
+    (guard, view, memory): (&mut Guard, &mut FanView, &mut ShapeMemory),
     motion: &EdgeMotion,
 ) -> Found {
     memory.match_reach(motion.near);
-    let Known {
-        first,
-        clear,
-        near_edges,
-        guard,
-        view,
-        ..
-    } = known;
     let mut edges = OffEdges {
         pushing,
         motion,
@@ -162,7 +155,7 @@ pub(super) fn push_off_edges(
             break;
         }
         near_edges[kept] = number;
-        let index = number as usize - *first;
+        let index = number as usize - first;
         let candidate = edges.pushing.candidates[index];
         let fan = candidate.fan(surface.fans());
         if fan.faces.is_empty() {
@@ -204,7 +197,7 @@ impl OffEdges<'_, '_> {
         particles: &mut ClothParticles,
         candidate: Candidate,
         fan: Fan,
-        memory: &mut EdgeMemory,
+        memory: &mut ShapeMemory,
     ) -> f32 {
         let (motion, near) = (self.motion, self.motion.near);
         self.view

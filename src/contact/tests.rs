@@ -2,7 +2,6 @@
 
 mod body;
 mod deep;
-mod edge_memory;
 mod edges;
 mod fast;
 mod geometry;
@@ -14,6 +13,7 @@ mod particle;
 mod random;
 mod rest;
 mod round;
+mod shape_memory;
 mod shapes;
 mod shots;
 mod sweep;

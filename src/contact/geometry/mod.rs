@@ -85,8 +85,18 @@ impl ColliderGeometry {
         }
     }
 
-    /// The surface nearest to a point, of the deepest or nearest solid. NaN for a point that is not finite.
-    pub(super) fn nearest(&self, point: Vec3) -> Nearest {
+    /// The surface nearest to a point, of the deepest or nearest solid, which is probably `within` a distance (m): that
+    /// makes it faster. NaN for a point that is not finite.
+    pub(super) fn nearest(&self, point: Vec3, within: f32) -> Nearest {
+        let found = self.find_nearest(point, within);
+        // Also for NaN.
+        if found.distance < f32::MAX || within == f32::MAX {
+            return found;
+        }
+        self.find_nearest(point, f32::MAX)
+    }
+
+    fn find_nearest(&self, point: Vec3, within: f32) -> Nearest {
         let mut found = Nearest {
             distance: f32::MAX,
             normal: Vec3::Y,
@@ -97,8 +107,9 @@ impl ColliderGeometry {
             if found.distance < f32::MAX && beyond > found.distance.max(0.0).powi(2) {
                 continue;
             }
-            let nearest = solid.nearest(point);
-            if nearest.distance < found.distance {
+            if let Some(nearest) = solid.nearest(point, within)
+                && nearest.distance < found.distance
+            {
                 found = nearest;
             }
         }

@@ -63,8 +63,8 @@ impl Solid {
         }
     }
 
-    /// The surface nearest to a point.
-    pub fn nearest(&self, point: Vec3) -> Nearest {
+    /// The surface nearest to a point; of a mesh only within a distance (m).
+    pub fn nearest(&self, point: Vec3, within: f32) -> Option<Nearest> {
         let local = self.pose.inverse_transform_point(point);
         let mut nearest = match &self.kind {
             SolidKind::Convex(shape) => {
@@ -72,15 +72,16 @@ impl Solid {
                 let fallback = local.normalize_or(Vec3::Y);
                 towards(local, projection.point, projection.is_inside, fallback)
             }
-            SolidKind::Mesh(mesh, sides) => nearest_of_mesh(mesh, *sides, local),
+            SolidKind::Mesh(mesh, sides) => nearest_of_mesh(mesh, *sides, local, within)?,
         };
         nearest.normal = self.pose.rotation * nearest.normal;
-        nearest
+        Some(nearest)
     }
 }
 
-fn nearest_of_mesh(mesh: &TriMesh, sides: MeshSides, point: Vec3) -> Nearest {
-    let (projection, (face, _)) = mesh.project_local_point_and_get_location(point, false);
+fn nearest_of_mesh(mesh: &TriMesh, sides: MeshSides, point: Vec3, within: f32) -> Option<Nearest> {
+    let (projection, (face, _)) =
+        mesh.project_local_point_and_get_location_with_max_dist(point, false, within)?;
     let bounds = mesh.local_aabb();
     let is_inside = match sides {
         MeshSides::Closed => projection.is_inside,
@@ -96,7 +97,7 @@ fn nearest_of_mesh(mesh: &TriMesh, sides: MeshSides, point: Vec3) -> Nearest {
     if sides == MeshSides::Open {
         nearest.distance -= HALF_SHEET;
     }
-    nearest
+    Some(nearest)
 }
 
 /// The [`Nearest`] of a point to a surface whose nearest point is known. `fallback` is the normal of a point on the

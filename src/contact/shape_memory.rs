@@ -1,4 +1,4 @@
-//! Memory of triangles near the edges of a shape, so that most need not be tested again.
+//! Memory of particles near a shape, and of triangles near its edges, so that most need not be tested again.
 //!
 //! Every entry is a statement about positions: a triangle whose corners have moved less than its room since the test
 //! touches no edge, however much time has passed. So it stays valid from tick to tick, and a lost entry is found again.
@@ -10,6 +10,7 @@ use super::{
     edge_contact::{EdgeContact, EdgeTest, bounds_of},
     edge_room::EdgeRoom,
     fan_view::FanView,
+    planes::Planes,
     separation::Separation,
 };
 use crate::cloth::Fan;
@@ -31,9 +32,9 @@ const NONE: u32 = u32::MAX;
 /// Number of ticks after which unused entries are dropped.
 const FORGOTTEN: u32 = 120;
 
-/// The memory of a cloth's triangles near the edges of one shape.
+/// The memory of a cloth's particles and triangles near one shape.
 #[derive(Debug, Clone)]
-pub(super) struct EdgeMemory {
+pub(super) struct ShapeMemory {
     /// ID and shape of the collider.
     id: usize,
     shape: ColliderShape,
@@ -43,6 +44,8 @@ pub(super) struct EdgeMemory {
     /// One entry for each particle, with the faces of those near an edge.
     places: Vec<KnownPlace>,
     faces: Vec<KnownFace>,
+    /// Nearest planes, for each of the cloth's blocks; only of a [`ColliderShape::Geometry`].
+    planes: Vec<Planes>,
     /// Number of ticks without use.
     age: u32,
     /// Tick counter.
@@ -230,7 +233,7 @@ fn farthest([a, b, c]: [Vec3; 3], [p, q, r]: [Vec3; 3]) -> f32 {
     (if a > b { a } else { b }).max(c).sqrt()
 }
 
-impl EdgeMemory {
+impl ShapeMemory {
     /// An empty memory for a collider's shape and a number of particles.
     fn new(id: usize, shape: &ColliderShape, particles: usize) -> Self {
         let place = KnownPlace {
@@ -243,6 +246,7 @@ impl EdgeMemory {
             near: [0.0; 3],
             places: vec![place; particles],
             faces: Vec::new(),
+            planes: Vec::new(),
             age: 0,
             tick: 0,
         }
@@ -253,12 +257,8 @@ impl EdgeMemory {
         let near = [near.reach, near.slack, near.smooth];
         if near != self.near {
             let fresh = Self::new(self.id, &self.shape, self.places.len());
-            let tick = self.tick;
-            *self = Self {
-                near,
-                tick,
-                ..fresh
-            };
+            (self.places, self.faces) = (fresh.places, fresh.faces);
+            self.near = near;
         }
     }
 
@@ -268,9 +268,17 @@ impl EdgeMemory {
         known.separation.room(&self.shape, view, near)
     }
 
-    /// Clears the positions, but not the shape's outward directions, which depend only on the shape.
+    /// The planes nearest to the particles of the cloth's `blocks`, with the current tick.
+    pub fn planes(&mut self, blocks: usize) -> (&mut [Planes], u32) {
+        self.planes.resize(blocks, Planes::UNKNOWN);
+        (&mut self.planes, self.tick)
+    }
+
+    /// Clears the positions, but not what is reused in a tick: the shape's outward directions, and the planes of touching
+    /// particles.
     #[cfg(test)]
     pub fn forget(&mut self) {
+        self.planes.iter_mut().for_each(Planes::forget);
         for place in &mut self.places {
             place.separation = Separation::UNKNOWN;
         }
@@ -296,9 +304,9 @@ impl EdgeMemory {
 
 /// The memories of all colliders with edges.
 #[derive(Debug, Default, Clone)]
-pub(super) struct EdgeMemories(Vec<EdgeMemory>);
+pub(super) struct ShapeMemories(Vec<ShapeMemory>);
 
-impl EdgeMemories {
+impl ShapeMemories {
     /// Clears everything for another cloth.
     pub fn clear(&mut self) {
         self.0.clear();
@@ -307,7 +315,7 @@ impl EdgeMemories {
     /// Clears the positions.
     #[cfg(test)]
     pub fn forget(&mut self) {
-        self.0.iter_mut().for_each(EdgeMemory::forget);
+        self.0.iter_mut().for_each(ShapeMemory::forget);
     }
 
     /// Begins a tick.
@@ -328,16 +336,16 @@ impl EdgeMemories {
 
     /// The memory of a collider's edges, for a cloth with this number of particles. IDs change when colliders come and
     /// go: a memory that was not used in this tick may belong to the same shape under another ID.
-    pub fn of(&mut self, id: usize, shape: &ColliderShape, particles: usize) -> &mut EdgeMemory {
+    pub fn of(&mut self, id: usize, shape: &ColliderShape, particles: usize) -> &mut ShapeMemory {
         let is_of =
-            |memory: &EdgeMemory| memory.shape == *shape && memory.places.len() == particles;
+            |memory: &ShapeMemory| memory.shape == *shape && memory.places.len() == particles;
         let mut all = self.0.iter();
         let same = all.position(|memory| memory.id == id && is_of(memory));
         let mut all = self.0.iter();
         let known = same.or_else(|| all.position(|memory| memory.age > 0 && is_of(memory)));
         let at = known.unwrap_or(self.0.len());
         if known.is_none() {
-            self.0.push(EdgeMemory::new(id, shape, particles));
+            self.0.push(ShapeMemory::new(id, shape, particles));
         }
         let memory = &mut self.0[at];
         (memory.id, memory.age) = (id, 0);
