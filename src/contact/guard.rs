@@ -108,7 +108,7 @@ fn measure(
         for lane in 0..LANES {
             let far = squares[lane].sqrt() * (1.0 + 1.0e-6);
             moved[block][lane] = far;
-            most[lane] = if far <= most[lane] { most[lane] } else { far };
+            most[lane] = larger(most[lane], far);
         }
     }
     most.into_iter().fold(0.0, larger)

@@ -31,7 +31,6 @@ mod particle;
 mod planes;
 mod pushing;
 mod response;
-mod separation;
 mod shape;
 mod shape_cache;
 mod shape_memory;

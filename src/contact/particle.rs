@@ -218,7 +218,10 @@ fn push_left(
             if let Some((hit_normal, hit_depth)) = sweep.hit(position, displacement) {
                 (normal, depth) = (hit_normal, hit_depth);
             }
-            contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));
+            // Which others of a complex shape are tested depends on what is remembered.
+            if depth > 0.0 || !collider.shape.is_geometry() {
+                contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));
+            }
             if depth <= 0.0 {
                 continue;
             }

@@ -168,9 +168,20 @@ impl ColliderShape {
         }
     }
 
-    /// Its outward direction where it is nearest to a point of its frame.
-    pub(super) fn normal_at(&self, point: Vec3) -> Vec3 {
-        self.nearest(Isometry3d::IDENTITY, point).normal
+    /// Distance at which the plane of a face of a box keeps points of its frame off it (m), at least; negative if none
+    /// does. Other shapes have no such planes.
+    #[inline]
+    pub(super) fn gap(&self, points: &[Vec3]) -> f32 {
+        let Self::Cuboid { half_size } = *self else {
+            return f32::NEG_INFINITY;
+        };
+        let (mut lower, mut upper) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for &point in points {
+            (lower, upper) = (lower.min(point), upper.max(point));
+        }
+        let beyond = (lower - half_size).max(-half_size - upper);
+        // Smaller by rounding errors.
+        beyond.max_element() - 1.0e-6 * (half_size + upper.abs().max(lower.abs())).max_element()
     }
 
     /// The surface nearest to a point of its frame, probably within a distance (m).

@@ -3,6 +3,8 @@
 //! Every entry is a statement about positions: a triangle whose corners have moved less than its room since the test
 //! touches no edge, however much time has passed. So it stays valid from tick to tick, and a lost entry is found again.
 
+use std::f32::consts::SQRT_2;
+
 use bevy::math::Vec3;
 
 use super::{
@@ -11,7 +13,6 @@ use super::{
     edge_room::EdgeRoom,
     fan_view::FanView,
     planes::Planes,
-    separation::Separation,
 };
 use crate::cloth::Fan;
 
@@ -25,6 +26,10 @@ const SAME_SIDE: f32 = 0.1;
 /// Below this fraction of the slack, room counts as none, and for this many sub-steps it is then not measured.
 const HARDLY: f32 = 0.02;
 const RESTS: u32 = 12;
+
+/// An edge that has passed through a triangle counts up to half of the longest side from it, and no side is longer than
+/// twice the distance of the farthest corner: so it is at most √2 times that away from the particle.
+const THROUGH: f32 = SQRT_2 - 1.0;
 
 /// No faces are remembered.
 const NONE: u32 = u32::MAX;
@@ -52,10 +57,13 @@ pub(super) struct ShapeMemory {
     pub tick: u32,
 }
 
-/// What is known of a particle's triangles.
+/// The position of a particle when the nearest edge was searched for.
 #[derive(Debug, Clone, Copy)]
 struct KnownPlace {
-    separation: Separation,
+    /// Position in the shape's frame (m); NaN before the first test.
+    at: Vec3,
+    /// Lower bound of the distance to the nearest edge (m).
+    distance: f32,
     /// First of its faces, if they are known.
     faces: u32,
 }
@@ -237,7 +245,8 @@ impl ShapeMemory {
     /// An empty memory for a collider's shape and a number of particles.
     fn new(id: usize, shape: &ColliderShape, particles: usize) -> Self {
         let place = KnownPlace {
-            separation: Separation::UNKNOWN,
+            at: Vec3::NAN,
+            distance: 0.0,
             faces: NONE,
         };
         Self {
@@ -264,8 +273,22 @@ impl ShapeMemory {
 
     /// Displacement of everything before one of a particle's triangles, in view, can touch an edge (m).
     pub fn room(&mut self, particle: u32, view: &FanView, near: Nearness) -> f32 {
+        let extent = view.extent;
+        let reach = near.reach.max(THROUGH * extent);
         let known = &mut self.places[particle as usize];
-        known.separation.room(&self.shape, view, near)
+        let room = |distance: f32| (distance - extent) * (1.0 - 1.0e-4) - reach;
+        let moved = view.own.distance(known.at);
+        let left = room(known.distance - moved);
+        let is_near = room(known.distance + moved) <= 0.0;
+        if left > 0.0 || is_near {
+            return left;
+        }
+        // Far enough to skip it for a while.
+        let within = 8.0 * extent + 2.0 * reach;
+        known.at = view.own;
+        let distance = self.shape.edge_distance(view.own, within, near.smooth);
+        known.distance = distance.min(within);
+        room(known.distance)
     }
 
     /// The planes nearest to the particles of the cloth's `blocks`, with the current tick.
@@ -280,7 +303,7 @@ impl ShapeMemory {
     pub fn forget(&mut self) {
         self.planes.iter_mut().for_each(Planes::forget);
         for place in &mut self.places {
-            place.separation = Separation::UNKNOWN;
+            place.at = Vec3::NAN;
         }
         for face in &mut self.faces {
             face.corners = [Vec3::NAN; 3];
@@ -288,8 +311,8 @@ impl ShapeMemory {
         }
     }
 
-    /// What is known around a particle, and of each of its faces.
-    pub fn faces(&mut self, particle: u32, fan: Fan) -> (Separation, &mut [KnownFace]) {
+    /// The memory of the faces that a particle owns.
+    pub fn faces(&mut self, particle: u32, fan: Fan) -> &mut [KnownFace] {
         let known = &mut self.places[particle as usize];
         if known.faces == NONE {
             known.faces = self.faces.len() as u32;
@@ -297,8 +320,7 @@ impl ShapeMemory {
             self.faces.resize(end, KnownFace::UNKNOWN);
         }
         let first = known.faces as usize;
-        let faces = &mut self.faces[first..first + fan.faces.len()];
-        (known.separation, faces)
+        &mut self.faces[first..first + fan.faces.len()]
     }
 }
 

@@ -27,7 +27,7 @@ use crate::{
 
 /// Triangles touch edges at this fraction of a particle's radius. Where cloth lies flat on a face, particles keep it
 /// farther off, even if they sink in by a little before they are pushed out.
-const LOW: f32 = 0.5;
+const LOW: f32 = 0.8;
 /// Smallest distance of triangles from edges for particles without a radius, in spacings.
 const SKIN: f32 = 0.02;
 /// Edges are remembered up to this fraction of a spacing beyond a triangle's reach, or up to the reach itself.
@@ -202,22 +202,20 @@ impl OffEdges<'_, '_> {
         let (motion, near) = (self.motion, self.motion.near);
         self.view
             .look(particles.blocks(), fan.corners, &motion.frame);
-        let room = memory.room(candidate.particle, self.view, near);
+        let shape = &motion.collider.shape;
+        let gap = shape.gap(self.view.corners()) - near.reach;
+        let room = gap.max(memory.room(candidate.particle, self.view, near));
         if room > motion.swept(self.view.speed) {
             return room;
         }
-        let (separation, faces) = memory.faces(candidate.particle, fan);
+        let faces = memory.faces(candidate.particle, fan);
         let mut room = f32::INFINITY;
         for (&face, known) in fan.faces.iter().zip(faces) {
             let triangle = self.view.triangle(face);
             let speed = motion.swept(self.view.speed);
-            let above = separation.room_of(triangle, self.view, near);
+            let gap = shape.gap(&triangle) - near.reach;
             let moved = known.moved(triangle);
-            let left = if above > 0.0 {
-                above
-            } else {
-                known.room - moved
-            };
+            let left = gap.max(known.room - moved);
             if left > speed {
                 room = room.min(left);
                 continue;
@@ -230,7 +228,7 @@ impl OffEdges<'_, '_> {
             };
             let contact = match hit {
                 Some(_) => None,
-                None => known.deepest(&motion.collider.shape, triangle, near, moved),
+                None => known.deepest(shape, triangle, near, moved),
             };
             let given = &mut self.found.given;
             let (pushed, depth) = if let Some((centre, normal)) = hit {

@@ -11,8 +11,9 @@ use super::{MovingCollider, NarrowPhase, candidates::Ranges};
 pub struct ContactPoint {
     /// Index of the particle. If the collider is tested against triangles, the particle that owns them.
     pub particle: u32,
-    /// Its largest depth inside the collider in the tick (m). If it stayed outside, minus its smallest distance; −∞ if
-    /// it was not tested, because it is pinned or far away.
+    /// Its largest depth inside the collider in the tick (m). If it stayed outside, minus its smallest distance. −∞ if it
+    /// was not tested, because it is pinned or far away, and outside of shapes other than balls, capsules, planes and
+    /// boxes.
     pub depth: f32,
 }
 

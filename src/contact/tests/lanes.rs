@@ -7,6 +7,7 @@ use super::random::{Random, cases};
 use crate::{
     cloth::{Block, ClothParticles, LANES, Layout},
     contact::{
+        ClothCollider, ColliderShape,
         candidates::ContactBlock,
         cells::{Place, push_cells, push_cells_baseline},
         eight::{Cells, nearest},
@@ -16,6 +17,7 @@ use crate::{
             Cuboid, HalfSpace, LaneMotion, Round, Sums, push_cuboid, push_cuboid_baseline,
             push_half_space, push_half_space_baseline, push_round, push_round_baseline,
         },
+        planes::{Frame, Planes, find_planes, push_planes, push_planes_baseline},
         response::PushOut,
         triangle,
     },
@@ -53,6 +55,7 @@ fn motion(random: &mut Random) -> LaneMotion {
         swing: 0.0,
         particle_radius: 0.01,
         most: 0.2,
+        deepest: 0.2,
         tolerance: 4.0e-4,
         is_swept: true,
         friction: random.part(),
@@ -60,6 +63,16 @@ fn motion(random: &mut Random) -> LaneMotion {
         odometer: 0.0,
         thickness: 0.4,
     }
+}
+
+/// A solid of flat faces.
+fn hull() -> ColliderShape {
+    let corner = |index: u32| {
+        let side = |bit: u32| if index & bit == 0 { -0.5 } else { 0.5 };
+        Vec3::new(side(1), side(2), side(4))
+    };
+    let hull = ClothCollider::convex_hull([0, 1, 2, 3, 4, 5, 6, 7].map(corner));
+    hull.scaled(Vec3::ONE).expect("a valid collider")
 }
 
 /// All numbers, as bits.
@@ -105,6 +118,28 @@ proptest! {
         alike!(push_round, push_round_baseline, &round);
         alike!(push_cuboid, push_cuboid_baseline, &cuboid);
         alike!(push_half_space, push_half_space_baseline, &half_space);
+    }
+
+    /// Of particles, by the planes nearest to them.
+    #[test]
+    fn particles_are_pushed_off_planes_alike_on_all_machines(seed in any::<u64>()) {
+        let mut random = Random(seed);
+        let (blocks, mut contacts) = blocks(&mut random);
+        for contact in &mut contacts {
+            contact.lanes = u8::MAX;
+        }
+        let motion = motion(&mut random);
+        let (hull, frame) = (hull(), Frame::new(random.pose(0.2), 0.05, 1));
+        let mut planes = [Planes::UNKNOWN; BLOCKS as usize];
+        find_planes(&blocks, &contacts, &mut planes, (&hull, &frame, &motion));
+        let (mut others, mut met) = (blocks.clone(), contacts.clone());
+        let mut sums = [Sums::default(); 2];
+        push_planes(&mut others, &mut met, &planes, (&frame, &motion), &mut sums[0]);
+        let widest = bits(&others, &met, &sums[0]);
+        let (mut others, mut met) = (blocks, contacts);
+        push_planes_baseline(&mut others, &mut met, &planes, (&frame, &motion), &mut sums[1]);
+        prop_assert!(widest == bits(&others, &met, &sums[1]));
+        prop_assert!(sums[0].deepest.iter().any(|&depth| depth > 0.0));
     }
 
     /// Of a grid's triangles, and of friction at their particles.
@@ -200,6 +235,7 @@ fn what_is_clear_is_left_alone_for_as_long_as_it_may() {
         slide: [0.0; 3],
         spin: [0.0; 3],
         most: 0.25,
+        deepest: 0.25,
         ..motion(&mut random)
     };
     let mut sums = Sums::default();
