@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, Isometry3d, Quat, Vec3};
 
-use super::{BodyMass, MovingCollider, carriers::Carriers, response};
+use super::{BodyMass, MovingCollider, carriers::Carriers, moving::ColliderSubstep, response};
 use crate::{
     cloth::{Block, ClothParticles, LANES},
     solver::SubStep,
@@ -222,7 +222,11 @@ impl Body {
         others: impl Iterator<Item = &'a Carriers> + Clone,
     ) {
         let (pose, centre) = self.centre(way, coming.start());
-        let surface = |place: Vec3| way.surface_motion(coming, pose.translation.into(), place);
+        let motion = ColliderSubstep {
+            origin: pose.translation.into(),
+            ..way.in_substep(coming)
+        };
+        let surface = |place: Vec3| motion.surface_motion(place);
         let body = (&self.mass, centre);
         self.carriers.lend(particles, body, surface, others);
     }

@@ -1,9 +1,10 @@
 //! Tests of a cloth triangle against a collider, at the end of a sub-step and on the way there.
 
-use bevy::math::Vec3;
+use bevy::math::{Isometry3d, Vec3};
 
 use super::{
     MovingCollider,
+    moving::ColliderSubstep,
     response::first_touch,
     touch::ContactSettings,
     triangle::{NearestPoints, at, nearest},
@@ -11,7 +12,6 @@ use super::{
 use crate::{
     cloth::{Block, ClothParticles, Slot, Surface},
     hierarchy::{Core, Probe},
-    solver::SubStep,
 };
 
 /// A triangle's particles at the end of a sub-step.
@@ -64,38 +64,23 @@ pub(super) struct Touching {
     pub is_swept: bool,
 }
 
-/// A collider's motion in a sub-step, for tests against triangles.
-pub(super) struct SubstepMotion<'a> {
-    pub collider: &'a MovingCollider,
+/// A ball's or a capsule's motion in a sub-step, for tests against triangles.
+pub(super) struct CoreMotion<'a> {
+    pub of: ColliderSubstep<'a>,
     pub settings: &'a ContactSettings,
-    pub substep: SubStep,
     /// Distance from the core at which it touches (m).
     pub reach: f32,
-    /// Its displacement in the sub-step, and the largest displacement of any point of its core by rotation alone (m).
-    pub slide: Vec3,
-    pub swing: f32,
     /// The core at the end of the sub-step.
     pub at_end: [Vec3; 2],
-    /// The collider's origin then.
-    pub origin: Vec3,
 }
 
-impl<'a> SubstepMotion<'a> {
-    pub fn new(
-        collider: &'a MovingCollider,
-        settings: &'a ContactSettings,
-        substep: SubStep,
-    ) -> Self {
-        let count = substep.count as f32;
+impl<'a> CoreMotion<'a> {
+    pub fn new(of: ColliderSubstep<'a>, settings: &'a ContactSettings) -> Self {
         Self {
-            collider,
+            of,
             settings,
-            substep,
-            reach: collider.shape.radius().unwrap_or(0.0) + settings.particle_radius,
-            slide: (collider.to - Vec3::from(collider.from.translation)) / count,
-            swing: collider.swing() / count,
-            at_end: segment(collider, substep.end()),
-            origin: collider.pose_at(substep.end()).translation.into(),
+            reach: of.collider.shape.radius().unwrap_or(0.0) + settings.particle_radius,
+            at_end: segment(of.collider, of.pose),
         }
     }
 
@@ -108,7 +93,7 @@ impl<'a> SubstepMotion<'a> {
         for &Slot { block, lane } in corners {
             let block = &blocks[block];
             edge = edge.max(block.position(lane).distance_squared(first));
-            speed = speed.max(block.displacement(lane).distance_squared(self.slide));
+            speed = speed.max(block.displacement(lane).distance_squared(self.of.slide));
         }
         let [start, end] = self.at_end;
         let along = end - start;
@@ -122,22 +107,14 @@ impl<'a> SubstepMotion<'a> {
         let near = (1.0 + 4.0e-3) * self.reach + edge.sqrt();
         let rounding = 1.0e-5 * (near + first.length());
         let clear = first.distance(nearest) - near - rounding;
-        [clear, speed.sqrt() + self.swing]
-    }
-
-    /// Displacement of the collider's surface in the sub-step, at a point (m).
-    pub fn surface_motion(&self, point: Vec3) -> Vec3 {
-        self.collider
-            .surface_motion(self.substep, self.origin, point)
+        [clear, speed.sqrt() + self.of.swing]
     }
 
     /// The contact of a triangle at the end of the sub-step or at its first hit, and its penetration along the normal
     /// (m), negative outside.
     pub fn touch(&self, corners: &Corners) -> Option<(Touching, f32)> {
         let reach = self.reach;
-        let count = self.substep.count as f32;
-        let begin = self.substep.index as f32 / count;
-        let segment = |part: f32| segment(self.collider, begin + part / count);
+        let segment = |part: f32| segment(self.of.collider, self.of.pose_at(part));
         let touching = |nearest: NearestPoints, [start, end]: [Vec3; 2], triangle: [Vec3; 3]| {
             let (normal, distance) = match nearest.offset.length() {
                 0.0 => (face_normal(triangle, start.midpoint(end)), 0.0),
@@ -154,10 +131,7 @@ impl<'a> SubstepMotion<'a> {
                 distance,
             )
         };
-        let speeds = corners
-            .displacements
-            .map(|displacement| (displacement - self.slide).length());
-        let speed = speeds[0].max(speeds[1]).max(speeds[2]) + self.swing;
+        let speed = self.of.speed(corners.displacements);
         let nearest_at_end = nearest(corners.positions, self.at_end);
         // Most candidates are too far away for a hit.
         let distance = nearest_at_end.offset.length();
@@ -176,8 +150,7 @@ impl<'a> SubstepMotion<'a> {
                 let (mut touch, _) = touching(nearest(triangle, core), core, triangle);
                 touch.is_swept = speed > reach / 2.0;
                 // The position that it would have, had it moved on with the surface.
-                let way = [begin + part / count, self.substep.end()];
-                (touch.centre, touch.normal) = self.collider.carry(way, touch.centre, touch.normal);
+                (touch.centre, touch.normal) = self.of.carry(part, touch.centre, touch.normal);
                 let offset = at(corners.positions, touch.weights) - touch.centre;
                 let depth = reach - touch.normal.dot(offset);
                 if depth > 0.0 {
@@ -190,9 +163,9 @@ impl<'a> SubstepMotion<'a> {
     }
 }
 
-/// The core of a ball or a capsule at a fraction of the tick.
-fn segment(collider: &MovingCollider, part: f32) -> [Vec3; 2] {
-    match collider.shape.core(collider.pose_at(part)).0 {
+/// The core of a ball or a capsule in a pose.
+fn segment(collider: &MovingCollider, pose: Isometry3d) -> [Vec3; 2] {
+    match collider.shape.core(pose).0 {
         Core::Point(centre) => [centre; 2],
         Core::Segment(ends) => ends,
         Core::Cuboid { .. } | Core::HalfSpace { .. } => [Vec3::NAN; 2],

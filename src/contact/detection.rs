@@ -17,7 +17,7 @@ use super::{
     candidates::Candidates,
     carriers::Carriers,
     embedded::Embedding,
-    faces::{Pushed, ResumePoint, SubstepMotion},
+    faces::{CoreMotion, Pushed, ResumePoint},
     kept::Kept,
     particle::{lane_motion, push_particles},
     pushing::Pushing,
@@ -315,13 +315,14 @@ impl Detection {
             let has_edges = collider.shape.has_edges();
             // The guard measures the cloth.
             let odometer = if has_edges { 0.0 } else { self.odometer } + touch.traveled;
-            let travel = (collider.travel() + collider.swing()) / substep.count as f32;
+            let motion = collider.in_substep(substep);
+            let travel = motion.slide.length() + motion.swing;
             let shares = match touch.narrow_phase {
                 NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
                 _ => 1.0,
             };
             let push_out = PushOut::new(particles.substep(), travel, shares);
-            let lanes = lane_motion(collider, settings, substep, push_out, odometer);
+            let lanes = lane_motion(&motion, settings, push_out, odometer);
             let is_measured = touch.area == 0.0
                 || (substep.index + 1).is_multiple_of(MEASURED_EACH)
                 || substep.index + 1 == substep.count;
@@ -341,15 +342,14 @@ impl Detection {
                         candidates: &all[touch.of.candidates.clone()],
                         contacts,
                         first,
-                        collider,
+                        motion,
                         settings,
-                        substep,
                         lanes: &lanes,
                     };
                     (push_shape(particles, &mut pushing, known, edges), None)
                 }
                 NarrowPhase::Triangles => {
-                    let motion = SubstepMotion::new(collider, settings, substep);
+                    let motion = CoreMotion::new(motion, settings);
                     let mut pushed = Pushed::new(
                         &all[touch.of.candidates.clone()],
                         (contacts, first),
@@ -362,15 +362,14 @@ impl Detection {
                     (pushed.found, stopped)
                 }
                 NarrowPhase::Auto | NarrowPhase::Particles => {
-                    let at = (collider, settings, substep);
+                    let at = (&motion, settings);
                     (
                         push_particles(particles, contacts, (&mut [], 0), at, &lanes),
                         None,
                     )
                 }
             };
-            let of = (touch.id, &touch.collider);
-            let embedded = (self.embedding).push(particles, blocks, of, settings, substep);
+            let embedded = (self.embedding).push(particles, blocks, (touch.id, &motion), settings);
             let found = found.and(&embedded);
             let mut given = found.given;
             if let Some(body) = body

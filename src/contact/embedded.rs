@@ -5,15 +5,13 @@ use bevy::math::Vec3;
 use super::{
     ColliderShape, MovingCollider,
     candidates::{Candidate, ContactBlock},
+    moving::ColliderSubstep,
     nearest::Nearest,
     particle::Found,
     response::MAX_STEPS,
     touch::ContactSettings,
 };
-use crate::{
-    cloth::{ClothParticles, LANES, Slot, Surface},
-    solver::SubStep,
-};
+use crate::cloth::{ClothParticles, LANES, Slot, Surface};
 
 /// The nearest ways out tear a piece of cloth if they stretch a side of a triangle by more than this factor.
 const TEARS: f32 = 1.1;
@@ -338,9 +336,8 @@ impl Embedding {
         &self,
         particles: &mut ClothParticles,
         contacts: &mut [ContactBlock],
-        (id, collider): (usize, &MovingCollider),
+        (id, of): (usize, &ColliderSubstep),
         settings: &ContactSettings,
-        substep: SubStep,
     ) -> Found {
         let mut found = Found::default();
         let own = self.of(id);
@@ -349,14 +346,13 @@ impl Embedding {
         }
         let seconds = particles.substep();
         let (fastest, most) = (SPEED * seconds, ACCELERATION * seconds * seconds);
-        let pose = collider.pose_at(substep.end());
-        let centre = Vec3::from(pose.translation);
         for one in own {
             let block = &mut particles.blocks_mut()[one.slot.block];
             let lane = one.slot.lane;
             block.set_inverse_mass(lane, one.inverse_mass);
             let (place, displacement) = (block.position(lane), block.displacement(lane));
-            let depth = settings.particle_radius - collider.shape.nearest(pose, place).distance;
+            let nearest = of.collider.shape.nearest(of.pose, place);
+            let depth = settings.particle_radius - nearest.distance;
             let in_contacts = one.place as usize;
             if let Some(contact) = contacts.get_mut(in_contacts / LANES) {
                 let known = &mut contact.depth[in_contacts % LANES];
@@ -367,15 +363,14 @@ impl Embedding {
             }
             found.deepest = found.deepest.max(depth);
             let Some(way) = one.way else { continue };
-            let surface = collider.surface_motion(substep, centre, place);
-            let relative = displacement - surface;
+            let relative = displacement - of.surface_motion(place);
             let slowed = relative * (1.0 - seconds / (seconds + SLOWED_FOR));
             let faster = (fastest.min(depth) - slowed.dot(way)).clamp(0.0, most);
             let push = slowed + way * faster - relative;
             let pushed = place + push;
             block.set_position(lane, pushed);
             block.set_displacement(lane, displacement + push);
-            (found.given).add(pushed - centre, push, one.inverse_mass);
+            (found.given).add(pushed - of.origin, push, one.inverse_mass);
             found.farthest_push = found.farthest_push.max(push.length());
         }
         found

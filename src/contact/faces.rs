@@ -4,7 +4,7 @@ mod one;
 
 use bevy::math::Vec3;
 
-pub(super) use super::corners::SubstepMotion;
+pub(super) use super::corners::CoreMotion;
 use super::{
     ColliderShape,
     candidates::{Candidate, ContactBlock},
@@ -87,11 +87,11 @@ impl<'a> Pushed<'a> {
     pub fn push(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&SubstepMotion, &LaneMotion),
+        (motion, lanes): (&CoreMotion, &LaneMotion),
         from: ResumePoint,
     ) -> Option<ResumePoint> {
         let mut resume = from;
-        let ball = match motion.collider.shape {
+        let ball = match motion.of.collider.shape {
             ColliderShape::Ball { .. } if particles.layout().rows > 1 => Some(motion.at_end[0]),
             _ => None,
         };
@@ -123,7 +123,7 @@ impl<'a> Pushed<'a> {
     fn push_each(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&SubstepMotion, &LaneMotion),
+        (motion, lanes): (&CoreMotion, &LaneMotion),
         resume: &mut ResumePoint,
     ) -> bool {
         let push_out = lanes.push_out;
@@ -197,7 +197,7 @@ impl<'a> Pushed<'a> {
     fn push_cells(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&SubstepMotion, &LaneMotion),
+        (motion, lanes): (&CoreMotion, &LaneMotion),
         centre: Vec3,
         resume: &mut ResumePoint,
     ) -> bool {
@@ -209,7 +209,7 @@ impl<'a> Pushed<'a> {
                 layout,
                 centre: centre.to_array(),
                 reach: motion.reach,
-                fastest: self.moved + motion.slide.length() + motion.swing,
+                fastest: self.moved + motion.of.slide.length() + motion.of.swing,
                 pushed: self.found.farthest_push,
                 room: self.room,
                 max_faces: self.max_faces,
@@ -255,7 +255,7 @@ impl<'a> Pushed<'a> {
     fn hold(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&SubstepMotion, &LaneMotion),
+        (motion, lanes): (&CoreMotion, &LaneMotion),
     ) {
         let [start, end] = motion.at_end;
         let along = end - start;

@@ -1,27 +1,9 @@
 //! A particle's triangles in the frame of a shape.
 
-use bevy::math::{Affine3A, Isometry3d, Vec3};
+use bevy::math::{Affine3A, Vec3};
 
+use super::moving::ColliderSubstep;
 use crate::cloth::{Block, Slot};
-
-/// A shape's motion in a sub-step, and its frame at the end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    to_local: Affine3A,
-    /// Displacement of the shape, and the largest one of any of its points by rotation (m).
-    slide: Vec3,
-    swing: f32,
-}
-
-impl Frame {
-    pub fn new(to_local: Isometry3d, slide: Vec3, swing: f32) -> Self {
-        Self {
-            to_local: to_local.into(),
-            slide,
-            swing,
-        }
-    }
-}
 
 /// The corners of a particle's triangles.
 #[derive(Debug, Default, Clone)]
@@ -37,22 +19,28 @@ pub(super) struct FanView {
 }
 
 impl FanView {
-    /// Reads the corners; the first is the particle itself.
+    /// Reads the corners in the frame of a shape in motion; the first is the particle itself.
     #[inline]
-    pub fn look(&mut self, blocks: &[Block], corners: &[Slot], frame: &Frame) {
+    pub fn look(
+        &mut self,
+        blocks: &[Block],
+        corners: &[Slot],
+        to_local: &Affine3A,
+        motion: &ColliderSubstep,
+    ) {
         self.corners.resize(corners.len(), Vec3::ZERO);
         let (mut speed, mut extent) = (0.0_f32, 0.0_f32);
         let mut own = None;
         for (known, &Slot { block, lane }) in self.corners.iter_mut().zip(corners) {
             let block = &blocks[block];
-            *known = frame.to_local.transform_point3(block.position(lane));
+            *known = to_local.transform_point3(block.position(lane));
             let own = *own.get_or_insert(*known);
             extent = extent.max(known.distance_squared(own));
-            let moved = block.displacement(lane) - frame.slide;
+            let moved = block.displacement(lane) - motion.slide;
             speed = speed.max(moved.length_squared());
         }
         self.own = own.unwrap_or(Vec3::NAN);
-        (self.extent, self.speed) = (extent.sqrt(), speed.sqrt() + frame.swing);
+        (self.extent, self.speed) = (extent.sqrt(), speed.sqrt() + motion.swing);
     }
 
     /// The corners (m).

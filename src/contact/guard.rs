@@ -58,9 +58,14 @@ impl Guard {
         room - self.moved(around) + self.carried
     }
 
-    /// Whether nothing moves as far as `until` before the next search.
+    /// Whether nothing moves as far as `until` before the next search, unless it is outrun.
     pub fn is_clear_for_good(&self, until: f32) -> bool {
         until > self.limit
+    }
+
+    /// Whether a push has moved a particle farther than was expected before the next search.
+    pub fn is_outrun(&self) -> bool {
+        self.most + self.carried > self.limit
     }
 
     /// Whether none of the particles have moved as far as `until`, nor the surface. False for NaN.

@@ -140,15 +140,67 @@ impl MovingCollider {
         distance(self.start()).max(distance(self.to)) + cloth.radius()
     }
 
-    /// Displacement of its surface in one sub-step, at a point (m).
-    pub(super) fn surface_motion(&self, substep: SubStep, centre: Vec3, point: Vec3) -> Vec3 {
-        let count = substep.count as f32;
-        (self.to - self.start()) / count + (self.turn / count).cross(point - centre)
+    /// Its motion in a sub-step.
+    pub(super) fn in_substep(&self, substep: SubStep) -> ColliderSubstep<'_> {
+        let (count, pose) = (substep.count as f32, self.pose_at(substep.end()));
+        ColliderSubstep {
+            collider: self,
+            substep,
+            pose,
+            origin: pose.translation.into(),
+            slide: (self.to - self.start()) / count,
+            turn: self.turn / count,
+            swing: self.swing() / count,
+        }
     }
 
     /// The surface nearest to a point at a fraction of the tick.
     #[inline]
     pub(super) fn nearest(&self, part: f32, point: Vec3) -> Nearest {
         self.shape.nearest(self.pose_at(part), point)
+    }
+}
+
+/// A collider's motion in a sub-step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ColliderSubstep<'a> {
+    pub collider: &'a MovingCollider,
+    pub substep: SubStep,
+    /// Its pose at the end, and its origin then (m).
+    pub pose: Isometry3d,
+    pub origin: Vec3,
+    /// Its displacement (m) and rotation (rad).
+    pub slide: Vec3,
+    pub turn: Vec3,
+    /// Largest displacement of any point of its core by rotation alone (m).
+    pub swing: f32,
+}
+
+impl ColliderSubstep<'_> {
+    /// Displacement of its surface at a point (m).
+    pub fn surface_motion(&self, point: Vec3) -> Vec3 {
+        self.slide + self.turn.cross(point - self.origin)
+    }
+
+    /// The largest change of its distance from something that moves by these displacements (m).
+    pub fn speed<const N: usize>(&self, displacements: [Vec3; N]) -> f32 {
+        let each = displacements.map(|displacement| (displacement - self.slide).length_squared());
+        each.into_iter().fold(0.0, f32::max).sqrt() + self.swing
+    }
+
+    /// The fraction of the tick at a fraction of the sub-step.
+    pub fn passed(&self, part: f32) -> f32 {
+        (self.substep.index as f32 + part) / self.substep.count as f32
+    }
+
+    /// Its pose at a fraction of the sub-step.
+    pub fn pose_at(&self, part: f32) -> Isometry3d {
+        self.collider.pose_at(self.passed(part))
+    }
+
+    /// Carries a point (m) and a normal along with it from a fraction of the sub-step to the end.
+    pub fn carry(&self, part: f32, point: Vec3, normal: Vec3) -> (Vec3, Vec3) {
+        let way = [self.passed(part), self.substep.end()];
+        self.collider.carry(way, point, normal)
     }
 }

@@ -3,18 +3,16 @@
 use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
 
 use super::{
-    ColliderShape, MovingCollider,
+    ColliderShape,
     candidates::ContactBlock,
     lanes::{Cuboid, HalfSpace, LaneMotion, Round, Sums, push_cuboid, push_half_space, push_round},
+    moving::ColliderSubstep,
     planes::{Frame, Planes, find_planes, push_planes},
     response::{Contact, Given, PushOut, first_touch},
     shape::Nearest,
     touch::ContactSettings,
 };
-use crate::{
-    cloth::{Block, ClothParticles, LANES, Lanes},
-    solver::SubStep,
-};
+use crate::cloth::{Block, ClothParticles, LANES, Lanes};
 
 /// The result of a sub-step's contacts.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
@@ -63,14 +61,14 @@ pub(super) fn push_particles(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
     (planes, tick): (&mut [Planes], u32),
-    (collider, settings, substep): (&MovingCollider, &ContactSettings, SubStep),
+    (of, settings): (&ColliderSubstep, &ContactSettings),
     motion: &LaneMotion,
 ) -> Found {
     let mut found = Found::default();
     let mut sums = Sums::default();
-    let pose = collider.pose_at(substep.end());
+    let pose = of.pose;
     let blocks = particles.blocks_mut();
-    let shape = &collider.shape;
+    let shape = &of.collider.shape;
     if shape.is_geometry() {
         let frame = Frame::new(pose, motion.particle_radius, tick);
         find_planes(blocks, contacts, planes, (shape, &frame, motion));
@@ -80,34 +78,30 @@ pub(super) fn push_particles(
     }
     found.add(&sums);
     if sums.left > 0 {
-        push_left(
-            particles, contacts, collider, settings, substep, motion, &mut found,
-        );
+        push_left(particles, contacts, (of, settings), motion, &mut found);
     }
     found
 }
 
 /// Constants for all blocks.
 pub(super) fn lane_motion(
-    collider: &MovingCollider,
+    of: &ColliderSubstep,
     settings: &ContactSettings,
-    substep: SubStep,
     push_out: PushOut,
     odometer: f32,
 ) -> LaneMotion {
-    let count = substep.count as f32;
-    let particle_radius = settings.particle_radius;
-    let thickness = collider.shape.thickness() + particle_radius;
+    let (shape, particle_radius) = (&of.collider.shape, settings.particle_radius);
+    let thickness = shape.thickness() + particle_radius;
     // Its nearest point is right at any depth.
-    let [deepest, known] = match collider.shape.is_geometry() {
+    let [deepest, known] = match shape.is_geometry() {
         true => [f32::INFINITY; 2],
         false => [thickness / 2.0, thickness],
     };
     LaneMotion {
-        origin: Vec3::from(collider.pose_at(substep.end()).translation).to_array(),
-        slide: slide(collider, substep).to_array(),
-        spin: (collider.turn / count).to_array(),
-        swing: collider.swing() / count,
+        origin: of.origin.to_array(),
+        slide: of.slide.to_array(),
+        spin: of.turn.to_array(),
+        swing: of.swing,
         particle_radius,
         most: thickness / 2.0,
         deepest,
@@ -173,11 +167,6 @@ fn push_lanes(
     }
 }
 
-/// Displacement of the collider in the sub-step (m).
-fn slide(collider: &MovingCollider, substep: SubStep) -> Vec3 {
-    (collider.to - Vec3::from(collider.from.translation)) / substep.count as f32
-}
-
 /// Distance that counts as a touch where something moves fast (m).
 fn tolerance(thickness: f32) -> f32 {
     if thickness.is_finite() {
@@ -191,17 +180,12 @@ fn tolerance(thickness: f32) -> f32 {
 fn push_left(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
-    collider: &MovingCollider,
-    settings: &ContactSettings,
-    substep: SubStep,
+    (of, settings): (&ColliderSubstep, &ContactSettings),
     motion: &LaneMotion,
     found: &mut Found,
 ) {
     let particle_radius = settings.particle_radius;
-    let pose = collider.pose_at(substep.end());
-    let centre = Vec3::from(pose.translation);
-    let thickness = motion.thickness;
-    let sweep = Sweep::new(collider, substep, settings);
+    let (shape, thickness) = (&of.collider.shape, motion.thickness);
     for contact in contacts.iter_mut().filter(|contact| contact.left != 0) {
         for lane in (0..LANES).filter(|lane| contact.left & (1 << lane) != 0) {
             let block = &particles.blocks()[contact.block as usize];
@@ -213,23 +197,19 @@ fn push_left(
             let Nearest {
                 distance,
                 mut normal,
-            } = collider.shape.nearest(pose, position);
+            } = shape.nearest(of.pose, position);
             let mut depth = particle_radius - distance;
-            if let Some((hit_normal, hit_depth)) = sweep.hit(position, displacement) {
+            if let Some((hit_normal, hit_depth)) = hit(of, settings, [position, displacement]) {
                 (normal, depth) = (hit_normal, hit_depth);
             }
             // Which others of a complex shape are tested depends on what is remembered.
-            if depth > 0.0 || !collider.shape.is_geometry() {
+            if depth > 0.0 || !shape.is_geometry() {
                 contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));
             }
             if depth <= 0.0 {
                 continue;
             }
-            let surface = collider.surface_motion(
-                substep,
-                centre,
-                position + normal * (depth - particle_radius),
-            );
+            let surface = of.surface_motion(position + normal * (depth - particle_radius));
             let push = Contact {
                 normal,
                 depth,
@@ -242,7 +222,7 @@ fn push_left(
             block.set_displacement(lane, displacement + push.displacement);
             found
                 .given
-                .add(pushed - centre, push.displacement, inverse_mass);
+                .add(pushed - of.origin, push.displacement, inverse_mass);
             found.deepest = found.deepest.max(depth.min(thickness));
             found.farthest_push = found.farthest_push.max(push.position.length());
             found.area += contact.area[lane];
@@ -251,62 +231,32 @@ fn push_left(
     }
 }
 
-/// The swept test of a sub-step, for motion so large that the test at its end may come too late.
-struct Sweep<'a> {
-    collider: &'a MovingCollider,
-    substep: SubStep,
-    particle_radius: f32,
-    thickness: f32,
-    /// Displacement of the collider in the sub-step, and the largest one of any of its points by rotation (m).
-    slide: Vec3,
-    swing: f32,
-    is_on: bool,
-}
-
-impl<'a> Sweep<'a> {
-    fn new(collider: &'a MovingCollider, substep: SubStep, settings: &ContactSettings) -> Self {
-        Self {
-            collider,
-            substep,
-            particle_radius: settings.particle_radius,
-            thickness: collider.shape.thickness() + settings.particle_radius,
-            slide: slide(collider, substep),
-            swing: collider.swing() / substep.count as f32,
-            is_on: settings.is_swept,
-        }
+/// The normal where a particle from outside hit the collider, and its displacement along it to stay in front of the
+/// surface there (m): for motion so large that the test at the end of the sub-step may come too late.
+fn hit(
+    motion: &ColliderSubstep,
+    settings: &ContactSettings,
+    [position, displacement]: [Vec3; 2],
+) -> Option<(Vec3, f32)> {
+    let radius = settings.particle_radius;
+    let thickness = motion.collider.shape.thickness() + radius;
+    let speed = motion.speed([displacement]);
+    // A particle that moved less than half of the thickness is still on its original side.
+    if !settings.is_swept || speed <= thickness / 2.0 || !speed.is_finite() {
+        return None;
     }
-
-    /// The normal where a particle from outside hit the collider, and its displacement along it to stay in front of the
-    /// surface there (m).
-    #[inline]
-    fn hit(&self, position: Vec3, displacement: Vec3) -> Option<(Vec3, f32)> {
-        let speed = (displacement - self.slide).length() + self.swing;
-        // A particle that moved less than half of the thickness is still on its original side.
-        if !self.is_on || speed <= self.thickness / 2.0 || !speed.is_finite() {
-            return None;
-        }
-        let start = position - displacement;
-        let begin = self.substep.index as f32 / self.substep.count as f32;
-        let nearest = |part: f32| {
-            let passed = begin + part / self.substep.count as f32;
-            self.collider.nearest(passed, start + displacement * part)
-        };
-        // For a particle this deep already, the original side is unknown.
-        if nearest(0.0).distance < self.particle_radius - self.thickness / 2.0 {
-            return None;
-        }
-        let tolerance = tolerance(self.thickness);
-        let part = first_touch(speed, self.particle_radius, tolerance, |part| {
-            nearest(part).distance
-        })?;
-        let Nearest { distance, normal } = nearest(part);
-        // The position that it would have, had it moved on with the surface: in front of every convex shape.
-        let passed = begin + part / self.substep.count as f32;
-        let way = [passed, self.substep.end()];
-        let (carried, normal) = self
-            .collider
-            .carry(way, start + displacement * part, normal);
-        let depth = normal.dot(carried - position) + (self.particle_radius - distance);
-        (depth > 0.0).then_some((normal, depth))
+    let start = position - displacement;
+    let place = |part: f32| start + displacement * part;
+    let nearest = |part: f32| motion.collider.nearest(motion.passed(part), place(part));
+    // For a particle this deep already, the original side is unknown.
+    if nearest(0.0).distance < radius - thickness / 2.0 {
+        return None;
     }
+    let distance = |part| nearest(part).distance;
+    let part = first_touch(speed, radius, tolerance(thickness), distance)?;
+    let Nearest { distance, normal } = nearest(part);
+    // The position that it would have, had it moved on with the surface: in front of every convex shape.
+    let (carried, normal) = motion.carry(part, place(part), normal);
+    let depth = normal.dot(carried - position) + (radius - distance);
+    (depth > 0.0).then_some((normal, depth))
 }

@@ -56,8 +56,13 @@ impl Planes {
         let known = Vec3::from([0, 1, 2].map(|axis| self.at[axis][lane]));
         let within = self.distance[lane].abs() + local.distance(known);
         let nearest = shape.nearest_within(local, within * (1.0 + 1.0e-3) + 1.0e-3);
-        self.distance[lane] = nearest.distance;
         let is_touching = nearest.distance <= frame.reach;
+        let beside = if is_touching {
+            f32::INFINITY
+        } else {
+            shape.distance_beside_ground(local)
+        };
+        self.distance[lane] = nearest.distance.min(beside);
         self.same[lane] = if is_touching { frame.same } else { -1.0 };
         let (at, normal) = (local.to_array(), nearest.normal.to_array());
         for axis in 0..3 {

@@ -1,12 +1,12 @@
 //! Particles near a shape with edges.
 
 use super::{
-    MovingCollider,
     candidates::{Candidate, ContactBlock},
     lanes::LaneMotion,
+    moving::ColliderSubstep,
     touch::ContactSettings,
 };
-use crate::{cloth::Slot, solver::SubStep};
+use crate::cloth::Slot;
 
 /// The particles near a shape with edges, at the end of a sub-step.
 pub(super) struct Pushing<'a> {
@@ -14,9 +14,8 @@ pub(super) struct Pushing<'a> {
     /// Their blocks; `first` is the index of the first among all.
     pub contacts: &'a mut [ContactBlock],
     pub first: usize,
-    pub collider: &'a MovingCollider,
+    pub motion: ColliderSubstep<'a>,
     pub settings: &'a ContactSettings,
-    pub substep: SubStep,
     pub lanes: &'a LaneMotion,
 }
 

@@ -184,6 +184,15 @@ impl ColliderShape {
         beyond.max_element() - 1.0e-6 * (half_size + upper.abs().max(lower.abs())).max_element()
     }
 
+    /// Distance of a point of its frame beside a height field, which is solid below its surface but nowhere else (m):
+    /// having moved by this, the point may be deep inside. Infinite if it is beside none.
+    pub(super) fn distance_beside_ground(&self, point: Vec3) -> f32 {
+        match self {
+            Self::Geometry(geometry) => geometry.distance_beside_ground(point),
+            _ => f32::INFINITY,
+        }
+    }
+
     /// The surface nearest to a point of its frame, probably within a distance (m).
     pub(super) fn nearest_within(&self, point: Vec3, within: f32) -> Nearest {
         match self {

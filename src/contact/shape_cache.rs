@@ -103,7 +103,7 @@ pub(super) fn push_shape(
         by_edges = push_off_edges(particles, pushing, surface, of, by, &motion);
     }
     known.guard.tell(pushing.contacts);
-    let at = (pushing.collider, pushing.settings, pushing.substep);
+    let at = (&pushing.motion, pushing.settings);
     let planes = match known.memory {
         Some(memory) => memory.planes(particles.layout().blocks()),
         None => (&mut [][..], 0),

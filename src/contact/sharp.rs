@@ -3,15 +3,15 @@
 //! A triangle whose corners are all outside a solid can only intersect it where one of the solid's edges passes through
 //! the triangle. So only edges are tested beside the particles, and nothing for flat surfaces.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::math::{Affine3A, Vec3};
 
 use super::{
-    MovingCollider,
     candidates::Candidate,
     corners::Corners,
     edge_contact::{EdgeContact, nearest_edge},
-    fan_view::{FanView, Frame},
+    fan_view::FanView,
     guard::Guard,
+    moving::ColliderSubstep,
     particle::Found,
     pushing::Pushing,
     response::{Contact, Given, PushOut, first_touch},
@@ -20,10 +20,7 @@ use super::{
     touch::ContactSettings,
     triangle::at,
 };
-use crate::{
-    cloth::{ClothParticles, Fan, Surface},
-    solver::SubStep,
-};
+use crate::cloth::{ClothParticles, Fan, Surface};
 
 /// Triangles touch edges at this fraction of a particle's radius. Where cloth lies flat on a face, particles keep it
 /// farther off, even if they sink in by a little before they are pushed out.
@@ -39,36 +36,27 @@ const MAX_SHARE: f32 = 2.0;
 
 /// A shape's motion in a sub-step, for tests of triangles against its edges.
 pub(super) struct EdgeMotion<'a> {
-    pub collider: &'a MovingCollider,
-    pub settings: &'a ContactSettings,
-    pub substep: SubStep,
+    of: ColliderSubstep<'a>,
+    settings: &'a ContactSettings,
     /// Distance at which an edge touches (m).
     reach: f32,
     /// A triangle that moves farther in the sub-step may have passed an edge (m).
     fast: f32,
     near: Nearness,
-    pose: Isometry3d,
-    frame: Frame,
-    /// Its displacement in the sub-step, and the largest one of any of its points by rotation (m).
-    slide: Vec3,
-    swing: f32,
+    /// To its frame at the end.
+    to_local: Affine3A,
     push_out: PushOut,
 }
 
 impl<'a> EdgeMotion<'a> {
     /// On a cloth with a spacing (m), in a tick.
     pub fn new(pushing: &Pushing<'a>, spacing: f32, tick: u32) -> Self {
-        let (collider, settings, substep) = (pushing.collider, pushing.settings, pushing.substep);
-        let count = substep.count as f32;
-        let pose = collider.pose_at(substep.end());
+        let settings = pushing.settings;
         let skin = SKIN * spacing;
         let reach = (LOW * settings.particle_radius).max(skin);
-        let slide = (collider.to - Vec3::from(collider.from.translation)) / count;
-        let swing = collider.swing() / count;
         Self {
-            collider,
+            of: pushing.motion,
             settings,
-            substep,
             reach,
             fast: settings.particle_radius.max(skin) / 2.0,
             near: Nearness {
@@ -77,10 +65,7 @@ impl<'a> EdgeMotion<'a> {
                 smooth: (SIDE * spacing).powi(2) / (6.0 * settings.particle_radius),
                 tick,
             },
-            pose,
-            frame: Frame::new(pose.inverse(), slide, swing),
-            slide,
-            swing,
+            to_local: pushing.motion.pose.inverse().into(),
             push_out: pushing.lanes.push_out,
         }
     }
@@ -97,23 +82,19 @@ impl<'a> EdgeMotion<'a> {
 
     /// The nearest edge at the first contact of a fast triangle.
     fn hit(&self, corners: &Corners) -> Option<(Vec3, Vec3)> {
-        let speeds = corners.displacements;
-        let speeds = speeds.map(|displacement| (displacement - self.slide).length());
-        let speed = self.swept(speeds[0].max(speeds[1]).max(speeds[2]) + self.swing);
+        let speed = self.swept(self.of.speed(corners.displacements));
         if speed == 0.0 {
             return None;
         }
-        let count = self.substep.count as f32;
-        let begin = self.substep.index as f32 / count;
         let around = speed + self.reach;
         let closest = |part: f32| {
-            let pose = self.collider.pose_at(begin + part / count);
+            let pose = self.of.pose_at(part);
             let triangle = [0, 1, 2].map(|corner| {
                 let gone = corners.displacements[corner] * (1.0 - part);
                 pose.inverse() * (corners.positions[corner] - gone)
             });
             let (distance, offset, centre) =
-                nearest_edge(&self.collider.shape, triangle, around, self.near.smooth);
+                nearest_edge(&self.of.collider.shape, triangle, around, self.near.smooth);
             (distance, pose.rotation * offset, pose * centre)
         };
         // For an edge that cut the triangle already, the original side is unknown.
@@ -123,9 +104,7 @@ impl<'a> EdgeMotion<'a> {
         let tolerance = 1.0e-2 * self.reach;
         let part = first_touch(speed, self.reach, tolerance, |part| closest(part).0)?;
         let (_, offset, centre) = closest(part);
-        let way = [begin + part / count, self.substep.end()];
-        let (centre, normal) = self.collider.carry(way, centre, offset.normalize_or_zero());
-        Some((centre, normal))
+        Some(self.of.carry(part, centre, offset.normalize_or_zero()))
     }
 }
 
@@ -148,30 +127,36 @@ pub(super) fn push_off_edges(
         found: Found::default(),
         farthest: 0.0,
     };
-    let mut kept = 0;
-    for at in 0..near_edges.len() {
-        let number = near_edges[at];
-        if number == NONE {
+    let count = near_edges.len();
+    let (mut at, mut kept, mut all) = (0, 0, None);
+    loop {
+        // After a push that nobody expected, all others are looked at, too.
+        let index = all.unwrap_or_else(|| {
+            let number = near_edges.get(at).copied().unwrap_or(NONE);
+            (number as usize).saturating_sub(first)
+        });
+        if index >= count {
             break;
         }
-        near_edges[kept] = number;
-        let index = number as usize - first;
+        at += 1;
         let candidate = edges.pushing.candidates[index];
         let fan = candidate.fan(surface.fans());
-        if fan.faces.is_empty() {
-            continue;
+        if !fan.faces.is_empty() && !edges.guard.is_clear(clear[index], fan.corners) {
+            let room = edges.push(particles, candidate, fan, memory);
+            clear[index] = edges.guard.until(room, fan.corners);
         }
-        kept += 1;
-        if edges.guard.is_clear(clear[index], fan.corners) {
-            continue;
-        }
-        let room = edges.push(particles, candidate, fan, memory);
-        clear[index] = edges.guard.until(room, fan.corners);
-        if edges.guard.is_clear_for_good(clear[index]) {
-            kept -= 1;
+        if all.is_some() || edges.guard.is_outrun() {
+            all = Some(index + 1);
+        } else if !fan.faces.is_empty() && !edges.guard.is_clear_for_good(clear[index]) {
+            near_edges[kept] = (first + index) as u32;
+            kept += 1;
         }
     }
-    if let Some(end) = near_edges.get_mut(kept) {
+    if all.is_some() {
+        for (number, index) in near_edges.iter_mut().zip(first..) {
+            *number = index as u32;
+        }
+    } else if let Some(end) = near_edges.get_mut(kept) {
         *end = NONE;
     }
     edges.found.farthest_push = edges.farthest * surface.max_faces() as f32;
@@ -200,9 +185,13 @@ impl OffEdges<'_, '_> {
         memory: &mut ShapeMemory,
     ) -> f32 {
         let (motion, near) = (self.motion, self.motion.near);
-        self.view
-            .look(particles.blocks(), fan.corners, &motion.frame);
-        let shape = &motion.collider.shape;
+        self.view.look(
+            particles.blocks(),
+            fan.corners,
+            &motion.to_local,
+            &motion.of,
+        );
+        let shape = &motion.of.collider.shape;
         let gap = shape.gap(self.view.corners()) - near.reach;
         let room = gap.max(memory.room(candidate.particle, self.view, near));
         if room > motion.swept(self.view.speed) {
@@ -246,7 +235,8 @@ impl OffEdges<'_, '_> {
                 self.guard.note(slot, pushed);
             }
             let blocks = particles.blocks();
-            self.view.look(blocks, fan.corners, &motion.frame);
+            self.view
+                .look(blocks, fan.corners, &motion.to_local, &motion.of);
             let (index, slot) = self.pushing.place(&candidate);
             self.pushing.note_depth(index, slot.lane, depth);
             self.found.deepest = self.found.deepest.max(depth);
@@ -269,7 +259,7 @@ fn push_point(
         normal,
         depth,
     } = *contact;
-    let normal = motion.pose.rotation * normal;
+    let normal = motion.of.pose.rotation * normal;
     let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
     let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
     // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
@@ -278,10 +268,8 @@ fn push_point(
         return (0.0, depth);
     }
     let point = at(corners.positions, weights) + normal * (depth - motion.reach);
-    let origin = Vec3::from(motion.pose.translation);
-    let surface = motion
-        .collider
-        .surface_motion(motion.substep, origin, point);
+    let origin = motion.of.origin;
+    let surface = motion.of.surface_motion(point);
     let push = Contact {
         normal,
         depth,
@@ -311,7 +299,7 @@ fn push_in_front(
     motion: &EdgeMotion,
     given: &mut Given,
 ) -> (f32, f32) {
-    let origin = Vec3::from(motion.pose.translation);
+    let origin = motion.of.origin;
     let (mut farthest, mut deepest) = (0.0_f32, 0.0_f32);
     for corner in 0..3 {
         let position = corners.positions[corner];
@@ -320,9 +308,7 @@ fn push_in_front(
             continue;
         }
         let point = position + normal * (depth - motion.reach);
-        let surface = motion
-            .collider
-            .surface_motion(motion.substep, origin, point);
+        let surface = motion.of.surface_motion(point);
         let push = Contact {
             normal,
             depth,

@@ -306,10 +306,10 @@ fn a_body_that_is_released_in_contact_is_not_pushed_on() {
     let before = velocity(&app, ball);
     tick(&mut app, 20);
     let after = velocity(&app, ball);
-    assert_eq!(
-        (before.linear, before.angular),
-        (after.linear, after.angular)
-    );
+    assert_eq!(before.linear, after.linear);
+    // Rapier rounds an angular velocity as the body turns: by two roundings in each of 20 ticks.
+    let most = 40.0 * f32::EPSILON * before.angular.length();
+    assert!(before.angular.distance(after.angular) <= most);
     assert_eq!(
         app.world().get::<ClothPush>(ball),
         Some(&ClothPush::default())

@@ -6,7 +6,7 @@ use super::{Pushed, ResumePoint};
 use crate::{
     cloth::{ClothParticles, Slot},
     contact::{
-        corners::{Corners, SubstepMotion, Touching},
+        corners::{CoreMotion, Corners, Touching},
         eight::MAX_SHARE,
         response::{Contact, PushOut},
         triangle::{at, cap},
@@ -18,7 +18,7 @@ impl Pushed<'_> {
     pub(super) fn push_one(
         &mut self,
         particles: &mut ClothParticles,
-        motion: &SubstepMotion,
+        motion: &CoreMotion,
         (contact, lane): (usize, usize),
         slots: [Slot; 3],
         push_out: &PushOut,
@@ -59,7 +59,7 @@ impl Pushed<'_> {
         particles: &mut ClothParticles,
         corners: &Corners,
         (touch, depth): (&Touching, f32),
-        motion: &SubstepMotion,
+        motion: &CoreMotion,
         push_out: &PushOut,
     ) -> f32 {
         let (weights, normal) = (touch.weights, touch.normal);
@@ -72,7 +72,7 @@ impl Pushed<'_> {
         }
         let point =
             at(corners.positions, weights) + normal * (depth - motion.settings.particle_radius);
-        let surface = motion.surface_motion(point);
+        let surface = motion.of.surface_motion(point);
         let [momentum, far] = Contact {
             normal,
             depth,
@@ -98,7 +98,7 @@ impl Pushed<'_> {
         particles: &mut ClothParticles,
         corners: &Corners,
         touch: &Touching,
-        motion: &SubstepMotion,
+        motion: &CoreMotion,
         push_out: &PushOut,
     ) -> f32 {
         let normal = touch.normal;
@@ -110,7 +110,7 @@ impl Pushed<'_> {
                 continue;
             }
             let point = position + normal * (depth - motion.settings.particle_radius);
-            let surface = motion.surface_motion(point);
+            let surface = motion.of.surface_motion(point);
             let contact = Contact {
                 normal,
                 depth,
@@ -131,14 +131,14 @@ impl Pushed<'_> {
         corners: &Corners,
         corner: usize,
         [way, momentum]: [Vec3; 2],
-        motion: &SubstepMotion,
+        motion: &CoreMotion,
     ) -> f32 {
         let slot = corners.slots[corner];
         let pushed = corners.push(corner, particles, [way, momentum]);
         let weight = corners.inverse_masses[corner];
         self.found
             .given
-            .add(pushed - motion.origin, momentum, weight);
+            .add(pushed - motion.of.origin, momentum, weight);
         let block = slot.block as u32;
         if let Ok(at) = self
             .contacts

@@ -116,6 +116,13 @@ impl ColliderGeometry {
         found
     }
 
+    /// Distance of a point beside its height fields, if it is beside any (m); else infinite.
+    pub(super) fn distance_beside_ground(&self, point: Vec3) -> f32 {
+        let solids = self.0.solids.iter();
+        let each = solids.map(|solid| solid.distance_beside_ground(point));
+        each.fold(f32::INFINITY, f32::min)
+    }
+
     /// One of its edges.
     #[inline]
     pub(super) fn edge(&self, index: u32) -> SharpEdge {

@@ -63,6 +63,19 @@ impl Solid {
         }
     }
 
+    /// Distance of a point beside the ground (m): beyond its extent, nothing is below it. Infinite for others.
+    pub fn distance_beside_ground(&self, point: Vec3) -> f32 {
+        let SolidKind::Mesh(mesh, MeshSides::Ground) = &self.kind else {
+            return f32::INFINITY;
+        };
+        let (local, bounds) = (self.pose.inverse_transform_point(point), mesh.local_aabb());
+        let within = local.clamp(bounds.mins, bounds.maxs).with_y(local.y);
+        match local.distance(within) {
+            0.0 => f32::INFINITY,
+            distance => distance,
+        }
+    }
+
     /// The surface nearest to a point; of a mesh only within a distance (m).
     pub fn nearest(&self, point: Vec3, within: f32) -> Option<Nearest> {
         let local = self.pose.inverse_transform_point(point);
