@@ -23,6 +23,7 @@ pub(super) fn edge(half: Vec3, index: u32) -> SharpEdge {
         outward: outward * std::f32::consts::FRAC_1_SQRT_2,
         radius: 0.0,
         round: 0.0,
+        part: 1.0,
     }
 }
 

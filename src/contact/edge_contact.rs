@@ -67,7 +67,7 @@ impl<'a> EdgeTest<'a> {
     pub fn see(&mut self, edge: &SharpEdge) {
         let [begin, end] = edge.ends;
         let [from, to] = [self.plane.place(begin), self.plane.place(end)];
-        let near = self.reach + edge.radius;
+        let near = self.reach * edge.part + edge.radius;
         let is_on_one_side = from.height * to.height > 0.0;
         // Entirely on one side, and too far away.
         if is_on_one_side && from.height.abs().min(to.height.abs()) > near {
@@ -303,12 +303,13 @@ fn within(weights: Vec3) -> [f32; 3] {
 }
 
 /// The distance of the nearest edge from a triangle in the shape's frame, if it is within a distance (m), with the
-/// vector from the edge and its nearest point. Edges of a surface with a radius of at least `smooth` (m) are none.
+/// vector from the edge and its nearest point: farther, by what it touches at less than the `reach` (m). Edges of a
+/// surface with a radius of at least `smooth` (m) are none.
 pub(super) fn nearest_edge(
     shape: &ColliderShape,
     triangle: [Vec3; 3],
     around: f32,
-    smooth: f32,
+    [reach, smooth]: [f32; 2],
 ) -> (f32, Vec3, Vec3) {
     let mut found = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO);
     shape.edges_near(
@@ -316,7 +317,7 @@ pub(super) fn nearest_edge(
         smooth,
         |_, edge: &SharpEdge| {
             let near = nearest(triangle, edge.ends);
-            let distance = near.offset.length() - edge.radius;
+            let distance = near.offset.length() - edge.radius + reach * (1.0 - edge.part);
             if distance < found.0 {
                 let [from, to] = edge.ends;
                 let outwards = near.offset.normalize_or_zero() * edge.radius;

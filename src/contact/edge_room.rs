@@ -95,7 +95,7 @@ impl EdgeRoom {
     fn apart(&self, edge: &SharpEdge) -> f32 {
         let [begin, end] = edge.ends;
         let ends = [self.plane.place(begin), self.plane.place(end)];
-        let near = self.reach + edge.radius;
+        let near = self.reach * edge.part + edge.radius;
         let along = end - begin;
         let square = along.length_squared();
         let rise = (ends[0].height - ends[1].height).abs();

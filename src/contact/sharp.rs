@@ -93,8 +93,12 @@ impl<'a> EdgeMotion<'a> {
                 let gone = corners.displacements[corner] * (1.0 - part);
                 pose.inverse() * (corners.positions[corner] - gone)
             });
-            let (distance, offset, centre) =
-                nearest_edge(&self.of.collider.shape, triangle, around, self.near.smooth);
+            let (distance, offset, centre) = nearest_edge(
+                &self.of.collider.shape,
+                triangle,
+                around,
+                [self.reach, self.near.smooth],
+            );
             (distance, pose.rotation * offset, pose * centre)
         };
         // For an edge that cut the triangle already, the original side is unknown.

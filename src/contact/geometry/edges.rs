@@ -10,6 +10,12 @@ use parry3d::{
 /// Below this angle (sine), two faces have no edge between them.
 const SHARP: f32 = 1.0e-3;
 
+/// From this sine of half the angle between the normals of its faces on, an edge touches at the full distance; below, at a
+/// fraction in proportion, and at this one at least. A side of a triangle of length l across an edge of half an angle φ,
+/// with its ends at a distance r off the faces, is still r − l/2 tan φ off the edge.
+const SHARP_ENOUGH: f32 = 0.5;
+const LEAST_PART: f32 = 0.4;
+
 /// An edge of a shape, or the axis of a rounded part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::contact) struct SharpEdge {
@@ -21,6 +27,9 @@ pub(in crate::contact) struct SharpEdge {
     pub radius: f32,
     /// Smallest radius of the round surface that it is a line of (m); 0 for a sharp edge.
     pub round: f32,
+    /// It touches at this fraction of the usual distance. Across a blunt edge, particles on its faces keep triangles off
+    /// by themselves.
+    pub part: f32,
 }
 
 /// The edges of a shape in a tree.
@@ -159,17 +168,18 @@ impl MeshEdges {
         };
         let sharp = self.edges().filter_map(|sides| {
             let ends = sides[0].vertices.map(|vertex| vertices[vertex as usize]);
-            let edge = |outward| {
+            let edge = |outward, part| {
                 Some(SharpEdge {
                     ends,
                     outward,
                     radius: 0.0,
                     round: 0.0,
+                    part,
                 })
             };
             let [a, b] = sides else {
                 // A border, or an edge where several sheets meet.
-                return edge(Vec3::ZERO);
+                return edge(Vec3::ZERO, 1.0);
             };
             let mut normals = [normal(a.face), normal(b.face)];
             if a.is_forward == b.is_forward {
@@ -181,13 +191,19 @@ impl MeshEdges {
                 return None;
             }
             if !has_inside {
-                return edge(Vec3::ZERO);
+                return edge(Vec3::ZERO, 1.0);
             }
             // At a convex edge, the other face lies behind this one.
             let beyond = corners(b.face).map(|corner| normals[0].dot(corner - ends[0]));
             let sticks_out = beyond.iter().sum::<f32>() < 0.0;
             let outward = (normals[0] + normals[1]).normalize_or_zero();
-            if sticks_out { edge(outward) } else { None }
+            let sine = normals[0].distance(normals[1]) / 2.0;
+            let part = (sine / SHARP_ENOUGH).clamp(LEAST_PART, 1.0);
+            if sticks_out {
+                edge(outward, part)
+            } else {
+                None
+            }
         });
         sharp.collect()
     }

@@ -123,6 +123,7 @@ impl Parts {
             outward: Vec3::ZERO,
             radius,
             round: 0.0,
+            part: 1.0,
         };
         self.add_edges(pose, &[line], 0.0);
     }
@@ -132,7 +133,7 @@ impl Parts {
             ends: edge.ends.map(|end| pose.transform_point(end)),
             outward: pose.rotation * edge.outward,
             radius: edge.radius + radius,
-            round: edge.round,
+            ..*edge
         }));
     }
 
