@@ -115,14 +115,11 @@ fn stale(view: &View, planes: &Planes, frame: &Frame) -> u8 {
     for l in 0..LANES {
         let (_, [a, b, c]) = local(view, planes, frame, l);
         let moved = (a * a + b * b + c * c).sqrt();
-        // True for NaN.
-        let is_near = !(planes.distance[l] - moved > frame.reach);
-        let is_new = !(moved <= planes.same[l]);
-        is_stale[l] = if is_near & is_new & (view[W + l] > 0.0) {
-            1
-        } else {
-            0
-        };
+        // Both false for NaN.
+        let is_far = planes.distance[l] - moved > frame.reach;
+        let is_same = moved <= planes.same[l];
+        let is_free = view[W + l] > 0.0;
+        is_stale[l] = if !is_far & !is_same & is_free { 1 } else { 0 };
     }
     (0..LANES).fold(0, |mask, l| mask | (is_stale[l] as u8) << l)
 }
