@@ -13,16 +13,13 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Surface};
 
-/// No candidate.
-pub(super) const NONE: u32 = u32::MAX;
-
 /// The cache of each candidate of a tick. Only used for shapes with edges; empty in a scene without them.
 #[derive(Debug, Default, Clone)]
 pub(super) struct ShapeCache {
     /// Until when a candidate's triangles can touch no edge, by the guard.
     clear: Vec<f32>,
     /// In the places of each collider's candidates, those whose triangles may touch an edge before the next search, then
-    /// [`NONE`].
+    /// [`NONE`](super::sharp::NONE).
     near_edges: Vec<u32>,
     pub guard: Guard,
     /// Memories of edges, across ticks.

@@ -3,8 +3,6 @@
 //! Every entry is a statement about positions: a triangle whose corners have moved less than its room since the test
 //! touches no edge, however much time has passed. So it stays valid from tick to tick, and a lost entry is found again.
 
-use std::f32::consts::SQRT_2;
-
 use bevy::math::Vec3;
 
 use super::{
@@ -26,10 +24,6 @@ const SAME_SIDE: f32 = 0.1;
 /// Below this fraction of the slack, room counts as none, and for this many sub-steps it is then not measured.
 const HARDLY: f32 = 0.02;
 const RESTS: u32 = 12;
-
-/// An edge that has passed through a triangle counts up to half of the longest side from it, and no side is longer than
-/// twice the distance of the farthest corner: so it is at most √2 times that away from the particle.
-const THROUGH: f32 = SQRT_2 - 1.0;
 
 /// No faces are remembered.
 const NONE: u32 = u32::MAX;
@@ -273,8 +267,7 @@ impl ShapeMemory {
 
     /// Displacement of everything before one of a particle's triangles, in view, can touch an edge (m).
     pub fn room(&mut self, particle: u32, view: &FanView, near: Nearness) -> f32 {
-        let extent = view.extent;
-        let reach = near.reach.max(THROUGH * extent);
+        let (reach, extent) = (near.reach, view.extent);
         let known = &mut self.places[particle as usize];
         let room = |distance: f32| (distance - extent) * (1.0 - 1.0e-4) - reach;
         let moved = view.own.distance(known.at);

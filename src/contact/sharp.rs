@@ -15,7 +15,6 @@ use super::{
     particle::Found,
     pushing::Pushing,
     response::{Contact, Given, PushOut, first_touch},
-    shape_cache::NONE,
     shape_memory::{Nearness, ShapeMemory},
     touch::ContactSettings,
     triangle::at,
@@ -33,6 +32,9 @@ const SLACK: f32 = 0.25;
 const SIDE: f32 = 1.5;
 /// Largest push of a corner, relative to that of a triangle's point.
 const MAX_SHARE: f32 = 2.0;
+
+/// No candidate.
+pub(super) const NONE: u32 = u32::MAX;
 
 /// A shape's motion in a sub-step, for tests of triangles against its edges.
 pub(super) struct EdgeMotion<'a> {
