@@ -21,9 +21,9 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Fan, Surface};
 
-/// Triangles touch edges at this fraction of a particle's radius. Where cloth lies flat on a face, particles keep it
-/// farther off, even if they sink in by a little before they are pushed out.
-const LOW: f32 = 0.8;
+/// A triangle that the plane of a box's face keeps off by this fraction of the distance at which edges touch is not tested:
+/// particles keep it there, even if they sink in by a little before they are pushed out.
+const FLAT: f32 = 0.9;
 /// Smallest distance of triangles from edges for particles without a radius, in spacings.
 const SKIN: f32 = 0.02;
 /// Edges are remembered up to this fraction of a spacing beyond a triangle's reach, or up to the reach itself.
@@ -55,12 +55,12 @@ impl<'a> EdgeMotion<'a> {
     pub fn new(pushing: &Pushing<'a>, spacing: f32, tick: u32) -> Self {
         let settings = pushing.settings;
         let skin = SKIN * spacing;
-        let reach = (LOW * settings.particle_radius).max(skin);
+        let reach = settings.particle_radius.max(skin);
         Self {
             of: pushing.motion,
             settings,
             reach,
-            fast: settings.particle_radius.max(skin) / 2.0,
+            fast: reach / 2.0,
             near: Nearness {
                 reach,
                 slack: reach.max(SLACK * spacing),
@@ -198,7 +198,7 @@ impl OffEdges<'_, '_> {
             &motion.of,
         );
         let shape = &motion.of.collider.shape;
-        let gap = shape.gap(self.view.corners()) - near.reach;
+        let gap = shape.gap(self.view.corners()) - FLAT * near.reach;
         let room = gap.max(memory.room(candidate.particle, self.view, near));
         if room > motion.swept(self.view.speed) {
             return room;
@@ -208,7 +208,7 @@ impl OffEdges<'_, '_> {
         for (&face, known) in fan.faces.iter().zip(faces) {
             let triangle = self.view.triangle(face);
             let speed = motion.swept(self.view.speed);
-            let gap = shape.gap(&triangle) - near.reach;
+            let gap = shape.gap(&triangle) - FLAT * near.reach;
             let moved = known.moved(triangle);
             let left = gap.max(known.room - moved);
             if left > speed {

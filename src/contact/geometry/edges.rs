@@ -1,5 +1,7 @@
 //! The sharp edges of a shape: they may pass through a triangle of the cloth whose corners are all outside.
 
+use std::f32::consts::FRAC_1_SQRT_2;
+
 use bevy::math::Vec3;
 use parry3d::{
     bounding_volume::Aabb,
@@ -166,6 +168,7 @@ impl MeshEdges {
             let [a, b, c] = corners(face);
             (b - a).cross(c - a).normalize_or_zero()
         };
+        let is_tip = tips(vertices.len(), triangles, normal);
         let sharp = self.edges().filter_map(|sides| {
             let ends = sides[0].vertices.map(|vertex| vertices[vertex as usize]);
             let edge = |outward, part| {
@@ -198,7 +201,11 @@ impl MeshEdges {
             let sticks_out = beyond.iter().sum::<f32>() < 0.0;
             let outward = (normals[0] + normals[1]).normalize_or_zero();
             let sine = normals[0].distance(normals[1]) / 2.0;
-            let part = (sine / SHARP_ENOUGH).clamp(LEAST_PART, 1.0);
+            let ends_in_tip = sides[0].vertices.iter().any(|&end| is_tip[end as usize]);
+            let part = match ends_in_tip {
+                true => 1.0,
+                false => (sine / SHARP_ENOUGH).clamp(LEAST_PART, 1.0),
+            };
             if sticks_out {
                 edge(outward, part)
             } else {
@@ -207,4 +214,22 @@ impl MeshEdges {
         });
         sharp.collect()
     }
+}
+
+/// Which vertices are tips: a face there is turned from the mean normal of all by more than 45°.
+fn tips(vertices: usize, triangles: &[[u32; 3]], normal: impl Fn(u32) -> Vec3) -> Vec<bool> {
+    let mut means = vec![Vec3::ZERO; vertices];
+    for (face, corners) in (0..).zip(triangles) {
+        corners
+            .iter()
+            .for_each(|&corner| means[corner as usize] += normal(face));
+    }
+    let mut is_tip = vec![false; vertices];
+    for (face, corners) in (0..).zip(triangles) {
+        for &corner in corners {
+            let mean = means[corner as usize].normalize_or_zero();
+            is_tip[corner as usize] |= mean.dot(normal(face)) < FRAC_1_SQRT_2;
+        }
+    }
+    is_tip
 }

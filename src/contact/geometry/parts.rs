@@ -210,7 +210,7 @@ impl Parts {
             TypedShape::Cylinder(cylinder) => {
                 let (_, _, mut edges) = build(cylinder.to_trimesh(SIDES))?;
                 for edge in edges.iter_mut().filter(|edge| is_upright(edge)) {
-                    edge.round = cylinder.radius;
+                    (edge.round, edge.part) = (cylinder.radius, 1.0);
                 }
                 self.add_convex(pose, shape);
                 self.add_edges(pose, &edges, 0.0);
@@ -282,6 +282,7 @@ fn in_pieces(edges: &[SharpEdge], radius: f32) -> Vec<SharpEdge> {
                 pieces.push(SharpEdge {
                     ends: [tip.lerp(base, wide), tip.lerp(base, narrow)],
                     round: narrow * radius,
+                    part: 1.0,
                     ..edge
                 });
             }
