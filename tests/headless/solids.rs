@@ -377,21 +377,17 @@ fn blunt_ridges_do_not_show() {
         .into_iter()
         .enumerate()
     {
-        let low = -0.4 * degrees.to_radians().tan();
-        let corner = |index: usize| {
-            let side = |bit: usize| if index & bit == 0 { -0.4 } else { 0.4 };
-            let y = if index & 2 == 0 { low } else { low - 0.3 };
-            Vec3::new(side(1), y, side(4))
-        };
-        let mut points: Vec<Vec3> = (0..8).map(corner).collect();
+        let low = -0.6 * degrees.to_radians().tan();
+        let heights = [low, 0.0, low].repeat(3);
         let ridge = [Vec3::NEG_Z * 0.4, Vec3::Z * 0.4];
-        points.extend(ridge);
         let turned = Transform::from_rotation(Quat::from_rotation_y(0.7 * number as f32));
         let mut app = app();
         let sheet = Cloth::new(24, 24, 0.05);
         let cloth = app.world_mut().spawn(lying(sheet, 0.1)).id();
-        app.world_mut()
-            .spawn((ClothCollider::convex_hull(points), turned));
+        app.world_mut().spawn((
+            ClothCollider::heightfield(heights, 3, Vec3::new(1.2, 1.0, 1.2)),
+            turned,
+        ));
         let line = ridge.map(|end| turned.transform_point(end));
         let mut highest = f64::MIN;
         for _ in 0..64 {
