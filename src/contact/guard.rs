@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use super::candidates::ContactBlock;
-use crate::cloth::{Block, ClothParticles, LANES, Lanes, Slot, X};
+use crate::cloth::{Block, ClothParticles, DX, LANES, Lanes, Slot, X};
 
 /// Displacements since the search: of each particle, and of a shape's surface.
 ///
@@ -103,15 +103,19 @@ fn measure(
     for contact in contacts {
         let block = contact.block as usize;
         let (now, then) = (blocks[block].view(), origin[block].view());
-        let mut squares = [0.0_f32; LANES];
-        for axis in [X, X + LANES, X + 2 * LANES] {
+        // Swept tests begin where a particle's displacement does, even if pushes moved it on without one.
+        let (mut ends, mut starts) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+        for axis in 0..3 {
+            let (at, displacement) = (X + axis * LANES, DX + axis * LANES);
             for lane in 0..LANES {
-                let apart = now[axis + lane] - then[axis + lane];
-                squares[lane] += apart * apart;
+                let apart = now[at + lane] - then[at + lane];
+                let before = apart - now[displacement + lane];
+                ends[lane] += apart * apart;
+                starts[lane] += before * before;
             }
         }
         for lane in 0..LANES {
-            let far = squares[lane].sqrt() * (1.0 + 1.0e-6);
+            let far = larger(ends[lane], starts[lane]).sqrt() * (1.0 + 1.0e-6);
             moved[block][lane] = far;
             most[lane] = larger(most[lane], far);
         }

@@ -267,3 +267,11 @@ fn most_scenes_touch() {
     let [none, _, several] = counts;
     assert!(none < 60 && several > 40, "{counts:?}");
 }
+
+/// What pushes moved without a displacement begins its swept test elsewhere than it was: where that is across a box,
+/// it was missed.
+#[test]
+fn what_was_pushed_across_a_box_is_not_missed() {
+    let checked = check(13_676_649_775_561_366_714, NarrowPhase::Particles);
+    assert!(checked.is_ok(), "{checked:?}");
+}
