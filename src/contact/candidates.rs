@@ -43,9 +43,7 @@ pub(super) struct ContactBlock {
     /// Blocks of the same collider with the other corners of a grid's cells: to the right, below, and below to the
     /// right.
     pub around: [u32; 3],
-    /// Whether it is tested lane by lane in this sub-step.
-    pub is_left: bool,
-    /// Bit mask of the lanes that are.
+    /// Bit mask of the lanes that are tested one by one in this sub-step.
     pub left: u8,
     /// Until everything has moved this far, no lane can touch (m).
     pub clear_until: f32,
@@ -63,7 +61,6 @@ impl ContactBlock {
             block,
             lanes: 0,
             around: [NONE; 3],
-            is_left: false,
             left: 0,
             clear_until: f32::NEG_INFINITY,
             moved: 0.0,
@@ -129,7 +126,7 @@ impl Candidates {
             let Some(is_left_out) = is_left_out else {
                 continue;
             };
-            // All or none: the memory of a particle's faces relies on the same set.
+            // All or none.
             if !surface.faces().of(particle).iter().any(is_left_out) {
                 let fan = surface.fans().of(particle);
                 self.all[index].has_faces = !fan.faces.is_empty();

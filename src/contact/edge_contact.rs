@@ -302,32 +302,53 @@ fn within(weights: Vec3) -> [f32; 3] {
     (inside / inside.element_sum()).to_array()
 }
 
-/// The distance of the nearest edge from a triangle in the shape's frame, if it is within a distance (m), with the
-/// vector from the edge and its nearest point: farther, by what it touches at less than the `reach` (m). Edges of a
-/// surface with a radius of at least `smooth` (m) are none.
-pub(super) fn nearest_edge(
-    shape: &ColliderShape,
-    triangle: [Vec3; 3],
-    around: f32,
-    [reach, smooth]: [f32; 2],
-) -> (f32, Vec3, Vec3) {
-    let mut found = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO);
-    shape.edges_near(
-        bounds_of(triangle, around),
-        smooth,
-        |_, edge: &SharpEdge| {
-            let near = nearest(triangle, edge.ends);
-            let distance = near.offset.length() - edge.radius + reach * (1.0 - edge.part);
-            if distance < found.0 {
-                let [from, to] = edge.ends;
-                let outwards = near.offset.normalize_or_zero() * edge.radius;
-                found = (
-                    distance,
-                    near.offset - outwards,
-                    from.lerp(to, near.along) + outwards,
-                );
-            }
-        },
-    );
-    found
+/// The edge nearest to a triangle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearEdge {
+    /// Distance of the triangle (m): larger than it is by what the edge touches at less than the reach.
+    pub distance: f32,
+    /// Whether the triangle is nearer than half of the distance at which the edge touches.
+    pub is_close: bool,
+    /// From the edge's nearest point (m), and that point.
+    pub offset: Vec3,
+    pub centre: Vec3,
+}
+
+impl NearEdge {
+    /// The edge of a shape that a triangle in its frame comes to first, if one is within a distance (m). Edges touch
+    /// within `reach` (m). Those of a surface with a radius of at least `smooth` (m) are none.
+    pub fn of(
+        shape: &ColliderShape,
+        triangle: [Vec3; 3],
+        around: f32,
+        [reach, smooth]: [f32; 2],
+    ) -> Self {
+        let mut found = Self {
+            distance: f32::INFINITY,
+            is_close: false,
+            offset: Vec3::ZERO,
+            centre: Vec3::ZERO,
+        };
+        shape.edges_near(
+            bounds_of(triangle, around),
+            smooth,
+            |_, edge: &SharpEdge| {
+                let near = nearest(triangle, edge.ends);
+                let apart = near.offset.length() - edge.radius;
+                let touch = reach * edge.part;
+                let distance = apart + (reach - touch);
+                if distance < found.distance {
+                    let [from, to] = edge.ends;
+                    let outwards = near.offset.normalize_or_zero() * edge.radius;
+                    found = Self {
+                        distance,
+                        is_close: apart < touch / 2.0,
+                        offset: near.offset - outwards,
+                        centre: from.lerp(to, near.along) + outwards,
+                    };
+                }
+            },
+        );
+        found
+    }
 }

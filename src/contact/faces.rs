@@ -130,8 +130,8 @@ impl<'a> Pushed<'a> {
         for contact in self.contacts.iter_mut() {
             // False for NaN.
             let is_clear = lanes.odometer < contact.clear_until;
-            contact.is_left = !is_clear;
-            if contact.is_left {
+            contact.left = if is_clear { 0 } else { u8::MAX };
+            if !is_clear {
                 contact.clear_until = f32::INFINITY;
             }
         }
@@ -143,7 +143,7 @@ impl<'a> Pushed<'a> {
                 continue;
             }
             let now = lanes.odometer + self.pushed();
-            if !self.contacts[contact].is_left && now < self.contacts[contact].clear_until {
+            if self.contacts[contact].left == 0 && now < self.contacts[contact].clear_until {
                 continue;
             }
             let slot = Slot {

@@ -199,7 +199,8 @@ fn push_left(
                 mut normal,
             } = shape.nearest(of.pose, position);
             let mut depth = particle_radius - distance;
-            if let Some((hit_normal, hit_depth)) = hit(of, settings, [position, displacement]) {
+            let hit = hit(of, settings, [position, displacement]);
+            if let Some((hit_normal, hit_depth)) = hit {
                 (normal, depth) = (hit_normal, hit_depth);
             }
             // Which others of a complex shape are tested depends on what is remembered.
@@ -216,15 +217,20 @@ fn push_left(
                 relative: displacement - surface,
             }
             .push(settings.friction, &motion.push_out);
+            let mut pushed = position + push.position;
+            if hit.is_some() && shape.is_geometry() {
+                // Another part of it may be in front of the one that was hit.
+                let Nearest { distance, normal } = shape.nearest(of.pose, pushed);
+                pushed += normal * (particle_radius - distance).max(0.0);
+            }
             let block = &mut particles.blocks_mut()[contact.block as usize];
-            let pushed = position + push.position;
             block.set_position(lane, pushed);
             block.set_displacement(lane, displacement + push.displacement);
             found
                 .given
                 .add(pushed - of.origin, push.displacement, inverse_mass);
             found.deepest = found.deepest.max(depth.min(thickness));
-            found.farthest_push = found.farthest_push.max(push.position.length());
+            found.farthest_push = found.farthest_push.max(pushed.distance(position));
             found.area += contact.area[lane];
             found.volume += contact.area[lane] * depth.min(thickness);
         }

@@ -94,18 +94,38 @@ impl Frame {
     }
 }
 
-/// A particle's position in the shape's frame (m), and its displacement since its plane was found (m).
+/// A particle relative to its plane.
+struct Moved {
+    /// Its position in the shape's frame (m).
+    at: [f32; 3],
+    /// Its displacement since its plane was found (m), and the length of that.
+    offset: [f32; 3],
+    length: f32,
+    /// Lower bound of its distance (m).
+    least: f32,
+}
+
 #[inline(always)]
-fn local(view: &View, planes: &Planes, frame: &Frame, l: usize) -> ([f32; 3], [f32; 3]) {
+fn moved(view: &View, planes: &Planes, frame: &Frame, l: usize) -> Moved {
     let [cx, cy, cz] = frame.centre;
     let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
     let at = frame.axes.map(|[u, v, w]| x * u + y * v + z * w);
-    let moved = [
+    let offset = [
         at[0] - planes.at[0][l],
         at[1] - planes.at[1][l],
         at[2] - planes.at[2][l],
     ];
-    (at, moved)
+    let [a, b, c] = offset;
+    let length = (a * a + b * b + c * c).sqrt();
+    let distance = planes.distance[l];
+    // Smaller by rounding errors: whether a particle is tested must not depend on where its plane was found.
+    let size = at[0].abs() + at[1].abs() + at[2].abs() + distance.abs();
+    Moved {
+        at,
+        offset,
+        length,
+        least: distance - length * (1.0 + 1.0e-5) - 2.0e-6 * size,
+    }
 }
 
 /// Bit mask of the particles that may touch the shape, but not their last planes.
@@ -113,11 +133,10 @@ fn local(view: &View, planes: &Planes, frame: &Frame, l: usize) -> ([f32; 3], [f
 fn stale(view: &View, planes: &Planes, frame: &Frame) -> u8 {
     let mut is_stale = [0_u32; LANES];
     for l in 0..LANES {
-        let (_, [a, b, c]) = local(view, planes, frame, l);
-        let moved = (a * a + b * b + c * c).sqrt();
+        let moved = moved(view, planes, frame, l);
         // Both false for NaN.
-        let is_far = planes.distance[l] - moved > frame.reach;
-        let is_same = moved <= planes.same[l];
+        let is_far = moved.least > frame.reach;
+        let is_same = moved.length <= planes.same[l];
         let is_free = view[W + l] > 0.0;
         is_stale[l] = if !is_far & !is_same & is_free { 1 } else { 0 };
     }
@@ -132,7 +151,7 @@ pub(super) fn find_planes(
     (shape, frame, motion): (&ColliderShape, &Frame, &LaneMotion),
 ) {
     for contact in contacts {
-        if is_clear(contact, motion) {
+        if contact.lanes == 0 || is_clear(contact, motion) {
             continue;
         }
         let planes = &mut planes[contact.block as usize];
@@ -142,7 +161,7 @@ pub(super) fn find_planes(
         let view = blocks[contact.block as usize].view();
         let mask = stale(view, planes, frame) & contact.lanes;
         for lane in (0..LANES).filter(|lane| mask & (1 << lane) != 0) {
-            let (at, _) = local(view, planes, frame, lane);
+            let at = moved(view, planes, frame, lane).at;
             planes.find(lane, shape, at.into(), frame);
         }
     }
@@ -153,18 +172,18 @@ fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
     let mut near = Near::NONE;
     let [u, v, w] = frame.axes;
     for l in 0..LANES {
-        let (_, [a, b, c]) = local(view, planes, frame, l);
+        let moved = moved(view, planes, frame, l);
+        let [a, b, c] = moved.offset;
         let (na, nb, nc) = (
             planes.normal[0][l],
             planes.normal[1][l],
             planes.normal[2][l],
         );
-        let moved = (a * a + b * b + c * c).sqrt();
-        let is_same = moved <= planes.same[l];
+        let is_same = moved.length <= planes.same[l];
         let depth = frame.reach - (planes.distance[l] + na * a + nb * b + nc * c);
-        let bound = frame.reach - (planes.distance[l] - moved);
         near.depth[l] = if is_same { depth } else { f32::NEG_INFINITY };
-        near.bound[l] = if is_same { depth } else { bound };
+        // Another part may be nearer than the plane.
+        near.bound[l] = frame.reach - moved.least;
         near.offset[0][l] = u[0] * na + v[0] * nb + w[0] * nc;
         near.offset[1][l] = u[1] * na + v[1] * nb + w[1] * nc;
         near.offset[2][l] = u[2] * na + v[2] * nb + w[2] * nc;
@@ -195,7 +214,7 @@ pub(super) fn push_planes_baseline(
 ) {
     let mut own = *sums;
     for contact in contacts {
-        if is_clear(contact, motion) {
+        if contact.lanes == 0 || is_clear(contact, motion) {
             continue;
         }
         let block = contact.block as usize;

@@ -62,6 +62,14 @@ struct KnownPlace {
     faces: u32,
 }
 
+impl KnownPlace {
+    const UNKNOWN: Self = Self {
+        at: Vec3::NAN,
+        distance: 0.0,
+        faces: NONE,
+    };
+}
+
 /// Distance at which a triangle touches edges, and up to which edges are remembered (m).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearness {
@@ -238,16 +246,11 @@ fn farthest([a, b, c]: [Vec3; 3], [p, q, r]: [Vec3; 3]) -> f32 {
 impl ShapeMemory {
     /// An empty memory for a collider's shape and a number of particles.
     fn new(id: usize, shape: &ColliderShape, particles: usize) -> Self {
-        let place = KnownPlace {
-            at: Vec3::NAN,
-            distance: 0.0,
-            faces: NONE,
-        };
         Self {
             id,
             shape: shape.clone(),
             near: [0.0; 3],
-            places: vec![place; particles],
+            places: vec![KnownPlace::UNKNOWN; particles],
             faces: Vec::new(),
             planes: Vec::new(),
             age: 0,
@@ -255,12 +258,23 @@ impl ShapeMemory {
         }
     }
 
-    /// Clears everything if triangles have another reach now.
+    /// Clears everything for another shape, and keeps the memory's place.
+    fn become_of(&mut self, shape: &ColliderShape) {
+        self.shape.clone_from(shape);
+        self.clear_edges();
+        self.planes.fill(Planes::UNKNOWN);
+    }
+
+    fn clear_edges(&mut self) {
+        self.places.fill(KnownPlace::UNKNOWN);
+        self.faces.clear();
+    }
+
+    /// Clears what is known of edges if triangles have another reach now.
     pub fn match_reach(&mut self, near: Nearness) {
         let near = [near.reach, near.slack, near.smooth];
         if near != self.near {
-            let fresh = Self::new(self.id, &self.shape, self.places.len());
-            (self.places, self.faces) = (fresh.places, fresh.faces);
+            self.clear_edges();
             self.near = near;
         }
     }
@@ -358,9 +372,14 @@ impl ShapeMemories {
         let same = all.position(|memory| memory.id == id && is_of(memory));
         let mut all = self.0.iter();
         let known = same.or_else(|| all.position(|memory| memory.age > 0 && is_of(memory)));
-        let at = known.unwrap_or(self.0.len());
-        if known.is_none() {
-            self.0.push(ShapeMemory::new(id, shape, particles));
+        // One that is scaled in each tick has another shape in each.
+        let mut all = self.0.iter();
+        let scaled = || all.position(|memory| memory.id == id && memory.places.len() == particles);
+        let at = known.or_else(scaled).unwrap_or(self.0.len());
+        match self.0.get_mut(at) {
+            None => self.0.push(ShapeMemory::new(id, shape, particles)),
+            Some(memory) if known.is_none() => memory.become_of(shape),
+            Some(_) => {}
         }
         let memory = &mut self.0[at];
         (memory.id, memory.age) = (id, 0);

@@ -8,7 +8,7 @@ use bevy::math::{Affine3A, Vec3};
 use super::{
     candidates::Candidate,
     corners::Corners,
-    edge_contact::{EdgeContact, nearest_edge},
+    edge_contact::{EdgeContact, NearEdge},
     fan_view::FanView,
     guard::Guard,
     moving::ColliderSubstep,
@@ -95,22 +95,18 @@ impl<'a> EdgeMotion<'a> {
                 let gone = corners.displacements[corner] * (1.0 - part);
                 pose.inverse() * (corners.positions[corner] - gone)
             });
-            let (distance, offset, centre) = nearest_edge(
-                &self.of.collider.shape,
-                triangle,
-                around,
-                [self.reach, self.near.smooth],
-            );
-            (distance, pose.rotation * offset, pose * centre)
+            let limits = [self.reach, self.near.smooth];
+            NearEdge::of(&self.of.collider.shape, triangle, around, limits)
         };
         // For an edge that cut the triangle already, the original side is unknown.
-        if closest(0.0).0 < self.reach / 2.0 {
+        if closest(0.0).is_close {
             return None;
         }
         let tolerance = 1.0e-2 * self.reach;
-        let part = first_touch(speed, self.reach, tolerance, |part| closest(part).0)?;
-        let (_, offset, centre) = closest(part);
-        Some(self.of.carry(part, centre, offset.normalize_or_zero()))
+        let part = first_touch(speed, self.reach, tolerance, |part| closest(part).distance)?;
+        let (edge, pose) = (closest(part), self.of.pose_at(part));
+        let normal = edge.offset.try_normalize()?;
+        Some((self.of).carry(part, pose * edge.centre, pose.rotation * normal))
     }
 }
 
@@ -134,9 +130,10 @@ pub(super) fn push_off_edges(
         farthest: 0.0,
     };
     let count = near_edges.len();
-    let (mut at, mut kept, mut all) = (0, 0, None);
+    let (mut at, mut kept) = (0, 0);
+    // After motion that nobody expected, all others are looked at, too.
+    let mut all = edges.guard.is_outrun().then_some(0);
     loop {
-        // After a push that nobody expected, all others are looked at, too.
         let index = all.unwrap_or_else(|| {
             let number = near_edges.get(at).copied().unwrap_or(NONE);
             (number as usize).saturating_sub(first)

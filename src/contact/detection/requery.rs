@@ -25,6 +25,7 @@ impl Detection {
         self.odometer = 0.0;
         for body in &mut self.bodies {
             let way = body.restart();
+            self.deviation = self.deviation.max(body.deviation(&way, 0.0));
             send_on(&mut self.touches, &mut self.colliders, body.id, &way);
         }
         // Later searches used the particles' positions of that time.

@@ -88,10 +88,14 @@ impl ColliderGeometry {
     /// The surface nearest to a point, of the deepest or nearest solid, which is probably `within` a distance (m): that
     /// makes it faster. NaN for a point that is not finite.
     pub(super) fn nearest(&self, point: Vec3, within: f32) -> Nearest {
-        let found = self.find_nearest(point, within);
-        // Also for NaN.
-        if found.distance < f32::MAX || within == f32::MAX {
-            return found;
+        // What has got over a height field from beside it is as deep as the ground is high.
+        let is_alone = self.0.solids.len() == 1;
+        if is_alone || !self.0.solids.iter().any(Solid::is_ground) {
+            let found = self.find_nearest(point, within);
+            // A mesh farther away was not found, but another part may have been. False for NaN.
+            if found.distance <= within {
+                return found;
+            }
         }
         self.find_nearest(point, f32::MAX)
     }

@@ -54,6 +54,10 @@ impl Solid {
         matches!(&self.kind, SolidKind::Mesh(_, MeshSides::Open))
     }
 
+    pub fn is_ground(&self) -> bool {
+        matches!(&self.kind, SolidKind::Mesh(_, MeshSides::Ground))
+    }
+
     /// Smallest depth at which a point can be nearer to the other side (m).
     pub fn thickness(&self) -> f32 {
         match &self.kind {

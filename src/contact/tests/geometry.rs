@@ -302,6 +302,37 @@ fn a_compound_is_its_parts() {
     }
 }
 
+/// That a surface is probably near makes the nearest point no other: of round parts and meshes together, beside a height
+/// field and above it, and where nothing is known yet.
+#[test]
+fn a_hint_changes_nothing() {
+    let board = || ClothCollider::trimesh(vec![Vec3::ZERO, Vec3::X, Vec3::Z], vec![[0, 1, 2]]);
+    let field = || ClothCollider::heightfield(vec![0.3; 16], 4, Vec3::new(1.0, 1.0, 1.0));
+    let beside = |x: f32, part: ClothCollider| (Isometry3d::from_xyz(x, 0.0, 0.0), part);
+    let wholes = [
+        vec![beside(1.5, ClothCollider::ball(0.1)), beside(0.0, board())],
+        vec![
+            beside(0.0, board()),
+            beside(1.5, ClothCollider::cone(0.2, 0.4)),
+        ],
+        vec![beside(0.0, field())],
+        vec![beside(0.0, field()), beside(0.7, ClothCollider::ball(0.1))],
+    ];
+    let mut random = Random(12);
+    for parts in wholes {
+        let whole = shape(&ClothCollider::compound(parts));
+        for _ in 0..2_000 {
+            let (before, way) = (random.within(1.2), random.within(0.1));
+            let known = distance(&whole, before).abs() as f32;
+            let exact = whole.nearest(Isometry3d::IDENTITY, before + way);
+            for within in [known + way.length() + 1.0e-3, f32::NAN, f32::MAX] {
+                let found = whole.nearest_within(before + way, within);
+                assert_eq!(found.distance, exact.distance, "{before} {way} {within}");
+            }
+        }
+    }
+}
+
 /// What makes no shape says what is wrong with it.
 #[test]
 fn bad_shapes_are_told() {

@@ -97,12 +97,22 @@ impl Random {
 
     /// A cylinder, a cone, a hull, or several, up to about 1 m.
     pub fn geometry(&mut self) -> ClothCollider {
-        match self.below(4) {
+        match self.below(5) {
             0 => ClothCollider::cylinder(self.between(0.1, 0.8), self.between(0.1, 1.5)),
             1 => ClothCollider::cone(self.between(0.1, 0.8), self.between(0.2, 1.5)),
             2 => {
                 let points: Vec<Vec3> = (0..9).map(|_| self.within(0.8)).collect();
                 ClothCollider::convex_hull(points)
+            }
+            3 => {
+                // A mesh, and a part that is none.
+                let points: Vec<Vec3> = (0..9).map(|_| self.within(0.8)).collect();
+                let apart = Isometry3d::from_xyz(0.0, 2.0, 0.0);
+                let ball = (apart, ClothCollider::ball(self.between(0.1, 0.8)));
+                ClothCollider::compound([
+                    ball,
+                    (Isometry3d::IDENTITY, ClothCollider::convex_hull(points)),
+                ])
             }
             _ => {
                 let apart = Isometry3d::from_xyz(0.0, 2.0, 0.0);
