@@ -152,7 +152,11 @@ impl IntegratingItem<'_, '_> {
             threads()
         };
         self.built.solver.set_bands(bands);
-        let may_repeat = matches!(substepping, Substepping::Adaptive { .. });
+        let may_repeat = match substepping {
+            Substepping::Fixed(_) => false,
+            Substepping::Automatic => !self.scratch.near.is_empty(),
+            Substepping::Adaptive { .. } => true,
+        };
         if may_repeat {
             self.scratch.backup.copy_from(&self.particles);
         }
@@ -160,9 +164,11 @@ impl IntegratingItem<'_, '_> {
         loop {
             let mut stretch = self.advance(step, colliders);
             stretch.load_substeps = self.load_substeps(&step);
+            stretch.contact_substeps = self.contact_substeps(&step, &stretch);
             self.stats.substeps += step.substeps;
             self.state.stretch = stretch;
-            let Some(more) = self.state.control.observe(substepping, stretch) else {
+            let more = self.state.control.observe(substepping, stretch);
+            let Some(more) = more.filter(|_| may_repeat) else {
                 break;
             };
             step.substeps = more;
@@ -227,6 +233,19 @@ impl IntegratingItem<'_, '_> {
         let (gravity, spacing) = (step.acceleration.length(), self.built.surface().spacing());
         let ratio = (self.scratch.detection).load_ratio(gravity * step.seconds);
         Substepping::for_load(ratio, gravity, spacing.shortest, step.seconds)
+    }
+
+    /// Sub-steps that hold the cloth together where colliders stretch it.
+    pub(super) fn contact_substeps(&self, step: &TickStep, stretch: &Stretch) -> f32 {
+        let detection = &self.scratch.detection;
+        let mut touches = detection.touches().iter();
+        // What leaves a collider is drawn out by a force of its own.
+        let is_drawn = detection.embedded() > 0.0;
+        if is_drawn || touches.all(|touch| touch.deepest == 0.0) {
+            return 0.0;
+        }
+        let given = stretch.material.max(step.material_stretch);
+        Substepping::for_contact(stretch.structural - given, step.substeps)
     }
 
     /// One way through the sub-steps.

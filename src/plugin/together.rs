@@ -189,13 +189,16 @@ fn advance(
         debug_assert!(rest.is_none(), "all sub-steps are done");
         let mut stretch: Stretch = solver.end(&mut cloth.particles, &cloth.scratch.pins, tick);
         stretch.load_substeps = cloth.load_substeps(step);
+        let taken = TickStep { substeps, ..*step };
+        stretch.contact_substeps = cloth.contact_substeps(&taken, &stretch);
         cloth.stats.substeps += substeps;
         cloth.state.stretch = stretch;
-        let more = cloth
-            .state
-            .control
-            .observe(cloth.scratch.substepping, stretch);
-        wanted = wanted.max(more);
+        let substepping = cloth.scratch.substepping;
+        let more = cloth.state.control.observe(substepping, stretch);
+        // Without a tolerance the tick is not begun again, and the next one takes more.
+        if matches!(substepping, Substepping::Adaptive { .. }) {
+            wanted = wanted.max(more);
+        }
     }
     wanted
 }

@@ -24,6 +24,9 @@ pub struct Stretch {
     /// Number of sub-steps in a tick as long as the last that holds the bodies on the cloth, by their weight on the
     /// threads that carry them. 0 if the cloth carries none.
     pub load_substeps: f32,
+    /// Number of sub-steps in a tick as long as the last that holds the threads together where a collider stretches them.
+    /// 0 if none does.
+    pub contact_substeps: f32,
 }
 
 impl Stretch {
@@ -51,6 +54,7 @@ impl Stretch {
             material: 0.0,
             ripple_substeps: 0.0,
             load_substeps: 0.0,
+            contact_substeps: 0.0,
         }
     }
 }

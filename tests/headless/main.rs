@@ -11,6 +11,7 @@ mod drawing;
 mod embedded;
 mod envelope;
 mod faults;
+mod forced;
 mod frame;
 mod fuzz;
 mod given;
