@@ -2,13 +2,18 @@
 //! fine mesh that is driven by a coarse cloth.
 //! `cargo bench --profile dev --bench mesh`; in `sub-steps` an element is a spring in a sub-step.
 
+#[path = "../tests/shared/meshes.rs"]
+mod meshes;
+
 use std::time::Duration;
 
 use bevy::math::Vec3;
+/// What `meshes` calls the crate, whose own tests read it, too.
+use bevy_drape as library;
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface, SurfaceBinding, TriangleMesh},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, Probe, QuadTree, TopDownQuery},
-    solver::{Solver, TickStep, methods::meshes},
+    solver::{Solver, TickStep},
 };
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 

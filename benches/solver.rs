@@ -8,16 +8,13 @@ use std::time::Duration;
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::ClothMaterial,
-    solver::{
-        Air, Bending, SimdLevel, Solver,
-        methods::{Method, Scene, Stepper},
-    },
+    solver::{Air, Bending, SimdLevel, Solver},
 };
 use criterion::{
     BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
     measurement::WallTime,
 };
-use shared::{Naive, SUBSTEPS, in_motion};
+use shared::{Naive, SUBSTEPS, Scene, in_motion};
 
 /// Times a tick of the library's own solver.
 fn time(group: &mut BenchmarkGroup<WallTime>, id: BenchmarkId, scene: &Scene, solver: &mut Solver) {
@@ -161,45 +158,5 @@ fn air(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The methods that the solver is compared with, on a swinging cloth of 32² with a compliance that all of them take.
-fn methods(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("methods, a frame of 32²");
-    group
-        .sample_size(20)
-        .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1));
-    let scene = Scene::swinging(32, 2.0, 0.5, 1.0e-3).expect("a valid scene");
-    let fall = scene.acceleration.to_array();
-    for (name, method, steps) in [
-        ("explicit forces, 200 steps", Method::Hooke, 200_u32),
-        (
-            "position-based, 20 iterations",
-            Method::PositionBased { iterations: 20 },
-            1,
-        ),
-        ("small steps, 20", Method::SmallSteps { substeps: 20 }, 1),
-        (
-            "projective dynamics, 10 iterations",
-            Method::ProjectiveDynamics { iterations: 10 },
-            1,
-        ),
-    ] {
-        let start = scene.network::<f32>().expect("a valid network");
-        let seconds = f64::from(scene.seconds) / f64::from(steps);
-        let mut stepper = Stepper::new(method, &start, seconds).expect("a valid method");
-        group.bench_function(name, |bencher| {
-            bencher.iter_batched_ref(
-                || start.clone(),
-                |network| (0..steps).for_each(|_| stepper.step(network, fall, 0.0)),
-                BatchSize::LargeInput,
-            );
-        });
-    }
-    let mut solver = scene.solver(false);
-    let id = BenchmarkId::from_parameter("the solver, 20 sub-steps");
-    time(&mut group, id, &scene, &mut solver);
-    group.finish();
-}
-
-criterion_group!(benches, sweeps, bending, air, ticks, methods);
+criterion_group!(benches, sweeps, bending, air, ticks);
 criterion_main!(benches);

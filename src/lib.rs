@@ -24,8 +24,15 @@ pub mod cloth;
 pub mod contact;
 pub mod guide;
 pub mod hierarchy;
+#[cfg(test)]
+#[path = "../tests/shared/meshes.rs"]
+pub mod meshes;
 pub mod plugin;
 pub mod solver;
+
+/// What `meshes` calls the crate, which other tests read, too.
+#[cfg(test)]
+use crate as library;
 
 /// Most games need only this: `use bevy_drape::prelude::*`.
 pub mod prelude {

@@ -139,7 +139,11 @@ fn grouped_and_single_imports_are_read() {
 /// Cargo takes 1.0.0 for newer than 1.0.0-beta, and gives it to games that have no lock file yet.
 #[test]
 fn pre_releases_are_asked_for_exactly() {
-    for line in include_str!("../Cargo.toml").lines() {
+    let manifests = [
+        include_str!("../Cargo.toml"),
+        include_str!("../lab/Cargo.toml"),
+    ];
+    for line in manifests.into_iter().flat_map(str::lines) {
         let asked = line.split("version = \"").skip(1);
         for version in asked.filter_map(|rest| rest.split('"').next()) {
             let is_pre_release = version.contains('-');

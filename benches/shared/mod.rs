@@ -1,7 +1,12 @@
 //! What the benchmarks share: scenes in motion, and the layout that they are held against.
 
+#[path = "../../tests/shared/scene.rs"]
+#[expect(dead_code, reason = "no benchmark lets a cloth swing")]
+mod scene;
+
 use bevy::math::Vec3;
-use bevy_drape::{cloth::SpringKind, solver::methods::Scene};
+use bevy_drape::cloth::SpringKind;
+pub use scene::Scene;
 
 /// Sub-steps in a timed tick.
 pub const SUBSTEPS: u32 = 20;

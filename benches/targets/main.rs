@@ -9,12 +9,8 @@ mod shared;
 use std::time::Instant;
 
 use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, time::TimeUpdateStrategy};
-use bevy_drape::{
-    cloth::SpringKind,
-    prelude::*,
-    solver::{Solver, methods::Scene},
-};
-use shared::{Naive, SUBSTEPS, in_motion};
+use bevy_drape::{cloth::SpringKind, prelude::*, solver::Solver};
+use shared::{Naive, SUBSTEPS, Scene, in_motion};
 
 /// Turns that each candidate gets.
 const TURNS: usize = 15;

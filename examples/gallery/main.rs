@@ -214,7 +214,7 @@ fn save_movie(entries: &[&Entry], out: &Path) -> Result<PathBuf, String> {
             println!("\n{}", entry.name);
             let (_, what) = entry.pictures[0];
             for frame in film(entry, from, &out.join(name))? {
-                frames.push(sheet::captioned(&frame, [entry.name, what])?);
+                frames.push(sheet::captioned(&frame, [entry.name, what]));
             }
         }
     }

@@ -1,19 +1,14 @@
 //! The sheet of all pictures, each with the name of its example.
 
 use std::{
-    borrow::Cow,
     fs,
     io::BufReader,
     path::{Path, PathBuf},
 };
 
-use bevy_egui::egui::FontDefinitions;
-use plotters::{
-    prelude::*,
-    style::{
-        FontStyle, register_font,
-        text_anchor::{HPos, Pos, VPos},
-    },
+use bevy_egui::egui::{
+    Color32, FontDefinitions, FontId,
+    epaint::text::{Fonts, FontsView, TextOptions},
 };
 use png::{Decoder, Transformations};
 
@@ -27,11 +22,11 @@ const CAPTION: usize = 32;
 const GAP: usize = 8;
 /// Colours of the ground, of a name, and of what is said of it.
 const GROUND: [u8; 3] = [24, 28, 34];
-const NAME: RGBColor = RGBColor(255, 214, 150);
-const WHAT: RGBColor = RGBColor(196, 204, 214);
+const NAME: [u8; 3] = [255, 214, 150];
+const WHAT: [u8; 3] = [196, 204, 214];
 
-const FONT: &str = "sans-serif";
-const LETTERS: i32 = 15;
+/// Size of letters (pixels).
+const LETTERS: f32 = 15.0;
 
 /// A sheet of pictures: the name of an example, what is seen, and the file.
 pub fn of(
@@ -41,13 +36,13 @@ pub fn of(
     let rows = pictures.len().div_ceil(COLUMNS);
     let width = COLUMNS * (TILE[0] + GAP) + GAP;
     let height = rows * (TILE[1] + CAPTION) + GAP;
-    let mut bytes = GROUND.repeat(width * height);
+    let mut rgb = vec![GROUND; width * height];
     for (number, (_, _, path)) in pictures.iter().enumerate() {
         let tile = load(path)?.scaled(TILE[0], TILE[1]);
         let [left, top] = corner(number);
         for (row, line) in tile.rgb.chunks_exact(TILE[0]).enumerate() {
-            let from = 3 * ((top + row) * width + left);
-            bytes[from..from + 3 * TILE[0]].copy_from_slice(line.as_flattened());
+            let from = (top + row) * width + left;
+            rgb[from..from + TILE[0]].copy_from_slice(line);
         }
     }
     let captions = pictures
@@ -61,20 +56,24 @@ pub fn of(
                 middle: top + TILE[1] + CAPTION / 2 - 1,
             }
         });
-    written(captions, bytes, [width, height])
+    let mut sheet = Pixels { width, height, rgb };
+    write(captions, &mut sheet);
+    Ok(sheet)
 }
 
 /// One picture, with its caption below.
-pub fn captioned(picture: &Pixels, texts: [&str; 2]) -> Result<Pixels, String> {
+pub fn captioned(picture: &Pixels, texts: [&str; 2]) -> Pixels {
     let (width, height) = (picture.width, picture.height + CAPTION);
-    let mut bytes = picture.rgb.as_flattened().to_vec();
-    bytes.extend(GROUND.repeat(width * CAPTION));
+    let mut rgb = picture.rgb.clone();
+    rgb.resize(width * height, GROUND);
     let caption = Caption {
         texts,
         sides: [GAP, width - GAP],
         middle: picture.height + CAPTION / 2 - 1,
     };
-    written([caption].into_iter(), bytes, [width, height])
+    let mut captioned = Pixels { width, height, rgb };
+    write([caption].into_iter(), &mut captioned);
+    captioned
 }
 
 /// The name of an example from the left, and what is seen up to the right: where they begin and end, and their middle's height.
@@ -84,35 +83,53 @@ struct Caption<'a> {
     middle: usize,
 }
 
-/// A picture of this width and height, with captions in it.
-fn written<'a>(
-    captions: impl Iterator<Item = Caption<'a>>,
-    mut bytes: Vec<u8>,
-    [width, height]: [usize; 2],
-) -> Result<Pixels, String> {
-    use_font();
-    let size = (width as u32, height as u32);
-    let area = BitMapBackend::with_buffer(&mut bytes, size).into_drawing_area();
+/// Writes captions into a picture, in the panel's font, which every example has.
+fn write<'a>(captions: impl Iterator<Item = Caption<'a>>, picture: &mut Pixels) {
+    let mut fonts = Fonts::new(TextOptions::default(), FontDefinitions::default());
+    let mut fonts = fonts.with_pixels_per_point(1.0);
     for caption in captions {
-        for (text, x, side, color) in [
-            (caption.texts[0], caption.sides[0], HPos::Left, NAME),
-            (caption.texts[1], caption.sides[1], HPos::Right, WHAT),
-        ] {
-            let style = TextStyle::from((FONT, LETTERS).into_font())
-                .color(&color)
-                .pos(Pos::new(side, VPos::Center));
-            area.draw_text(text, &style, (x as i32, caption.middle as i32))
-                .map_err(|error| error.to_string())?;
+        let ([name, what], [left, right]) = (caption.texts, caption.sides);
+        write_text(&mut fonts, picture, (name, NAME), |_| left, caption.middle);
+        let left = |width| right.saturating_sub(width);
+        write_text(&mut fonts, picture, (what, WHAT), left, caption.middle);
+    }
+}
+
+/// Writes a text in a colour: by its width, where it begins; and the height of its middle.
+fn write_text(
+    fonts: &mut FontsView,
+    picture: &mut Pixels,
+    (text, color): (&str, [u8; 3]),
+    left: impl Fn(usize) -> usize,
+    middle: usize,
+) {
+    let font = FontId::proportional(LETTERS);
+    let laid = fonts.layout_no_wrap(text.to_owned(), font, Color32::WHITE);
+    let letters = fonts.image();
+    let start = [
+        left(laid.size().x.ceil() as usize) as f32,
+        middle as f32 - 0.5 * laid.size().y,
+    ];
+    for row in &laid.rows {
+        for glyph in &row.glyphs {
+            let at = row.pos + glyph.pos.to_vec2() + glyph.uv_rect.offset;
+            let [from, to] = [glyph.uv_rect.min, glyph.uv_rect.max].map(|at| at.map(usize::from));
+            let corner = [start[0] + at.x, start[1] + at.y].map(|at| at.round() as usize);
+            for y in from[1]..to[1] {
+                for x in from[0]..to[0] {
+                    let covered = f32::from(letters.pixels[y * letters.size[0] + x].a()) / 255.0;
+                    let [column, row] = [corner[0] + x - from[0], corner[1] + y - from[1]];
+                    if column < picture.width && row < picture.height {
+                        let pixel = &mut picture.rgb[row * picture.width + column];
+                        *pixel = std::array::from_fn(|at| {
+                            let [under, over] = [pixel[at], color[at]].map(f32::from);
+                            (under + covered * (over - under)).round() as u8
+                        });
+                    }
+                }
+            }
         }
     }
-    area.present().map_err(|error| error.to_string())?;
-    drop(area);
-    let rgb = bytes.chunks_exact(3).map(|at| [at[0], at[1], at[2]]);
-    Ok(Pixels {
-        width,
-        height,
-        rgb: rgb.collect(),
-    })
 }
 
 /// Left and upper edge of the picture with this number.
@@ -121,17 +138,6 @@ fn corner(number: usize) -> [usize; 2] {
         GAP + number % COLUMNS * (TILE[0] + GAP),
         GAP + number / COLUMNS * (TILE[1] + CAPTION),
     ]
-}
-
-/// The panel's, which every example has.
-fn use_font() {
-    let fonts = FontDefinitions::default();
-    if let Some(data) = fonts.font_data.get("Ubuntu-Light")
-        && let Cow::Borrowed(bytes) = data.font
-    {
-        // Refused, text would be missing, which is seen at once.
-        let _ = register_font(FONT, FontStyle::Normal, bytes);
-    }
 }
 
 /// A picture that an example has saved.

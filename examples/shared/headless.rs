@@ -3,6 +3,7 @@
 use std::{
     collections::VecDeque,
     fmt, fs,
+    io::{IsTerminal, stderr},
     path::{Path, PathBuf},
     process::ExitCode,
     thread,
@@ -18,7 +19,6 @@ use bevy::{
     },
     time::TimeUpdateStrategy,
 };
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::{
@@ -64,7 +64,6 @@ pub struct Run {
     /// How long what is done took, without pictures (s).
     pub wall_seconds: f64,
     done: u64,
-    bar: ProgressBar,
 }
 
 impl Run {
@@ -84,10 +83,6 @@ impl Run {
         let film = Film::of(&app, options);
         app.finish();
         app.cleanup();
-        let bar = ProgressBar::new(ticks).with_style(
-            ProgressStyle::with_template("{bar:40} {pos}/{len} ticks, {eta} left")
-                .unwrap_or_else(|_| ProgressStyle::default_bar()),
-        );
         let mut run = Self {
             app,
             view,
@@ -95,7 +90,6 @@ impl Run {
             ticks,
             wall_seconds: 0.0,
             done: 0,
-            bar,
         };
         run.wait_for_assets();
         run
@@ -147,14 +141,14 @@ impl Run {
             self.app.update();
             let time = self.app.world().resource::<Time<Fixed>>();
             self.done = ticks_in(&self.app, time.elapsed_secs_f64());
-            self.bar.set_position(self.done);
+            say(&format!("{} of {} ticks", self.done, self.ticks));
         }
         self.wall_seconds += start.elapsed().as_secs_f64();
     }
 
     /// Draws one frame into an image and saves it, while time stands still.
     pub fn take_picture(&mut self, shot: Shot, out: &Path, file: &str) -> Picture {
-        self.bar.finish_and_clear();
+        say("");
         let drawn = self.draw(shot, PICTURE, out, file);
         let adapter = self.app.world().get_resource::<RenderAdapterInfo>();
         let (picture, no_picture) = match drawn {
@@ -194,6 +188,13 @@ impl Run {
         } else {
             Err("no graphics adapter found".into())
         }
+    }
+}
+
+/// Says on a terminal how far the run is, in place of what was said before.
+fn say(how_far: &str) {
+    if stderr().is_terminal() {
+        eprint!("\r{how_far:30}\r");
     }
 }
 

@@ -14,7 +14,7 @@ mod outcome;
 mod player;
 mod python;
 mod record;
-#[path = "../../examples/lab/peers/row.rs"]
+#[path = "../../lab/src/peers/row.rs"]
 mod row;
 mod scene;
 #[path = "../../examples/shared"]

@@ -67,9 +67,6 @@ mod envelope;
 mod forces;
 mod kernel;
 mod list;
-#[cfg(feature = "methods")]
-#[doc(hidden)]
-pub mod methods;
 mod motion;
 mod pace;
 mod packet;

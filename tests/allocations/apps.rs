@@ -18,11 +18,10 @@ use bevy_drape::{
         ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings, ClothSkin, DrapePlugins, Pin,
         Pins,
     },
-    solver::methods::meshes,
 };
 use stats_alloc::Region;
 
-use crate::ALLOCATOR;
+use crate::{ALLOCATOR, meshes};
 
 /// An app on one thread, as each thread that is woken allocates, and without the propagation of transforms, which allocates as it likes.
 fn app_on_one_thread<M>(plugins: impl Plugins<M>) -> App {

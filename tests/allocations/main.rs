@@ -1,10 +1,15 @@
 //! A tick allocates nothing, neither its search nor its sub-steps. Alone in its program: the count is of all threads.
 
 mod apps;
+#[path = "../shared/meshes.rs"]
+#[expect(dead_code, reason = "no regular mesh is needed here")]
+mod meshes;
 mod steps;
 
 use std::alloc::System;
 
+/// What `meshes` calls the crate, whose own tests read it, too.
+use bevy_drape as library;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 
 #[global_allocator]

@@ -8,14 +8,11 @@ use bevy_drape::{
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::ClothCollider,
-    solver::{
-        Air, Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep,
-        methods::meshes,
-    },
+    solver::{Air, Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep},
 };
 use stats_alloc::Region;
 
-use crate::ALLOCATOR;
+use crate::{ALLOCATOR, meshes};
 
 pub fn a_step_does_not_allocate() {
     let material = ClothMaterial::COTTON;

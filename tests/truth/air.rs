@@ -5,10 +5,13 @@ use std::f64::consts::FRAC_PI_2;
 use bevy::math::{DVec3, Quat, Vec3};
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Air, Bending, Solver, TickStep, methods::meshes},
+    solver::{Air, Bending, Solver, TickStep},
 };
 
-use crate::sheet::{GRAVITY, threads};
+use crate::{
+    meshes,
+    sheet::{GRAVITY, threads},
+};
 
 const DENSITY: f32 = 1.2;
 

@@ -3,8 +3,10 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Bending, Solver, TickStep, methods::Drape},
+    solver::{Bending, Solver, TickStep},
 };
+
+use crate::drape::Drape;
 
 const GRAVITY: f32 = 9.81;
 /// Length of the strip (m).

@@ -3,10 +3,13 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{DampingFrame, Solver, TickStep, TimeOrder, methods::meshes},
+    solver::{DampingFrame, Solver, TickStep, TimeOrder},
 };
 
-use crate::sheet::{Sheet, threads};
+use crate::{
+    meshes,
+    sheet::{Sheet, threads},
+};
 
 /// Time in which a stretch dies away (s).
 const RETARDATION: f32 = 2.0e-3;

@@ -3,8 +3,10 @@
 use bevy::math::{DVec3, Vec3};
 use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Solver, TickStep, methods::GRAVITY, methods::meshes},
+    solver::{Solver, TickStep},
 };
+
+use crate::{meshes, scene::GRAVITY};
 
 /// A square of 2 m, lying, of irregular triangles or of a grid's.
 fn surface(side: u32, is_regular: bool) -> Surface {

@@ -2,8 +2,10 @@
 
 use bevy_drape::{
     cloth::SpringKind,
-    solver::{Control, Substepping, methods::Scene},
+    solver::{Control, Substepping},
 };
+
+use crate::scene::Scene;
 
 /// What three seconds of a scene come to.
 #[derive(Debug, Clone, Copy)]

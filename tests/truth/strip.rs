@@ -3,8 +3,10 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Bending, Solver, Tethers, TickStep, methods::meshes::irregular},
+    solver::{Bending, Solver, Tethers, TickStep},
 };
+
+use crate::meshes::irregular;
 
 const GRAVITY: f32 = 9.81;
 /// From the pins to the free end (m).

@@ -1,7 +1,7 @@
 //! The limits of a tick's work.
 
 /// Work limits of a tick for each particle, and in total. A unit takes some 5 ns: two pairs of features compared, or a node
-/// visited. A sheet that runs into itself at 20 m/s needs less (`cargo run --example lab -- self`).
+/// visited. A sheet that runs into itself at 20 m/s needs less (`cargo run -p lab -- self`).
 const MOST_WORK: usize = 1 << 17;
 const LEAST_WORK_OF_ALL: usize = 1 << 22;
 const MOST_WORK_OF_ALL: usize = 1 << 28;

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface},
-    solver::methods::meshes::irregular,
+    meshes::irregular,
 };
 
 /// A mesh as large as the grid that is shot at; pinned all around, if asked for.

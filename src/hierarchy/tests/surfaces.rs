@@ -12,7 +12,8 @@ use super::{
 use crate::{
     cloth::{ClothMaterial, ClothParticles, SpringKind, Springs, Surface, TriangleMesh},
     hierarchy::QuadTree,
-    solver::{Stretch, methods::meshes::irregular},
+    meshes::irregular,
+    solver::Stretch,
 };
 
 /// Between neighbours, about (m).

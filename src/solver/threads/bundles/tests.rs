@@ -5,9 +5,9 @@ use bevy::math::{DVec3, Vec3, Vec4};
 use super::{Bundles, Row};
 use crate::{
     cloth::{ClothMaterial, ClothParticles, SpringList, SpringStorage, Springs, Surface},
+    meshes,
     solver::{
         SimdLevel, Solver, TickStep,
-        methods::meshes,
         pace::Pace,
         threads::tests::{random, solved},
     },

@@ -1,13 +1,14 @@
 //! Time step against stiffness: where each method stays stable, and the theoretical limit of explicit steps.
 
-use bevy_drape::solver::methods::{Scene, largest_frequency};
-
 use super::{
     Job, Map, Row, by,
     cloth::{Moving, Way, energy_at_start},
     ensure, largest,
 };
-use crate::chart::{Axis, Chart, Kind, Look, Panel, Series, number};
+use crate::{
+    chart::{Axis, Chart, Kind, Look, Panel, Series, number},
+    methods::{MassSpring, Scene, largest_frequency},
+};
 
 pub const STEP_STIFFNESS: Map = Map {
     name: "step_stiffness",
@@ -56,7 +57,7 @@ fn scene(stiffness: f64) -> Scene {
 }
 
 fn limit(scene: &Scene) -> f64 {
-    2.0 / largest_frequency(&scene.network().expect("a valid network"))
+    2.0 / largest_frequency(&MassSpring::of_scene(scene).expect("a valid network"))
 }
 
 /// The longest sub-step in which our springs push by their forces (s).

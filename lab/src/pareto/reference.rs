@@ -10,12 +10,12 @@ use std::{
 };
 
 use bevy::math::DVec3;
-use bevy_drape::solver::methods::Method;
 
 use super::{
     methods::{Player, Way},
     scenes::{Case, TICKS},
 };
+use crate::methods::Method;
 
 /// Where all particles are at the end of each tick.
 pub type Film = Vec<Vec<DVec3>>;

@@ -1,7 +1,5 @@
 //! The order in which springs are swept, against how few sweeps a sub-step has: one and the same number of sweeps.
 
-use bevy_drape::solver::methods::{GRAVITY, MassSpring, Method, Scene, Stepper};
-
 use super::{
     Job, Map, Row, between, by,
     cloth::{Moving, Way},
@@ -10,6 +8,7 @@ use super::{
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
     measure::Random,
+    methods::{GRAVITY, MassSpring, Method, Scene, Stepper},
 };
 
 pub const SWEEP_ORDER: Map = Map {
@@ -36,7 +35,7 @@ fn scene(side: u32) -> Scene {
 fn cell(order: &'static str, side: u32, sweeps: u32) -> Row {
     let scene = scene(side);
     let substeps = SWEEPS / sweeps;
-    let mut network: MassSpring<f32> = scene.network().expect("a valid network");
+    let mut network: MassSpring<f32> = MassSpring::of_scene(&scene).expect("a valid network");
     match order {
         // As a loop over the particles makes them: to the right, down, and along both diagonals.
         ROWS | ALTERNATING => network.springs.sort_by_key(|spring| {

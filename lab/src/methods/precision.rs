@@ -1,13 +1,13 @@
 //! What single precision costs: the swinging cloth against f64.
 
-use bevy_drape::solver::methods::{GRAVITY, MassSpring, Method, Scene, Stepper};
+use super::{GRAVITY, MassSpring, Method, Scene, Stepper};
 
 /// The part of a second that the cloth swings, in ticks of 1/60 s.
 const TICKS: u32 = 30;
 
 /// The swing in f64, with the exact root.
 fn in_f64(scene: &Scene, substeps: u32) -> MassSpring<f64> {
-    let mut network = scene.network().expect("a valid network");
+    let mut network = MassSpring::of_scene(scene).expect("a valid network");
     let method = Method::SmallSteps { substeps };
     let seconds = f64::from(scene.seconds);
     let mut stepper = Stepper::new(method, &network, seconds).expect("a valid method");

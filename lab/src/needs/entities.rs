@@ -6,16 +6,14 @@
 //! is not a matter of storage alone: so the same loop, one spring after the other, goes over columns as well.
 
 use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*};
-use bevy_drape::{
-    cloth::ClothParticles,
-    solver::{
-        TickStep,
-        methods::{Method, Scene, Stepper},
-    },
-};
+use bevy_drape::{cloth::ClothParticles, solver::TickStep};
 
 use super::{DISTANCE, Row};
-use crate::{experiment::Run, measure::seconds};
+use crate::{
+    experiment::Run,
+    measure::seconds,
+    methods::{MassSpring, Method, Scene, Stepper, one_sweep},
+};
 
 pub const SCENE: &str = "columns or entities, 32²";
 pub const COLUMNS: &str = "columns, vectorised";
@@ -153,9 +151,9 @@ pub fn measure(run: &mut Run) -> Vec<Row> {
     let mut ms = [const { Vec::new() }; 3];
     let mut distances = [0.0; 2];
     for _ in 0..turns {
-        let mut solver = scene.one_sweep();
+        let mut solver = one_sweep(&scene);
         let mut particles = scene.particles.clone();
-        let mut scalar = scene.network::<f32>().expect("a valid scene");
+        let mut scalar = MassSpring::<f32>::of_scene(&scene).expect("a valid scene");
         let mut stepper =
             Stepper::new(method, &scalar, f64::from(step.seconds)).expect("a valid step");
         let mut entities = Entities::new(&scene);

@@ -3,11 +3,10 @@
 use bevy::math::{DVec3, Vec3};
 use bevy_drape::{
     cloth::{ClothParticles, Spring, SpringKind},
-    solver::{
-        Solver, TickStep,
-        methods::{MassSpring, Method, Scene, Stepper},
-    },
+    solver::{Solver, TickStep},
 };
+
+use crate::methods::{MassSpring, Method, Scene, Stepper};
 
 /// A method and its settings.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +81,8 @@ impl Moving {
     pub fn new(scene: &Scene, way: Way, seconds: f64) -> Self {
         let kernel = match way {
             Way::Peer(method, cuts) => {
-                let mut network: MassSpring<f64> = scene.network().expect("a valid network");
+                let mut network: MassSpring<f64> =
+                    MassSpring::of_scene(scene).expect("a valid network");
                 for (index, velocity) in network.velocities.iter_mut().enumerate() {
                     let given = scene.particles.velocity(index).expect("it exists");
                     *velocity = given.as_dvec3().to_array();

@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{ClothMaterial, Springs},
-    solver::{PinMotion, methods::Scene},
+    solver::PinMotion,
 };
 
 use super::{
@@ -14,6 +14,7 @@ use super::{
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
     measure::line_through,
+    methods::Scene,
 };
 
 pub const SUBSTEP_SIZE: Map = Map {

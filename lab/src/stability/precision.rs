@@ -1,10 +1,12 @@
 //! What single precision loses: by how Verlet's state is stored, and by how far the cloth is from its origin.
 
 use bevy::math::{DVec3, Vec3};
-use bevy_drape::solver::methods::{GRAVITY, MassSpring, Method, Scene, Stepper};
 
 use super::{Job, Map, Row, between, by, ensure, largest};
-use crate::chart::{Axis, Chart, Kind, Look, Panel, Series, number};
+use crate::{
+    chart::{Axis, Chart, Kind, Look, Panel, Series, number},
+    methods::{GRAVITY, MassSpring, Method, Scene, Stepper},
+};
 
 pub const VERLET_FORM: Map = Map {
     name: "verlet_form",
@@ -46,7 +48,7 @@ fn scene() -> Scene {
 }
 
 fn in_f64(scene: &Scene, substeps: u32) -> MassSpring<f64> {
-    let mut network = scene.network().expect("a valid network");
+    let mut network = MassSpring::of_scene(scene).expect("a valid network");
     let method = Method::SmallSteps { substeps };
     let mut stepper =
         Stepper::new(method, &network, scene.seconds.into()).expect("a method for it");

@@ -1,10 +1,7 @@
 //! Stretched, crumpled, coincident and inverted starts: which methods find back to a cloth.
 
 use bevy::math::Vec3;
-use bevy_drape::{
-    cloth::{ClothMaterial, Springs},
-    solver::methods::{Scene, largest_frequency},
-};
+use bevy_drape::cloth::{ClothMaterial, Springs};
 
 use super::{
     Job, Map, Row, SHREDDED, by,
@@ -14,6 +11,7 @@ use super::{
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
     measure::Random,
+    methods::{MassSpring, Scene, largest_frequency},
 };
 
 pub const STARTS: Map = Map {
@@ -51,7 +49,7 @@ const WAYS: [(&str, fn(&Scene) -> Way); 6] = [
     ("projective dynamics, 10", |_| Way::projective(10)),
     // Twice as many as the limit asks for.
     (EXPLICIT, |scene| {
-        let frequency = largest_frequency(&scene.network().expect("a valid network"));
+        let frequency = largest_frequency(&MassSpring::of_scene(scene).expect("a valid network"));
         Way::explicit((f64::from(scene.seconds) * frequency).ceil() as u32)
     }),
 ];

@@ -1,9 +1,8 @@
-//! The cloths on which solvers are compared, ready to be stepped.
+//! Cloths hung and let go, ready to be stepped: for tests, benchmarks, and the lab.
 
 use bevy::math::Vec3;
 
-use super::{MassSpring, MethodError, Real};
-use crate::{
+use bevy_drape::{
     cloth::{Cloth, ClothError, ClothGrid, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Bending, Solver, Tethers, TickStep},
 };
@@ -124,13 +123,6 @@ impl Scene {
         solver
     }
 
-    /// The library's former solver for it: one sweep over the springs in each sub-step, of first order.
-    pub fn one_sweep(&self) -> Solver {
-        let mut solver = Solver::of_one_sweep(&self.springs, &self.particles);
-        solver.set_bending(Bending::new(&self.surface, &self.material));
-        solver
-    }
-
     /// A tick of it in this many sub-steps.
     pub fn step(&self, substeps: u32) -> TickStep {
         TickStep {
@@ -140,15 +132,5 @@ impl Scene {
             damping: self.material.damping,
             ..TickStep::default()
         }
-    }
-
-    /// The same network for another method, its springs in the order in which the library's solver sweeps them.
-    ///
-    /// # Errors
-    /// The errors of [`MassSpring::new`].
-    pub fn network<R: Real>(&self) -> Result<MassSpring<R>, MethodError> {
-        let positions: Vec<Vec3> = self.particles.positions().collect();
-        let inverse_masses: Vec<f32> = self.particles.inverse_masses().collect();
-        MassSpring::new(&positions, &inverse_masses, &self.springs.to_vec())
     }
 }

@@ -1,13 +1,14 @@
 //! Heavy hems and heavy corners: how far a cloth stretches whose lower edge, or one particle of it, is heavier.
 
-use bevy_drape::solver::methods::Scene;
-
 use super::{
     Job, Map, Row, between, by,
     cloth::{Moving, Way},
     ensure, largest, methods, outcome_of, percent, values,
 };
-use crate::chart::{Axis, Chart, Kind, Look, Panel, Series, number};
+use crate::{
+    chart::{Axis, Chart, Kind, Look, Panel, Series, number},
+    methods::Scene,
+};
 
 pub const MASS_RATIO: Map = Map {
     name: "mass_ratio",

@@ -81,8 +81,8 @@ fn start(particles: usize) -> Vec<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloth::{Spring, SpringKind};
     use bevy::math::Vec3;
+    use bevy_drape::cloth::{Spring, SpringKind};
 
     /// Two free particles on a spring swing with √(k (1/m₁ + 1/m₂)).
     #[test]

@@ -1,9 +1,9 @@
 //! The lab measures, charts and checks every claim about the plugin.
 //!
 //! ```sh
-//! cargo run --release --example lab -- all                       # all experiments, to out/lab
-//! cargo run --release --example lab -- pareto --quick            # a short run of one experiment
-//! cargo run --release --example lab -- all --redraw --out DIR    # draws the charts again from the CSV files in DIR
+//! cargo run --release -p lab -- all                       # all experiments, to out/lab
+//! cargo run --release -p lab -- pareto --quick            # a short run of one experiment
+//! cargo run --release -p lab -- all --redraw --out DIR    # draws the charts again from the CSV files in DIR
 //! ```
 //!
 //! Each experiment writes `NAME.csv`, with the machine and the settings in its header, and its charts as SVG and PNG for light and
@@ -27,17 +27,18 @@ mod hung;
 mod layers;
 mod lod;
 mod measure;
+mod methods;
 mod needs;
 mod pareto;
 #[path = "../../benches/hierarchy/parry.rs"]
 mod parry;
 mod peers;
-#[path = "../shared/physics.rs"]
+#[path = "../../examples/shared/physics.rs"]
 mod physics;
 mod record;
-#[path = "../ball/scene.rs"]
+#[path = "../../examples/ball/scene.rs"]
 mod scene;
-#[path = "../shared"]
+#[path = "../../examples/shared"]
 mod shared {
     pub mod exact;
     pub mod modes;
@@ -50,7 +51,7 @@ mod scaling;
 mod stability;
 mod table1;
 mod timed;
-#[path = "../shared/view.rs"]
+#[path = "../../examples/shared/view.rs"]
 mod view;
 mod waves;
 

@@ -2,14 +2,16 @@
 //! the sub-steps.
 
 use bevy::math::Vec3;
-use bevy_drape::solver::methods::Scene;
 
 use super::{
     Job, Map, Row, by,
     cloth::{Moving, Way, energy_at_start},
     ensure, largest, values,
 };
-use crate::chart::{Axis, Chart, Kind, Look, Panel, Series, number};
+use crate::{
+    chart::{Axis, Chart, Kind, Look, Panel, Series, number},
+    methods::{GRAVITY, Scene},
+};
 
 pub const DAMPING: Map = Map {
     name: "damping",
@@ -136,7 +138,7 @@ fn kept_findings(rows: &[Row]) -> Vec<String> {
 
 fn fall(damping: f64, substeps: u32) -> Row {
     let mut scene = free(damping as f32, 0.0);
-    scene.acceleration = bevy_drape::solver::methods::GRAVITY;
+    scene.acceleration = GRAVITY;
     let mut moving = Moving::new(&scene, Way::ours(substeps), scene.seconds.into());
     for _ in 0..60 {
         moving.step();

@@ -2,7 +2,7 @@
 
 use bevy::math::{Vec2, Vec3};
 
-use crate::{
+use bevy_drape::{
     cloth::{ClothError, ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
     solver::{Bending, Solver, TickStep},
 };

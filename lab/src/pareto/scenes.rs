@@ -1,7 +1,8 @@
 //! The scenes in which speed is weighed against accuracy.
 
 use bevy::math::Vec3;
-use bevy_drape::solver::methods::{MassSpring, Real, Scene};
+
+use crate::methods::{MassSpring, Real, Scene};
 
 /// Each is simulated for a second.
 pub const TICKS: u32 = 60;

@@ -10,13 +10,11 @@ use bevy_drape::{
     cloth::{ClothParticles, Surface},
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::TopDownQuery,
-    solver::{
-        Control, Solver, Stretch, Substepping,
-        methods::{MassSpring, Method, Real, Stepper},
-    },
+    solver::{Control, Solver, Stretch, Substepping},
 };
 
 use super::scenes::{Ball, Case};
+use crate::methods::{MassSpring, Method, Real, Stepper, one_sweep};
 
 /// A method with its settings.
 #[derive(Debug, Clone, Copy)]
@@ -238,7 +236,7 @@ pub struct Peer<'a, R: Real> {
 
 impl<'a, R: Real> Peer<'a, R> {
     fn new(case: &'a Case, method: Method, steps: u32) -> Self {
-        let network: MassSpring<R> = case.scene.network().expect("a valid network");
+        let network: MassSpring<R> = MassSpring::of_scene(&case.scene).expect("a valid network");
         // A ball is answered after each step: of small ones, after each of these.
         let (method, steps, substeps) = match method {
             Method::SmallSteps { substeps } if case.ball.is_some() => {
@@ -302,7 +300,7 @@ impl<'a> Ours<'a> {
     fn new(case: &'a Case, substepping: Substepping, springs: Springs) -> Self {
         let solver = match springs {
             Springs::Threads => case.scene.solver(false),
-            Springs::OneSweep => case.scene.one_sweep(),
+            Springs::OneSweep => one_sweep(&case.scene),
         };
         Self {
             case,

@@ -1,11 +1,12 @@
-//! Meshes for tests and benchmarks.
+//! Meshes for tests and benchmarks. Whoever includes this file calls the crate `library`, as its own tests cannot name it
+//! otherwise.
 
 use bevy::{
     math::{Vec2, Vec3},
     platform::collections::HashMap,
 };
 
-use crate::cloth::TriangleMesh;
+use super::library::cloth::TriangleMesh;
 
 /// An irregular mesh of a rectangle, `width` × `height` m, from (0, 0, 0) to (width, −height, 0). Its points are about
 /// `spacing` m apart, each moved from its place in a grid by up to `jitter` spacings, with a Delaunay triangulation

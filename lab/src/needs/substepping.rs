@@ -1,10 +1,10 @@
 //! A fixed number of sub-steps, or as few as hold a tolerance.
 
 use bevy::math::Vec3;
-use bevy_drape::solver::{Control, Stretch, Substepping, methods::Scene};
+use bevy_drape::solver::{Control, Stretch, Substepping};
 
 use super::{Row, STRETCH};
-use crate::{experiment::Run, measure::seconds};
+use crate::{experiment::Run, measure::seconds, methods::Scene};
 
 pub const SCENE: &str = "fall, calm, gust, 32²";
 

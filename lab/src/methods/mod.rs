@@ -1,31 +1,40 @@
-//! Methods for comparison with the library's own solver: small, plain implementations that step the same springs under
+//! Methods for comparison with the plugin's own solver: small, plain implementations that step the same springs under
 //! the same damping.
 //!
 //! They are references for benchmarks and experiments, not a second solver: no collisions, no threads, no culling.
 //! Every method is generic over the precision, so that a converged `f64` run can serve as the reference.
 
-mod drape;
 mod error;
 mod hooke;
-pub mod meshes;
 mod method;
 mod position_based;
+#[cfg(test)]
+mod precision;
 mod projective;
-mod scenes;
+#[path = "../../../tests/shared/scene.rs"]
+mod scene;
 mod stability;
 mod state;
 #[cfg(test)]
 mod tests;
 
-pub use drape::Drape;
 pub use error::MethodError;
 use hooke::Hooke;
 pub use method::Method;
 use position_based::{PositionBased, SmallSteps};
 use projective::Projective;
-pub use scenes::{GRAVITY, Scene};
+pub use scene::{GRAVITY, Scene};
 pub use stability::largest_frequency;
 pub use state::{MassSpring, Real};
+
+use bevy_drape::solver::{Bending, Solver};
+
+/// The plugin's former solver for a scene: one sweep over the springs in each sub-step, of first order.
+pub fn one_sweep(scene: &Scene) -> Solver {
+    let mut solver = Solver::of_one_sweep(&scene.springs, &scene.particles);
+    solver.set_bending(Bending::new(&scene.surface, &scene.material));
+    solver
+}
 
 /// A method set up for one network and one length of step.
 #[derive(Debug)]

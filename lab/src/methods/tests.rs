@@ -2,8 +2,8 @@
 //! numbers measured on x86-64 stand there too.
 
 use super::{MassSpring, Method, MethodError, Real, Stepper, largest_frequency};
-use crate::cloth::{Spring, SpringKind};
 use bevy::math::Vec3;
+use bevy_drape::cloth::{Spring, SpringKind};
 
 /// m/s²
 const GRAVITY: f64 = 9.81;

@@ -11,16 +11,14 @@ mod scenes;
 use std::collections::HashMap;
 
 use bevy::math::DVec3;
-use bevy_drape::{
-    cloth::SpringKind,
-    solver::methods::{MassSpring, largest_frequency},
-};
+use bevy_drape::cloth::SpringKind;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     chart::Chart,
     experiment::{Experiment, Run, Table},
     measure::Spread,
+    methods::{MassSpring, largest_frequency},
 };
 use frontier::Group;
 use methods::{METHODS, ONE_SWEEP, OURS, Player, SMALL_STEPS, Way};
@@ -109,7 +107,8 @@ impl Experiment for Pareto {
         for (case, reference) in cases.iter().zip(&references) {
             // Neither turning a cloth nor a ball changes it.
             let frequency = frequencies.entry(case.particles()).or_insert_with(|| {
-                let network: MassSpring<f64> = case.scene.network().expect("a valid network");
+                let network: MassSpring<f64> =
+                    MassSpring::of_scene(&case.scene).expect("a valid network");
                 largest_frequency(&network) / case.stiffness()
             });
             let ways = Way::all(
