@@ -10,7 +10,7 @@
 //! The eight multipliers of a row cost five divisions and some 70 operations. That is little beside the eight blocks of
 //! 64 columns, and as much as one of the two blocks of 16.
 
-use super::link::{Before, Behind, Family, Link, damped, measure_given, terms, way};
+use super::link::{Before, Behind, Family, Link, after, damped, terms, way};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
 /// Rows that are worked on at once: while one waits for its divisions, others need not.
@@ -166,10 +166,11 @@ impl Ends {
 
 /// Eliminates the springs before: of a strip's first there are none; its last is not solved for.
 #[inline(always)]
-fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
+fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
     family: &Family,
     block: usize,
+    pulled: &[Lanes],
     strip: &mut Strip,
     link: &mut Link,
     spike: &mut Lanes,
@@ -186,6 +187,8 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
         let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], family.rest);
         let right = if DAMPED {
             damped(right, [a, b], [x, y, z], family.kept, l)
+        } else if AGAIN {
+            after(right, [x, y, z], softness, pulled[block][l])
         } else {
             right
         };
@@ -222,9 +225,10 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
 
 /// The springs of a row up to the reduced system, whose rows are to be `at` there.
 #[inline(always)]
-fn reduce<const DAMPED: bool>(
+fn reduce<const DAMPED: bool, const AGAIN: bool>(
     row: &[Block],
     family: &Family,
+    pulled: &[Lanes],
     links: &mut [Link],
     spikes: &mut [Lanes],
     strip: &mut Strip,
@@ -239,17 +243,18 @@ fn reduce<const DAMPED: bool>(
             None => row[0].shifted(),
         };
         let between = [row[j].view(), b];
+        macro_rules! eliminate {
+            ($first:literal, $last:literal) => {
+                eliminate::<$first, $last, DAMPED, AGAIN>(
+                    between, family, j, pulled, strip, link, spike,
+                )
+            };
+        }
         match (j == 0, j == last) {
-            (true, true) => eliminate::<true, true, DAMPED>(between, family, j, strip, link, spike),
-            (true, false) => {
-                eliminate::<true, false, DAMPED>(between, family, j, strip, link, spike);
-            }
-            (false, false) => {
-                eliminate::<false, false, DAMPED>(between, family, j, strip, link, spike);
-            }
-            (false, true) => {
-                eliminate::<false, true, DAMPED>(between, family, j, strip, link, spike);
-            }
+            (true, true) => eliminate!(true, true),
+            (true, false) => eliminate!(true, false),
+            (false, false) => eliminate!(false, false),
+            (false, true) => eliminate!(false, true),
         }
     }
     let weight = row[0].view()[W..].first_chunk().expect("lanes");
@@ -327,72 +332,120 @@ fn pull_row(
     pull_first(row[0].view_mut(), before.each_ref(), &behind.pull);
 }
 
-/// Rows that lie one below the other.
+/// Rows of a grid, of which some are solved.
 pub(crate) struct RowThreads<'a> {
+    /// Rows that lie one below the other.
     pub blocks: &'a mut [Block],
-    /// For the first and the last of them: whether it is on the grid's border.
-    pub is_border: [bool; 2],
+    /// The number of the first of them, and of all of the grid's.
+    pub first: usize,
+    pub of: usize,
+    /// The numbers of those that are solved.
+    pub numbers: &'a [u32],
     pub scratch: &'a mut RowScratch,
-    /// Raised to the squares of the springs' elongations at their tension (m²).
-    pub given: Option<&'a mut Lanes>,
+    /// For elastic springs: the multipliers of those of each of the rows (m kg); else empty.
+    pub pulled: &'a mut [Lanes],
 }
 
 /// Solves the threads within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
 pub(crate) fn solve_rows(rows: &mut RowThreads, families: &[Family; 2]) {
-    solve::<false>(rows, families);
+    solve::<false, false>(rows, families);
 }
 
 /// The same with damping along them.
 #[inline(always)]
 pub(crate) fn solve_damped_rows(rows: &mut RowThreads, families: &[Family; 2]) {
-    solve::<true>(rows, families);
+    solve::<true, false>(rows, families);
+}
+
+/// The same of elastic springs, which go on from what they have pulled with.
+#[inline(always)]
+pub(crate) fn solve_rows_again(rows: &mut RowThreads, families: &[Family; 2]) {
+    solve::<false, true>(rows, families);
 }
 
 #[inline(always)]
-fn solve<const DAMPED: bool>(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
+fn solve<const DAMPED: bool, const AGAIN: bool>(
+    rows: &mut RowThreads,
+    [border, inner]: &[Family; 2],
+) {
     let strip = border.hold.len();
-    let count = rows.blocks.len() / strip;
-    let [first, last] = rows.is_border;
+    let RowThreads {
+        blocks,
+        first,
+        of,
+        numbers,
+        scratch,
+        pulled,
+    } = rows;
+    let (first, last) = (*first, *of - 1);
     let family = |row: usize| {
-        let is_border = (row == 0 && first) || (row + 1 == count && last);
-        if is_border { border } else { inner }
+        if row == 0 || row == last {
+            border
+        } else {
+            inner
+        }
     };
+    let blocks_of = |row: usize| (row - first) * strip..(row - first + 1) * strip;
     let RowScratch {
         links,
         spikes,
         strip: state,
         ends,
         systems,
-    } = &mut *rows.scratch;
-    for (group, blocks) in rows.blocks.chunks_mut(strip * GROUP).enumerate() {
-        if blocks.len() < strip * GROUP {
+    } = &mut **scratch;
+    for numbers in numbers.chunks(GROUP) {
+        if numbers.len() < GROUP {
             (*ends, systems[0]) = (Ends::NONE, Reduced::NONE);
         }
         let springs = links
             .chunks_exact_mut(strip)
             .zip(spikes.chunks_exact_mut(strip));
-        for (at, (row, (links, spikes))) in blocks.chunks_exact(strip).zip(springs).enumerate() {
-            let (family, system) = (family(group * GROUP + at), (&mut *ends, &mut systems[0]));
+        for (at, (&row, (links, spikes))) in numbers.iter().zip(springs).enumerate() {
+            let (row, system) = (row as usize, (&mut *ends, &mut systems[0]));
+            let own = blocks_of(row);
             let at = BESIDE + at * LANES;
-            reduce::<DAMPED>(row, family, links, spikes, state, system, at);
+            let pulled: &[Lanes] = if AGAIN { &pulled[own.clone()] } else { &[] };
+            let state = &mut *state;
+            reduce::<DAMPED, AGAIN>(
+                &blocks[own],
+                family(row),
+                pulled,
+                links,
+                spikes,
+                state,
+                system,
+                at,
+            );
         }
         ends.solve(systems);
         let springs = links
             .chunks_exact_mut(strip)
             .zip(spikes.chunks_exact(strip));
-        for (at, (row, (links, spikes))) in blocks.chunks_exact_mut(strip).zip(springs).enumerate()
-        {
+        for (at, (&row, (links, spikes))) in numbers.iter().zip(springs).enumerate() {
+            let own = blocks_of(row as usize);
+            let reduced = (&*ends, &systems[0]);
             pull_row(
-                row,
+                &mut blocks[own.clone()],
                 links,
                 spikes,
-                (&*ends, &systems[0]),
+                reduced,
                 BESIDE + at * LANES,
             );
-            if let Some(given) = &mut rows.given {
-                measure_given(links, &family(group * GROUP + at).softness, given);
+            if let Some(pulled) = pulled.get_mut(own) {
+                note_pull::<AGAIN>(pulled, links);
             }
+        }
+    }
+}
+
+/// Notes the multipliers of a row's springs, with those before if it is solved again.
+#[inline(always)]
+fn note_pull<const AGAIN: bool>(pulled: &mut [Lanes], links: &[Link]) {
+    for (pulled, link) in pulled.iter_mut().zip(links) {
+        for l in 0..LANES {
+            let before = if AGAIN { pulled[l] } else { 0.0 };
+            pulled[l] = before + link.right[l];
         }
     }
 }

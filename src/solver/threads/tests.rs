@@ -154,10 +154,10 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
                 let kernels = SimdLevel::Auto.kernels();
                 let blocks = particles.blocks_mut();
                 match step {
-                    (0, 1) => sweep.solve_across(blocks, &kernels, None),
-                    (1, 0) => sweep.solve_down(blocks, Direction::Down, &kernels, None),
-                    (1, 1) => sweep.solve_down(blocks, Direction::Right, &kernels, None),
-                    _ => sweep.solve_down(blocks, Direction::Left, &kernels, None),
+                    (0, 1) => sweep.solve_across(blocks, &kernels),
+                    (1, 0) => sweep.solve_down(blocks, Direction::Down, &kernels),
+                    (1, 1) => sweep.solve_down(blocks, Direction::Right, &kernels),
+                    _ => sweep.solve_down(blocks, Direction::Left, &kernels),
                 }
                 let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
                 for thread in threads(&grid, step) {

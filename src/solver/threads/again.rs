@@ -1,0 +1,290 @@
+//! Rows and columns that are solved again, where those solved after them have left something.
+//!
+//! Each thread is solved exactly, but the next ones move its particles again. That is little, except where one thread carries
+//! many others, as beside a pin that a cloth hangs by: there it adds up from sub-step to sub-step. So after the pass, what is
+//! left in each row and column is measured, and those in which it is too much are solved again. Their crossing threads are
+//! measured then, and so on, for a few rounds. It is the iteration of Gauss and Seidel by threads (Saad 2003, section 4.1),
+//! for those equations alone that need it.
+
+use super::{
+    beside::Scratch,
+    down::Columns,
+    link::Family,
+    rows::{RowScratch, RowThreads},
+    unsolved::{Left, RowSprings, largest},
+};
+use crate::{
+    cloth::{Block, LANES, Lanes, Layout},
+    solver::{
+        bands::{in_bands, take},
+        kernel::Kernels,
+        sweep::Motion,
+    },
+};
+
+/// The most that may be left in a spring of a row or column, as a part of its length.
+const LIMIT: f32 = 0.005;
+
+/// With at most this part of it everywhere, the next sub-steps but the last of a tick leave no more than the limit, and
+/// are not looked at.
+const CALM: f32 = 0.5;
+const CALM_SUBSTEPS: u32 = 3;
+
+/// More rounds than this are hardly ever needed where pins leave room.
+const ROUNDS: usize = 4;
+
+/// A thread in which a round leaves more than this part cannot be helped, such as one between pins too far apart.
+const VAIN: f32 = 0.75;
+
+/// What is left in threads side by side.
+#[derive(Debug, Clone)]
+struct Threads {
+    left: Vec<f32>,
+    /// What was left when it was solved again last in this sub-step; infinite before.
+    tried: Vec<f32>,
+    /// Those that are solved again.
+    chosen: Vec<u32>,
+}
+
+impl Threads {
+    fn new(count: usize) -> Self {
+        Self {
+            left: vec![0.0; count],
+            tried: vec![f32::INFINITY; count],
+            chosen: Vec::with_capacity(count),
+        }
+    }
+
+    /// Chooses those that are solved again. Returns whether there are any.
+    fn choose(&mut self) -> bool {
+        self.chosen.clear();
+        for (number, (left, tried)) in self.left.iter().zip(&mut self.tried).enumerate() {
+            if *left > LIMIT && *left < VAIN * *tried {
+                *tried = *left;
+                self.chosen.push(number as u32);
+            }
+        }
+        !self.chosen.is_empty()
+    }
+
+    fn largest(&self) -> f32 {
+        self.left.iter().copied().fold(0.0, f32::max)
+    }
+}
+
+/// The springs of a grid's rows and columns, and memory to solve them in.
+pub(super) struct Solved<'a> {
+    /// Within a row: one on a border, one that is not.
+    pub across: &'a [Family; 2],
+    pub down: &'a Family,
+    pub rows: &'a mut RowScratch,
+    pub columns: &'a mut Scratch,
+}
+
+/// Finds what is left, and solves it.
+#[derive(Debug, Clone)]
+pub(super) struct Again {
+    strip: usize,
+    rows: Threads,
+    /// Of each block of a row: its columns.
+    columns: Threads,
+    /// One for each band.
+    found: Vec<Left>,
+    /// Multipliers of the springs within each row, and of those that lead to it from the row above (m kg). Empty where all
+    /// are rigid.
+    pub pulled: [Vec<Lanes>; 2],
+    /// Sub-steps that are not looked at.
+    calm: u32,
+}
+
+impl Again {
+    pub fn new(layout: Layout, is_elastic: bool) -> Self {
+        let (strip, rows) = (layout.strip as usize, layout.rows as usize);
+        let multipliers = if is_elastic { layout.blocks() } else { 0 };
+        Self {
+            strip,
+            rows: Threads::new(rows),
+            columns: Threads::new(strip),
+            found: vec![Left::new(strip)],
+            pulled: [(); 2].map(|()| vec![[0.0; LANES]; multipliers]),
+            calm: 0,
+        }
+    }
+
+    /// Solves again what is left after a pass over all threads.
+    pub fn solve(
+        &mut self,
+        blocks: &mut [Block],
+        grid: &mut Solved,
+        motion: &Motion,
+        bands: usize,
+    ) {
+        // Damping holds against a stretch that it has not let in: that is not left over.
+        if grid.down.kept < 1.0 {
+            return;
+        }
+        self.calm = if motion.begins || motion.measures {
+            0
+        } else {
+            self.calm.saturating_sub(1)
+        };
+        if self.calm > 0 {
+            return;
+        }
+        let kernels = motion.kernels;
+        self.measure(blocks, grid, kernels, bands);
+        let most = self.rows.largest().max(self.columns.largest());
+        if most <= LIMIT {
+            self.calm = if most < CALM * LIMIT {
+                CALM_SUBSTEPS + 1
+            } else {
+                0
+            };
+            return;
+        }
+        self.rows.tried.fill(f32::INFINITY);
+        self.columns.tried.fill(f32::INFINITY);
+        for _ in 0..ROUNDS {
+            let some_rows = self.rows.choose();
+            if some_rows {
+                self.solve_rows(blocks, grid, kernels);
+            }
+            if self.columns.choose() {
+                self.solve_columns(blocks, grid, kernels);
+                self.measure(blocks, grid, kernels, bands);
+            } else if !some_rows {
+                return;
+            }
+        }
+    }
+
+    /// Measures all rows and columns.
+    fn measure(&mut self, blocks: &[Block], grid: &Solved, kernels: &Kernels, bands: usize) {
+        let (strip, count) = (self.strip, self.rows.left.len());
+        if self.found.len() < bands {
+            self.found.resize(bands, Left::new(strip));
+        }
+        let border = |band: usize| count * band / bands;
+        let mut all = &mut self.rows.left[..];
+        let pulled = &self.pulled;
+        let parts = self.found.iter_mut().take(bands).enumerate();
+        let parts = parts.map(|(band, found)| {
+            let left = take(&mut all, border(band + 1) - border(band));
+            (border(band), left, found)
+        });
+        let work = |(first, left, found): (usize, &mut [f32], &mut Left)| {
+            found.down.fill([0.0; LANES]);
+            let above = first.saturating_sub(1);
+            (kernels.note_places)(&blocks[above * strip..][..strip], found);
+            for (row, left) in (first..).zip(left) {
+                measure_row(blocks, row, count, grid, pulled, found, kernels);
+                *left = found.across;
+            }
+        };
+        if bands > 1 {
+            in_bands(parts, work);
+        } else {
+            parts.for_each(work);
+        }
+        self.columns.left.fill(0.0);
+        for found in &self.found[..bands] {
+            for (left, found) in self.columns.left.iter_mut().zip(&found.down) {
+                *left = left.max(largest(*found));
+            }
+        }
+    }
+
+    /// Solves the chosen rows again, and measures what crosses them.
+    fn solve_rows(&mut self, blocks: &mut [Block], grid: &mut Solved, kernels: &Kernels) {
+        let (strip, count) = (self.strip, self.rows.left.len());
+        let [in_rows, _] = &mut self.pulled;
+        let mut rows = RowThreads {
+            blocks,
+            first: 0,
+            of: count,
+            numbers: &self.rows.chosen,
+            scratch: grid.rows,
+            pulled: in_rows,
+        };
+        if rows.pulled.is_empty() {
+            (kernels.solve_rows)(&mut rows, grid.across);
+        } else {
+            (kernels.solve_rows_again)(&mut rows, grid.across);
+        }
+        let found = &mut self.found[0];
+        found.down.fill([0.0; LANES]);
+        for &row in &self.rows.chosen {
+            let row = row as usize;
+            let above = row.saturating_sub(1);
+            (kernels.note_places)(&blocks[above * strip..][..strip], found);
+            for row in row..(row + 2).min(count) {
+                measure_row(blocks, row, count, grid, &self.pulled, found, kernels);
+                self.rows.left[row] = found.across;
+            }
+        }
+        for (left, found) in self.columns.left.iter_mut().zip(&found.down) {
+            *left = left.max(largest(*found));
+        }
+    }
+
+    /// Solves the columns of the chosen blocks again.
+    fn solve_columns(&mut self, blocks: &mut [Block], grid: &mut Solved, kernels: &Kernels) {
+        let [_, from_above] = &mut self.pulled;
+        let (links, before, behind) = grid.columns.memory();
+        let mut columns = Columns {
+            blocks,
+            strip: self.strip,
+            chosen: &self.columns.chosen,
+            links,
+            before,
+            behind,
+            pulled: from_above,
+        };
+        if columns.pulled.is_empty() {
+            (kernels.solve_columns)(&mut columns, grid.down);
+        } else {
+            (kernels.solve_columns_again)(&mut columns, grid.down);
+        }
+    }
+}
+
+/// Measures what is left in a row of as many, and between it and the one above.
+fn measure_row(
+    blocks: &[Block],
+    row: usize,
+    count: usize,
+    grid: &Solved,
+    pulled: &[Vec<Lanes>; 2],
+    found: &mut Left,
+    kernels: &Kernels,
+) {
+    let [border, inner] = grid.across;
+    let across = if row == 0 || row + 1 == count {
+        border
+    } else {
+        inner
+    };
+    let strip = found.down.len();
+    let own = row * strip..(row + 1) * strip;
+    let blocks = &blocks[own.clone()];
+    let is_elastic = !pulled[0].is_empty();
+    let of_row = |pulled: &'_ Vec<Lanes>| {
+        if is_elastic {
+            own.clone()
+        } else {
+            0..pulled.len()
+        }
+    };
+    let springs = RowSprings {
+        families: [across, grid.down],
+        pulled: [
+            &pulled[0][of_row(&pulled[0])],
+            &pulled[1][of_row(&pulled[1])],
+        ],
+    };
+    if is_elastic {
+        (kernels.measure_elastic_left)(blocks, &springs, found);
+    } else {
+        (kernels.measure_left)(blocks, &springs, found);
+    }
+}

@@ -1,0 +1,127 @@
+//! What a pass over the threads of a grid leaves unsolved, in the springs of its rows and columns.
+//!
+//! # The floor
+//! Two springs for each particle: 3 additions for its position, and 10 operations for each of them, of elastic ones 16 and a
+//! division. That is a fifteenth of a sub-step.
+
+use super::link::Family;
+use crate::{
+    cloth::{Block, DX, LANES, Lanes, View, X},
+    solver::pentadiagonal::Trio,
+};
+
+/// What is left, as a part of lengths, of springs that should be shorter.
+#[derive(Debug, Clone)]
+pub(crate) struct Left {
+    /// Positions of the row above (m).
+    above: Vec<Trio>,
+    /// The most in the row that was measured last.
+    pub across: f32,
+    /// The most in the columns of each block, lane by lane.
+    pub down: Vec<Lanes>,
+}
+
+impl Left {
+    pub fn new(strip: usize) -> Self {
+        Self {
+            above: vec![[[0.0; LANES]; 3]; strip],
+            across: 0.0,
+            down: vec![[0.0; LANES]; strip],
+        }
+    }
+}
+
+/// The springs within a row, and those that lead to it from the row above.
+pub(crate) struct RowSprings<'a> {
+    pub families: [&'a Family; 2],
+    /// Their multipliers (m kg), if they are elastic.
+    pub pulled: [&'a [Lanes]; 2],
+}
+
+/// The positions of eight particles in a sub-step.
+#[inline(always)]
+fn places(view: &View) -> Trio {
+    let mut places = [[0.0; LANES]; 3];
+    for axis in 0..3 {
+        for l in 0..LANES {
+            places[axis][l] = view[X + axis * LANES + l] + view[DX + axis * LANES + l];
+        }
+    }
+    places
+}
+
+/// Notes where the particles of a row are.
+#[inline(always)]
+pub(crate) fn note_places(row: &[Block], left: &mut Left) {
+    for (above, block) in left.above.iter_mut().zip(row) {
+        *above = places(block.view());
+    }
+}
+
+/// Raises `left` to what the equations of eight springs still have on their right sides, as a part of lengths.
+#[inline(always)]
+fn raise<const ELASTIC: bool>(
+    [a, b]: [&Trio; 2],
+    (family, block): (&Family, usize),
+    pulled: &[Lanes],
+    left: &mut Lanes,
+) {
+    let scale = &family.inverse_square[block];
+    for l in 0..LANES {
+        let (x, y, z) = (b[0][l] - a[0][l], b[1][l] - a[1][l], b[2][l] - a[2][l]);
+        let off = (x * x + y * y + z * z) * scale[l] - 1.0;
+        let found = if ELASTIC {
+            // C + α̃ λ over the length, with Halley's step for C as in the equations.
+            let pull = family.softness[block][l] * pulled[block][l] * family.inverse_rest;
+            off / (1.5 * off + 2.0) + pull
+        } else {
+            0.5 * off
+        };
+        left[l] = if found > left[l] { found } else { left[l] };
+    }
+}
+
+/// Measures the springs of a row, and those that lead to it from the row that was noted or measured before.
+#[inline(always)]
+pub(crate) fn measure_left(row: &[Block], springs: &RowSprings, left: &mut Left) {
+    measure::<false>(row, springs, left);
+}
+
+/// The same where springs are elastic.
+#[inline(always)]
+pub(crate) fn measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Left) {
+    measure::<true>(row, springs, left);
+}
+
+#[inline(always)]
+fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut Left) {
+    let [across, down] = springs.families;
+    let [in_row, from_above] = springs.pulled;
+    let mut most = [0.0; LANES];
+    let last = row.len() - 1;
+    let ends = [&places(row[last].view()), &places(row[0].shifted())];
+    raise::<ELASTIC>(ends, (across, last), in_row, &mut most);
+    let mut before = [[0.0; LANES]; 3];
+    let columns = left.above.iter_mut().zip(&mut left.down);
+    for (j, (block, (above, left))) in row.iter().zip(columns).enumerate() {
+        let own = places(block.view());
+        if j > 0 {
+            raise::<ELASTIC>([&before, &own], (across, j - 1), in_row, &mut most);
+        }
+        raise::<ELASTIC>([above, &own], (down, j), from_above, left);
+        (*above, before) = (own, own);
+    }
+    left.across = largest(most);
+}
+
+/// The largest of eight numbers.
+#[inline(always)]
+pub(super) fn largest(mut lanes: Lanes) -> f32 {
+    for half in [4, 2, 1] {
+        for l in 0..half {
+            let other = lanes[l + half];
+            lanes[l] = if other > lanes[l] { other } else { lanes[l] };
+        }
+    }
+    lanes[0]
+}
