@@ -31,9 +31,9 @@ use super::{
     run::Run,
     threads::{
         Columns, Family, Left, RowSprings, RowThreads, Solved, Step, Threads, bundle_backward,
-        bundle_forward, measure_elastic_left, measure_given, measure_left, note_places,
-        solve_columns, solve_columns_again, solve_damped_rows, solve_damped_threads, solve_rows,
-        solve_rows_again, solve_threads,
+        bundle_forward, measure_elastic_left, measure_elastic_left_at, measure_given, measure_left,
+        measure_left_at, note_places, solve_columns, solve_columns_again, solve_damped_rows,
+        solve_damped_threads, solve_rows, solve_rows_again, solve_threads,
     },
     twist::{twist_backward, twist_forward, twist_links},
 };
@@ -296,6 +296,8 @@ kernels! {
     note_places(row: &[Block], left: &mut Left),
     measure_left(row: &[Block], springs: &RowSprings, left: &mut Left),
     measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Left),
+    measure_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Left),
+    measure_elastic_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Left),
     measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut Lanes),
     bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], pace: &Pace),
     bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),

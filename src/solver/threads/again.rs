@@ -151,7 +151,6 @@ impl Again {
             }
             if self.columns.choose() {
                 self.solve_columns(blocks, grid, kernels);
-                self.measure(blocks, grid, kernels, bands);
             } else if !some_rows {
                 return;
             }
@@ -177,7 +176,7 @@ impl Again {
             let above = first.saturating_sub(1);
             (kernels.note_places)(&blocks[above * strip..][..strip], found);
             for (row, left) in (first..).zip(left) {
-                measure_row(blocks, row, count, grid, pulled, found, kernels);
+                measure_row(blocks, row, None, grid, pulled, found, kernels);
                 *left = found.across;
             }
         };
@@ -218,7 +217,7 @@ impl Again {
             let above = row.saturating_sub(1);
             (kernels.note_places)(&blocks[above * strip..][..strip], found);
             for row in row..(row + 2).min(count) {
-                measure_row(blocks, row, count, grid, &self.pulled, found, kernels);
+                measure_row(blocks, row, None, grid, &self.pulled, found, kernels);
                 self.rows.left[row] = found.across;
             }
         }
@@ -245,26 +244,37 @@ impl Again {
         } else {
             (kernels.solve_columns_again)(&mut columns, grid.down);
         }
+        let chosen = &self.columns.chosen;
+        let found = &mut self.found[0];
+        found.down.fill([0.0; LANES]);
+        (kernels.note_places)(&blocks[..self.strip], found);
+        for (row, left) in self.rows.left.iter_mut().enumerate() {
+            let at = Some(&chosen[..]);
+            measure_row(blocks, row, at, grid, &self.pulled, found, kernels);
+            // Elsewhere it was within the limit, or the row has been solved.
+            *left = found.across;
+        }
+        for &block in chosen {
+            let block = block as usize;
+            self.columns.left[block] = largest(found.down[block]);
+        }
     }
 }
 
-/// Measures what is left in a row of as many, and between it and the one above.
+/// Measures what is left in a row, and between it and the one above: all of it, or at some blocks.
 fn measure_row(
     blocks: &[Block],
     row: usize,
-    count: usize,
+    at: Option<&[u32]>,
     grid: &Solved,
     pulled: &[Vec<Lanes>; 2],
     found: &mut Left,
     kernels: &Kernels,
 ) {
     let [border, inner] = grid.across;
-    let across = if row == 0 || row + 1 == count {
-        border
-    } else {
-        inner
-    };
     let strip = found.down.len();
+    let is_border = row == 0 || (row + 1) * strip == blocks.len();
+    let across = if is_border { border } else { inner };
     let own = row * strip..(row + 1) * strip;
     let blocks = &blocks[own.clone()];
     let is_elastic = !pulled[0].is_empty();
@@ -282,9 +292,10 @@ fn measure_row(
             &pulled[1][of_row(&pulled[1])],
         ],
     };
-    if is_elastic {
-        (kernels.measure_elastic_left)(blocks, &springs, found);
-    } else {
-        (kernels.measure_left)(blocks, &springs, found);
+    match (at, is_elastic) {
+        (None, false) => (kernels.measure_left)(blocks, &springs, found),
+        (None, true) => (kernels.measure_elastic_left)(blocks, &springs, found),
+        (Some(at), false) => (kernels.measure_left_at)(blocks, at, &springs, found),
+        (Some(at), true) => (kernels.measure_elastic_left_at)(blocks, at, &springs, found),
     }
 }

@@ -24,4 +24,7 @@ pub(super) use down::{
 pub(super) use grid::ThreadSweep;
 pub(super) use link::{Family, measure_given};
 pub(super) use rows::{RowThreads, solve_damped_rows, solve_rows, solve_rows_again};
-pub(super) use unsolved::{Left, RowSprings, measure_elastic_left, measure_left, note_places};
+pub(super) use unsolved::{
+    Left, RowSprings, measure_elastic_left, measure_elastic_left_at, measure_left, measure_left_at,
+    note_places,
+};

@@ -114,6 +114,62 @@ fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut 
     left.across = largest(most);
 }
 
+/// Measures, in a row and from the one above, the springs at some blocks alone.
+#[inline(always)]
+pub(crate) fn measure_left_at(
+    row: &[Block],
+    blocks: &[u32],
+    springs: &RowSprings,
+    left: &mut Left,
+) {
+    measure_at::<false>(row, blocks, springs, left);
+}
+
+/// The same where springs are elastic.
+#[inline(always)]
+pub(crate) fn measure_elastic_left_at(
+    row: &[Block],
+    blocks: &[u32],
+    springs: &RowSprings,
+    left: &mut Left,
+) {
+    measure_at::<true>(row, blocks, springs, left);
+}
+
+#[inline(always)]
+fn measure_at<const ELASTIC: bool>(
+    row: &[Block],
+    blocks: &[u32],
+    springs: &RowSprings,
+    left: &mut Left,
+) {
+    let [across, down] = springs.families;
+    let [in_row, from_above] = springs.pulled;
+    let mut most = [0.0; LANES];
+    let last = row.len() - 1;
+    for &block in blocks {
+        let block = block as usize;
+        let own = places(row[block].view());
+        let (before, first, to_first) = if block == 0 {
+            (last, places(row[last].view()), places(row[0].shifted()))
+        } else {
+            (block - 1, places(row[block - 1].view()), own)
+        };
+        let ends = [&first, &to_first];
+        raise::<ELASTIC>(ends, (across, before), in_row, &mut most);
+        let after = match row.get(block + 1) {
+            Some(after) => places(after.view()),
+            None => places(row[0].shifted()),
+        };
+        raise::<ELASTIC>([&own, &after], (across, block), in_row, &mut most);
+        let above = &mut left.above[block];
+        let down = (down, block);
+        raise::<ELASTIC>([above, &own], down, from_above, &mut left.down[block]);
+        *above = own;
+    }
+    left.across = largest(most);
+}
+
 /// The largest of eight numbers.
 #[inline(always)]
 pub(super) fn largest(mut lanes: Lanes) -> f32 {
