@@ -30,18 +30,13 @@ const LIMIT: f32 = 0.005;
 const CALM: f32 = 0.5;
 const CALM_SUBSTEPS: u32 = 3;
 
-/// More rounds than this are hardly ever needed where pins leave room.
+/// Rounds at most. More are hardly ever needed, except by a thread between pins too far apart, which none would help.
 const ROUNDS: usize = 4;
-
-/// A thread in which a round leaves more than this part cannot be helped, such as one between pins too far apart.
-const VAIN: f32 = 0.75;
 
 /// What is left in threads side by side.
 #[derive(Debug, Clone)]
 struct Threads {
     left: Vec<f32>,
-    /// What was left when it was solved again last in this sub-step; infinite before.
-    tried: Vec<f32>,
     /// Those that are solved again.
     chosen: Vec<u32>,
 }
@@ -50,7 +45,6 @@ impl Threads {
     fn new(count: usize) -> Self {
         Self {
             left: vec![0.0; count],
-            tried: vec![f32::INFINITY; count],
             chosen: Vec::with_capacity(count),
         }
     }
@@ -58,12 +52,9 @@ impl Threads {
     /// Chooses those that are solved again. Returns whether there are any.
     fn choose(&mut self) -> bool {
         self.chosen.clear();
-        for (number, (left, tried)) in self.left.iter().zip(&mut self.tried).enumerate() {
-            if *left > LIMIT && *left < VAIN * *tried {
-                *tried = *left;
-                self.chosen.push(number as u32);
-            }
-        }
+        let beyond = self.left.iter().enumerate();
+        let beyond = beyond.filter(|(_, left)| **left > LIMIT);
+        self.chosen.extend(beyond.map(|(number, _)| number as u32));
         !self.chosen.is_empty()
     }
 
@@ -142,8 +133,6 @@ impl Again {
             };
             return;
         }
-        self.rows.tried.fill(f32::INFINITY);
-        self.columns.tried.fill(f32::INFINITY);
         for _ in 0..ROUNDS {
             let some_rows = self.rows.choose();
             if some_rows {
