@@ -17,6 +17,7 @@ mod energy;
 #[path = "../../examples/shared/exact.rs"]
 mod exact;
 mod gas;
+mod hung;
 mod mesh;
 #[path = "../../examples/shared/modes.rs"]
 mod modes;

@@ -22,12 +22,13 @@ use crate::{
     },
 };
 
-/// The most that may be left in a spring of a row or column, as a part of its length.
-const LIMIT: f32 = 0.005;
+/// The largest squared length of a spring of a row or column that is left, over that which it should have: half a per cent of
+/// stretch.
+const LIMIT: f32 = 1.005 * 1.005;
 
-/// With at most this part of it everywhere, the next sub-steps but the last of a tick leave no more than the limit, and
-/// are not looked at.
-const CALM: f32 = 0.5;
+/// With less than this everywhere, the next sub-steps but the last of a tick leave no more than the limit, and are not
+/// looked at.
+const CALM: f32 = 1.0025 * 1.0025;
 const CALM_SUBSTEPS: u32 = 3;
 
 /// Rounds at most. More are hardly ever needed, except by a thread between pins too far apart, which none would help.
@@ -114,25 +115,19 @@ impl Again {
         if grid.down.kept < 1.0 {
             return;
         }
-        self.calm = if motion.begins || motion.measures {
-            0
-        } else {
-            self.calm.saturating_sub(1)
-        };
-        if self.calm > 0 {
+        let is_watched = motion.begins || motion.measures;
+        if self.calm > 0 && !is_watched {
+            self.calm -= 1;
             return;
         }
         let kernels = motion.kernels;
         self.measure(blocks, grid, kernels, bands);
         let most = self.rows.largest().max(self.columns.largest());
         if most <= LIMIT {
-            self.calm = if most < CALM * LIMIT {
-                CALM_SUBSTEPS + 1
-            } else {
-                0
-            };
+            self.calm = if most < CALM { CALM_SUBSTEPS } else { 0 };
             return;
         }
+        self.calm = 0;
         for _ in 0..ROUNDS {
             let some_rows = self.rows.choose();
             if some_rows {

@@ -10,14 +10,14 @@ use crate::{
     solver::pentadiagonal::Trio,
 };
 
-/// What is left, as a part of lengths, of springs that should be shorter.
+/// What is left: squared lengths of springs over those that they should have.
 #[derive(Debug, Clone)]
 pub(crate) struct Left {
     /// Positions of the row above (m).
     above: Vec<Trio>,
-    /// The most in the row that was measured last.
+    /// The largest in the row that was measured last.
     pub across: f32,
-    /// The most in the columns of each block, lane by lane.
+    /// The largest in the columns of each block, lane by lane.
     pub down: Vec<Lanes>,
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn note_places(row: &[Block], left: &mut Left) {
     }
 }
 
-/// Raises `left` to what the equations of eight springs still have on their right sides, as a part of lengths.
+/// Raises `left` to the squared lengths of eight springs over those that they should have.
 #[inline(always)]
 fn raise<const ELASTIC: bool>(
     [a, b]: [&Trio; 2],
@@ -67,18 +67,20 @@ fn raise<const ELASTIC: bool>(
     left: &mut Lanes,
 ) {
     let scale = &family.inverse_square[block];
+    let mut most = *left;
     for l in 0..LANES {
         let (x, y, z) = (b[0][l] - a[0][l], b[1][l] - a[1][l], b[2][l] - a[2][l]);
-        let off = (x * x + y * y + z * z) * scale[l] - 1.0;
+        let p = (x * x + y * y + z * z) * scale[l];
         let found = if ELASTIC {
-            // C + α̃ λ over the length, with Halley's step for C as in the equations.
+            // 1 and twice C + α̃ λ over the length, with Halley's step for C as in the equations.
             let pull = family.softness[block][l] * pulled[block][l] * family.inverse_rest;
-            off / (1.5 * off + 2.0) + pull
+            1.0 + 2.0 * ((p - 1.0) / (1.5 * p + 0.5) + pull)
         } else {
-            0.5 * off
+            p
         };
-        left[l] = if found > left[l] { found } else { left[l] };
+        most[l] = if found > most[l] { found } else { most[l] };
     }
+    *left = most;
 }
 
 /// Measures the springs of a row, and those that lead to it from the row that was noted or measured before.
@@ -97,20 +99,22 @@ pub(crate) fn measure_elastic_left(row: &[Block], springs: &RowSprings, left: &m
 fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut Left) {
     let [across, down] = springs.families;
     let [in_row, from_above] = springs.pulled;
+    let count = row.len();
+    let (all_above, columns) = (&mut left.above[..count], &mut left.down[..count]);
     let mut most = [0.0; LANES];
-    let last = row.len() - 1;
-    let ends = [&places(row[last].view()), &places(row[0].shifted())];
-    raise::<ELASTIC>(ends, (across, last), in_row, &mut most);
-    let mut before = [[0.0; LANES]; 3];
-    let columns = left.above.iter_mut().zip(&mut left.down);
-    for (j, (block, (above, left))) in row.iter().zip(columns).enumerate() {
-        let own = places(block.view());
-        if j > 0 {
-            raise::<ELASTIC>([&before, &own], (across, j - 1), in_row, &mut most);
-        }
-        raise::<ELASTIC>([above, &own], (down, j), from_above, left);
-        (*above, before) = (own, own);
+    let mut before = places(row[0].view());
+    let first = (down, 0);
+    raise::<ELASTIC>([&all_above[0], &before], first, from_above, &mut columns[0]);
+    all_above[0] = before;
+    for j in 1..count {
+        let own = places(row[j].view());
+        raise::<ELASTIC>([&before, &own], (across, j - 1), in_row, &mut most);
+        let ends = [&all_above[j], &own];
+        raise::<ELASTIC>(ends, (down, j), from_above, &mut columns[j]);
+        (all_above[j], before) = (own, own);
     }
+    let after = places(row[0].shifted());
+    raise::<ELASTIC>([&before, &after], (across, count - 1), in_row, &mut most);
     left.across = largest(most);
 }
 
