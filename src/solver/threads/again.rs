@@ -32,7 +32,7 @@ const CALM: f32 = 1.0025 * 1.0025;
 const CALM_SUBSTEPS: u32 = 3;
 
 /// Rounds at most. More are hardly ever needed, except by a thread between pins too far apart, which none would help.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
 
 /// What is left in threads side by side.
 #[derive(Debug, Clone)]
