@@ -39,7 +39,7 @@
 //! up from sub-step to sub-step. So the rows and columns of a grid are measured after the pass. Those in which more than
 //! 0.5 % of a spring's length is left are solved again, in up to eight rounds. Of elastic springs, what is left is
 //! C + α/(c Δt²) λ, with the multipliers of all rounds. Where little is left, the next three sub-steps are not measured.
-//! Threads with damping along them are solved once.
+//! Threads with damping along them, and those of meshes, are solved once.
 //!
 //! **Cost** (64², one thread, AVX2): a spring of a diagonal costs 1.1 times a spring of a column, a spring of a row 1.3
 //! times. The lanes of a row are strips of one thread, and the coupling between them is a system of its own.

@@ -26,13 +26,16 @@ use crate::{
 /// stretch.
 const LIMIT: f32 = 1.005 * 1.005;
 
-/// With less than this everywhere, the next sub-steps but the last of a tick leave no more than the limit, and are not
-/// looked at.
-const CALM: f32 = 1.0025 * 1.0025;
+/// With a quarter of that everywhere, this sub-step and the next three together leave no more than the limit, and those are
+/// not looked at. In a tick in which something was solved again, all are: to do so now and then drives the cloth.
+const CALM: f32 = 1.00125 * 1.00125;
 const CALM_SUBSTEPS: u32 = 3;
 
 /// Rounds at most. More are hardly ever needed, except by a thread between pins too far apart, which none would help.
 const ROUNDS: usize = 8;
+
+/// The part of a spring's length that its pull has given, at most.
+const MOST_GIVEN: f32 = 0.9;
 
 /// What is left in threads side by side.
 #[derive(Debug, Clone)]
@@ -87,6 +90,8 @@ pub(super) struct Again {
     pub pulled: [Vec<Lanes>; 2],
     /// Sub-steps that are not looked at.
     calm: u32,
+    /// Whether something was solved again in this tick.
+    is_busy: bool,
 }
 
 impl Again {
@@ -100,6 +105,7 @@ impl Again {
             found: vec![Left::new(strip)],
             pulled: [(); 2].map(|()| vec![[0.0; LANES]; multipliers]),
             calm: 0,
+            is_busy: false,
         }
     }
 
@@ -115,6 +121,7 @@ impl Again {
         if grid.down.kept < 1.0 {
             return;
         }
+        self.is_busy &= !motion.begins;
         let is_watched = motion.begins || motion.measures;
         if self.calm > 0 && !is_watched {
             self.calm -= 1;
@@ -123,11 +130,12 @@ impl Again {
         let kernels = motion.kernels;
         self.measure(blocks, grid, kernels, bands);
         let most = self.rows.largest().max(self.columns.largest());
+        let is_calm = most < CALM && !self.is_busy;
+        self.calm = if is_calm { CALM_SUBSTEPS } else { 0 };
         if most <= LIMIT {
-            self.calm = if most < CALM { CALM_SUBSTEPS } else { 0 };
             return;
         }
-        self.calm = 0;
+        self.is_busy = true;
         for _ in 0..ROUNDS {
             let some_rows = self.rows.choose();
             if some_rows {
@@ -138,6 +146,48 @@ impl Again {
             } else if !some_rows {
                 return;
             }
+        }
+    }
+
+    /// Elongations at their tension (m) of the springs across and down that give, as parts of lengths without it, lane by
+    /// lane.
+    pub fn given(&self, across: &[Family; 2], down: &Family, kernels: &Kernels) -> [Lanes; 2] {
+        let mut given = [[0.0; LANES]; 2];
+        let [border, inner] = across;
+        let [in_rows, from_above] = &self.pulled;
+        let last = self.rows.left.len() - 1;
+        for (row, pulled) in in_rows.chunks_exact(self.strip).enumerate() {
+            let is_border = row == 0 || row == last;
+            let family = if is_border { border } else { inner };
+            (kernels.measure_given)(pulled, &family.softness, &mut given[0]);
+        }
+        (kernels.measure_given)(from_above, &down.softness, &mut given[1]);
+        let families = [inner, down];
+        for (given, family) in given.iter_mut().zip(families) {
+            // At a length l of which the part g/r is given, the pull has given g l/r.
+            *given = given.map(|given| {
+                let part = (given * family.inverse_rest).min(MOST_GIVEN);
+                given / (1.0 - part)
+            });
+        }
+        given
+    }
+
+    /// Solves all rows or all columns again.
+    #[cfg(test)]
+    pub fn solve_all(&mut self, blocks: &mut [Block], grid: &mut Solved, down: bool) {
+        let kernels = crate::solver::SimdLevel::Auto.kernels();
+        let threads = if down {
+            &mut self.columns
+        } else {
+            &mut self.rows
+        };
+        threads.left.fill(f32::INFINITY);
+        threads.choose();
+        if down {
+            self.solve_columns(blocks, grid, &kernels);
+        } else {
+            self.solve_rows(blocks, grid, &kernels);
         }
     }
 
@@ -235,8 +285,7 @@ impl Again {
         for (row, left) in self.rows.left.iter_mut().enumerate() {
             let at = Some(&chosen[..]);
             measure_row(blocks, row, at, grid, &self.pulled, found, kernels);
-            // Elsewhere it was within the limit, or the row has been solved.
-            *left = found.across;
+            *left = left.max(found.across);
         }
         for &block in chosen {
             let block = block as usize;

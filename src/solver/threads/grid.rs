@@ -7,8 +7,9 @@ use super::{
     again::{Again, Solved},
     beside::{Scratch, Threads},
     direction::Direction,
+    ends::GROUP,
     link::Family,
-    rows::{GROUP, RowScratch, RowThreads},
+    rows::{RowScratch, RowThreads},
     unsolved::largest,
 };
 use crate::{
@@ -26,9 +27,6 @@ use crate::{
 /// Fewer rows a band than this, or fewer blocks of a row, and waiting for the others would take longer than the work.
 const MIN_ROWS: usize = 32;
 const MIN_BLOCKS: usize = 2;
-
-/// The part of a spring's length that its pull has given, at most.
-const MOST_GIVEN: f32 = 0.9;
 
 /// The springs of a grid, thread by thread.
 #[derive(Debug, Clone)]
@@ -121,44 +119,24 @@ impl ThreadSweep {
         solve_rows(&mut rows, &self.across, kernels);
     }
 
-    /// Solves again what is left in rows and columns, after all threads were solved in this many bands.
-    fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) {
+    /// What solves again what is left in rows and columns, after all threads were solved in this many bands.
+    pub(super) fn again(&mut self, bands: usize) -> (&mut Again, Solved<'_>) {
         let strip = self.layout.strip as usize;
         if let Some(pulled) = self.again.pulled[1].get_mut(strip..) {
             self.scratch.multipliers(strip, bands, pulled);
         }
-        let mut grid = Solved {
+        let grid = Solved {
             across: &self.across,
             down: &self.down,
             rows: &mut self.rows[0],
             columns: &mut self.scratch,
         };
-        self.again.solve(blocks, &mut grid, motion, bands);
+        (&mut self.again, grid)
     }
 
-    /// Elongations at their tension (m) of the springs across and down that give, as parts of lengths without it, lane by
-    /// lane.
-    fn given(&self, kernels: &Kernels) -> [Lanes; 2] {
-        let mut given = [[0.0; LANES]; 2];
-        let [border, inner] = &self.across;
-        let [in_rows, from_above] = &self.again.pulled;
-        let strip = self.layout.strip as usize;
-        let last = self.numbers.len() - 1;
-        for (row, pulled) in in_rows.chunks_exact(strip).enumerate() {
-            let is_border = row == 0 || row == last;
-            let family = if is_border { border } else { inner };
-            (kernels.measure_given)(pulled, &family.softness, &mut given[0]);
-        }
-        (kernels.measure_given)(from_above, &self.down.softness, &mut given[1]);
-        let families = [inner, &self.down];
-        for (given, family) in given.iter_mut().zip(families) {
-            // At a length l of which the part g/r is given, the pull has given g l/r.
-            *given = given.map(|given| {
-                let part = (given * family.inverse_rest).min(MOST_GIVEN);
-                given / (1.0 - part)
-            });
-        }
-        given
+    fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) {
+        let (again, mut grid) = self.again(bands);
+        again.solve(blocks, &mut grid, motion, bands);
     }
 
     /// The lengths of the springs that begin in these rows.
@@ -276,10 +254,10 @@ impl ThreadSweep {
         }
     }
 
-    /// [`given`](Self::given), or nothing.
+    /// The elongations of elastic springs across and down (m), if they are measured.
     fn given_if(&self, measures: bool, kernels: &Kernels) -> [Lanes; 2] {
         if measures {
-            self.given(kernels)
+            self.again.given(&self.across, &self.down, kernels)
         } else {
             [[0.0; LANES]; 2]
         }

@@ -8,6 +8,7 @@ mod bundle;
 mod bundles;
 mod direction;
 mod down;
+mod ends;
 mod grid;
 mod link;
 mod rows;
