@@ -55,10 +55,10 @@
 //!
 //! **Limits.** Each thread is solved exactly, but the coupling from one thread to the next is not. A load that hangs by
 //! one corner passes from thread to thread, by one thread in each round: with too few sub-steps, eight rounds don't
-//! suffice, and the spring beside the pin stretches ([`needed`]). The effect of tension across a thread is explicit. The shortest ripple of a membrane
-//! of tension N and spacing h has ω = 2 √(2 N ⁄ ρ) ⁄ h, and needs a sub-step below 2.2 ⁄ ω; otherwise slow modes ring
-//! too low. For 65² of cotton under 1 % of stretch these are 36 sub-steps in 1/64 s. [`Substepping::Automatic`] takes
-//! them on grids.
+//! suffice, and the spring beside the pin stretches ([`needed`]). The effect of tension across a thread is explicit.
+//! The shortest ripple of a membrane of tension N and spacing h has ω = 2 √(2 N ⁄ ρ) ⁄ h, and needs a sub-step below
+//! 2.2 ⁄ ω; otherwise slow modes ring too low. For 65² of cotton under 1 % of stretch these are 36 sub-steps in 1/64 s.
+//! [`Substepping::Automatic`] takes them on grids.
 //!
 //! [`needed`]: Substepping::needed
 

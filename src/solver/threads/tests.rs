@@ -190,13 +190,13 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
     }
 }
 
-/// Solved again at once, threads have nothing left but the curvature of their equations: a relative error of the order of
-/// the noise in lengths, 1 %, which each solve leaves of what it finds. A spring whose first pull was forgotten would pull
-/// as far once more.
+/// Solved again at once, elastic threads have nothing left but the curvature of their equations: a relative error of the
+/// order of the noise in lengths, 1 %, which each solve leaves of what it finds. A spring whose first pull was forgotten
+/// would pull as far once more. (Rigid threads have no such pull, and between two pins they have no solution.)
 #[test]
 fn what_is_solved_again_goes_on_from_its_pull() {
     for (columns, rows) in [(9, 17), (33, 20), (70, 11)] {
-        for compliance in [0.0, 1.0e-4, 1.0e-2] {
+        for compliance in [1.0e-4, 1.0e-2] {
             for down in [false, true] {
                 let (grid, mut particles) = crumpled(columns, rows, 0.001);
                 let compliances = Compliances {
