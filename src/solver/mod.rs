@@ -37,7 +37,7 @@
 //!
 //! **Again.** The threads solved after a row or column move its particles again. Where it carries many others, that adds
 //! up from sub-step to sub-step. So the rows and columns of a grid are measured after the pass. Those in which more than
-//! 0.5 % of a spring's length is left are solved again, in up to eight rounds. Of elastic springs, what is left is
+//! 0.5 % of a spring's length is left are solved again, in up to four rounds. Of elastic springs, what is left is
 //! C + α/(c Δt²) λ, with the multipliers of all rounds. Where little is left, the next three sub-steps are not measured.
 //! Threads with damping along them, and those of meshes, are solved once.
 //!
@@ -54,7 +54,7 @@
 //! where C₀ is C as the sub-step began.
 //!
 //! **Limits.** Each thread is solved exactly, but the coupling from one thread to the next is not. A load that hangs by
-//! one corner passes from thread to thread, by one thread in each round: with too few sub-steps, eight rounds don't
+//! one corner passes from thread to thread, by one thread in each round: with too few sub-steps, four rounds don't
 //! suffice, and the spring beside the pin stretches ([`needed`]). The effect of tension across a thread is explicit.
 //! The shortest ripple of a membrane of tension N and spacing h has ω = 2 √(2 N ⁄ ρ) ⁄ h, and needs a sub-step below
 //! 2.2 ⁄ ω; otherwise slow modes ring too low. For 65² of cotton under 1 % of stretch these are 36 sub-steps in 1/64 s.

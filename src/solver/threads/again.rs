@@ -32,7 +32,7 @@ const CALM: f32 = 1.00125 * 1.00125;
 const CALM_SUBSTEPS: u32 = 3;
 
 /// Rounds at most. More are hardly ever needed, except by a thread between pins too far apart, which none would help.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 4;
 
 /// The part of a spring's length that its pull has given, at most.
 const MOST_GIVEN: f32 = 0.9;
