@@ -16,6 +16,8 @@ pub(super) struct Motion<'a> {
     pub kernels: &'a Kernels,
     pub tethers: &'a Tethers,
     pub anchors: &'a Anchors,
+    /// Whether it is the first sub-step of a tick.
+    pub begins: bool,
     /// Whether lengths are measured, too.
     pub measures: bool,
 }

@@ -18,6 +18,7 @@ mod energy;
 #[path = "../../examples/shared/exact.rs"]
 mod exact;
 mod gas;
+mod hung;
 mod mesh;
 #[path = "../shared/meshes.rs"]
 mod meshes;

@@ -224,8 +224,10 @@ impl Solver {
         particles.put_loads_on(pull);
         self.sweep
             .set_pace(Pace::new(weight_dt2, dt, self.retardation));
+        let begins = tick.next == 0;
         tick.next += 1;
         let motion = Motion {
+            begins,
             kernels: &kernels,
             tethers: &self.tethers,
             anchors: &self.anchors,

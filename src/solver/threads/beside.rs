@@ -4,14 +4,12 @@
 //! that moves along from row to row, in two pieces where it is at the border. Its links are in the order of its threads. Each
 //! thread's numbers are those that it would have in one band, to the last bit.
 
-use std::ops::Range;
-
 use super::{
     direction::Direction,
     link::{Before, Behind, Link},
 };
 use crate::{
-    cloth::{Block, Layout},
+    cloth::{Block, Lanes, Layout},
     solver::bands::take,
 };
 
@@ -160,6 +158,27 @@ impl Scratch {
         }
     }
 
+    /// Its memory, for other loops over the same rows.
+    pub fn memory(&mut self) -> (&mut [Link], &mut [Before], &mut [Behind]) {
+        (&mut self.links, &mut self.before, &mut self.behind)
+    }
+
+    /// The multipliers of all springs, after threads were solved in this many bands: of those from each row to the next (m kg).
+    pub fn multipliers(&self, strip: usize, bands: usize, out: &mut [Lanes]) {
+        let count = out.len() / strip;
+        let border = |band| strip * band / bands;
+        let mut links = &self.links[..];
+        for band in 0..bands {
+            let blocks = border(band)..border(band + 1);
+            for row in 0..count {
+                let own = links.split_off(..blocks.len()).unwrap_or_default();
+                for (out, link) in out[row * strip..][blocks.clone()].iter_mut().zip(own) {
+                    *out = link.right;
+                }
+            }
+        }
+    }
+
     /// Splits all threads of a direction.
     pub fn split<'a>(
         &'a mut self,
@@ -203,26 +222,9 @@ impl Scratch {
 }
 
 impl Threads<'_> {
-    /// Their springs, and in which blocks they are, of columns.
-    pub fn links(&self) -> (&[Link], Range<usize>) {
-        let from = self.rows.from;
-        (self.links, from..from + self.width)
-    }
-
     /// Whether they lead from one block to another.
     #[inline(always)]
     pub fn is_oblique(&self) -> bool {
         self.rows.direction != Direction::Down
-    }
-
-    /// A band's blocks of each row of columns, with the number of the first.
-    pub fn pieces(&mut self) -> impl Iterator<Item = (usize, &mut [Block])> {
-        let (strip, from) = (self.rows.strip, self.rows.from);
-        let rows: &mut [[&mut [Block]; 2]] = match &mut self.rows.blocks {
-            Blocks::All(_) => &mut [],
-            Blocks::Some(rows) => rows,
-        };
-        let pieces = rows.iter_mut().enumerate();
-        pieces.map(move |(row, [high, _])| (row * strip + from, &mut **high))
     }
 }

@@ -13,16 +13,20 @@
 
 use super::{
     beside::Threads,
-    link::{Before, Behind, Family, Link, damped, terms, way},
+    link::{Before, Behind, Family, Link, after, damped, terms, way},
 };
-use crate::cloth::{DX, DY, DZ, LANES, Lanes, View, W};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
+
+/// Multipliers of springs that have not pulled.
+const NONE: Lanes = [0.0; LANES];
 
 /// Eliminates the springs before. With `CROSSES`, the result is moved by a lane to the right.
 #[inline(always)]
-fn eliminate<const CROSSES: bool, const DAMPED: bool>(
+fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
     family: &Family,
     block: usize,
+    pulled: &Lanes,
     before: &mut Before,
     link: &mut Link,
 ) {
@@ -39,6 +43,8 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool>(
         let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], family.rest);
         let right = if DAMPED {
             damped(right, [a, b], [x, y, z], family.kept, l)
+        } else if AGAIN {
+            after(right, [x, y, z], softness, pulled[l])
         } else {
             right
         };
@@ -126,9 +132,11 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, family:
         for (thread, (link, before)) in links.iter_mut().zip(&mut **before).enumerate() {
             let (a, b) = (upper.block(thread).view(), lower.block(thread));
             if OBLIQUE && block == last {
-                eliminate::<true, DAMPED>([a, b.shifted()], family, block, before, link);
+                let b = b.shifted();
+                eliminate::<true, DAMPED, false>([a, b], family, block, &NONE, before, link);
             } else {
-                eliminate::<false, DAMPED>([a, b.view()], family, block, before, link);
+                let b = b.view();
+                eliminate::<false, DAMPED, false>([a, b], family, block, &NONE, before, link);
             }
             block = if block == last { 0 } else { block + 1 };
         }
@@ -151,5 +159,84 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, family:
     let mut heads = rows.at_mut(0);
     for (thread, behind) in behind.iter().enumerate() {
         pull_head(heads.block(thread).view_mut(), &behind.pull);
+    }
+}
+
+/// Columns, of which some are solved again.
+pub(crate) struct Columns<'a> {
+    /// Of the whole grid.
+    pub blocks: &'a mut [Block],
+    /// Blocks in a row.
+    pub strip: usize,
+    /// The blocks of a row whose columns are solved.
+    pub chosen: &'a [u32],
+    pub links: &'a mut [Link],
+    pub before: &'a mut [Before],
+    pub behind: &'a mut [Behind],
+    /// For elastic springs: the multipliers of those that lead to each row from the one above (m kg).
+    pub pulled: &'a mut [Lanes],
+}
+
+/// Solves the chosen columns, of rigid springs.
+#[inline(always)]
+pub(crate) fn solve_columns(columns: &mut Columns, family: &Family) {
+    solve_chosen::<false>(columns, family);
+}
+
+/// The same of elastic springs, which go on from what they have pulled with.
+#[inline(always)]
+pub(crate) fn solve_columns_again(columns: &mut Columns, family: &Family) {
+    solve_chosen::<true>(columns, family);
+}
+
+#[inline(always)]
+fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, family: &Family) {
+    let Columns {
+        blocks,
+        strip,
+        chosen,
+        links,
+        before,
+        behind,
+        pulled,
+    } = columns;
+    let (strip, width) = (*strip, chosen.len());
+    let (before, behind) = (&mut before[..width], &mut behind[..width]);
+    let springs = blocks.len() / strip - 1;
+    before.fill(Before::NONE);
+    for (row, links) in links.chunks_exact_mut(width).take(springs).enumerate() {
+        let (upper, lower) = blocks[row * strip..].split_at(strip);
+        for (&block, (link, before)) in chosen.iter().zip(links.iter_mut().zip(&mut *before)) {
+            let block = block as usize;
+            let ends = [upper[block].view(), lower[block].view()];
+            let pulled = if AGAIN {
+                &pulled[(row + 1) * strip + block]
+            } else {
+                &NONE
+            };
+            eliminate::<false, false, AGAIN>(ends, family, block, pulled, before, link);
+        }
+    }
+    behind.fill(Behind::NONE);
+    let links = links[..width * springs].chunks_exact_mut(width);
+    for (row, links) in links.enumerate().rev() {
+        let lower = &mut blocks[(row + 1) * strip..][..strip];
+        for (&block, (link, behind)) in chosen.iter().zip(links.iter_mut().zip(&mut *behind)) {
+            let block = block as usize;
+            substitute::<false>(lower[block].view_mut(), link, behind);
+            if AGAIN {
+                add(&mut pulled[(row + 1) * strip + block], &link.right);
+            }
+        }
+    }
+    for (&block, behind) in chosen.iter().zip(behind) {
+        pull_head(blocks[block as usize].view_mut(), &behind.pull);
+    }
+}
+
+#[inline(always)]
+fn add(sum: &mut Lanes, other: &Lanes) {
+    for l in 0..LANES {
+        sum[l] += other[l];
     }
 }

@@ -4,10 +4,13 @@
 use std::ops::Range;
 
 use super::{
+    again::{Again, Solved},
     beside::{Scratch, Threads},
     direction::Direction,
+    ends::GROUP,
     link::Family,
-    rows::{GROUP, RowScratch, RowThreads},
+    rows::{RowScratch, RowThreads},
+    unsolved::largest,
 };
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
@@ -39,6 +42,9 @@ pub(in crate::solver) struct ThreadSweep {
     scratch: Scratch,
     /// One for each band.
     rows: Vec<RowScratch>,
+    /// The numbers of all rows.
+    numbers: Vec<u32>,
+    again: Again,
     /// That softnesses hold for.
     pace: Pace,
     /// Largest stiffness over length of springs across and down (N/m²), 0 of those that don't give.
@@ -48,7 +54,6 @@ pub(in crate::solver) struct ThreadSweep {
 /// Results of a band.
 #[derive(Default, Clone, Copy)]
 struct Found {
-    given: Lanes,
     moved: Lanes,
     longest: Longest,
 }
@@ -67,8 +72,11 @@ impl ThreadSweep {
         let down = family((1, 0), 0);
         let ripple_stiffness =
             [&across[1], &down].map(|family| family.stiffness() * family.inverse_rest);
+        let is_elastic = across.iter().chain([&down]).any(Family::is_elastic);
         Self {
             layout,
+            again: Again::new(layout, is_elastic),
+            numbers: (0..layout.rows).collect(),
             across,
             down,
             ripple_stiffness,
@@ -80,14 +88,12 @@ impl ThreadSweep {
         }
     }
 
-    /// Solves all threads that lead from row to row in one direction. Raises `given` to the squares of the elongations
-    /// of their springs at their tension (m²).
+    /// Solves all threads that lead from row to row in one direction.
     pub(super) fn solve_down(
         &mut self,
         blocks: &mut [Block],
         direction: Direction,
         kernels: &Kernels,
-        given: Option<&mut Lanes>,
     ) {
         let Some(family) = (match direction {
             Direction::Down => Some(&self.down),
@@ -97,23 +103,40 @@ impl ThreadSweep {
         };
         let strip = self.layout.strip as usize;
         let mut threads = self.scratch.all(direction, strip, blocks);
-        solve(&mut threads, family, kernels, given);
+        solve(&mut threads, family, kernels);
     }
 
-    /// Solves all threads within rows, likewise.
-    pub(super) fn solve_across(
-        &mut self,
-        blocks: &mut [Block],
-        kernels: &Kernels,
-        given: Option<&mut Lanes>,
-    ) {
+    /// Solves all threads within rows.
+    pub(super) fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         let mut rows = RowThreads {
             blocks,
-            is_border: [true; 2],
+            first: 0,
+            of: self.numbers.len(),
+            numbers: &self.numbers,
             scratch: &mut self.rows[0],
-            given,
+            pulled: &mut self.again.pulled[0],
         };
         solve_rows(&mut rows, &self.across, kernels);
+    }
+
+    /// What solves again what is left in rows and columns, after all threads were solved in this many bands.
+    pub(super) fn again(&mut self, bands: usize) -> (&mut Again, Solved<'_>) {
+        let strip = self.layout.strip as usize;
+        if let Some(pulled) = self.again.pulled[1].get_mut(strip..) {
+            self.scratch.multipliers(strip, bands, pulled);
+        }
+        let grid = Solved {
+            across: &self.across,
+            down: &self.down,
+            rows: &mut self.rows[0],
+            columns: &mut self.scratch,
+        };
+        (&mut self.again, grid)
+    }
+
+    fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) {
+        let (again, mut grid) = self.again(bands);
+        again.solve(blocks, &mut grid, motion, bands);
     }
 
     /// The lengths of the springs that begin in these rows.
@@ -145,20 +168,19 @@ impl ThreadSweep {
         Stretch::of_ratios(structural, bound)
     }
 
-    /// The stretch of the material, as a fraction of its length, from the squares of the largest elongations of springs
-    /// (m²).
-    fn material(&self, across: &Lanes, down: &Lanes) -> f32 {
-        (largest(across) / self.across[0].rest).max(largest(down) / self.down.rest)
+    /// The stretch of the material, as a fraction of its length, from the elongations of springs (m).
+    fn material(&self, [across, down]: &[Lanes; 2]) -> f32 {
+        (largest(*across) / self.across[0].rest).max(largest(*down) / self.down.rest)
     }
 
     /// The angular frequency of the fastest ripples (rad/s), in which neighbours swing against each other: ω² = 4 Σ F/(m l) over
     /// a thread across and one down, with tensions F in springs of length l. That of the fourth of the eight strips of columns: a
     /// membrane has it everywhere, and what hangs by a corner is not a membrane.
-    fn ripple(&self, blocks: &[Block], across: &Lanes, down: &Lanes) -> f32 {
+    fn ripple(&self, blocks: &[Block], given: &[Lanes; 2]) -> f32 {
         let mut strips = [0.0; LANES];
         for (lane, strip) in strips.iter_mut().enumerate() {
-            for (given, stiffness) in [across, down].into_iter().zip(self.ripple_stiffness) {
-                *strip += given[lane].sqrt() * stiffness;
+            for (given, stiffness) in given.iter().zip(self.ripple_stiffness) {
+                *strip += given[lane] * stiffness;
             }
         }
         strips.sort_by(|a, b| b.total_cmp(a));
@@ -174,36 +196,45 @@ impl ThreadSweep {
         2.0 * (pull * heaviest).sqrt()
     }
 
-    /// A sub-step in this many bands, more than one.
-    fn substep_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
-        let (kernels, measures) = (motion.kernels, motion.measures);
+    /// Solves all threads in this many bands, more than one.
+    fn solve_in_bands(&mut self, blocks: &mut [Block], kernels: &Kernels, bands: usize) {
+        let strip = self.layout.strip as usize;
         if let Some(family) = &self.diagonal {
             for direction in [Direction::Right, Direction::Left] {
-                let strip = self.layout.strip as usize;
                 let all = self.scratch.split(direction, (strip, bands), blocks);
-                in_bands(all, |mut band| solve(&mut band, family, kernels, None));
+                in_bands(all, |mut band| solve(&mut band, family, kernels));
             }
         }
-        let across = self.across_in_bands(blocks, motion, bands);
-        let mut found = [Found::default(); MAX_BANDS];
-        let (strip, down) = (self.layout.strip as usize, &self.down);
+        self.across_in_bands(blocks, kernels, bands);
+        let down = &self.down;
         let all = self.scratch.split(Direction::Down, (strip, bands), blocks);
-        in_bands(all.into_iter().zip(&mut found), |(mut band, found)| {
-            let given = measures.then_some(&mut found.given);
-            solve(&mut band, down, kernels, given);
-            for (first, blocks) in band.pieces() {
-                let (tethers, anchors) = (motion.tethers, motion.anchors);
-                tethers.pull(anchors, blocks, first, kernels);
-                (kernels.commit)(blocks, &mut found.moved);
-            }
+        in_bands(all, |mut band| solve(&mut band, down, kernels));
+    }
+
+    /// Ends a sub-step in this many bands.
+    fn end_in_bands(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
+        let (kernels, measures) = (motion.kernels, motion.measures);
+        let (strip, rows) = (self.layout.strip as usize, self.layout.rows as usize);
+        let border = |band| rows * band / bands;
+        let mut found = [Found::default(); MAX_BANDS];
+        let mut rest = &mut *blocks;
+        let parts = found
+            .iter_mut()
+            .take(bands)
+            .enumerate()
+            .map(|(band, found)| {
+                let size = (border(band + 1) - border(band)) * strip;
+                (border(band) * strip, take(&mut rest, size), found)
+            });
+        in_bands(parts, |(first, blocks, found)| {
+            let (tethers, anchors) = (motion.tethers, motion.anchors);
+            tethers.pull(anchors, blocks, first, kernels);
+            (kernels.commit)(blocks, &mut found.moved);
         });
-        let rows = self.layout.rows as usize;
-        let down = merged(&found, |found| &found.given);
+        let given = self.given_if(measures, kernels);
         let stretch = measures.then(|| {
-            let border = |band| rows * band / bands;
-            let parts = (0..bands).zip(&mut found);
             let blocks = &*blocks;
-            in_bands(parts, |(band, found)| {
+            in_bands((0..bands).zip(&mut found), |(band, found)| {
                 let rows = border(band)..border(band + 1);
                 found.longest = self.measure_rows(blocks, rows, kernels);
             });
@@ -212,20 +243,28 @@ impl ThreadSweep {
                 longest.merge(&found.longest);
             }
             Stretch {
-                material: self.material(&across, &down),
+                material: self.material(&given),
                 ..self.stretch(&longest)
             }
         });
         Swept {
-            moved: merged(&found, |found| &found.moved),
+            moved: farthest(&found),
             stretch,
-            ripple: self.ripple(blocks, &across, &down),
+            ripple: self.ripple(blocks, &given),
         }
     }
 
-    /// Solves the threads within rows. Returns the squares of the largest elongations of their springs (m²), if they
-    /// are measured.
-    fn across_in_bands(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Lanes {
+    /// The elongations of elastic springs across and down (m), if they are measured.
+    fn given_if(&self, measures: bool, kernels: &Kernels) -> [Lanes; 2] {
+        if measures {
+            self.again.given(&self.across, &self.down, kernels)
+        } else {
+            [[0.0; LANES]; 2]
+        }
+    }
+
+    /// Solves the threads within rows.
+    fn across_in_bands(&mut self, blocks: &mut [Block], kernels: &Kernels, bands: usize) {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
         let groups = rows.div_ceil(GROUP);
@@ -233,20 +272,22 @@ impl ThreadSweep {
         if self.rows.len() < bands {
             self.rows.resize(bands, RowScratch::new(strip));
         }
-        let mut found = [Found::default(); MAX_BANDS];
-        let mut rest = blocks;
-        let each = self.rows.iter_mut().zip(&mut found).take(bands);
-        let parts = each.enumerate().map(|(band, (scratch, found))| RowThreads {
-            blocks: take(&mut rest, (border(band + 1) - border(band)) * strip),
-            is_border: [band == 0, band + 1 == bands],
-            scratch,
-            given: motion.measures.then_some(&mut found.given),
+        let (mut rest, mut pulled) = (blocks, &mut self.again.pulled[0][..]);
+        let is_elastic = !pulled.is_empty();
+        let each = self.rows.iter_mut().take(bands).enumerate();
+        let parts = each.map(|(band, scratch)| {
+            let size = (border(band + 1) - border(band)) * strip;
+            RowThreads {
+                blocks: take(&mut rest, size),
+                first: border(band),
+                of: rows,
+                numbers: &self.numbers[border(band)..border(band + 1)],
+                scratch,
+                pulled: take(&mut pulled, if is_elastic { size } else { 0 }),
+            }
         });
         let families = &self.across;
-        in_bands(parts, |mut part| {
-            solve_rows(&mut part, families, motion.kernels);
-        });
-        merged(&found, |found| &found.given)
+        in_bands(parts, |mut part| solve_rows(&mut part, families, kernels));
     }
 }
 
@@ -277,29 +318,29 @@ impl Sweep for ThreadSweep {
 
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
         let bands = self.bands(bands);
-        if bands > 1 {
-            return self.substep_in_bands(blocks, motion, bands);
-        }
         let kernels = motion.kernels;
-        self.solve_down(blocks, Direction::Right, kernels, None);
-        self.solve_down(blocks, Direction::Left, kernels, None);
-        let mut given = [0.0; LANES];
-        self.solve_across(blocks, kernels, motion.measures.then_some(&mut given));
-        let across = given;
-        given = [0.0; LANES];
-        let measured = motion.measures.then_some(&mut given);
-        self.solve_down(blocks, Direction::Down, kernels, measured);
+        if bands > 1 {
+            self.solve_in_bands(blocks, kernels, bands);
+            self.solve_again(blocks, motion, bands);
+            return self.end_in_bands(blocks, motion, bands);
+        }
+        self.solve_down(blocks, Direction::Right, kernels);
+        self.solve_down(blocks, Direction::Left, kernels);
+        self.solve_across(blocks, kernels);
+        self.solve_down(blocks, Direction::Down, kernels);
+        self.solve_again(blocks, motion, 1);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
+        let given = self.given_if(motion.measures, kernels);
         let stretch = motion.measures.then(|| Stretch {
-            material: self.material(&across, &given),
+            material: self.material(&given),
             ..self.measure(blocks, kernels)
         });
         Swept {
             moved,
             stretch,
-            ripple: self.ripple(blocks, &across, &given),
+            ripple: self.ripple(blocks, &given),
         }
     }
 
@@ -313,16 +354,12 @@ impl Sweep for ThreadSweep {
     }
 }
 
-/// Solves threads. Raises `given` to the squares of the elongations of the columns' springs at their tension (m²).
-fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels, given: Option<&mut Lanes>) {
+/// Solves threads.
+fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels) {
     if family.kept < 1.0 {
         (kernels.solve_damped_threads)(threads, family);
     } else {
         (kernels.solve_threads)(threads, family);
-    }
-    if let Some(given) = given {
-        let (links, blocks) = threads.links();
-        (kernels.measure_given)(links, &family.softness[blocks], given);
     }
 }
 
@@ -335,18 +372,13 @@ fn solve_rows(rows: &mut RowThreads, families: &[Family; 2], kernels: &Kernels) 
     }
 }
 
-/// The root of the largest of squares.
-fn largest(squares: &Lanes) -> f32 {
-    squares.iter().copied().fold(0.0, f32::max).sqrt()
-}
-
-/// The largest number of each lane.
-fn merged(all: &[Found], lanes: impl Fn(&Found) -> &Lanes) -> Lanes {
-    let larger = |mut largest: Lanes, found: &Found| {
-        for (largest, own) in largest.iter_mut().zip(lanes(found)) {
-            *largest = largest.max(*own);
+/// The largest squared displacements of all bands (m²), lane by lane.
+fn farthest(all: &[Found]) -> Lanes {
+    let larger = |mut farthest: Lanes, found: &Found| {
+        for (farthest, own) in farthest.iter_mut().zip(&found.moved) {
+            *farthest = farthest.max(*own);
         }
-        largest
+        farthest
     };
     all.iter().fold([0.0; LANES], larger)
 }

@@ -82,6 +82,8 @@ pub(crate) struct Family {
     pub rest: f32,
     /// One over it.
     pub inverse_rest: f32,
+    /// One over its square, 0 where there is no spring.
+    pub inverse_square: Vec<Lanes>,
     /// m/N; 0 where there is none.
     compliance: Vec<Lanes>,
     /// Compliance over c Δt² (1/kg).
@@ -116,6 +118,7 @@ impl Family {
         Self {
             rest,
             inverse_rest: 1.0 / rest,
+            inverse_square: all(&|compliance| compliance.map_or(0.0, |_| 1.0 / (rest * rest))),
             compliance: all(&|compliance| compliance.unwrap_or(0.0)),
             softness: all(&|_| 0.0),
             hold: all(&|compliance| compliance.map_or(f32::INFINITY, |_| HOLD)),
@@ -137,8 +140,12 @@ impl Family {
         for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
             *softness = compliance.map(|compliance| compliance * pace.inverse_weight);
         }
-        let is_rigid = self.compliance.as_flattened().iter().all(|of| *of == 0.0);
-        self.kept = if is_rigid { 1.0 } else { pace.kept };
+        self.kept = if self.is_elastic() { pace.kept } else { 1.0 };
+    }
+
+    /// Whether a spring of it gives.
+    pub fn is_elastic(&self) -> bool {
+        self.compliance.as_flattened().iter().any(|of| *of > 0.0)
     }
 }
 
@@ -200,17 +207,14 @@ pub(super) fn way(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
     })
 }
 
-/// Raises `largest` to the squares of the springs' elongations at their pull (m²), for rows of them as long as
-/// `softness`.
+/// Raises `largest` to the springs' elongations at their pull (m), from their multipliers, for rows of them as long as
+/// `softness`. They are as parts of lengths without elongation.
 #[inline(always)]
-pub(crate) fn measure_given(links: &[Link], softness: &[Lanes], largest: &mut Lanes) {
-    for row in links.chunks_exact(softness.len()) {
-        for (link, softness) in row.iter().zip(softness) {
-            let [x, y, z] = &link.way;
+pub(crate) fn measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut Lanes) {
+    for row in pulled.chunks_exact(softness.len()) {
+        for (pulled, softness) in row.iter().zip(softness) {
             for l in 0..LANES {
-                let p = x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
-                let alone = link.right[l] * softness[l];
-                let given = alone * alone * p;
+                let given = (pulled[l] * softness[l]).abs();
                 largest[l] = if given > largest[l] {
                     given
                 } else {
@@ -219,4 +223,10 @@ pub(crate) fn measure_given(links: &[Link], softness: &[Lanes], largest: &mut La
             }
         }
     }
+}
+
+/// The right side that a spring which has pulled already has left, of that without a pull.
+#[inline(always)]
+pub(super) fn after(right: f32, [x, y, z]: [f32; 3], softness: f32, pulled: f32) -> f32 {
+    right - softness * (x * x + y * y + z * z) * pulled
 }

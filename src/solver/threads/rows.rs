@@ -10,11 +10,11 @@
 //! The eight multipliers of a row cost five divisions and some 70 operations. That is little beside the eight blocks of
 //! 64 columns, and as much as one of the two blocks of 16.
 
-use super::link::{Before, Behind, Family, Link, damped, measure_given, terms, way};
+use super::{
+    ends::{BESIDE, Ends, GROUP, Reduced, Wide},
+    link::{Before, Behind, Family, Link, after, damped, terms, way},
+};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
-
-/// Rows that are worked on at once: while one waits for its divisions, others need not.
-pub(super) const GROUP: usize = 8;
 
 /// Memory in which a group of rows is solved.
 #[derive(Debug, Clone)]
@@ -41,47 +41,6 @@ impl RowScratch {
     }
 }
 
-/// The lanes of all rows of a group, one after the other, and as many on either side as a step of the reduction looks at.
-type Wide = [f32; BESIDE + GROUP * LANES + BESIDE];
-const BESIDE: usize = 4;
-
-/// The system for the last springs of strips. The last strip's leads nowhere: infinitely held, it takes nothing and hands on
-/// nothing, so that rows need not be kept apart.
-#[derive(Debug, Clone, Copy)]
-#[repr(C, align(32))]
-struct Reduced {
-    diagonal: Wide,
-    /// Coupling to the lane before.
-    off: Wide,
-    right: Wide,
-    /// One over the diagonal.
-    inverse: Wide,
-}
-
-impl Reduced {
-    const NONE: Self = Self {
-        diagonal: [1.0; _],
-        off: [0.0; _],
-        right: [0.0; _],
-        inverse: [1.0; _],
-    };
-
-    /// Makes each lane independent of those `DISTANCE` away; with them comes what they have to do with those beyond.
-    #[inline(always)]
-    fn without<const DISTANCE: usize>(&self, out: &mut Self) {
-        for at in BESIDE..BESIDE + GROUP * LANES {
-            let (left, right) = (at - DISTANCE, at + DISTANCE);
-            let before = self.off[at] * self.inverse[left];
-            let after = self.off[right] * self.inverse[right];
-            let diagonal = self.diagonal[at] - self.off[at] * before - self.off[right] * after;
-            out.right[at] = self.right[at] - before * self.right[left] - after * self.right[right];
-            out.off[at] = -before * self.off[left];
-            out.diagonal[at] = diagonal;
-            out.inverse[at] = 1.0 / diagonal;
-        }
-    }
-}
-
 /// The state of a lane's strip up to a spring.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
@@ -103,73 +62,13 @@ impl Strip {
     };
 }
 
-/// The first and last springs of a group's strips.
-#[derive(Debug, Clone, Copy)]
-#[repr(C, align(32))]
-struct Ends {
-    /// Of the first particles (1/kg).
-    weight: Wide,
-    /// Of the first springs and of the last, in rest lengths.
-    first: [Wide; 3],
-    last: [Wide; 3],
-    to_diagonal: Wide,
-    to_right: Wide,
-    /// Coupling of the first to the last of the strip before; then its share of that one's multiplier.
-    off: Wide,
-    /// Pull of the last ones (m kg).
-    pull: [Wide; 3],
-}
-
-impl Ends {
-    const NONE: Self = Self {
-        weight: [0.0; _],
-        first: [[0.0; _]; 3],
-        last: [[0.0; _]; 3],
-        to_diagonal: [0.0; _],
-        to_right: [0.0; _],
-        off: [0.0; _],
-        pull: [[0.0; _]; 3],
-    };
-
-    /// Solves for the multipliers of the last springs, which are the right side then.
-    #[inline(always)]
-    fn solve(&mut self, [this, other]: &mut [Reduced; 2]) {
-        for at in BESIDE..BESIDE + GROUP * LANES {
-            let along = self.last[0][at - 1] * self.first[0][at]
-                + self.last[1][at - 1] * self.first[1][at]
-                + self.last[2][at - 1] * self.first[2][at];
-            self.off[at] = -self.weight[at] * along;
-            this.off[at] *= self.off[at];
-        }
-        for at in BESIDE..BESIDE + GROUP * LANES {
-            let off = self.off[at + 1];
-            let diagonal = this.diagonal[at] - off * (off * self.to_diagonal[at + 1]);
-            this.diagonal[at] = diagonal;
-            this.right[at] -= off * self.to_right[at + 1];
-            this.inverse[at] = 1.0 / diagonal;
-        }
-        this.without::<1>(other);
-        other.without::<2>(this);
-        this.without::<4>(other);
-        for at in BESIDE..BESIDE + GROUP * LANES {
-            let multiplier = other.right[at] * other.inverse[at];
-            this.right[at] = multiplier;
-            self.pull[0][at] = self.last[0][at] * multiplier;
-            self.pull[1][at] = self.last[1][at] * multiplier;
-            self.pull[2][at] = self.last[2][at] * multiplier;
-        }
-        for at in BESIDE..BESIDE + GROUP * LANES {
-            self.off[at] *= this.right[at - 1];
-        }
-    }
-}
-
 /// Eliminates the springs before: of a strip's first there are none; its last is not solved for.
 #[inline(always)]
-fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
+fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
     family: &Family,
     block: usize,
+    pulled: &[Lanes],
     strip: &mut Strip,
     link: &mut Link,
     spike: &mut Lanes,
@@ -186,6 +85,8 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
         let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], family.rest);
         let right = if DAMPED {
             damped(right, [a, b], [x, y, z], family.kept, l)
+        } else if AGAIN {
+            after(right, [x, y, z], softness, pulled[block][l])
         } else {
             right
         };
@@ -222,9 +123,10 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool>(
 
 /// The springs of a row up to the reduced system, whose rows are to be `at` there.
 #[inline(always)]
-fn reduce<const DAMPED: bool>(
+fn reduce<const DAMPED: bool, const AGAIN: bool>(
     row: &[Block],
     family: &Family,
+    pulled: &[Lanes],
     links: &mut [Link],
     spikes: &mut [Lanes],
     strip: &mut Strip,
@@ -239,17 +141,18 @@ fn reduce<const DAMPED: bool>(
             None => row[0].shifted(),
         };
         let between = [row[j].view(), b];
+        macro_rules! eliminate {
+            ($first:literal, $last:literal) => {
+                eliminate::<$first, $last, DAMPED, AGAIN>(
+                    between, family, j, pulled, strip, link, spike,
+                )
+            };
+        }
         match (j == 0, j == last) {
-            (true, true) => eliminate::<true, true, DAMPED>(between, family, j, strip, link, spike),
-            (true, false) => {
-                eliminate::<true, false, DAMPED>(between, family, j, strip, link, spike);
-            }
-            (false, false) => {
-                eliminate::<false, false, DAMPED>(between, family, j, strip, link, spike);
-            }
-            (false, true) => {
-                eliminate::<false, true, DAMPED>(between, family, j, strip, link, spike);
-            }
+            (true, true) => eliminate!(true, true),
+            (true, false) => eliminate!(true, false),
+            (false, false) => eliminate!(false, false),
+            (false, true) => eliminate!(false, true),
         }
     }
     let weight = row[0].view()[W..].first_chunk().expect("lanes");
@@ -327,72 +230,120 @@ fn pull_row(
     pull_first(row[0].view_mut(), before.each_ref(), &behind.pull);
 }
 
-/// Rows that lie one below the other.
+/// Rows of a grid, of which some are solved.
 pub(crate) struct RowThreads<'a> {
+    /// Rows that lie one below the other.
     pub blocks: &'a mut [Block],
-    /// For the first and the last of them: whether it is on the grid's border.
-    pub is_border: [bool; 2],
+    /// The number of the first of them, and of all of the grid's.
+    pub first: usize,
+    pub of: usize,
+    /// The numbers of those that are solved.
+    pub numbers: &'a [u32],
     pub scratch: &'a mut RowScratch,
-    /// Raised to the squares of the springs' elongations at their tension (m²).
-    pub given: Option<&'a mut Lanes>,
+    /// For elastic springs: the multipliers of those of each of the rows (m kg); else empty.
+    pub pulled: &'a mut [Lanes],
 }
 
 /// Solves the threads within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
 pub(crate) fn solve_rows(rows: &mut RowThreads, families: &[Family; 2]) {
-    solve::<false>(rows, families);
+    solve::<false, false>(rows, families);
 }
 
 /// The same with damping along them.
 #[inline(always)]
 pub(crate) fn solve_damped_rows(rows: &mut RowThreads, families: &[Family; 2]) {
-    solve::<true>(rows, families);
+    solve::<true, false>(rows, families);
+}
+
+/// The same of elastic springs, which go on from what they have pulled with.
+#[inline(always)]
+pub(crate) fn solve_rows_again(rows: &mut RowThreads, families: &[Family; 2]) {
+    solve::<false, true>(rows, families);
 }
 
 #[inline(always)]
-fn solve<const DAMPED: bool>(rows: &mut RowThreads, [border, inner]: &[Family; 2]) {
+fn solve<const DAMPED: bool, const AGAIN: bool>(
+    rows: &mut RowThreads,
+    [border, inner]: &[Family; 2],
+) {
     let strip = border.hold.len();
-    let count = rows.blocks.len() / strip;
-    let [first, last] = rows.is_border;
+    let RowThreads {
+        blocks,
+        first,
+        of,
+        numbers,
+        scratch,
+        pulled,
+    } = rows;
+    let (first, last) = (*first, *of - 1);
     let family = |row: usize| {
-        let is_border = (row == 0 && first) || (row + 1 == count && last);
-        if is_border { border } else { inner }
+        if row == 0 || row == last {
+            border
+        } else {
+            inner
+        }
     };
+    let blocks_of = |row: usize| (row - first) * strip..(row - first + 1) * strip;
     let RowScratch {
         links,
         spikes,
         strip: state,
         ends,
         systems,
-    } = &mut *rows.scratch;
-    for (group, blocks) in rows.blocks.chunks_mut(strip * GROUP).enumerate() {
-        if blocks.len() < strip * GROUP {
+    } = &mut **scratch;
+    for numbers in numbers.chunks(GROUP) {
+        if numbers.len() < GROUP {
             (*ends, systems[0]) = (Ends::NONE, Reduced::NONE);
         }
         let springs = links
             .chunks_exact_mut(strip)
             .zip(spikes.chunks_exact_mut(strip));
-        for (at, (row, (links, spikes))) in blocks.chunks_exact(strip).zip(springs).enumerate() {
-            let (family, system) = (family(group * GROUP + at), (&mut *ends, &mut systems[0]));
+        for (at, (&row, (links, spikes))) in numbers.iter().zip(springs).enumerate() {
+            let (row, system) = (row as usize, (&mut *ends, &mut systems[0]));
+            let own = blocks_of(row);
             let at = BESIDE + at * LANES;
-            reduce::<DAMPED>(row, family, links, spikes, state, system, at);
+            let pulled: &[Lanes] = if AGAIN { &pulled[own.clone()] } else { &[] };
+            let state = &mut *state;
+            reduce::<DAMPED, AGAIN>(
+                &blocks[own],
+                family(row),
+                pulled,
+                links,
+                spikes,
+                state,
+                system,
+                at,
+            );
         }
         ends.solve(systems);
         let springs = links
             .chunks_exact_mut(strip)
             .zip(spikes.chunks_exact(strip));
-        for (at, (row, (links, spikes))) in blocks.chunks_exact_mut(strip).zip(springs).enumerate()
-        {
+        for (at, (&row, (links, spikes))) in numbers.iter().zip(springs).enumerate() {
+            let own = blocks_of(row as usize);
+            let reduced = (&*ends, &systems[0]);
             pull_row(
-                row,
+                &mut blocks[own.clone()],
                 links,
                 spikes,
-                (&*ends, &systems[0]),
+                reduced,
                 BESIDE + at * LANES,
             );
-            if let Some(given) = &mut rows.given {
-                measure_given(links, &family(group * GROUP + at).softness, given);
+            if let Some(pulled) = pulled.get_mut(own) {
+                note_pull::<AGAIN>(pulled, links);
             }
+        }
+    }
+}
+
+/// Notes the multipliers of a row's springs, with those before if it is solved again.
+#[inline(always)]
+fn note_pull<const AGAIN: bool>(pulled: &mut [Lanes], links: &[Link]) {
+    for (pulled, link) in pulled.iter_mut().zip(links) {
+        for l in 0..LANES {
+            let before = if AGAIN { pulled[l] } else { 0.0 };
+            pulled[l] = before + link.right[l];
         }
     }
 }
