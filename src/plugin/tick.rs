@@ -235,13 +235,14 @@ impl IntegratingItem<'_, '_> {
         Substepping::for_load(ratio, gravity, spacing.shortest, step.seconds)
     }
 
-    /// Sub-steps that hold the cloth together where colliders stretch it.
+    /// Sub-steps that hold the cloth together where colliders stretch it by their edges, which pass between particles.
     pub(super) fn contact_substeps(&self, step: &TickStep, stretch: &Stretch) -> f32 {
         let detection = &self.scratch.detection;
         let mut touches = detection.touches().iter();
+        let is_forced =
+            touches.any(|touch| touch.deepest > 0.0 && touch.collider.shape.has_edges());
         // What leaves a collider is drawn out by a force of its own.
-        let is_drawn = detection.embedded() > 0.0;
-        if is_drawn || touches.all(|touch| touch.deepest == 0.0) {
+        if !is_forced || detection.embedded() > 0.0 {
             return 0.0;
         }
         let given = stretch.material.max(step.material_stretch);
