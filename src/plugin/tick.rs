@@ -235,12 +235,17 @@ impl IntegratingItem<'_, '_> {
         Substepping::for_load(ratio, gravity, spacing.shortest, step.seconds)
     }
 
-    /// Sub-steps that hold the cloth together where colliders stretch it by their edges, which pass between particles.
+    /// Sub-steps that hold the cloth together where something that moves forces it over the edges of a collider: these pass
+    /// between particles.
     pub(super) fn contact_substeps(&self, step: &TickStep, stretch: &Stretch) -> f32 {
-        let detection = &self.scratch.detection;
-        let mut touches = detection.touches().iter();
-        let is_forced =
-            touches.any(|touch| touch.deepest > 0.0 && touch.collider.shape.has_edges());
+        let ClothScratch {
+            detection, pins, ..
+        } = &*self.scratch;
+        let is_pulled = !pins.is_empty();
+        let is_forced = detection.touches().iter().any(|touch| {
+            let moves = is_pulled || touch.collider.max_surface_travel(f32::INFINITY) > 0.0;
+            moves && touch.deepest > 0.0 && touch.collider.shape.has_edges()
+        });
         // What leaves a collider is drawn out by a force of its own.
         if !is_forced || detection.embedded() > 0.0 {
             return 0.0;

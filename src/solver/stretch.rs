@@ -24,8 +24,8 @@ pub struct Stretch {
     /// Number of sub-steps in a tick as long as the last that holds the bodies on the cloth, by their weight on the
     /// threads that carry them. 0 if the cloth carries none.
     pub load_substeps: f32,
-    /// Number of sub-steps in a tick as long as the last that holds the threads together where a collider stretches them.
-    /// 0 if none does.
+    /// Number of sub-steps in a tick as long as the last that holds the threads together where something that moves forces
+    /// them over a collider's edges. 0 if nothing does.
     pub contact_substeps: f32,
 }
 

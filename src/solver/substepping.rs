@@ -53,8 +53,8 @@ pub enum Substepping {
     /// - More where it is taut as a membrane, until ripples across its threads are resolved,
     ///   [`Stretch::ripple_substeps`].
     /// - More where a body lies on it, until it holds that body, [`Stretch::load_substeps`].
-    /// - More where a collider stretches it by far more than its material gives, [`Stretch::contact_substeps`]. That
-    ///   tick is repeated, before the game sees it.
+    /// - More where something that moves forces it over a collider's edges, and so stretches it by far more than its
+    ///   material gives, [`Stretch::contact_substeps`]. That tick is repeated, before the game sees it.
     #[default]
     Automatic,
     /// This number of sub-steps per tick, from 1 to 10,000.
