@@ -39,7 +39,7 @@ fn a_cloth_that_its_sub_steps_do_not_hold() {
         ..ClothSettings::substeps(3)
     };
     let pins = Pins::new([Pin::Corner(Corner::TopLeft)]);
-    let cloth = (Cloth::new(32, 32, 0.05), pins, settings);
+    let cloth = (Cloth::new(32, 32, 0.05), pins, settings, solved_once());
     let cloth = app.world_mut().spawn(cloth).id();
     expect_reported(app, cloth, ClothLimit::Stretch);
 }
@@ -162,7 +162,8 @@ fn an_instant_is_not_reported() {
         tethers: false,
         ..ClothSettings::substeps(3)
     };
-    let cloth = app.world_mut().spawn((Cloth::default(), settings)).id();
+    let cloth = (Cloth::default(), settings, solved_once());
+    let cloth = app.world_mut().spawn(cloth).id();
     tick(&mut app, 8);
     change::<ClothParticles>(&mut app, cloth, |particles| {
         let pulled = particles.position((8, 8)).expect("it exists") + Vec3::Z * 2.0;

@@ -361,7 +361,13 @@ fn a_cloth_that_touches_two_colliders_is_not_caught() {
     };
     let pins = Pins::new([Pin::Corner(Corner::TopLeft)]);
     let name = Name::new("in a corner");
-    let cloth = (Cloth::new(32, 32, 0.05), pins, settings, name);
+    let cloth = (
+        Cloth::new(32, 32, 0.05),
+        pins,
+        settings,
+        solved_once(),
+        name,
+    );
     let cloth = app.world_mut().spawn(cloth).id();
     let floor = Transform::from_xyz(0.0, -1.6, 0.0);
     let wall = Transform::from_xyz(0.0, 0.0, -0.005)

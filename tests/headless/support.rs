@@ -198,3 +198,11 @@ pub fn red(app: &App, cloth: Entity) -> Vec<usize> {
 pub fn stats(app: &App, cloth: Entity) -> ClothStats {
     *app.world().get(cloth).expect("figures")
 }
+
+/// Cotton with a loss along its threads: they are solved once, and no more than that where something is left.
+pub fn solved_once() -> ClothMaterial {
+    ClothMaterial {
+        stretch_damping: 1.0e-3,
+        ..ClothMaterial::COTTON
+    }
+}
