@@ -166,7 +166,7 @@ fn an_instant_is_not_reported() {
     let cloth = app.world_mut().spawn(cloth).id();
     tick(&mut app, 8);
     change::<ClothParticles>(&mut app, cloth, |particles| {
-        let pulled = particles.position((8, 8)).expect("it exists") + Vec3::Z * 2.0;
+        let pulled = particles.position((8, 8)).expect("it exists") + Vec3::Z * 20.0;
         particles.set_position((8, 8), pulled).expect("it exists");
     });
     let mut beyond = 0;

@@ -1,4 +1,4 @@
-//! What a pass over the threads of a grid leaves unsolved, in the springs of its rows and columns.
+//! The stretch that a pass over the threads of a grid leaves in the springs of its rows and columns.
 //!
 //! # The floor
 //! Two springs for each particle: 3 additions for its position, and 10 operations for each of them, of elastic ones 16 and a
