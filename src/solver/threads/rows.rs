@@ -341,9 +341,9 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
 #[inline(always)]
 fn note_pull<const AGAIN: bool>(pulled: &mut [Lanes], links: &[Link]) {
     for (pulled, link) in pulled.iter_mut().zip(links) {
-        for l in 0..LANES {
-            let before = if AGAIN { pulled[l] } else { 0.0 };
-            pulled[l] = before + link.right[l];
+        for (pulled, right) in pulled.iter_mut().zip(link.right) {
+            let before = if AGAIN { *pulled } else { 0.0 };
+            *pulled = before + right;
         }
     }
 }
