@@ -30,7 +30,7 @@ pub mod meshes;
 pub mod plugin;
 pub mod solver;
 
-/// What `meshes` calls the crate, which other tests read, too.
+/// `meshes` calls the crate by this name: other tests include that file, too.
 #[cfg(test)]
 use crate as library;
 

@@ -126,7 +126,7 @@ impl Candidates {
             let Some(is_left_out) = is_left_out else {
                 continue;
             };
-            // All or none.
+            // A triangle that is left out takes the particle's others with it.
             if !surface.faces().of(particle).iter().any(is_left_out) {
                 let fan = surface.fans().of(particle);
                 self.all[index].has_faces = !fan.faces.is_empty();

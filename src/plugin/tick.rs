@@ -154,7 +154,11 @@ impl IntegratingItem<'_, '_> {
         self.built.solver.set_bands(bands);
         let may_repeat = match substepping {
             Substepping::Fixed(_) => false,
-            Substepping::Automatic => !self.scratch.near.is_empty(),
+            Substepping::Automatic => {
+                let near = self.scratch.near.iter();
+                near.map(|(_, near)| &near.shape)
+                    .any(ColliderShape::has_edges)
+            }
             Substepping::Adaptive { .. } => true,
         };
         if may_repeat {
@@ -246,7 +250,7 @@ impl IntegratingItem<'_, '_> {
             let moves = is_pulled || touch.collider.max_surface_travel(f32::INFINITY) > 0.0;
             moves && touch.deepest > 0.0 && touch.collider.shape.has_edges()
         });
-        // What leaves a collider is drawn out by a force of its own.
+        // A force of its own draws embedded cloth out.
         if !is_forced || detection.embedded() > 0.0 {
             return 0.0;
         }

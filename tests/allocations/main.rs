@@ -8,7 +8,7 @@ mod steps;
 
 use std::alloc::System;
 
-/// What `meshes` calls the crate, whose own tests read it, too.
+/// `meshes` calls the crate by this name: the crate's own tests include that file, too.
 use bevy_drape as library;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 

@@ -29,7 +29,7 @@ fn exceeded(app: &App, cloth: Entity) -> Option<ClothLimit> {
     stats.exceeded
 }
 
-/// Hung by one particle without tethers, in three sub-steps: the sweep alone can't hold it.
+/// Hung by one particle without tethers, in three sub-steps: threads that are solved once can't hold it.
 #[test]
 fn a_cloth_that_its_sub_steps_do_not_hold() {
     let mut app = app();

@@ -39,5 +39,5 @@ mod soft;
 mod strip;
 mod swings;
 
-/// What `meshes` calls the crate, whose own tests read it, too.
+/// `meshes` calls the crate by this name: the crate's own tests include that file, too.
 use bevy_drape as library;

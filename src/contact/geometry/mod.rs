@@ -88,7 +88,7 @@ impl ColliderGeometry {
     /// The surface nearest to a point, of the deepest or nearest solid, which is probably `within` a distance (m): that
     /// makes it faster. NaN for a point that is not finite.
     pub(super) fn nearest(&self, point: Vec3, within: f32) -> Nearest {
-        // What has got over a height field from beside it is as deep as the ground is high.
+        // A point that moves from beside a height field to above it may at once be as deep as the ground is high.
         let is_alone = self.0.solids.len() == 1;
         if is_alone || !self.0.solids.iter().any(Solid::is_ground) {
             let found = self.find_nearest(point, within);
