@@ -15,8 +15,8 @@ use super::{
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
     frame::Places,
-    inertia::Roots,
     naming::Part,
+    roots::Roots,
     source::ColliderMeshes,
 };
 use crate::{cloth::ClothError, contact::ClothCollider};

@@ -5,6 +5,7 @@ mod attach;
 mod attachments;
 mod awaited;
 mod body;
+mod bone_colliders;
 mod bones;
 mod broad_phase;
 mod build;
@@ -12,6 +13,8 @@ mod built;
 mod cameras;
 mod carry;
 mod clock;
+#[cfg(feature = "mesh")]
+mod cloth_mesh;
 mod collider_tree;
 mod colliders;
 mod components;
@@ -24,6 +27,7 @@ mod excess;
 #[cfg(feature = "pbr")]
 mod fabric;
 mod fault;
+mod faults;
 mod follow;
 mod frame;
 mod freeze;
@@ -45,6 +49,7 @@ mod order;
 mod origin;
 #[cfg(feature = "egui")]
 mod panel;
+mod parts;
 mod prepare;
 mod push;
 #[cfg(feature = "rapier")]
@@ -56,6 +61,7 @@ mod reflected;
 mod render_mesh;
 mod resample;
 mod resting;
+mod roots;
 mod scratch;
 mod search;
 mod sets;
@@ -69,6 +75,7 @@ mod stats;
 mod threads;
 mod tick;
 mod together;
+mod touch;
 mod wind;
 
 use bevy::{
@@ -80,6 +87,8 @@ pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTelep
 pub use body::{ClothBody, ClothPush};
 pub use bones::{ClothBone, ClothBones};
 pub use built::ClothBuilt;
+#[cfg(feature = "mesh")]
+pub use cloth_mesh::ClothMesh;
 pub use components::ClothSearch;
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use diagnostics::ClothDiagnosticsPlugin;
@@ -94,7 +103,7 @@ pub use gravity::ClothGravity;
 pub use inertia::ClothInertia;
 pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
 #[cfg(feature = "mesh")]
-pub use mesh::{ClothMesh, ClothMeshPlugin};
+pub use mesh::ClothMeshPlugin;
 pub use order::ClothOrder;
 pub use origin::shift_cloths;
 #[cfg(feature = "egui")]

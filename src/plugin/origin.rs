@@ -13,7 +13,7 @@ use bevy::{
 };
 
 #[cfg(feature = "mesh")]
-use super::ClothMesh;
+use super::mesh::MeshDrawing;
 use super::{
     ClothFrame, ClothState, ClothWindZone,
     colliders::ColliderMotion,
@@ -74,7 +74,7 @@ struct Shifted {
     state: &'static mut ClothState,
     bounds: &'static mut BroadPhaseBounds,
     #[cfg(feature = "mesh")]
-    mesh: Option<&'static mut ClothMesh>,
+    drawing: Option<&'static mut MeshDrawing>,
 }
 
 fn shift(
@@ -122,9 +122,9 @@ fn shift(
             .iter_mut()
             .for_each(|on| on.add_slack(rounding));
         #[cfg(feature = "mesh")]
-        if let Some(mesh) = &mut cloth.mesh {
+        if let Some(drawing) = &mut cloth.drawing {
             let target = |entity| place(entity).map(|place| place.affine());
-            mesh.shift(shift, [before, after], target);
+            drawing.shift(shift, [before, after], target);
         }
     }
 }

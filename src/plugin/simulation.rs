@@ -33,26 +33,27 @@ use super::{
     ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
     ClothWindZone,
     awaited::{Deprived, note_enabled, note_removals},
-    bones::{make_bone_colliders, remove_bone_colliders},
+    bone_colliders::{make_bone_colliders, remove_bone_colliders},
     collider_tree::ColliderTree,
     colliders::ColliderMotion,
     components::BroadPhaseBounds,
-    contacts::{send_stopped_messages, send_touch_messages},
     envelope::report_limits,
-    fault::{log_faults, report_lost},
+    faults::{log_faults, report_lost},
     follow::{forget_collider, prepare_colliders},
-    inertia::{Jumped, follow_roots},
     integrate::integrate,
     islands::{Islands, find_islands},
     levels::choose_levels,
     naming::Part,
     notices::{Notices, log_notices},
     order::give_order,
+    parts::ClothParts,
     prepare::prepare_cloths,
     push::push_bodies,
     reflected::register_lists,
+    roots::{Jumped, follow_roots},
     search::{query_collisions, rebuild_hierarchies},
     shared::SharedParts,
+    touch::{send_stopped_messages, send_touch_messages},
     wind::{WindField, prepare_wind},
 };
 use crate::{
@@ -203,24 +204,7 @@ impl Plugin for ClothPlugin {
     }
 }
 
-/// Components that the plugin adds to a cloth. They are not required components: those can't be declared any more once
-/// a cloth was spawned before the plugin was added.
-pub(super) type ClothParts = (
-    ClothOrder,
-    ClothSettings,
-    SearchMethod,
-    NarrowPhase,
-    ClothBuilt,
-    ClothFrame,
-    ClothSearch,
-    ClothContacts,
-    ClothStats,
-    ClothState,
-    ClothScratch,
-    BroadPhaseBounds,
-);
-
-/// The same for a collider.
+/// The components that it adds to a collider.
 type ColliderParts = (ColliderMotion, ClothOrder);
 
 /// Adds to a new cloth, collider or wind zone the components that it was not spawned with.

@@ -6,7 +6,6 @@ mod asset;
 mod changes;
 #[cfg(feature = "mesh")]
 mod collider;
-#[cfg(feature = "mesh")]
 mod id;
 #[cfg(not(feature = "mesh"))]
 mod none;
@@ -17,7 +16,6 @@ pub(super) use asset::{ChangedMeshes, Sources};
 pub(super) use changes::note_changed_meshes;
 #[cfg(feature = "mesh")]
 pub(super) use collider::{ColliderMeshes, SharedMeshes};
-#[cfg(feature = "mesh")]
 pub(super) use id::Source;
 #[cfg(not(feature = "mesh"))]
-pub(super) use none::{ColliderMeshes, Source, Sources};
+pub(super) use none::{ColliderMeshes, Sources};

@@ -13,8 +13,11 @@ use bevy::{
 
 use super::{
     ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState, ClothStats,
-    clock::milliseconds_since, colliders::ColliderMotion, inertia::Carried, resting::RestsOn,
-    threads::threads,
+    clock::milliseconds_since,
+    colliders::ColliderMotion,
+    inertia::Carried,
+    resting::RestsOn,
+    threads::{MIN_TO_SPLIT, threads},
 };
 use crate::{
     cloth::ClothParticles,
@@ -25,9 +28,6 @@ use crate::{
     hierarchy::Core,
     solver::{LimitInputs, Stretch, SubStep, Substepping, TickStep},
 };
-
-/// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.3 at 256², 1.4 at 512².
-pub(super) const MIN_TO_SPLIT: usize = 256 * 256;
 
 #[derive(QueryData)]
 #[query_data(mutable)]

@@ -1,7 +1,5 @@
 //! Gives cloths their meshes, and takes them away.
 
-use std::sync::Arc;
-
 use bevy::{
     asset::Assets,
     ecs::{
@@ -15,11 +13,11 @@ use bevy::{
 
 use super::{
     super::{
-        ClothBuilt,
+        ClothBuilt, ClothMesh,
         notices::{Notice, Notices},
         skin::ClothSkeleton,
     },
-    component::ClothMesh,
+    drawing::MeshDrawing,
     write::{Tangents, copy_of, mesh_of},
 };
 use crate::cloth::{Cloth, ClothShape};
@@ -32,17 +30,17 @@ pub(super) fn add_meshes(
         &ClothBuilt,
         Option<&Mesh3d>,
         Option<&ClothMesh>,
+        Option<&MeshDrawing>,
         Option<&SkinnedMesh>,
     )>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut notices: ResMut<Notices>,
     mut commands: Commands,
 ) {
-    for (entity, cloth, built, mesh, drawn, skin) in &cloths {
+    for (entity, cloth, built, mesh, drawn, drawing, skin) in &cloths {
         let surface = built.surface();
-        let is_right = |drawn: &ClothMesh| {
-            Arc::ptr_eq(&drawn.surface, surface) && meshes.contains(&drawn.handle)
-        };
+        let is_current = drawing.is_some_and(|drawing| drawing.is_of(surface));
+        let is_right = |drawn: &ClothMesh| is_current && meshes.contains(&drawn.handle);
         if surface.is_empty() {
             continue;
         }
@@ -65,7 +63,7 @@ pub(super) fn add_meshes(
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
         let is_own = |mesh: &Mesh3d| {
-            let mut drawn = cloths.iter().filter_map(|(.., drawn, _)| drawn);
+            let mut drawn = cloths.iter().filter_map(|(.., drawn, _, _)| drawn);
             drawn.any(|drawn| drawn.handle == mesh.0)
         };
         // A scene or a clone brings a mesh of the plugin's along.
@@ -86,11 +84,15 @@ pub(super) fn add_meshes(
             handle: handle.clone(),
             source,
             replaced,
+        };
+        let drawing = MeshDrawing {
             surface: surface.clone(),
             tangents,
-            ..Default::default()
+            ..MeshDrawing::default()
         };
-        commands.entity(entity).try_insert((Mesh3d(handle), drawn));
+        commands
+            .entity(entity)
+            .try_insert((Mesh3d(handle), drawn, drawing));
     }
 }
 
@@ -125,6 +127,6 @@ pub(super) fn remove_mesh(
             entity.try_insert(skeleton.to_skin());
             entity.try_remove::<ClothSkeleton>();
         }
-        entity.try_remove::<ClothMesh>();
+        entity.try_remove::<(ClothMesh, MeshDrawing)>();
     }
 }

@@ -2,7 +2,7 @@
 
 mod adding;
 mod blend;
-mod component;
+mod drawing;
 mod placing;
 mod skin;
 mod write;
@@ -31,7 +31,7 @@ use bevy::{
 };
 
 use super::{
-    ClothBuilt, ClothFrame, ClothScratch, ClothState, ClothSystems,
+    ClothBuilt, ClothFrame, ClothMesh, ClothScratch, ClothState, ClothSystems,
     frame::rigid,
     lod::ClothLodLevel,
     lod_state::Turn,
@@ -43,7 +43,7 @@ use adding::{add_meshes, remove_mesh};
 use placing::Drawn;
 use write::write_mesh;
 
-pub use component::ClothMesh;
+pub(super) use drawing::MeshDrawing;
 
 /// The steps for the meshes in a frame.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -127,7 +127,7 @@ fn remember_positions(
         &ClothFrame,
         &ClothState,
         &ClothScratch,
-        &mut ClothMesh,
+        &mut MeshDrawing,
     )>,
 ) {
     for (particles, frame, state, scratch, mut mesh) in &mut cloths {
@@ -167,7 +167,8 @@ struct Drawing {
     state: &'static ClothState,
     transform: Option<&'static GlobalTransform>,
     visibility: Option<&'static InheritedVisibility>,
-    mesh: &'static mut ClothMesh,
+    mesh: &'static ClothMesh,
+    drawing: &'static mut MeshDrawing,
 }
 
 /// Where things are drawn.
@@ -203,7 +204,7 @@ impl DrawingItem<'_, '_> {
         fraction: f32,
         seconds: f64,
     ) {
-        let drives = std::mem::take(&mut self.mesh.drives);
+        let drives = std::mem::take(&mut self.drawing.drives);
         if !self.state.is_valid || !self.built.matches(&self.particles) {
             return;
         }
@@ -212,15 +213,14 @@ impl DrawingItem<'_, '_> {
         let is_seen = self.visibility.is_none_or(|visibility| visibility.get());
         let lod = &self.state.lod;
         if !is_seen && !drives || lod.level == ClothLodLevel::Off {
-            self.mesh.settled = None;
+            self.drawing.settled = None;
             return;
         }
         // Over the ticks from the last move to the next.
         let fraction = lod.drawn_part(lod.since as f32 + fraction);
         let own = GlobalTransform::from(self.frame.affine());
         let entity = self.transform.copied().unwrap_or(own);
-        let ClothMesh {
-            handle,
+        let MeshDrawing {
             previous,
             carriers,
             pose,
@@ -235,7 +235,7 @@ impl DrawingItem<'_, '_> {
             frozen,
             version,
             ..
-        } = &mut *self.mesh;
+        } = &mut *self.drawing;
         // The targets of the tick; later attachments count from the next tick on.
         let drawn_at = self.state.targets.iter();
         let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
@@ -291,7 +291,7 @@ impl DrawingItem<'_, '_> {
         *settled = state;
         let surface = self.built.surface();
         if is_seen
-            && let Some(mut mesh) = meshes.get_mut(&*handle)
+            && let Some(mut mesh) = meshes.get_mut(&self.mesh.handle)
             && mesh.count_vertices() == surface.vertices()
         {
             write_mesh(&mut mesh, surface, drawn, normals, tangents);

@@ -8,8 +8,7 @@ use super::{
         cost::least_cost,
         inputs::Inputs,
         notices::{Notice, Notices},
-        threads::threads,
-        tick::MIN_TO_SPLIT,
+        threads::{MIN_TO_SPLIT, threads},
     },
     preparing::PreparingItem,
 };

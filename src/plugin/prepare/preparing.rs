@@ -10,7 +10,7 @@ use bevy::ecs::{
 use super::super::{
     ClothAir, ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothScratch,
     ClothSearch, ClothState, ClothStats, ClothTeleport, attach::Targets,
-    components::BroadPhaseBounds, inertia::Roots, lod::ClothLod, skin::Skins, source::Sources,
+    components::BroadPhaseBounds, lod::ClothLod, roots::Roots, skin::Skins, source::Sources,
     wind::WindField,
 };
 use crate::{

@@ -8,8 +8,8 @@ use bevy::{
 };
 
 use super::super::{
-    ClothMesh,
     frame::{rigid, unusable},
+    mesh::MeshDrawing,
 };
 use crate::cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh};
 
@@ -90,7 +90,7 @@ impl Driven {
     pub fn follow(
         &mut self,
         surface: &Surface,
-        cloth: &ClothMesh,
+        cloth: &MeshDrawing,
         place: &GlobalTransform,
         at: &GlobalTransform,
     ) -> bool {

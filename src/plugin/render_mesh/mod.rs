@@ -25,7 +25,11 @@ use bevy::{
     transform::components::GlobalTransform,
 };
 
-use super::{ClothBuilt, ClothFault, ClothMesh, mesh::MeshSystems, naming::Part};
+use super::{
+    ClothBuilt, ClothFault,
+    mesh::{MeshDrawing, MeshSystems},
+    naming::Part,
+};
 use crate::cloth::{Cloth, ClothError, Surface};
 use drawn::Driven;
 
@@ -158,7 +162,7 @@ struct Binding {
 struct Driving {
     built: &'static ClothBuilt,
     place: Option<&'static GlobalTransform>,
-    mesh: &'static mut ClothMesh,
+    drawing: &'static mut MeshDrawing,
 }
 
 /// Binds meshes to cloths, once both exist.
@@ -189,7 +193,7 @@ fn bind(
                 if surface.is_empty() {
                     continue;
                 }
-                driving.mesh.drive();
+                driving.drawing.drive();
                 let is_bound = each.state.is_some_and(|state| {
                     let bound = state.bound.as_ref();
                     bound.is_some_and(|to| to.cloth == cloth && Arc::ptr_eq(&to.surface, &surface))
@@ -298,7 +302,7 @@ fn update(
         Option<&GlobalTransform>,
         Option<&InheritedVisibility>,
     )>,
-    driving: Query<(&ClothMesh, Option<&GlobalTransform>)>,
+    driving: Query<(&MeshDrawing, Option<&GlobalTransform>)>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
     for (mut state, place, visibility) in &mut driven {

@@ -9,7 +9,7 @@ use bevy::ecs::{
 use super::{
     super::{
         ClothAttachments, ClothBuilt, ClothContacts, ClothFrame, ClothScratch, ClothState,
-        ClothStats, simulation::ClothParts,
+        ClothStats, parts::ClothParts,
     },
     SnapshotError,
 };

@@ -105,7 +105,7 @@ impl ClothWorldSnapshot {
         let roots = roots.iter(world);
         self.roots.clear();
         self.roots
-            .extend(roots.map(|(entity, root)| (entity, root.last())));
+            .extend(roots.map(|(entity, root)| (entity, root.last)));
         let mut orders = world.query::<(Entity, &ClothOrder)>();
         let orders = orders.iter(world);
         self.orders.clear();
@@ -191,7 +191,7 @@ impl ClothWorldSnapshot {
         }
         for (entity, last) in &self.roots {
             if let Some(mut root) = world.get_mut::<RootMotion>(*entity) {
-                root.recall(*last);
+                root.last = *last;
             }
         }
         for (entity, order) in &self.orders {

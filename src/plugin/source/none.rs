@@ -7,14 +7,11 @@ use bevy::{
     math::Vec3,
 };
 
+use super::Source;
 use crate::{
     cloth::{Cloth, ClothError, Skinning, Surface},
     contact::ClothCollider,
 };
-
-/// There is none.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Source {}
 
 /// No assets.
 #[derive(SystemParam)]
