@@ -3,6 +3,6 @@
 use bevy::platform::time::Instant;
 
 /// Time since `start` (ms).
-pub(super) fn milliseconds_since(start: Instant) -> f64 {
+pub(crate) fn milliseconds_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1.0e3
 }

@@ -23,7 +23,7 @@ use super::naming::quoted;
 use crate::cloth::ClothError;
 
 /// An entity's global transform as of now, not as of the last frame, if it and all above it have one.
-pub(super) fn global_transform(
+pub(crate) fn global_transform(
     transforms: &TransformHelper,
     entity: Entity,
 ) -> Option<GlobalTransform> {
@@ -31,7 +31,7 @@ pub(super) fn global_transform(
 }
 
 /// The error of a global transform that can't be used.
-pub(super) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
+pub(crate) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
     let affine: Affine3A = transform.into();
     let [x, y, z] = [0, 1, 2].map(|axis| affine.matrix3.col(axis));
     ClothError::Transform {
@@ -42,7 +42,7 @@ pub(super) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
 /// Global transforms as of now, including those below a disabled entity, since disabling an entity does not disable its
 /// children.
 #[derive(SystemParam)]
-pub(super) struct Places<'w, 's> {
+pub(crate) struct Places<'w, 's> {
     parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
     transforms: Query<'w, 's, &'static Transform, Allow<Disabled>>,
     names: Query<'w, 's, &'static Name, Allow<Disabled>>,
@@ -90,7 +90,7 @@ impl ClothFrame {
     ///
     /// # Errors
     /// [`ClothError::Transform`] for one that is not finite or that cannot be inverted.
-    pub(super) fn of(transform: &GlobalTransform) -> Result<(Self, Vec3), ClothError> {
+    pub(crate) fn of(transform: &GlobalTransform) -> Result<(Self, Vec3), ClothError> {
         let affine = transform.affine();
         let (scale, rotation, translation) = affine.to_scale_rotation_translation();
         // Under a sheared transform it comes out longer or shorter than a rotation.
@@ -109,17 +109,17 @@ impl ClothFrame {
     }
 
     /// The same entity's, with the particles' frame elsewhere.
-    pub(super) fn with_isometry(self, isometry: Isometry3d) -> Self {
+    pub(crate) fn with_isometry(self, isometry: Isometry3d) -> Self {
         Self { isometry, ..self }
     }
 
     /// Whether it is that of a global transform, to the last bit.
-    pub(super) fn is_of(&self, transform: &GlobalTransform) -> bool {
+    pub(crate) fn is_of(&self, transform: &GlobalTransform) -> bool {
         self.affine == transform.affine()
     }
 
     /// The same after a jump of the world's origin, of an entity that is at `now`.
-    pub(super) fn shifted(self, shift: Shift, now: Option<&GlobalTransform>) -> Self {
+    pub(crate) fn shifted(self, shift: Shift, now: Option<&GlobalTransform>) -> Self {
         let now = now.and_then(|now| Self::of(now).ok()).map(|(now, _)| now);
         Self {
             isometry: shift.rigid(self.isometry, now.map(|now| now.isometry)),
@@ -134,7 +134,7 @@ impl ClothFrame {
 
     /// The entity's whole global transform, its scale included.
     #[cfg(feature = "mesh")]
-    pub(super) fn affine(&self) -> Affine3A {
+    pub(crate) fn affine(&self) -> Affine3A {
         self.affine
     }
 
@@ -150,14 +150,14 @@ impl ClothFrame {
 
     /// From the particles' frame to the entity's own, in which its mesh is given: takes the scale out.
     #[cfg(feature = "mesh")]
-    pub(super) fn to_entity(self) -> Affine3A {
+    pub(crate) fn to_entity(self) -> Affine3A {
         self.affine.inverse() * Affine3A::from(self.isometry)
     }
 }
 
 /// A jump of the world's origin: the offset that the game has added to all positions (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shift(pub Vec3);
+pub(crate) struct Shift(pub Vec3);
 
 impl Shift {
     /// The new place of something that was here before. If it differs from `now` by no more than rounding, it is `now`,
@@ -200,7 +200,7 @@ impl Shift {
 }
 
 /// The place of `b` in the frame of `a`, to a rounding of the distance between them, wherever both are.
-pub(super) fn relative(a: Isometry3d, b: Isometry3d) -> Isometry3d {
+pub(crate) fn relative(a: Isometry3d, b: Isometry3d) -> Isometry3d {
     let turn = a.rotation.inverse();
     Isometry3d::new(
         turn * (b.translation - a.translation),
@@ -209,7 +209,7 @@ pub(super) fn relative(a: Isometry3d, b: Isometry3d) -> Isometry3d {
 }
 
 /// Translation and rotation of a transform, without its scale.
-pub(super) fn rigid(affine: &Affine3A) -> Isometry3d {
+pub(crate) fn rigid(affine: &Affine3A) -> Isometry3d {
     let (_, rotation, translation) = affine.to_scale_rotation_translation();
     Isometry3d::new(translation, rotation.normalize())
 }

@@ -1,131 +1,66 @@
-//! Floor 3, the ECS: one plugin per file, and [`DrapePlugins`] over all of them.
+//! Floor 3, the ECS, by the stages of a tick: each folder is a stage, or what stages share. [`DrapePlugins`] adds all of
+//! them.
+//!
+//! ```text
+//!   authoring   what a game writes            state   what the plugin keeps
+//!
+//!   FixedUpdate:   prepare → search → step → write_back          PostUpdate:   draw
+//!                                 bridge: rapier, egui, snapshots, reflection
+//! ```
+//!
+//! A stage imports from those before it. `simulation` adds the systems in their order.
 
-mod air;
-mod attach;
-mod attachments;
-mod awaited;
-mod body;
-mod bone_colliders;
-mod bones;
-mod broad_phase;
-mod build;
-mod built;
-mod cameras;
-mod carry;
+mod authoring;
+mod bridge;
 mod clock;
-#[cfg(feature = "mesh")]
-mod cloth_mesh;
-mod collider_tree;
-mod colliders;
-mod components;
-mod contacts;
-mod cost;
-mod diagnostics;
-mod drag;
-mod envelope;
-mod excess;
-#[cfg(feature = "pbr")]
-mod fabric;
-mod fault;
-mod faults;
-mod follow;
+mod draw;
 mod frame;
-mod freeze;
-#[cfg(feature = "gizmos")]
-mod gizmos;
-mod gravity;
-mod inertia;
-mod inputs;
-mod integrate;
-mod islands;
-mod levels;
-mod lod;
-mod lod_state;
-#[cfg(feature = "mesh")]
-mod mesh;
 mod naming;
-mod notices;
-mod order;
-mod origin;
-#[cfg(feature = "egui")]
-mod panel;
-mod parts;
 mod prepare;
-mod push;
-#[cfg(feature = "rapier")]
-mod rapier;
-#[cfg(feature = "rapier")]
-mod rapier_body;
-mod reflected;
-#[cfg(feature = "mesh")]
-mod render_mesh;
-mod resample;
-mod resting;
-mod roots;
-mod scratch;
 mod search;
 mod sets;
-mod shared;
 mod simulation;
-mod skin;
-mod snapshot;
-mod source;
 mod state;
-mod stats;
+mod step;
 mod threads;
-mod tick;
-mod together;
-mod touch;
-mod wind;
+mod write_back;
 
 use bevy::{
     app::{FixedUpdate, PluginGroup, PluginGroupBuilder},
     ecs::{intern::Interned, schedule::ScheduleLabel},
 };
 
-pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTeleport};
-pub use body::{ClothBody, ClothPush};
-pub use bones::{ClothBone, ClothBones};
-pub use built::ClothBuilt;
+pub use authoring::{
+    ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothGravity,
+    ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothTarget, ClothTeleport,
+    ClothWind, ClothWindShape, ClothWindZone, GlobalClothLod,
+};
 #[cfg(feature = "mesh")]
-pub use cloth_mesh::ClothMesh;
-pub use components::ClothSearch;
-pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
-pub use diagnostics::ClothDiagnosticsPlugin;
-pub use envelope::ClothLimitExceeded;
-#[cfg(feature = "pbr")]
-pub use fabric::fabric;
-pub use fault::ClothFault;
-pub use frame::ClothFrame;
-#[cfg(feature = "gizmos")]
-pub use gizmos::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
-pub use gravity::ClothGravity;
-pub use inertia::ClothInertia;
-pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
-#[cfg(feature = "mesh")]
-pub use mesh::ClothMeshPlugin;
-pub use order::ClothOrder;
-pub use origin::shift_cloths;
+pub use authoring::{ClothMesh, ClothSkeleton};
 #[cfg(feature = "egui")]
 #[doc(hidden)]
-pub use panel::ClothColliderSpeed;
+pub use bridge::ClothColliderSpeed;
+pub use bridge::{
+    ClothDiagnosticsPlugin, ClothSnapshot, ClothWorldSnapshot, SnapshotError, shift_cloths,
+};
 #[cfg(feature = "egui")]
-pub use panel::{ClothPanel, ClothPanelPlugin};
+pub use bridge::{ClothPanel, ClothPanelPlugin};
 #[cfg(feature = "rapier")]
-pub use rapier::{ClothRapierPlugin, RapierClothCollider};
-#[cfg(feature = "rapier")]
-pub use rapier_body::ClothPushBack;
+pub use bridge::{ClothPushBack, ClothRapierPlugin, RapierClothCollider};
+#[cfg(feature = "pbr")]
+pub use draw::fabric;
+#[cfg(feature = "gizmos")]
+pub use draw::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
 #[cfg(feature = "mesh")]
-pub use render_mesh::{ClothRenderMesh, ClothRenderMeshPlugin};
-pub use scratch::ClothScratch;
+pub use draw::{ClothMeshPlugin, ClothRenderMesh, ClothRenderMeshPlugin};
+pub use frame::ClothFrame;
 pub use sets::ClothSystems;
 pub use simulation::ClothPlugin;
-#[cfg(feature = "mesh")]
-pub use skin::ClothSkeleton;
-pub use snapshot::{ClothSnapshot, ClothWorldSnapshot, SnapshotError};
-pub use state::ClothState;
-pub use stats::ClothStats;
-pub use wind::{ClothAir, ClothWind, ClothWindShape, ClothWindZone};
+pub use state::{
+    ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothScratch, ClothSearch, ClothState,
+    ClothStats, ClothTouchStarted, ClothTouchStopped,
+};
+pub use write_back::ClothLimitExceeded;
 
 /// Everything that a game needs: the simulation, its diagnostics and, with their features, the mesh, the gizmos and the
 /// bridge to rapier. Add it after Bevy's own plugins.

@@ -8,7 +8,7 @@ use bevy::{
 /// The part of an entity that has the fault: an entity may be a cloth and a collider at once, or a mesh that a cloth
 /// drives.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Part {
+pub(crate) enum Part {
     Cloth,
     Collider,
     #[cfg(feature = "mesh")]
@@ -18,7 +18,7 @@ pub(super) enum Part {
 
 /// An entity, by its [`Name`] where it has one.
 #[derive(QueryData)]
-pub(super) struct Named {
+pub(crate) struct Named {
     pub entity: Entity,
     name: Option<&'static Name>,
 }
@@ -38,7 +38,7 @@ impl NamedItem<'_, '_> {
 }
 
 /// `"flag"`, or `12v0` of an entity without a name.
-pub(super) fn quoted(entity: Entity, name: Option<&Name>) -> String {
+pub(crate) fn quoted(entity: Entity, name: Option<&Name>) -> String {
     match name {
         Some(name) => format!("\"{name}\""),
         None => entity.to_string(),

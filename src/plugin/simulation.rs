@@ -26,35 +26,32 @@ use bevy::{
 };
 
 #[cfg(feature = "mesh")]
-use super::source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
+use super::prepare::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
-    ClothAir, ClothBody, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothGravity,
-    ClothInertia, ClothLimitExceeded, ClothOrder, ClothPush, ClothScratch, ClothSearch, ClothState,
-    ClothStats, ClothSystems, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
-    ClothWindZone,
-    awaited::{Deprived, note_enabled, note_removals},
-    bone_colliders::{make_bone_colliders, remove_bone_colliders},
-    collider_tree::ColliderTree,
-    colliders::ColliderMotion,
-    components::BroadPhaseBounds,
-    envelope::report_limits,
-    faults::{log_faults, report_lost},
-    follow::{forget_collider, prepare_colliders},
-    integrate::integrate,
-    islands::{Islands, find_islands},
-    levels::choose_levels,
+    authoring::{
+        ClothAir, ClothBody, ClothGravity, ClothInertia, ClothOrder, ClothPush, ClothTeleport,
+        ClothWind, ClothWindZone, give_order,
+    },
+    bridge::register_lists,
+    frame::ClothFrame,
     naming::Part,
-    notices::{Notices, log_notices},
-    order::give_order,
-    parts::ClothParts,
-    prepare::prepare_cloths,
-    push::push_bodies,
-    reflected::register_lists,
-    roots::{Jumped, follow_roots},
+    prepare::{
+        ColliderMotion, ColliderTree, Deprived, Islands, Jumped, choose_levels, find_islands,
+        follow_roots, forget_collider, note_enabled, note_removals, prepare_cloths,
+        prepare_colliders, prepare_wind,
+    },
     search::{query_collisions, rebuild_hierarchies},
-    shared::SharedParts,
-    touch::{send_stopped_messages, send_touch_messages},
-    wind::{WindField, prepare_wind},
+    sets::ClothSystems,
+    state::{
+        BroadPhaseBounds, ClothBuilt, ClothContacts, ClothFault, ClothParts, ClothScratch,
+        ClothSearch, ClothState, ClothStats, ClothTouchStarted, ClothTouchStopped, Notices,
+        SharedParts, WindField, log_notices,
+    },
+    step::{integrate, push_bodies},
+    write_back::{
+        ClothLimitExceeded, log_faults, make_bone_colliders, remove_bone_colliders, report_limits,
+        report_lost, send_stopped_messages, send_touch_messages,
+    },
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence},

@@ -3,10 +3,10 @@
 use bevy::tasks::{ComputeTaskPool, available_parallelism};
 
 /// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.3 at 256², 1.4 at 512².
-pub(super) const MIN_TO_SPLIT: usize = 256 * 256;
+pub(crate) const MIN_TO_SPLIT: usize = 256 * 256;
 
 /// Threads that work on a tick: those of Bevy's compute pool, and the one that waits for them.
-pub(super) fn threads() -> usize {
+pub(crate) fn threads() -> usize {
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (pool + 1).min(available_parallelism())
 }

@@ -3,10 +3,16 @@
 use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
 
 use super::{
-    super::{ClothBuilt, ClothFrame, frame::global_transform, inputs::Inputs, wind::Breeze},
+    inputs::Inputs,
     preparing::{NO_PINS, PreparingItem, Surroundings},
 };
-use crate::cloth::ClothParticles;
+use crate::{
+    cloth::ClothParticles,
+    plugin::{
+        frame::{ClothFrame, global_transform},
+        state::{Breeze, ClothBuilt},
+    },
+};
 
 /// Whether the cloth sleeps and its inputs have not changed: then there is nothing to prepare.
 pub(super) fn sleeps_as_it_was(

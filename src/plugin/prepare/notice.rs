@@ -2,17 +2,15 @@
 
 use bevy::math::Vec3;
 
-use super::{
-    super::{
-        ClothAttachments,
-        cost::least_cost,
-        inputs::Inputs,
-        notices::{Notice, Notices},
+use super::{cost::least_cost, inputs::Inputs, preparing::PreparingItem};
+use crate::{
+    cloth::{Pin, Pins, Surface},
+    plugin::{
+        authoring::ClothAttachments,
+        state::{Notice, Notices},
         threads::{MIN_TO_SPLIT, threads},
     },
-    preparing::PreparingItem,
 };
-use crate::cloth::{Pin, Pins, Surface};
 
 /// Looks once at a cloth that was built and has been prepared for a tick.
 pub(super) fn notice_new(cloth: &mut PreparingItem, inputs: &Inputs, notices: &mut Notices) {

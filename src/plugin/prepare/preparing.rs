@@ -7,16 +7,19 @@ use bevy::ecs::{
     system::{Query, Res, SystemParam},
 };
 
-use super::super::{
-    ClothAir, ClothAttachments, ClothBuilt, ClothContacts, ClothFault, ClothFrame, ClothScratch,
-    ClothSearch, ClothState, ClothStats, ClothTeleport, attach::Targets,
-    components::BroadPhaseBounds, lod::ClothLod, roots::Roots, skin::Skins, source::Sources,
-    wind::WindField,
-};
+use super::{attach::Targets, roots::Roots, skin::Skins, source::Sources};
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothSkin, Pins},
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
+    plugin::{
+        authoring::{ClothAir, ClothAttachments, ClothLod, ClothTeleport},
+        frame::ClothFrame,
+        state::{
+            BroadPhaseBounds, ClothBuilt, ClothContacts, ClothFault, ClothScratch, ClothSearch,
+            ClothState, ClothStats, WindField,
+        },
+    },
     solver::{ClothPressure, ClothSettings},
 };
 
@@ -25,7 +28,7 @@ pub(super) static NO_PINS: Pins = Pins::none();
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(in crate::plugin) struct Preparing {
+pub(crate) struct Preparing {
     pub entity: Entity,
     pub cloth: Ref<'static, Cloth>,
     pub material: Option<&'static ClothMaterial>,
@@ -54,7 +57,7 @@ pub(in crate::plugin) struct Preparing {
 
 /// The inputs of a cloth besides its own components.
 #[derive(SystemParam)]
-pub(in crate::plugin) struct Surroundings<'w, 's> {
+pub(crate) struct Surroundings<'w, 's> {
     pub targets: Targets<'w, 's>,
     pub sources: Sources<'w, 's>,
     pub skins: Skins<'w, 's>,

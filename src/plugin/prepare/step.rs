@@ -3,17 +3,15 @@
 use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
 
 use super::{
-    super::{
-        broad_phase::{reach, update_bounds},
-        carry::carrier,
-        inputs::Inputs,
-        wind::Breeze,
-    },
     asleep::ball,
+    broad_phase::{reach, update_bounds},
+    carry::carrier,
+    inputs::Inputs,
     preparing::{PreparingItem, Surroundings},
 };
 use crate::{
     contact::ContactSettings,
+    plugin::state::Breeze,
     solver::{Substepping, TickStep},
 };
 

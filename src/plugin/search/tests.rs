@@ -11,7 +11,7 @@ use super::*;
 use crate::{
     cloth::Cloth,
     contact::ClothCollider,
-    plugin::{ClothPlugin, ClothSystems},
+    plugin::{sets::ClothSystems, simulation::ClothPlugin},
 };
 
 /// What a game does to a collider between two ticks.

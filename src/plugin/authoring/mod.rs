@@ -1,0 +1,38 @@
+//! Components and resources that a game writes, each with its validation.
+//!
+//! In: the game's values. Out: the same values; later stages only read them. Beside some of them lies the little memory
+//! that Bevy requires with the component, such as how far a character has moved.
+
+mod attachments;
+mod body;
+mod bones;
+mod gravity;
+mod inertia;
+mod lod;
+#[cfg(feature = "mesh")]
+mod mesh;
+mod order;
+#[cfg(feature = "mesh")]
+mod skeleton;
+mod wind;
+mod wind_zone;
+
+pub(crate) use attachments::Attached;
+pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTeleport};
+pub use body::{ClothBody, ClothPush};
+pub(crate) use bones::{BoneColliderOf, BoneColliders};
+pub use bones::{ClothBone, ClothBones};
+pub use gravity::ClothGravity;
+pub use inertia::ClothInertia;
+pub(crate) use inertia::{Carried, RootMotion};
+pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
+#[cfg(feature = "mesh")]
+pub use mesh::ClothMesh;
+pub use order::ClothOrder;
+pub(crate) use order::{Ordered, give_order};
+#[cfg(feature = "mesh")]
+pub use skeleton::ClothSkeleton;
+pub(crate) use wind::DENSITY;
+pub use wind::{ClothAir, ClothWind};
+pub(crate) use wind_zone::PlacedZone;
+pub use wind_zone::{ClothWindShape, ClothWindZone};

@@ -1,0 +1,337 @@
+//! The debugging part of the panel: search for contacts, solver settings, and their cost.
+
+use std::mem::discriminant;
+
+use bevy::{
+    diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
+    ecs::{change_detection::DetectChangesMut, system::Commands},
+};
+use bevy_egui::egui::{RichText, Ui};
+
+use super::{
+    cloth::PanelClothItem,
+    row::{choose, line, slide},
+};
+use crate::{
+    cloth::ClothMaterial,
+    contact::NarrowPhase,
+    hierarchy::{SearchMethod, SearchReason},
+    plugin::{
+        bridge::diagnostics::ClothDiagnosticsPlugin, draw::ShowClothGizmos, state::ClothStats,
+    },
+    solver::{ClothSettings, Substepping, TimeOrder},
+};
+
+/// Means of the last second or so, of all cloths together (ms).
+pub(super) struct Times {
+    integrate: f64,
+    rebuild: f64,
+    query: f64,
+}
+
+impl Times {
+    pub fn of(diagnostics: &DiagnosticsStore) -> Self {
+        type Plugin = ClothDiagnosticsPlugin;
+        let mean = |path: &DiagnosticPath| {
+            diagnostics
+                .get(path)
+                .and_then(Diagnostic::smoothed)
+                .unwrap_or(0.0)
+        };
+        Self {
+            integrate: mean(&Plugin::INTEGRATE),
+            rebuild: mean(&Plugin::REBUILD),
+            query: mean(&Plugin::QUERY),
+        }
+    }
+
+    pub fn total(&self) -> f64 {
+        self.integrate + self.rebuild + self.query
+    }
+
+    pub fn explain(&self) -> String {
+        let Self {
+            integrate,
+            rebuild,
+            query,
+        } = self;
+        format!(
+            "Time of a fixed tick for all cloths together, a mean of the last ticks:\n\
+             solver {integrate:.3} ms, refit of the volumes {rebuild:.4} ms, search {query:.4} ms."
+        )
+    }
+}
+
+/// The folded rows of one cloth.
+pub(super) fn show(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
+    show_figures(ui, cloth);
+    show_gizmos(ui, cloth, commands);
+    show_search(ui, cloth);
+    let mut settings = *cloth.settings;
+    show_settings(ui, &mut settings);
+    cloth.settings.set_if_neq(settings);
+    let mut material = *cloth.material;
+    show_material(ui, &mut material);
+    cloth.material.set_if_neq(material);
+}
+
+fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
+    let stats = cloth.stats;
+    let nodes = cloth.built.tree().len();
+    for (name, figure, tip) in [
+        (
+            "particles",
+            format!("{}", cloth.built.surface().len()),
+            "Particles of the cloth",
+        ),
+        (
+            "contacts",
+            format!("{}", stats.contacts),
+            "Particles that a collider pushed out in the last tick; for small colliders, cells of two triangles",
+        ),
+        (
+            "nodes visited",
+            format!("{} of {nodes}", stats.nodes_visited),
+            "Nodes of the bounding-volume tree that the search of the last tick visited",
+        ),
+        (
+            "tested",
+            format!("{}", stats.leaf_tests),
+            "Particles that the search of the last tick tested against a collider",
+        ),
+        (
+            "stretch",
+            format!("{:.1} %", 100.0 * stats.stretch.structural),
+            "The largest stretch of a thread at the end of the last tick (% of its rest length)",
+        ),
+        (
+            "sub-steps",
+            format!("{}", stats.substeps),
+            "Sub-steps of the last tick; none while the cloth sleeps",
+        ),
+    ] {
+        line(
+            ui,
+            RichText::new(format!("{name:<13} {figure:>17}")).monospace(),
+            tip,
+        );
+    }
+    let found = search_text(stats);
+    let tip = format!(
+        "{found}\n{} colliders near, {} of them against triangles, {} extra searches within the tick",
+        stats.colliders_near, stats.by_triangles, stats.requeries
+    );
+    line(ui, found, &tip);
+}
+
+/// The chosen search, and the reason.
+fn search_text(stats: &ClothStats) -> String {
+    match stats.reason {
+        SearchReason::NothingNear | SearchReason::Asleep => format!("no search: {}", stats.reason),
+        reason => format!("{} ({reason})", stats.search),
+    }
+}
+
+fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
+    let tree = cloth.built.tree();
+    let deepest = tree.levels().len().saturating_sub(1);
+    let mut shown = cloth
+        .show
+        .as_deref()
+        .cloned()
+        .unwrap_or_else(ShowClothGizmos::nothing);
+    let was = shown.clone();
+    let level = was.levels.map(|[first, _]| first.min(deepest));
+    let now = level.map_or_else(|| "none".to_string(), |level| format!("level {level}"));
+    let levels = (0..=deepest).map(|level| {
+        let (visited, touching) = cloth.search.query().level(tree, level);
+        let figures = format!("{visited} visited, {touching} touching");
+        (format!("level {level}"), figures, Some([level; 2]))
+    });
+    choose(
+        ui,
+        "volumes",
+        "Level of the bounding-volume tree to draw, 0 is the root. Red and dark: a collider touches it. \
+         Green and bright: none does. Faint: the search did not visit it",
+        &mut shown.levels,
+        &now,
+        std::iter::once(("none".to_string(), String::new(), None)).chain(levels),
+    );
+    ui.checkbox(&mut shown.springs, "draw springs")
+        .on_hover_text("Threads along rows and columns; diagonals fainter");
+    match &mut cloth.show {
+        Some(show) => {
+            show.set_if_neq(shown);
+        }
+        None if shown != was => {
+            commands.entity(cloth.entity).try_insert(shown);
+        }
+        None => {}
+    }
+}
+
+fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
+    let mut method = *cloth.search_method;
+    choose(
+        ui,
+        "search",
+        "Search for contacts: every particle, or a tree of bounding volumes with a rule. Auto takes the cheapest",
+        &mut method,
+        &cloth.search_method.to_string(),
+        SearchMethod::ALL.map(|each| (each.to_string(), String::new(), each)),
+    );
+    cloth.search_method.set_if_neq(method);
+
+    let mut narrow_phase = *cloth.narrow_phase;
+    let is_it = |(_, each): &&(&'static str, NarrowPhase)| *each == narrow_phase;
+    let now = NarrowPhase::ALL
+        .iter()
+        .find(is_it)
+        .map_or("", |(name, _)| name);
+    choose(
+        ui,
+        "contact by",
+        "Contact of colliders with particles or triangles. Auto takes triangles for small balls and capsules, otherwise particles",
+        &mut narrow_phase,
+        now,
+        NarrowPhase::ALL.map(|(name, each)| (name.to_string(), String::new(), each)),
+    );
+    cloth.narrow_phase.set_if_neq(narrow_phase);
+}
+
+fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
+    let substepping = &mut settings.substepping;
+    let choices = [
+        (
+            "automatic",
+            "Sub-steps by the number of particles, the same in each tick",
+            Substepping::Automatic,
+        ),
+        (
+            "fixed",
+            "Your number of sub-steps: each tick costs the same",
+            Substepping::Fixed(20),
+        ),
+        (
+            "tolerance",
+            "Enough sub-steps to keep the stretch below a limit, and at least those of “automatic”",
+            ClothSettings::tolerance(0.01).substepping,
+        ),
+    ];
+    ui.horizontal(|ui| {
+        for (name, tip, choice) in choices {
+            let is_chosen = discriminant(substepping) == discriminant(&choice);
+            if ui.radio(is_chosen, name).on_hover_text(tip).clicked() && !is_chosen {
+                *substepping = choice;
+            }
+        }
+    });
+    match substepping {
+        Substepping::Automatic => {}
+        Substepping::Fixed(substeps) => {
+            let tip = "Sub-steps of each fixed tick, 1 to 80: more sub-steps stretch less, and each costs the same time";
+            slide(ui, "sub-steps", tip, substeps, 1..=80, |slider| slider);
+        }
+        Substepping::Adaptive {
+            stretch,
+            max_substeps,
+        } => {
+            let mut percent = 100.0 * *stretch;
+            let tip = "The largest stretch allowed (% of a thread's rest length), 0.1 to 20";
+            if slide(ui, "stretch, %", tip, &mut percent, 0.1..=20.0, |slider| {
+                slider.logarithmic(true)
+            }) {
+                *stretch = percent / 100.0;
+            }
+            let tip = "The most sub-steps that a tick may take, 1 to 400";
+            slide(ui, "at most", tip, max_substeps, 1..=400, |slider| slider);
+        }
+    }
+    let mut is_first = settings.order == TimeOrder::First;
+    ui.checkbox(&mut is_first, "Verlet as in the paper").on_hover_text(
+        "First order in time, equation (2): swings lose energy, more with fewer sub-steps. Off: second order",
+    );
+    let order = if is_first {
+        TimeOrder::First
+    } else {
+        TimeOrder::Second
+    };
+    if settings.order != order {
+        settings.order = order;
+    }
+    ui.checkbox(&mut settings.tethers, "tethers").on_hover_text(
+        "No particle gets farther from a pin than the cloth between them allows: less stretch at the same sub-steps",
+    );
+    ui.checkbox(&mut settings.sleeps, "sleeps at rest")
+        .on_hover_text("A cloth at rest is not simulated until something disturbs it");
+}
+
+/// The exact values, in their units.
+fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
+    line(
+        ui,
+        "material, exact",
+        "The values behind the sliders above. Double-click a number to edit it",
+    );
+    let tip = "Mass per area (kg/m²)";
+    slide(
+        ui,
+        "mass, kg/m²",
+        tip,
+        &mut material.areal_density,
+        0.01..=5.0,
+        |slider| slider.logarithmic(true),
+    );
+    for (value, range, name, tip) in [
+        (
+            &mut material.stretch_compliance,
+            0.0..=10.0,
+            "stretch, m/N",
+            "Compliance along rows and columns (m/N): how far a square patch grows under 1 N. 0 is rigid",
+        ),
+        (
+            &mut material.shear_compliance,
+            0.0..=10.0,
+            "shear, m/N",
+            "Compliance along both diagonals (m/N). 0 is rigid, infinity is no shear springs",
+        ),
+        (
+            &mut material.bend_rigidity,
+            0.0..=0.01,
+            "bend, N·m",
+            "Flexural rigidity (N·m). 0 bends freely",
+        ),
+    ] {
+        let smallest = *range.end() * 1.0e-7;
+        slide(ui, name, tip, value, range, |slider| {
+            slider.logarithmic(true).smallest_positive(smallest.into())
+        });
+    }
+    let tip = "Damping along springs (s): time in which a free stretch decays. 0 is none";
+    slide(
+        ui,
+        "loss, s",
+        tip,
+        &mut material.stretch_damping,
+        0.0..=0.1,
+        |slider| slider,
+    );
+    let tip = "Share of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";
+    slide(
+        ui,
+        "damping D",
+        tip,
+        &mut material.damping,
+        0.0..=0.2,
+        |slider| slider,
+    );
+    let tip = "Coulomb's coefficient of friction against colliders (no unit)";
+    slide(
+        ui,
+        "friction μ",
+        tip,
+        &mut material.friction,
+        0.0..=2.0,
+        |slider| slider,
+    );
+}

@@ -1,0 +1,202 @@
+//! The snapshot of a single cloth.
+
+use bevy::ecs::{
+    change_detection::DetectChanges,
+    entity::{Entity, EntityMapper, MapEntities},
+    world::World,
+};
+
+use super::error::SnapshotError;
+use crate::{
+    cloth::{Cloth, ClothParticles},
+    contact::MutualContact,
+    plugin::{
+        authoring::ClothAttachments,
+        frame::ClothFrame,
+        state::{ClothBuilt, ClothContacts, ClothParts, ClothScratch, ClothState, ClothStats},
+    },
+};
+
+/// Everything that the next tick of a cloth depends on, except for the game's own components (`Cloth`, `ClothMaterial`,
+/// `Transform` …) and the motion of colliders. [`ClothWorldSnapshot`](crate::plugin::ClothWorldSnapshot) holds all cloths and
+/// colliders at once: only that continues to the last bit where a cloth touches something.
+///
+/// Take and restore it between two ticks, in an exclusive system or outside the schedule. With the feature `serialize`,
+/// serde writes and reads it. Entities are written as they are, and [`MapEntities`] maps them to those of another
+/// world.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// /// Ten ticks back, for a game that rolls back.
+/// fn rewind(world: &mut World, cloth: Entity, kept: &[ClothSnapshot]) -> Result<(), SnapshotError> {
+///     kept[kept.len() - 10].restore(world, cloth)
+/// }
+/// ```
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub struct ClothSnapshot {
+    pub(super) version: u32,
+    particles: ClothParticles,
+    frame: ClothFrame,
+    state: ClothState,
+    contacts: ClothContacts,
+    /// Contact with itself alone.
+    mutual: Option<Box<MutualContact>>,
+    /// Whether the game has written the particles since the last tick.
+    is_written: bool,
+}
+
+impl Default for ClothSnapshot {
+    /// An empty snapshot, as memory for [`take`](Self::take).
+    fn default() -> Self {
+        Self {
+            version: Self::VERSION,
+            particles: ClothParticles::default(),
+            frame: ClothFrame::default(),
+            state: ClothState::default(),
+            contacts: ClothContacts::default(),
+            mutual: None,
+            is_written: false,
+        }
+    }
+}
+
+impl ClothSnapshot {
+    /// Version of the snapshots that this crate writes. It reads no other version.
+    pub const VERSION: u32 = 1;
+
+    /// A snapshot of the current state of a cloth.
+    ///
+    /// # Errors
+    /// [`SnapshotError::NoCloth`].
+    pub fn of(world: &World, cloth: Entity) -> Result<Self, SnapshotError> {
+        let mut snapshot = Self::default();
+        snapshot.take(world, cloth)?;
+        Ok(snapshot)
+    }
+
+    /// Overwrites this snapshot with the current state of a cloth, in the memory that it has.
+    ///
+    /// # Errors
+    /// [`SnapshotError::NoCloth`]; the snapshot stays as it was.
+    pub fn take(&mut self, world: &World, cloth: Entity) -> Result<(), SnapshotError> {
+        let parts = || {
+            Some((
+                world.get_entity(cloth).ok()?.get_ref::<ClothParticles>()?,
+                world.get::<ClothFrame>(cloth)?,
+                world.get::<ClothState>(cloth)?,
+                world.get::<ClothContacts>(cloth)?,
+                world.get::<ClothScratch>(cloth)?,
+            ))
+        };
+        let (particles, frame, state, contacts, scratch) =
+            parts().ok_or(SnapshotError::NoCloth { entity: cloth })?;
+        self.version = Self::VERSION;
+        self.particles.copy_from(&particles);
+        self.frame = *frame;
+        self.state.copy_from(state);
+        let built = world.get::<ClothBuilt>(cloth);
+        self.state.lod.sphere = built
+            .filter(|built| built.matches(&particles))
+            .map(|built| {
+                let root = built.tree().root_sphere(&particles, state.stretch.bound);
+                (root.center.into(), root.radius())
+            });
+        self.is_written = state.written != Some(particles.last_changed());
+        self.contacts.clone_from(contacts);
+        self.mutual.clone_from(&scratch.mutual);
+        Ok(())
+    }
+
+    /// Checks whether [`restore`](Self::restore) would succeed.
+    pub(super) fn check(&self, world: &World, cloth: Entity) -> Result<(), SnapshotError> {
+        if self.version != Self::VERSION {
+            return Err(SnapshotError::Version {
+                found: self.version,
+                expected: Self::VERSION,
+            });
+        }
+        let is_sound = self.particles.is_sound()
+            && self.state.is_sound(&self.particles)
+            && self.contacts.is_sound(self.particles.len());
+        if !is_sound {
+            return Err(SnapshotError::Damaged { entity: cloth });
+        }
+        let is_known =
+            world.get::<Cloth>(cloth).is_some() && world.get::<ClothState>(cloth).is_some();
+        if is_known {
+            Ok(())
+        } else {
+            Err(SnapshotError::NoCloth { entity: cloth })
+        }
+    }
+
+    /// Puts a cloth back to this state. The cloth may never have been simulated, as in an app that has just started,
+    /// but needs the same `Cloth`, material and pins.
+    ///
+    /// # Errors
+    /// [`SnapshotError`]; nothing is changed then.
+    pub fn restore(&self, world: &mut World, cloth: Entity) -> Result<(), SnapshotError> {
+        self.check(world, cloth)?;
+        let mut entity = world.entity_mut(cloth);
+        // A game may have removed some.
+        entity.insert_if_new(<(ClothParticles, ClothParts)>::default());
+        let wanted = entity.get::<ClothAttachments>().cloned();
+        let last_written = entity.get::<ClothState>().and_then(|state| state.written);
+        let mut weighs_the_same = false;
+        if let Some(mut particles) = entity.get_mut::<ClothParticles>() {
+            // Particles that the game has written have not been weighed yet.
+            let is_weighed = last_written == Some(particles.last_changed());
+            weighs_the_same = is_weighed && particles.weigh_as(&self.particles);
+            particles.copy_from(&self.particles);
+        }
+        let written = entity
+            .get_ref::<ClothParticles>()
+            .map(|of| of.last_changed());
+        if let Some(mut frame) = entity.get_mut::<ClothFrame>() {
+            *frame = self.frame;
+        }
+        if let Some(mut contacts) = entity.get_mut::<ClothContacts>() {
+            contacts.clone_from(&self.contacts);
+        }
+        if let Some(mut state) = entity.get_mut::<ClothState>() {
+            state.copy_from(&self.state);
+            state.written = written.filter(|_| !self.is_written);
+            // In a file that was edited by hand, they may be anything.
+            let survey = self.particles.survey();
+            state.is_valid &= survey.is_valid;
+            state.largest_speed = survey.largest_speed;
+            // Attachments are not written to files: they are the game's components.
+            let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
+            if state.attachments.is_empty() && state.targets.len() == wanted.len() {
+                state.attachments.extend_from_slice(wanted);
+            }
+            state.resumes = true;
+        }
+        if let Some(mut stats) = entity.get_mut::<ClothStats>() {
+            stats.is_asleep = self.state.rest.is_asleep();
+        }
+        if let Some(mut scratch) = entity.get_mut::<ClothScratch>() {
+            scratch.forget_tick();
+            scratch.mutual.clone_from(&self.mutual);
+        }
+        if !weighs_the_same && let Some(mut built) = entity.get_mut::<ClothBuilt>() {
+            built.weigh(&self.particles);
+        }
+        Ok(())
+    }
+
+    /// The particles in the snapshot.
+    pub fn particles(&self) -> &ClothParticles {
+        &self.particles
+    }
+}
+
+impl MapEntities for ClothSnapshot {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        self.state.map_entities(mapper);
+        self.contacts.map_entities(mapper);
+    }
+}

@@ -1,0 +1,77 @@
+//! The memory from which a cloth is drawn.
+
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{change_detection::Tick, component::Component, entity::Entity},
+    math::{Affine3A, Vec3},
+};
+
+use super::{blend::Blend, placing::Carriers, skin::DrawnPose, write::Tangents};
+use crate::{
+    cloth::Surface,
+    plugin::frame::{ClothFrame, Shift},
+};
+
+/// On a cloth that has a [`ClothMesh`](crate::plugin::ClothMesh): all that its picture needs from frame to frame. It is
+/// made again for a clone, and for a scene that is loaded.
+#[derive(Component, Debug, Default)]
+#[component(clone_behavior = Ignore)]
+pub(crate) struct MeshDrawing {
+    /// The surface that it is a mesh of.
+    pub(super) surface: Arc<Surface>,
+    pub(super) tangents: Tangents,
+    /// Positions as the last tick began, in the cloth's frame.
+    pub(super) previous: Vec<Vec3>,
+    /// The carriers of its pins, as of the last two ticks.
+    pub(super) carriers: Carriers,
+    /// The pose that it follows, if it does.
+    pub(super) pose: DrawnPose,
+    /// Where its targets are drawn.
+    pub(super) targets: Vec<Affine3A>,
+    /// Whether those were remembered from a cloth that slept.
+    pub(super) rested: bool,
+    /// Positions to be drawn, in the entity's frame.
+    pub(super) drawn: Vec<Vec3>,
+    pub(super) normals: Vec<Vec3>,
+    /// The picture of a cloth that sleeps or is frozen: when its particles were written, the place of its entity or of
+    /// the frozen particles relative to it, and whether it is visible.
+    pub(super) settled: Option<(Tick, Affine3A, bool)>,
+    /// The last picture, and how it blends into the current one.
+    pub(super) before: Vec<Vec3>,
+    pub(super) blend: Blend,
+    /// Place of the particles relative to the entity that they are frozen to.
+    pub(super) frozen: Option<Affine3A>,
+    /// Whether it drives other meshes, in this frame.
+    pub(super) drives: bool,
+    /// Changes whenever it is drawn elsewhere.
+    pub(super) version: u32,
+}
+
+impl MeshDrawing {
+    /// In this frame the cloth drives another mesh, so its drawn positions are needed even if it is hidden.
+    pub(crate) fn drive(&mut self) {
+        self.drives = true;
+    }
+
+    /// Shifts it with the world's origin, from one frame to another; `target` gives the current place of a target.
+    pub(crate) fn shift(
+        &mut self,
+        shift: Shift,
+        frames: [ClothFrame; 2],
+        target: impl Fn(Entity) -> Option<Affine3A>,
+    ) {
+        self.carriers.shift(shift, frames, target);
+        self.pose.shift(shift, frames);
+    }
+
+    /// Whether it is drawn as this surface.
+    pub(crate) fn is_of(&self, surface: &Arc<Surface>) -> bool {
+        Arc::ptr_eq(&self.surface, surface)
+    }
+
+    /// Drawn positions of the particles, in the entity's frame, and a number that changes whenever they do.
+    pub(crate) fn drawn(&self) -> (u32, &[Vec3]) {
+        (self.version, &self.drawn)
+    }
+}

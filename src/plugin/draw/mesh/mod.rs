@@ -1,0 +1,318 @@
+//! Keeps a mesh on the particles.
+
+mod adding;
+mod blend;
+mod drawing;
+mod placing;
+mod skin;
+mod write;
+
+use bevy::{
+    app::{
+        App, FixedFirst, FixedLast, FixedPostUpdate, FixedPreUpdate, FixedUpdate, Plugin,
+        PostUpdate,
+    },
+    asset::{AssetEventSystems, Assets},
+    camera::visibility::{InheritedVisibility, VisibilitySystems},
+    ecs::{
+        change_detection::{DetectChanges, Ref},
+        entity::Entity,
+        intern::Interned,
+        query::QueryData,
+        schedule::{
+            IntoScheduleConfigs, ScheduleLabel, SystemSet, common_conditions::resource_exists,
+        },
+        system::{Query, Res, ResMut, SystemParam},
+    },
+    math::{Affine3A, Vec3},
+    mesh::Mesh,
+    time::{Fixed, Time},
+    transform::{TransformSystems, components::GlobalTransform},
+};
+
+use crate::{
+    cloth::ClothParticles,
+    plugin::{
+        authoring::{ClothLodLevel, ClothMesh, ClothSkeleton},
+        frame::{ClothFrame, rigid},
+        prepare::Skins,
+        sets::ClothSystems,
+        state::{ClothBuilt, ClothScratch, ClothState, Notices, Turn},
+    },
+};
+use adding::{add_meshes, remove_mesh};
+use placing::Drawn;
+use write::write_mesh;
+
+pub(crate) use drawing::MeshDrawing;
+
+/// The steps for the meshes in a frame.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum MeshSystems {
+    /// Gives a mesh to cloths without one.
+    Add,
+    /// Updates the meshes.
+    Write,
+}
+
+/// Gives each cloth a mesh with UVs, normals and tangents that follows its particles. The mesh is updated once per
+/// rendered frame, interpolated between two ticks by `overstep_fraction`. Does nothing in an app without meshes.
+#[derive(Debug, Clone, Copy)]
+pub struct ClothMeshPlugin {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl Default for ClothMeshPlugin {
+    fn default() -> Self {
+        Self::new(FixedUpdate)
+    }
+}
+
+impl ClothMeshPlugin {
+    /// For a [`ClothPlugin`](crate::plugin::ClothPlugin) in `schedule`.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            schedule: schedule.intern(),
+        }
+    }
+}
+
+impl Plugin for ClothMeshPlugin {
+    fn build(&self, app: &mut App) {
+        let fixed: [Interned<dyn ScheduleLabel>; 5] = [
+            FixedFirst.intern(),
+            FixedPreUpdate.intern(),
+            FixedUpdate.intern(),
+            FixedPostUpdate.intern(),
+            FixedLast.intern(),
+        ];
+        // In any other schedule a tick is a frame, and there is nothing to interpolate.
+        let interpolated = fixed.contains(&self.schedule);
+        let update = move |cloths: Query<_, _>,
+                           at: Surroundings,
+                           time: (Res<_>, Res<_>),
+                           meshes: ResMut<_>| {
+            update_meshes(cloths, at, time, meshes, interpolated);
+        };
+        app.init_resource::<Notices>()
+            .register_type::<ClothMesh>()
+            .register_type::<ClothSkeleton>()
+            .add_observer(remove_mesh)
+            .add_systems(
+                self.schedule,
+                remember_positions
+                    .after(ClothSystems::Query)
+                    .before(ClothSystems::Integrate),
+            )
+            // Before the asset events, from which Bevy's culling takes the new bounds.
+            .add_systems(
+                PostUpdate,
+                (
+                    add_meshes.in_set(MeshSystems::Add),
+                    update.in_set(MeshSystems::Write),
+                )
+                    .chain()
+                    .after(ClothSystems::WriteBack)
+                    .after(TransformSystems::Propagate)
+                    .after(VisibilitySystems::VisibilityPropagate)
+                    .before(AssetEventSystems)
+                    .run_if(resource_exists::<Assets<Mesh>>)
+                    .run_if(resource_exists::<Time<Fixed>>),
+            );
+    }
+}
+
+fn remember_positions(
+    mut cloths: Query<(
+        &ClothParticles,
+        &ClothFrame,
+        &ClothState,
+        &ClothScratch,
+        &mut MeshDrawing,
+    )>,
+) {
+    for (particles, frame, state, scratch, mut mesh) in &mut cloths {
+        match state.lod.turn {
+            Turn::Move => {}
+            Turn::Wait => continue,
+            Turn::Stand => {
+                mesh.carriers.stand(*frame);
+                continue;
+            }
+        }
+        let rests = state.rest.is_asleep();
+        if !(rests && mesh.rested) {
+            mesh.previous.clear();
+            mesh.previous.extend(particles.positions());
+            // The state before it was carried along.
+            let undone = scratch.carried.map(|carried| carried.undone_in(frame));
+            if let Some(undone) = undone {
+                mesh.previous
+                    .iter_mut()
+                    .for_each(|place| *place = undone * *place);
+            }
+            mesh.pose.follow(*frame, state, scratch, undone);
+            mesh.carriers.follow(*frame, state, scratch);
+        }
+        mesh.rested = rests;
+    }
+}
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct Drawing {
+    entity: Entity,
+    built: &'static ClothBuilt,
+    particles: Ref<'static, ClothParticles>,
+    frame: &'static ClothFrame,
+    state: &'static ClothState,
+    transform: Option<&'static GlobalTransform>,
+    visibility: Option<&'static InheritedVisibility>,
+    mesh: &'static ClothMesh,
+    drawing: &'static mut MeshDrawing,
+}
+
+/// Where things are drawn.
+#[derive(SystemParam)]
+struct Surroundings<'w, 's> {
+    transforms: Query<'w, 's, &'static GlobalTransform>,
+    skins: Skins<'w, 's>,
+}
+
+fn update_meshes(
+    mut cloths: Query<Drawing>,
+    around: Surroundings,
+    (fixed, time): (Res<Time<Fixed>>, Res<Time>),
+    mut meshes: ResMut<Assets<Mesh>>,
+    interpolated: bool,
+) {
+    let fraction = if interpolated {
+        fixed.overstep_fraction().min(1.0)
+    } else {
+        1.0
+    };
+    let seconds = time.elapsed_secs_f64();
+    for mut cloth in &mut cloths {
+        cloth.update(&around, &mut meshes, fraction, seconds);
+    }
+}
+
+impl DrawingItem<'_, '_> {
+    fn update(
+        &mut self,
+        around: &Surroundings,
+        meshes: &mut Assets<Mesh>,
+        fraction: f32,
+        seconds: f64,
+    ) {
+        let drives = std::mem::take(&mut self.drawing.drives);
+        if !self.state.is_valid || !self.built.matches(&self.particles) {
+            return;
+        }
+        // No camera sees what the game hides. A mesh outside every camera's view is kept up to date: culling comes
+        // later in the frame, so that is not known yet.
+        let is_seen = self.visibility.is_none_or(|visibility| visibility.get());
+        let lod = &self.state.lod;
+        if !is_seen && !drives || lod.level == ClothLodLevel::Off {
+            self.drawing.settled = None;
+            return;
+        }
+        // Over the ticks from the last move to the next.
+        let fraction = lod.drawn_part(lod.since as f32 + fraction);
+        let own = GlobalTransform::from(self.frame.affine());
+        let entity = self.transform.copied().unwrap_or(own);
+        let MeshDrawing {
+            previous,
+            carriers,
+            pose,
+            targets,
+            drawn,
+            normals,
+            tangents,
+            rested,
+            settled,
+            before,
+            blend,
+            frozen,
+            version,
+            ..
+        } = &mut *self.drawing;
+        // The targets of the tick; later attachments count from the next tick on.
+        let drawn_at = self.state.targets.iter();
+        let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
+        targets.clear();
+        targets.extend(drawn_at.map(GlobalTransform::affine));
+        let entity_at = entity.affine();
+        let stands = lod.frozen.map(|stands| match targets.first() {
+            None => *frozen.get_or_insert(self.frame.to_entity()),
+            Some(target) => {
+                let place = rigid(target) * stands.carrier.inverse() * stands.frame;
+                entity_at.inverse() * Affine3A::from(place)
+            }
+        });
+        if stands.is_none() {
+            *frozen = None;
+        }
+        let place = |joint| around.transforms.get(joint).ok().copied();
+        let moves = pose.read(self.entity, &around.skins, place);
+        // A cloth that sleeps or is frozen is drawn once.
+        let is_asleep =
+            !moves && self.state.rest.is_asleep() && *rested && !carriers.differ_from(targets);
+        let still = stands.or(is_asleep.then_some(entity_at));
+        let still = still.filter(|_| blend.is_over(lod.cuts));
+        let state = still.map(|place| (self.particles.last_changed(), place, is_seen));
+        if state.is_some() && *settled == state {
+            return;
+        }
+        let blends = !blend.is_over(lod.cuts);
+        if blends {
+            std::mem::swap(before, drawn);
+        }
+        if let Some(to_entity) = stands {
+            drawn.clear();
+            let positions = self.particles.positions();
+            drawn.extend(positions.map(|place| to_entity.transform_point3(place)));
+        } else {
+            interpolate(drawn, previous, &self.particles, fraction);
+            let place = Drawn {
+                built: self.built,
+                state: self.state,
+                particles: &self.particles,
+                entity,
+                targets,
+                fraction,
+            };
+            let is_skinned = pose.place(&self.built.shared, fraction, drawn);
+            place.place(carriers, is_skinned, drawn);
+        }
+        if blends {
+            blend.add(lod.cuts, seconds, &self.particles, before, drawn);
+        }
+        *version = version.wrapping_add(1);
+        *settled = state;
+        let surface = self.built.surface();
+        if is_seen
+            && let Some(mut mesh) = meshes.get_mut(&self.mesh.handle)
+            && mesh.count_vertices() == surface.vertices()
+        {
+            write_mesh(&mut mesh, surface, drawn, normals, tangents);
+        }
+    }
+}
+
+/// Positions at which the particles are drawn: `fraction` of the way from the last tick to this one, in the cloth's
+/// frame.
+fn interpolate(
+    drawn: &mut Vec<Vec3>,
+    previous: &[Vec3],
+    particles: &ClothParticles,
+    fraction: f32,
+) {
+    drawn.clear();
+    if previous.len() == particles.len() {
+        let pairs = previous.iter().zip(particles.positions());
+        drawn.extend(pairs.map(|(from, to)| from.lerp(to, fraction)));
+    } else {
+        drawn.extend(particles.positions());
+    }
+}

@@ -1,0 +1,347 @@
+//! The first step of a tick: builds new cloths, and checks and takes over every input.
+
+use bevy::{
+    ecs::{
+        change_detection::{DetectChanges, Mut},
+        system::{Commands, Query, Res, ResMut},
+    },
+    time::Time,
+};
+
+use super::{
+    asleep::sleeps_as_it_was,
+    attach::follow_targets,
+    broad_phase::clear_stats,
+    build::{Build, Wanted, build},
+    carry::{carry, new_from_old},
+    drag::jump,
+    freeze::{stand, thaw},
+    inputs::Inputs,
+    notice::notice_new,
+    preparing::{NO_PINS, Preparing, PreparingItem, Surroundings},
+    skin::{move_with_pose, place_pose, stand_in_pose},
+    step::{prepare_contact, prepare_step, see_whether_it_rests},
+};
+use crate::{
+    cloth::{ClothError, ClothParticles},
+    plugin::{
+        authoring::{
+            ClothAttachments, ClothGravity, ClothLod, ClothLodLevel, ClothTeleport, GlobalClothLod,
+        },
+        frame::{ClothFrame, global_transform},
+        naming::Part,
+        state::{Breeze, ClothFault, Notices, SharedParts, Turn},
+    },
+};
+
+/// Prepares each cloth, or marks it with a fault.
+pub(crate) fn prepare_cloths(
+    mut cloths: Query<Preparing>,
+    around: Surroundings,
+    (mut parts, mut notices): (ResMut<SharedParts>, ResMut<Notices>),
+    gravity: Res<ClothGravity>,
+    global_lod: Option<Res<GlobalClothLod>>,
+    time: Res<Time>,
+    mut commands: Commands,
+) {
+    for entity in &around.teleports {
+        commands.entity(entity).try_remove::<ClothTeleport>();
+    }
+    let global_lod = global_lod.as_ref().map(|global| &global.0);
+    for mut cloth in &mut cloths {
+        let level = cloth.state.lod.level;
+        if cloth.stats.level != level {
+            cloth.stats.level = level;
+        }
+        if cloth.state.lod.turn == Turn::Wait {
+            pass(&mut cloth);
+            continue;
+        }
+        let (seconds, ticks) = cloth.state.lod.take(time.delta_secs());
+        let inputs = Inputs::of(
+            cloth.settings,
+            cloth.material,
+            cloth.method,
+            cloth.narrow_phase,
+            cloth.self_collision,
+            gravity.0,
+        );
+        let lod = cloth.lod.or(global_lod);
+        let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
+        let outcome = inputs.and_then(|inputs| {
+            if cloth.state.lod.turn == Turn::Stand {
+                pass(&mut cloth);
+                return stand_still(&mut cloth, &around);
+            }
+            let breeze = around.field.of_cloth(cloth.air)?;
+            if sleeps_as_it_was(&cloth, &inputs, &around, &breeze, seconds) {
+                return Ok(());
+            }
+            // Forgets the work of an earlier tick.
+            cloth.scratch.forget_tick();
+            let seconds = (seconds, ticks);
+            prepare(&mut cloth, &inputs, &around, breeze, &mut parts, seconds)?;
+            notice_new(&mut cloth, &inputs, &mut notices);
+            Ok(())
+        });
+        cloth.state.is_valid = outcome.is_ok();
+        if outcome.is_err() {
+            pass(&mut cloth);
+            if !cloth.state.resumes {
+                cloth.state.rest.disturb();
+            }
+        }
+        if cloth.teleport.is_some() && outcome.is_ok() {
+            commands.entity(cloth.entity).try_remove::<ClothTeleport>();
+        }
+        // An asset that is being loaded is no fault.
+        let outcome = match outcome {
+            Err(ClothError::MeshLoading) => Ok(()),
+            outcome => outcome,
+        };
+        ClothFault::report(
+            &mut commands,
+            cloth.entity,
+            cloth.fault,
+            Part::Cloth,
+            outcome,
+        );
+    }
+}
+
+/// Lets the tick pass without the cloth.
+fn pass(cloth: &mut PreparingItem) {
+    cloth.scratch.forget_tick();
+    cloth.bounds.leave_out();
+    clear_stats(&mut cloth.stats, false);
+    (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+    cloth.stats.is_asleep = false;
+}
+
+/// Keeps the cloth's shape, and moves it with its carrier.
+fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), ClothError> {
+    if cloth.state.written != Some(cloth.particles.last_changed()) {
+        check_particles(&mut cloth.particles)?;
+    }
+    cloth.contacts.clear();
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let targets = &around.targets;
+    let attachments = cloth
+        .attachments
+        .map_or(&[][..], ClothAttachments::as_slice);
+    stand(
+        cloth.entity,
+        attachments,
+        targets,
+        &mut cloth.frame,
+        particles,
+        state,
+    )?;
+    if cloth.built.skin.is_some() && state.lod.level != ClothLodLevel::Off {
+        let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+        let place = |joint| global_transform(&targets.transforms, joint);
+        (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
+        let (sources, frame) = (&around.sources, &*cloth.frame);
+        stand_in_pose(sources, frame, particles, built, state, scratch)?;
+    }
+    Ok(())
+}
+
+fn prepare(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    breeze: Option<Breeze>,
+    parts: &mut SharedParts,
+    (seconds, ticks): (f32, u32),
+) -> Result<(), ClothError> {
+    let before = *cloth.frame;
+    let (frame, build) = build_cloth(cloth, inputs, around, parts)?;
+    let has_stood = cloth.state.lod.frozen.is_some();
+    let was_written = take_over(cloth, inputs, around, [&before, &frame], seconds)?;
+    let (is_known, fastest) = (
+        cloth.state.is_valid && !has_stood,
+        cloth.state.largest_speed,
+    );
+    go_along(cloth, around, [&before, &frame], build, seconds, has_stood)?;
+    let scratch = &mut *cloth.scratch;
+    scratch.begins |= build == Build::New;
+    // What stood still, or was at fault, may have been put anywhere meanwhile.
+    if is_known && !scratch.pins.is_empty() {
+        scratch.dragged = jump(&scratch.pins, fastest, (seconds, ticks));
+    }
+    let acceleration = cloth.frame.isometry().rotation.inverse() * inputs.gravity;
+    let (built, state) = (&mut *cloth.built, &mut *cloth.state);
+    if was_written || cloth.scratch.teleports {
+        state.stretch = built.solver.measure(&cloth.particles);
+        built.weigh(&cloth.particles);
+        cloth.stats.stretch = state.stretch;
+        state.rest.disturb();
+    }
+    built.tether(
+        inputs.settings.tethers,
+        &inputs.material,
+        &cloth.particles,
+        inputs.gravity.length(),
+        &mut state.largest_gravity,
+    );
+    cloth.scratch.was_put = was_written || build != Build::Kept || cloth.scratch.teleports;
+    see_whether_it_rests(cloth, inputs, around, breeze, acceleration, seconds);
+    prepare_step(cloth, inputs, around, acceleration, (seconds, ticks));
+    prepare_contact(cloth, inputs, acceleration, seconds);
+    clear_stats(&mut cloth.stats, cloth.state.rest.is_asleep());
+    cloth.state.resumes = false;
+    Ok(())
+}
+
+/// Builds a cloth that is not built yet. Returns the place of its entity, and the result.
+fn build_cloth(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    parts: &mut SharedParts,
+) -> Result<(ClothFrame, Build), ClothError> {
+    let (targets, sources) = (&around.targets, &around.sources);
+    let transform = targets.cloths.of(cloth.entity)?;
+    let (frame, mut scale) = ClothFrame::of(&transform)?;
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+    if cloth.skin.is_some() {
+        let place = |joint| global_transform(&targets.transforms, joint);
+        (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
+        // How large it is in the world is the skeleton's matter.
+        scale = scratch.pose.scale().unwrap_or(scale);
+    }
+    let wanted = Wanted {
+        cloth: &cloth.cloth,
+        changed: cloth.cloth.last_changed(),
+        source: sources.find(cloth.entity, &cloth.cloth, built.source())?,
+        material: &inputs.material,
+        pins: cloth.pins.unwrap_or(&NO_PINS),
+        attachments: cloth
+            .attachments
+            .map_or(&[][..], ClothAttachments::as_slice),
+        scale,
+    };
+    let is_new = built.from.is_some() || particles.is_empty();
+    let build = build(&wanted, sources, parts, particles, built, state)?;
+    if build == Build::New {
+        *cloth.frame = frame;
+    }
+    let begins = build == Build::New && is_new;
+    let skin = cloth.skin.as_ref();
+    place_pose(
+        skin, sources, &frame, begins, particles, built, state, scratch,
+    )?;
+    Ok((frame, build))
+}
+
+/// Takes over particles that the game wrote, and checks settings against the surface. Returns whether the particles
+/// differ from those of the last tick.
+fn take_over(
+    cloth: &mut PreparingItem,
+    inputs: &Inputs,
+    around: &Surroundings,
+    [before, frame]: [&ClothFrame; 2],
+    seconds: f32,
+) -> Result<bool, ClothError> {
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    // A cloth with a fault may have been moved anywhere meanwhile.
+    let jumps = cloth.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
+    let seconds = (seconds, jumps);
+    let has_stood = thaw(&around.targets, *frame, seconds, *before, particles, state);
+    // Saving or restoring particles may mark them as changed without a change.
+    let was_written = has_stood
+        || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
+    // Particles that nothing wrote are as they were when they were last checked.
+    if was_written || !state.is_valid {
+        state.largest_speed = check_particles(particles)?;
+    }
+    let surface = cloth.built.surface();
+    if let Some(self_collision) = &inputs.self_collision {
+        self_collision.validate(surface)?;
+    }
+    if let Some(pressure) = cloth.pressure {
+        pressure.validate(surface)?;
+    }
+    Ok(was_written)
+}
+
+/// Follows the entity, the root that carries it, the pose, and the targets of attachments.
+fn go_along(
+    cloth: &mut PreparingItem,
+    around: &Surroundings,
+    [before, frame]: [&ClothFrame; 2],
+    build: Build,
+    seconds: f32,
+    has_stood: bool,
+) -> Result<(), ClothError> {
+    let Surroundings { targets, roots, .. } = around;
+    let attachments = cloth
+        .attachments
+        .map_or(&[][..], ClothAttachments::as_slice);
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+    targets.find(
+        attachments,
+        &state.attachments,
+        built.surface(),
+        &mut state.targets,
+        &mut scratch.targets,
+    )?;
+    let target = state.targets.first().copied();
+    let (moves, was_built) = (seconds > 0.0, build == Build::Kept);
+    scratch.carried = match moves && build != Build::New {
+        true => roots.carry(cloth.entity, target)?,
+        false => None,
+    };
+    let new_from_old = new_from_old([&*cloth.frame, frame], scratch.carried.as_ref());
+    let is_moved = new_from_old.is_some();
+    let new_from_old = new_from_old.unwrap_or_default();
+    scratch.teleports = cloth.teleport.is_some()
+        || roots.jumps(cloth.entity)
+        || target.is_some_and(|target| roots.jumps(target));
+    if let Some(skin) = &cloth.skin
+        && moves
+        && was_built
+    {
+        let way = scratch.pose.farthest_from(&state.pose, new_from_old);
+        // A frozen cloth is put where its skeleton has moved meanwhile.
+        scratch.teleports |= has_stood || way > skin.teleport_distance;
+    }
+    if scratch.teleports {
+        scratch.carried = None;
+        *cloth.frame = *frame;
+    } else if moves && is_moved {
+        carry(particles, new_from_old, &mut scratch.pins);
+        state.rest.disturb();
+        *cloth.frame = *frame;
+    }
+    if moves || !was_built || scratch.teleports {
+        move_with_pose(new_from_old, was_built, particles, built, state, scratch);
+        follow_targets(
+            attachments,
+            &scratch.targets,
+            *cloth.frame,
+            scratch.teleports.then_some(*before),
+            particles,
+            built,
+            state,
+            &mut scratch.pins,
+        );
+    }
+    Ok(())
+}
+
+/// The speed of the fastest particle (m/s), if all are valid.
+fn check_particles(particles: &mut Mut<ClothParticles>) -> Result<f32, ClothError> {
+    let survey = particles.survey();
+    if survey.is_valid {
+        return Ok(survey.largest_speed);
+    }
+    particles.validate()?;
+    // The particles are valid again, but invalid ones may have left values in the padding.
+    particles.clear_padding();
+    particles.mend_substep();
+    Ok(particles.survey().largest_speed)
+}

@@ -1,0 +1,79 @@
+//! Follows the colliders that move.
+
+use bevy::{
+    ecs::{
+        lifecycle::Remove,
+        observer::On,
+        system::{Commands, Local, Query, Res, ResMut},
+    },
+    time::Time,
+};
+
+use super::{
+    changes::{Awaited, Changes},
+    motion::ColliderMotion,
+    tree::ColliderTree,
+};
+use crate::{
+    cloth::ClothError,
+    contact::ClothCollider,
+    plugin::{
+        authoring::ClothBody,
+        frame::Places,
+        naming::Part,
+        prepare::{roots::Roots, source::ColliderMeshes},
+        state::ClothFault,
+    },
+};
+
+/// The components of a collider. Disabled colliders are not read, since cloth does not touch them.
+type Reading = (
+    &'static ClothCollider,
+    &'static mut ColliderMotion,
+    Option<&'static ClothBody>,
+    Option<&'static ClothFault>,
+);
+
+/// Follows the colliders that move, and notes where they are.
+pub(crate) fn prepare_colliders(
+    mut awaited: Local<Awaited>,
+    mut changes: Changes,
+    mut colliders: Query<Reading>,
+    mut tree: ResMut<ColliderTree>,
+    places: Places,
+    meshes: ColliderMeshes,
+    roots: Roots,
+    time: Res<Time>,
+    mut commands: Commands,
+) {
+    let time_passes = time.delta_secs() > 0.0;
+    let (now, moving) = awaited.find(&mut changes);
+    for &entity in now {
+        let Ok((collider, mut motion, body, fault)) = colliders.get_mut(entity) else {
+            continue;
+        };
+        if roots.jumps(entity) {
+            motion.stop();
+        }
+        let outcome = motion.follow(collider, body, &places, &meshes, entity, time_passes);
+        if outcome.is_err() {
+            *motion = ColliderMotion::default();
+        }
+        tree.set(entity, motion.held_by());
+        // A mesh asset has to be loaded, and may change.
+        if motion.is_moving() || matches!(collider, ClothCollider::Mesh(_)) {
+            moving.push(entity);
+        }
+        // A mesh that is being loaded is no fault.
+        let outcome = match outcome {
+            Err(ClothError::MeshLoading) => Ok(()),
+            outcome => outcome,
+        };
+        ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
+    }
+}
+
+/// Removes an entity that is no collider any more from the tree.
+pub(crate) fn forget_collider(removed: On<Remove, ColliderMotion>, mut tree: ResMut<ColliderTree>) {
+    tree.remove(removed.entity);
+}

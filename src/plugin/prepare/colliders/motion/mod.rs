@@ -1,0 +1,323 @@
+//! How colliders move from tick to tick.
+
+use bevy::{
+    ecs::{component::Component, entity::Entity},
+    math::{Isometry3d, Mat3, Quat, Vec3, Vec3A},
+};
+
+use super::tree::Bounds;
+use crate::{
+    cloth::{ClothError, FARTHEST},
+    contact::{BodyChange, BodyMass, ClothCollider, ColliderShape, MovingCollider},
+    hierarchy::Core,
+    plugin::{
+        authoring::{Carried, ClothBody},
+        frame::{ClothFrame, Places, Shift, unusable},
+        prepare::source::ColliderMeshes,
+        state::Source,
+    },
+};
+
+/// Margin of a box against rounding of its corners and of the collider's points.
+const ROUNDING: f32 = 1.0e-5;
+
+/// A collider's path through the tick, in the world.
+#[derive(Component, Debug, Default)]
+pub(crate) struct ColliderMotion {
+    /// Its path; `None` before the first tick.
+    way: Option<MovingCollider>,
+    /// Place of its entity after the last tick in which time passed. The frame of the shape may be another.
+    last: Option<Isometry3d>,
+    /// Middle of its path (m), and the largest distance from there to any of the collider's points on it.
+    middle: Vec3,
+    reach: f32,
+    /// Normal of a half-space that does not rotate: cloth far above it is not near.
+    normal: Option<Vec3>,
+    /// Its bounds along the whole path.
+    bounds: Bounds,
+    /// How many cloths pushed it in the last tick, if it is a body.
+    cloths: u32,
+    /// The shape and the inputs that it was built from, so that a mesh of many triangles is built only once.
+    built: Option<BuiltShape>,
+}
+
+/// The inputs of a collider's next path, besides its place then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct ColliderMemory {
+    last: Option<Isometry3d>,
+    cloths: u32,
+}
+
+/// A shape, with its collider and scale.
+#[derive(Debug)]
+struct BuiltShape {
+    collider: ClothCollider,
+    source: Option<Source>,
+    scale: Vec3,
+    shape: ColliderShape,
+    /// The shape's frame in that of the entity.
+    offset: Isometry3d,
+}
+
+impl BuiltShape {
+    fn is_of(&self, collider: &ClothCollider, source: Option<Source>, scale: Vec3) -> bool {
+        // A scale that is read out of a rotating transform changes by rounding.
+        self.collider == *collider
+            && self.source == source
+            && self.scale.abs_diff_eq(scale, 1.0e-5 * scale.length())
+    }
+}
+
+/// A box around all points nearer than `radius` to a core (m).
+fn bounds_of(core: &Core, radius: f32) -> Bounds {
+    let [low, high] = match *core {
+        Core::Point(point) => [point; 2],
+        Core::Segment([a, b]) => [a.min(b), a.max(b)],
+        Core::Cuboid { pose, half_size } => {
+            let axes = Mat3::from_quat(pose.rotation);
+            let half = axes.x_axis.abs() * half_size.x
+                + axes.y_axis.abs() * half_size.y
+                + axes.z_axis.abs() * half_size.z;
+            let centre = Vec3::from(pose.translation);
+            [centre - half, centre + half]
+        }
+        Core::HalfSpace { .. } => return Bounds::Unbounded,
+    };
+    around([low, high], radius)
+}
+
+/// A box that is larger by `reach` to each side (m), and by what rounding may do.
+fn around([low, high]: [Vec3; 2], reach: f32) -> Bounds {
+    let size = low.abs().max(high.abs()).max_element() + reach;
+    let reach = Vec3::splat(reach + size * ROUNDING);
+    Bounds::Box([low - reach, high + reach])
+}
+
+impl ColliderMotion {
+    /// Reads the current place of its entity.
+    ///
+    /// # Errors
+    /// The error of the collider, or of its transform.
+    pub fn follow(
+        &mut self,
+        collider: &ClothCollider,
+        body: Option<&ClothBody>,
+        places: &Places,
+        meshes: &ColliderMeshes,
+        entity: Entity,
+        time_passes: bool,
+    ) -> Result<(), ClothError> {
+        let transform = places.of(entity)?;
+        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
+        let known = self.built.as_ref().and_then(|built| built.source);
+        let source = meshes.find(entity, collider, known)?;
+        let is_built = self
+            .built
+            .as_ref()
+            .is_some_and(|built| built.is_of(collider, source, scale));
+        if !is_built {
+            self.built = None;
+            let made = meshes.resolve(collider, source)?;
+            self.built = Some(BuiltShape {
+                shape: made.scaled(scale)?,
+                offset: made.offset(),
+                collider: collider.clone(),
+                source,
+                scale,
+            });
+        }
+        let Some(BuiltShape { shape, offset, .. }) = &self.built else {
+            return Ok(());
+        };
+        // Only a half-space has no end.
+        if *shape != ColliderShape::HalfSpace {
+            let is_in_reach = |extent: f32| extent <= FARTHEST;
+            ClothError::check(
+                shape.extent(),
+                is_in_reach,
+                "the collider's size (m)",
+                "at most 10¹²",
+            )?;
+        }
+        let is_far = translation.abs().max_element() > FARTHEST;
+        if is_far || !(translation.is_finite() && rotation.is_finite()) {
+            return Err(unusable(transform.affine()));
+        }
+        let place = Isometry3d::new(translation, rotation.normalize());
+        let last = self.last.unwrap_or(place);
+        let (from, pose) = (last * *offset, place * *offset);
+        let translation = Vec3::from(pose.translation);
+        let turned = pose.rotation * from.rotation.inverse();
+        // Of the two quaternions of a rotation, the one of the shorter way round.
+        let turned = if turned.w < 0.0 { -turned } else { turned };
+        let way = MovingCollider {
+            shape: shape.clone(),
+            from,
+            to: translation,
+            turn: turned.to_scaled_axis(),
+            body: match body {
+                Some(body) => {
+                    // As the tick begins, and seen from where the shape's origin is, which need not be the entity's.
+                    let mass = body.mass_at(last.rotation)?.part_of(self.cloths);
+                    let origin = last.rotation * Vec3::from(offset.translation);
+                    Some(BodyMass {
+                        centre: mass.centre - origin,
+                        ..mass
+                    })
+                }
+                None => None,
+            },
+        };
+        self.middle = translation.midpoint(from.translation.into());
+        self.reach = way.travel() / 2.0 + shape.extent();
+        self.normal = None;
+        if *shape == ColliderShape::HalfSpace && way.turn == Vec3::ZERO {
+            self.reach = way.travel() / 2.0;
+            self.normal = Some(pose.rotation * Vec3::Y);
+        }
+        self.bounds = self.bounds(&way);
+        self.way = Some(way);
+        // If it is moved while no time passes, the motion counts in the next tick with time.
+        self.last = Some(if time_passes { place } else { last });
+        Ok(())
+    }
+
+    /// Its bounds along the whole path: two boxes if it does not rotate, else its bounding ball.
+    fn bounds(&self, way: &MovingCollider) -> Bounds {
+        if self.normal.is_some() || self.reach.is_infinite() {
+            return Bounds::Unbounded;
+        }
+        if way.turn != Vec3::ZERO {
+            return around([self.middle; 2], self.reach);
+        }
+        let [from, to] = [0.0, 1.0].map(|part| {
+            let (core, radius) = way.shape.core(way.pose_at(part));
+            bounds_of(&core, radius)
+        });
+        from.union(to)
+    }
+
+    /// Whether the next tick has another path, even if nothing moves the collider.
+    pub fn is_moving(&self) -> bool {
+        self.way
+            .as_ref()
+            .is_some_and(|way| way.turn != Vec3::ZERO || way.travel() > 0.0)
+    }
+
+    /// Whether cloth pushes it.
+    pub fn is_body(&self) -> bool {
+        self.way.as_ref().is_some_and(|way| way.body.is_some())
+    }
+
+    /// Number of cloths that are expected to push it: each has a part of its mass.
+    pub fn cloths(&self) -> u32 {
+        self.cloths.max(1)
+    }
+
+    /// Sets the number of cloths that pushed it in the tick.
+    pub fn set_cloths(&mut self, cloths: u32) {
+        self.cloths = cloths;
+    }
+
+    /// Applies a change of its motion by cloth: its next path begins where it is now. Returns the translation (m) and
+    /// rotation of its entity.
+    pub fn pushed(&mut self, change: &BodyChange, body: &ClothBody) -> (Vec3, Quat) {
+        let (Some(last), Some(built)) = (&mut self.last, &self.built) else {
+            return (Vec3::ZERO, Quat::IDENTITY);
+        };
+        let turned = Quat::from_scaled_axis(change.rotation);
+        // How far the end of an arm goes as it is turned.
+        let swing = |arm: Vec3| turned * arm - arm;
+        let centre = last.rotation * body.centre_of_mass;
+        let origin = last.rotation * Vec3::from(built.offset.translation);
+        // From the shape's origin to the centre of mass, which may be locked, and on to the entity's origin.
+        let gone = body.free_translation(change.translation + swing(centre - origin));
+        let gone = gone - swing(centre);
+        last.translation += Vec3A::from(gone);
+        last.rotation = (turned * last.rotation).normalize();
+        (gone, turned)
+    }
+
+    /// The inputs of its next path.
+    pub fn memory(&self) -> ColliderMemory {
+        ColliderMemory {
+            last: self.last,
+            cloths: self.cloths,
+        }
+    }
+
+    /// Restores the inputs of its next path, from a snapshot.
+    pub fn recall(&mut self, ColliderMemory { last, cloths }: ColliderMemory) {
+        (self.last, self.cloths) = (last, cloths);
+    }
+
+    /// Shifts it with the world's origin; its entity is at `now`.
+    pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>) {
+        self.last = self.last.map(|last| shift.rigid(last, now));
+    }
+
+    /// Forgets its motion: wherever it is read next, its path begins there.
+    pub fn stop(&mut self) {
+        self.last = None;
+    }
+
+    /// Its bounds along the whole path, for the tree of all colliders.
+    pub fn held_by(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Whether the collider may come within `reach` of a point of the world (m).
+    pub fn comes_near(&self, point: Vec3, reach: f32) -> bool {
+        let offset = point - self.middle;
+        if let Some(normal) = self.normal {
+            return normal.dot(offset) <= self.reach + reach + offset.length() * ROUNDING;
+        }
+        let is_in_ball = offset.length_squared() <= (self.reach + reach) * (self.reach + reach);
+        let is_at_box = match self.bounds {
+            Bounds::Absent => false,
+            Bounds::Unbounded => true,
+            Bounds::Box([low, high]) => {
+                let offset = point - point.max(low).min(high);
+                offset.length_squared() <= reach * reach
+            }
+        };
+        is_at_box && is_in_ball
+    }
+
+    /// The collider's path through the tick in a cloth's frame.
+    pub fn seen_from(
+        &self,
+        frame: &ClothFrame,
+        carried: Option<&Carried>,
+    ) -> Option<MovingCollider> {
+        let way = self.way.as_ref()?;
+        let inverse = frame.isometry().inverse();
+        Some(MovingCollider {
+            shape: way.shape.clone(),
+            from: inverse * way.from,
+            to: inverse * way.to,
+            turn: inverse.rotation * way.turn,
+            body: way.body.map(|body| body.turned(inverse.rotation)),
+        })
+        .map(|seen| match carried {
+            Some(carried) => carried_along(seen, carried.seen_from(frame, way.from)),
+            None => seen,
+        })
+    }
+}
+
+/// A path that begins elsewhere: to a cloth that is carried along, a collider moves the opposite way.
+fn carried_along(way: MovingCollider, from: Isometry3d) -> MovingCollider {
+    let end = Quat::from_scaled_axis(way.turn) * way.from.rotation;
+    let turned = end * from.rotation.inverse();
+    let turned = if turned.w < 0.0 { -turned } else { turned };
+    MovingCollider {
+        from,
+        turn: turned.to_scaled_axis(),
+        ..way
+    }
+}
+
+#[cfg(test)]
+mod tests;

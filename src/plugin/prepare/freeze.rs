@@ -1,0 +1,111 @@
+//! Frozen cloths, which keep their shape and move with their carrier, and the start of their motion when they thaw.
+
+use bevy::{
+    ecs::{
+        change_detection::{DetectChanges, DetectChangesMut, Mut},
+        entity::Entity,
+    },
+    math::Isometry3d,
+};
+
+use super::attach::Targets;
+use crate::{
+    cloth::{ClothError, ClothParticles},
+    plugin::{
+        authoring::ClothAttachment,
+        frame::{ClothFrame, global_transform, rigid},
+        state::{ClothState, Frozen},
+    },
+};
+
+/// Place of the carrier of a cloth whose entity is at `frame`: its first attachment's target if it has one, else the
+/// entity. `None` if that target is gone.
+fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<Isometry3d> {
+    let Some(target) = state.targets.first() else {
+        return Some(frame.isometry());
+    };
+    let place = global_transform(&targets.transforms, *target)?;
+    Some(rigid(&place.affine()))
+}
+
+/// Freezes a cloth: its frame moves with its carrier, and its particles keep their places in the frame. They lose their
+/// velocities when it begins.
+///
+/// # Errors
+/// [`ClothError::Transform`], [`ClothError::NoTransform`], and [`ClothError::NoTarget`] if the target of the first of
+/// `attachments` is gone.
+pub(crate) fn stand(
+    entity: Entity,
+    attachments: &[ClothAttachment],
+    targets: &Targets,
+    frame: &mut Mut<ClothFrame>,
+    particles: &mut Mut<ClothParticles>,
+    state: &mut ClothState,
+) -> Result<(), ClothError> {
+    let transform = targets.cloths.of(entity)?;
+    let (now, _) = ClothFrame::of(&transform)?;
+    let Some(carried_by) = carrier(targets, state, now) else {
+        return match (attachments.first(), state.targets.first()) {
+            (Some(ClothAttachment { pin, .. }), Some(&target))
+                if state.attachments == attachments =>
+            {
+                Err(ClothError::NoTarget {
+                    pin: pin.clone(),
+                    target,
+                })
+            }
+            // Released particles fall once the cloth moves again, and particles attached to other targets go there.
+            _ => Ok(()),
+        };
+    };
+    let was = frame.isometry();
+    let frozen = state.lod.frozen.unwrap_or_else(|| {
+        particles.set_body_motion(Isometry3d::IDENTITY, 0.0);
+        state.written = Some(particles.last_changed());
+        state.carriers.clear();
+        let carrier = state.first_target.unwrap_or(was);
+        Frozen {
+            frame: was,
+            carrier,
+            last: carrier,
+        }
+    });
+    let pose = if state.targets.is_empty() {
+        now.isometry()
+    } else {
+        carried_by * frozen.carrier.inverse() * frozen.frame
+    };
+    state.lod.frozen = Some(Frozen {
+        last: carried_by,
+        ..frozen
+    });
+    frame.set_if_neq(now.with_isometry(pose));
+    Ok(())
+}
+
+/// Thaws a frozen cloth, whose entity is at `now`, in a tick of `seconds`. It gets the velocity of its carrier, or none
+/// if it `jumps`. Returns whether it was frozen.
+pub(crate) fn thaw(
+    targets: &Targets,
+    now: ClothFrame,
+    (seconds, jumps): (f32, bool),
+    frame: ClothFrame,
+    particles: &mut Mut<ClothParticles>,
+    state: &mut ClothState,
+) -> bool {
+    let Some(frozen) = state.lod.frozen.take() else {
+        return false;
+    };
+    let was = frame.isometry();
+    let by = match carrier(targets, state, now) {
+        Some(now) if !jumps => was.inverse() * now * frozen.last.inverse() * was,
+        _ => Isometry3d::IDENTITY,
+    };
+    particles.set_body_motion(by, seconds);
+    // Its last place while frozen, not its place as it froze.
+    if state.first_target.is_some() {
+        state.first_target = Some(frozen.last);
+    }
+    state.rest.disturb();
+    true
+}

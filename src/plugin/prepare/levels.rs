@@ -1,0 +1,226 @@
+//! Chooses the level of detail of each cloth, and which cloths are moved in a tick.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        query::{Has, QueryData, With},
+        system::{Local, Query, Res, ResMut},
+    },
+    math::Vec3,
+    time::Time,
+};
+
+use super::{
+    cameras::Cameras,
+    colliders::{ColliderMotion, ColliderTree},
+    islands::{Islands, Span},
+};
+use crate::{
+    cloth::ClothParticles,
+    contact::{ClothLayers, ClothSelfCollision},
+    plugin::{
+        authoring::{ClothLod, ClothLodLevel, ClothOrder, ClothTeleport, GlobalClothLod, Ordered},
+        frame::ClothFrame,
+        state::{ClothBuilt, ClothState},
+    },
+    solver::ClothSettings,
+};
+
+/// For how many ticks a cloth is moved in each after something that moves was near: half a second of Bevy's 64 Hz.
+const KEPT: u32 = 32;
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Levelled {
+    entity: Entity,
+    lod: Option<&'static ClothLod>,
+    built: &'static ClothBuilt,
+    particles: &'static ClothParticles,
+    frame: &'static ClothFrame,
+    settings: Option<&'static ClothSettings>,
+    self_collision: Option<&'static ClothSelfCollision>,
+    state: &'static mut ClothState,
+    layers: Option<&'static ClothLayers>,
+    order: Option<&'static ClothOrder>,
+    teleports: Has<ClothTeleport>,
+}
+
+/// A cloth, and its wanted level.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    cloth: Ordered,
+    level: ClothLodLevel,
+    /// Around the whole of it, as far as it may get until it is moved again, in the world (m).
+    centre: Vec3,
+    radius: f32,
+    layers: ClothLayers,
+    touches_cloth: bool,
+    /// The place of the one whose level and phase all have that are near each other.
+    group: usize,
+    phase: u32,
+    is_due: bool,
+}
+
+/// Memory that a tick works in.
+#[derive(Debug, Default)]
+pub(crate) struct Work {
+    wanted: Vec<Wanted>,
+    groups: Islands,
+}
+
+type Colliders<'w, 's> = Query<'w, 's, (&'static ColliderMotion, Option<&'static ClothLayers>)>;
+
+/// Decides what happens to each cloth in the tick. Costs nothing if there is no level of detail.
+pub(crate) fn choose_levels(
+    mut cloths: Query<Levelled>,
+    own: Query<(), With<ClothLod>>,
+    global: Option<Res<GlobalClothLod>>,
+    cameras: Cameras,
+    colliders: Colliders,
+    mut tree: ResMut<ColliderTree>,
+    time: Res<Time>,
+    mut work: Local<Work>,
+) {
+    let is_asked_for = !own.is_empty() || global.is_some();
+    // Cloths at another level come back to the full one.
+    if !is_asked_for && cloths.iter().all(|cloth| cloth.state.lod.is_full()) {
+        return;
+    }
+    tree.refit();
+    let seconds = time.delta_secs();
+    let global = global.as_ref().map(|global| &global.0);
+    let Work { wanted, groups } = &mut *work;
+    wanted.clear();
+    for mut cloth in &mut cloths {
+        let mut own = cloth.wanted(global, &cameras);
+        if let ClothLodLevel::Every(_) = own.level {
+            let comes_near = tree
+                .near(own.centre, own.radius)
+                .filter_map(|entity| colliders.get(entity).ok())
+                .any(|(motion, layers)| {
+                    layers
+                        .copied()
+                        .unwrap_or_default()
+                        .interacts_with(own.layers)
+                        && (motion.is_moving() || motion.is_body())
+                        && motion.comes_near(own.centre, own.radius)
+                });
+            let kept = &mut cloth.state.lod.kept;
+            *kept = if comes_near {
+                KEPT
+            } else {
+                kept.saturating_sub(1)
+            };
+            if *kept > 0 {
+                own.level = ClothLodLevel::Full;
+            }
+        }
+        wanted.push(own);
+    }
+    wanted.sort_unstable_by_key(|own| own.cloth);
+    for (place, own) in wanted.iter_mut().enumerate() {
+        (own.group, own.phase) = (place, place as u32);
+    }
+    let is_coarse = |own: &Wanted| own.touches_cloth && own.level != ClothLodLevel::Full;
+    if wanted.iter().any(is_coarse) {
+        group(wanted, groups);
+    }
+    for place in 0..wanted.len() {
+        let own = wanted[place];
+        let of_group = wanted[own.group];
+        let Ok(mut cloth) = cloths.get_mut(own.cloth.1) else {
+            continue;
+        };
+        // Sleeping cloth costs next to nothing.
+        let rests = cloth.state.rest.is_asleep();
+        let lod = &mut cloth.state.lod;
+        let turn = (of_group.phase, of_group.is_due, rests);
+        lod.begin(of_group.level, turn, seconds);
+    }
+}
+
+impl LevelledItem<'_, '_> {
+    /// Middle and radius of a sphere around it, in its frame (m); `None` for one that is not built, nor resumed from a snapshot.
+    fn sphere(&self) -> Option<(Vec3, f32)> {
+        if self.state.is_valid && self.built.matches(self.particles) {
+            let stretch = self.state.stretch.bound;
+            let root = self.built.tree().root_sphere(self.particles, stretch);
+            return Some((root.center.into(), root.radius()));
+        }
+        self.state.lod.sphere.filter(|_| self.state.resumes)
+    }
+
+    /// The level that it would have alone.
+    fn wanted(&mut self, global: Option<&ClothLod>, cameras: &Cameras) -> Wanted {
+        let layers = self.layers.copied().unwrap_or_default();
+        let order = self.order.copied().unwrap_or_default();
+        let mut wanted = Wanted {
+            cloth: (order, self.entity),
+            level: ClothLodLevel::Full,
+            centre: Vec3::ZERO,
+            radius: 0.0,
+            layers,
+            touches_cloth: false,
+            group: 0,
+            phase: 0,
+            is_due: true,
+        };
+        // Errors of a level of detail are reported when the cloth is prepared.
+        let lod = self.lod.or(global).filter(|lod| lod.validate().is_ok());
+        // One that was not built yet, or can't be, is looked at in each tick.
+        let Some((centre, radius)) = self.sphere() else {
+            return wanted;
+        };
+        wanted.centre = self.frame.to_world(centre);
+        let state = &mut self.state.lod;
+        if let Some(lod) = lod {
+            let nearest = cameras.nearest(wanted.centre);
+            let is_hidden = nearest.is_some() && cameras.is_hidden(self.entity);
+            let distance = nearest.map_or(0.0, |distance| (distance - radius).max(0.0));
+            state.passed = lod.passed(distance, state.passed);
+            let by_distance = state
+                .passed
+                .checked_sub(1)
+                .map(|last| lod.distances[last].1);
+            wanted.level = lod.level.or(by_distance).unwrap_or_default();
+            if is_hidden && lod.hidden.coarseness() > wanted.level.coarseness() {
+                wanted.level = lod.hidden;
+            }
+        }
+        let ticks = wanted.level.ticks().unwrap_or(1) as f32;
+        // The displacement by acceleration grows with the square of the time.
+        let times = (ticks / state.moved_by() as f32).max(1.0);
+        let around = self.settings.copied().unwrap_or_default().particle_radius;
+        let thickness = self.self_collision.map_or(0.0, |of| of.thickness);
+        wanted.radius = radius + 2.0 * state.reach * times * times + around.max(thickness);
+        wanted.touches_cloth = self.self_collision.is_some();
+        wanted.is_due = self.teleports || self.state.lod.is_due();
+        wanted
+    }
+}
+
+/// Gives cloths that may touch each other the finest of their levels, and moves them in the same ticks.
+fn group(wanted: &mut [Wanted], groups: &mut Islands) {
+    let spans = wanted.iter().filter(|own| own.touches_cloth);
+    groups.begin(spans.map(|own| Span {
+        cloth: own.cloth,
+        centre: own.centre,
+        radius: own.radius,
+        layers: own.layers,
+        bounds: None,
+    }));
+    groups.join(|_| None);
+    let place_of = |wanted: &[Wanted], cloth| wanted.binary_search_by_key(&cloth, |own| own.cloth);
+    for (cloth, root) in groups.roots() {
+        let (Ok(place), Ok(root)) = (place_of(wanted, cloth), place_of(wanted, root)) else {
+            continue;
+        };
+        let own = wanted[place];
+        wanted[place].group = root;
+        let all = &mut wanted[root];
+        if own.level.coarseness() < all.level.coarseness() {
+            all.level = own.level;
+        }
+        all.is_due |= own.is_due;
+    }
+}

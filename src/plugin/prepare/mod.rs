@@ -1,0 +1,43 @@
+//! The first stage of a tick: checks every input, and takes it over.
+//!
+//! In: the game's components, transforms, meshes, cameras. Out: [`ClothBuilt`](crate::plugin::ClothBuilt) of what is new,
+//! the step of each cloth in [`ClothScratch`](crate::plugin::ClothScratch), the motion of each collider, the wind, the
+//! islands of cloths that may touch, or a [`ClothFault`](crate::plugin::ClothFault).
+
+mod asleep;
+mod attach;
+mod broad_phase;
+mod build;
+mod cameras;
+mod carry;
+mod cloths;
+mod colliders;
+mod cost;
+mod drag;
+mod freeze;
+mod inputs;
+mod islands;
+mod levels;
+mod notice;
+mod preparing;
+mod resample;
+mod roots;
+mod skin;
+mod source;
+mod step;
+mod wind;
+
+pub(crate) use broad_phase::cover;
+pub(crate) use cloths::prepare_cloths;
+pub(crate) use colliders::{
+    ColliderMemory, ColliderMotion, ColliderTree, Deprived, forget_collider, note_enabled,
+    note_removals, prepare_colliders,
+};
+pub(crate) use drag::FAR;
+pub(crate) use islands::{Island, Islands, find_islands};
+pub(crate) use levels::choose_levels;
+pub(crate) use roots::{Jumped, follow_roots};
+pub(crate) use skin::Skins;
+#[cfg(feature = "mesh")]
+pub(crate) use source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
+pub(crate) use wind::prepare_wind;

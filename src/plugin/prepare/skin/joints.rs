@@ -1,0 +1,97 @@
+//! Transforms of the joints of a skinned mesh.
+
+use bevy::{
+    asset::{AssetServer, Assets, Handle, LoadState},
+    ecs::{
+        entity::Entity,
+        query::AnyOf,
+        system::{Query, Res, SystemParam},
+    },
+    math::{Affine3A, Mat4},
+    mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    transform::components::GlobalTransform,
+};
+
+use crate::{cloth::ClothError, plugin::authoring::ClothSkeleton};
+
+/// The skins of all entities.
+#[derive(SystemParam)]
+pub(crate) struct Skins<'w, 's> {
+    skins: Query<'w, 's, AnyOf<(&'static SkinnedMesh, &'static ClothSkeleton)>>,
+    bind_poses: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
+    server: Option<Res<'w, AssetServer>>,
+}
+
+impl Skins<'_, '_> {
+    /// The bind poses and joints of an entity; those that the game inserted last count first.
+    fn of(&self, entity: Entity) -> Option<(&Handle<SkinnedMeshInverseBindposes>, &[Entity])> {
+        let (skin, skeleton) = self.skins.get(entity).ok()?;
+        let of_skin = skin.map(|skin| (&skin.inverse_bindposes, &*skin.joints));
+        of_skin.or(skeleton.map(|skeleton| (&skeleton.inverse_bindposes, &*skeleton.joints)))
+    }
+
+    /// The matrices that take an entity's mesh, as it is bound, to the world: each joint's global transform, as `place`
+    /// knows it, times its inverse bind pose. Empty for an entity that is not skinned.
+    ///
+    /// # Errors
+    /// [`ClothError::Joint`] for a joint without a transform, [`ClothError::MeshLoading`] while the bind poses are
+    /// being loaded, [`ClothError::SkinJoints`] if there are none, or fewer than joints.
+    pub fn read(
+        &self,
+        entity: Entity,
+        place: impl Fn(Entity) -> Option<GlobalTransform>,
+        matrices: &mut Vec<Affine3A>,
+    ) -> Result<(), ClothError> {
+        matrices.clear();
+        let Some((bound, joints)) = self.of(entity) else {
+            return Ok(());
+        };
+        let bind_poses = self.bind_poses.as_ref();
+        let Some(inverse) = bind_poses.and_then(|all| all.get(bound)) else {
+            let server = self.server.as_ref();
+            let state = server.and_then(|server| server.get_load_state(bound));
+            return Err(match state {
+                Some(LoadState::Loading) => ClothError::MeshLoading,
+                _ => ClothError::SkinJoints {
+                    needed: joints.len(),
+                    joints: 0,
+                },
+            });
+        };
+        if joints.is_empty() || inverse.len() < joints.len() {
+            return Err(ClothError::SkinJoints {
+                needed: joints.len(),
+                joints: inverse.len(),
+            });
+        }
+        for (joint, (&entity, inverse)) in joints.iter().zip(inverse.iter()).enumerate() {
+            let matrix = place(entity).map(|place| place.affine() * Affine3A::from_mat4(*inverse));
+            let matrix = matrix.filter(Affine3A::is_finite);
+            matrices.push(matrix.ok_or(ClothError::Joint { joint, entity })?);
+        }
+        Ok(())
+    }
+
+    /// Whether the joints are where `known` has them, to the last bit.
+    pub fn are_at(
+        &self,
+        entity: Entity,
+        place: impl Fn(Entity) -> Option<GlobalTransform>,
+        known: &[Affine3A],
+    ) -> bool {
+        let Some((bound, joints)) = self.of(entity) else {
+            return known.is_empty();
+        };
+        let bind_poses = self.bind_poses.as_ref();
+        let Some(inverse) = bind_poses.and_then(|all| all.get(bound)) else {
+            return false;
+        };
+        let is_at = |((joint, inverse), known): ((&Entity, &Mat4), &Affine3A)| {
+            place(*joint)
+                .is_some_and(|place| place.affine() * Affine3A::from_mat4(*inverse) == *known)
+        };
+        joints.len() == known.len()
+            && inverse.len() >= known.len()
+            && joints.iter().zip(inverse.iter()).zip(known).all(is_at)
+    }
+}

@@ -1,0 +1,145 @@
+//! The meshes of cloths and colliders that are made from assets.
+
+use bevy::{
+    asset::{AssetId, AssetServer, Assets, LoadState},
+    ecs::{
+        entity::Entity,
+        resource::Resource,
+        system::{Query, Res, SystemParam},
+    },
+    math::Vec3,
+    mesh::{Mesh, Mesh3d},
+    platform::collections::HashMap,
+};
+
+use crate::{
+    cloth::{Cloth, ClothError, ClothShape, Skinning, Surface, TriangleMesh, skin_of_asset},
+    plugin::{authoring::ClothMesh, state::Source},
+};
+
+/// The number of changes of each mesh since it was loaded; unchanged meshes are not in it.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
+
+impl ChangedMeshes {
+    /// A mesh has been changed.
+    pub fn note(&mut self, mesh: AssetId<Mesh>) {
+        *self.0.entry(mesh).or_default() += 1;
+    }
+
+    /// The mesh is no longer used.
+    pub fn forget(&mut self, mesh: AssetId<Mesh>) {
+        self.0.remove(&mesh);
+    }
+}
+
+/// The assets, if the app has any.
+#[derive(SystemParam)]
+pub(crate) struct Sources<'w, 's> {
+    cloths: Query<'w, 's, (Option<&'static Mesh3d>, Option<&'static ClothMesh>)>,
+    meshes: Option<Res<'w, Assets<Mesh>>>,
+    server: Option<Res<'w, AssetServer>>,
+    changed: Option<Res<'w, ChangedMeshes>>,
+}
+
+impl Sources<'_, '_> {
+    /// The mesh that a cloth is made from, once it has been loaded; `None` for a cloth that is not made from an asset. `known`
+    /// is the one that it was made from.
+    ///
+    /// # Errors
+    /// [`ClothError::MeshLoading`] while it is being loaded, [`MeshNotLoaded`](ClothError::MeshNotLoaded) if nothing
+    /// loads it, [`MeshFailed`](ClothError::MeshFailed).
+    pub fn find(
+        &self,
+        entity: Entity,
+        cloth: &Cloth,
+        known: Option<Source>,
+    ) -> Result<Option<Source>, ClothError> {
+        let ClothShape::Mesh { .. } = cloth.shape else {
+            return Ok(None);
+        };
+        let (mesh, drawn) = self.cloths.get(entity).unwrap_or_default();
+        let handle = match (mesh, drawn) {
+            (Some(mesh), Some(drawn)) if drawn.id() == mesh.0.id() => drawn.source(),
+            (Some(mesh), _) => Some(&mesh.0),
+            (None, drawn) => drawn.and_then(ClothMesh::source),
+        };
+        let handle = handle.ok_or(ClothError::MeshNotLoaded)?;
+        self.loaded(handle.id(), known).map(Some)
+    }
+
+    /// The mesh and its version, once it has been loaded. `known` is the last one that was used.
+    ///
+    /// # Errors
+    /// As for [`find`](Self::find).
+    pub fn loaded(&self, id: AssetId<Mesh>, known: Option<Source>) -> Result<Source, ClothError> {
+        if self
+            .meshes
+            .as_ref()
+            .is_some_and(|meshes| meshes.contains(id))
+        {
+            let version = self.changed.as_ref().and_then(|changed| changed.0.get(&id));
+            return Ok(Source {
+                mesh: id,
+                version: version.copied().unwrap_or(0),
+            });
+        }
+        // A surface outlasts the asset that it was made from.
+        if let Some(known) = known.filter(|known| known.mesh == id) {
+            return Ok(known);
+        }
+        match self
+            .server
+            .as_ref()
+            .and_then(|server| server.get_load_state(id))
+        {
+            Some(LoadState::Failed(error)) => Err(ClothError::MeshFailed {
+                reason: error.to_string(),
+            }),
+            Some(LoadState::Loading) => Err(ClothError::MeshLoading),
+            Some(LoadState::NotLoaded | LoadState::Loaded) | None => Err(ClothError::MeshNotLoaded),
+        }
+    }
+
+    /// The triangles of a mesh that has been loaded.
+    ///
+    /// # Errors
+    /// The error of the mesh.
+    pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, ClothError> {
+        let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
+        TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)
+    }
+
+    /// The skinning by joints of a surface that was made from that mesh.
+    ///
+    /// # Errors
+    /// The error of the mesh; [`ClothError::SkinJoints`] if it names no joints.
+    pub fn skinning(&self, source: Source, surface: &Surface) -> Result<Skinning, ClothError> {
+        let mesh = self
+            .meshes
+            .as_ref()
+            .and_then(|meshes| meshes.get(source.mesh));
+        let mesh = mesh.ok_or(ClothError::MeshNotLoaded)?;
+        let skin = skin_of_asset(mesh)?.ok_or(ClothError::SkinJoints {
+            needed: 1,
+            joints: 0,
+        })?;
+        Skinning::new(surface, &self.triangles(source.mesh)?.positions, &skin)
+    }
+
+    /// The surface of a cloth.
+    ///
+    /// # Errors
+    /// The error of the mesh.
+    pub fn surface(
+        &self,
+        cloth: &Cloth,
+        source: Option<&Source>,
+        scale: Vec3,
+    ) -> Result<Surface, ClothError> {
+        let (ClothShape::Mesh { weld }, Some(source)) = (&cloth.shape, source) else {
+            return cloth.surface(scale);
+        };
+        Surface::of_mesh(&self.triangles(source.mesh)?, *weld, scale)
+    }
+}

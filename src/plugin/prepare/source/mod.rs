@@ -1,0 +1,19 @@
+//! The sources of triangles of cloths and colliders that are made from meshes.
+
+#[cfg(feature = "mesh")]
+mod asset;
+#[cfg(feature = "mesh")]
+mod changes;
+#[cfg(feature = "mesh")]
+mod collider;
+#[cfg(not(feature = "mesh"))]
+mod none;
+
+#[cfg(feature = "mesh")]
+pub(crate) use asset::{ChangedMeshes, Sources};
+#[cfg(feature = "mesh")]
+pub(crate) use changes::note_changed_meshes;
+#[cfg(feature = "mesh")]
+pub(crate) use collider::{ColliderMeshes, SharedMeshes};
+#[cfg(not(feature = "mesh"))]
+pub(crate) use none::{ColliderMeshes, Sources};

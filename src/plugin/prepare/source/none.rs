@@ -1,0 +1,74 @@
+//! Without Bevy's meshes nothing is made from an asset.
+
+use std::marker::PhantomData;
+
+use bevy::{
+    ecs::{entity::Entity, system::SystemParam},
+    math::Vec3,
+};
+
+use crate::{
+    cloth::{Cloth, ClothError, Skinning, Surface},
+    contact::ClothCollider,
+    plugin::state::Source,
+};
+
+/// No assets.
+#[derive(SystemParam)]
+pub(crate) struct Sources<'w, 's> {
+    none: PhantomData<(&'w (), &'s ())>,
+}
+
+impl Sources<'_, '_> {
+    /// No cloth has one.
+    pub fn find(
+        &self,
+        _: Entity,
+        _: &Cloth,
+        _: Option<Source>,
+    ) -> Result<Option<Source>, ClothError> {
+        Ok(None)
+    }
+
+    /// There is no mesh to be skinned.
+    pub fn skinning(&self, source: Source, _: &Surface) -> Result<Skinning, ClothError> {
+        match source {}
+    }
+
+    /// The surface of a cloth.
+    pub fn surface(
+        &self,
+        cloth: &Cloth,
+        _: Option<&Source>,
+        scale: Vec3,
+    ) -> Result<Surface, ClothError> {
+        cloth.surface(scale)
+    }
+}
+
+/// No assets for colliders either.
+#[derive(SystemParam)]
+pub(crate) struct ColliderMeshes<'w> {
+    none: PhantomData<&'w ()>,
+}
+
+impl ColliderMeshes<'_> {
+    /// No collider has one.
+    pub fn find(
+        &self,
+        _: Entity,
+        _: &ClothCollider,
+        _: Option<Source>,
+    ) -> Result<Option<Source>, ClothError> {
+        Ok(None)
+    }
+
+    /// The collider itself.
+    pub fn resolve(
+        &self,
+        collider: &ClothCollider,
+        _: Option<Source>,
+    ) -> Result<ClothCollider, ClothError> {
+        Ok(collider.clone())
+    }
+}

@@ -1,0 +1,146 @@
+//! The air of a cloth in a tick.
+
+use bevy::{
+    ecs::entity::{Entity, EntityMapper, MapEntities},
+    math::Vec3,
+};
+
+use super::wind_field::{Breeze, WindField};
+use crate::{
+    cloth::{ClothMaterial, ClothParticles, Surface},
+    plugin::{
+        authoring::PlacedZone,
+        frame::{ClothFrame, Shift},
+    },
+    solver::{Air, AirMemory, ClothPressure, FILLING, Solver},
+};
+
+/// The air in which a cloth was last moved, in the world.
+#[derive(Debug, Default, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct KnownAir {
+    breeze: Option<Breeze>,
+    pressure: Option<ClothPressure>,
+    zones: Vec<PlacedZone>,
+    /// The solver's memory of the last tick.
+    pub memory: AirMemory,
+}
+
+impl MapEntities for KnownAir {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        for zone in &mut self.zones {
+            zone.entity = mapper.get_mapped(zone.entity);
+        }
+    }
+}
+
+impl KnownAir {
+    /// Whether a cloth with this pressure meets the same air as before, and whether that air is steady. `ball` is a
+    /// ball around the cloth: centre and radius (m).
+    pub fn is_still(
+        &self,
+        breeze: Option<&Breeze>,
+        pressure: Option<&ClothPressure>,
+        field: &WindField,
+        ball: impl FnOnce() -> (Vec3, f32),
+    ) -> bool {
+        if self.pressure.as_ref() != pressure {
+            return false;
+        }
+        let Some(breeze) = breeze else {
+            return self.breeze.is_none();
+        };
+        let mut zones = self.zones.iter();
+        let is_same = if field.zones.is_empty() {
+            zones.next().is_none()
+        } else {
+            let (centre, radius) = ball();
+            zones.eq(field.near(centre, radius))
+        };
+        let feels = breeze.is_everywhere || !self.zones.is_empty();
+        let known = feels.then_some(breeze);
+        is_same && self.breeze.as_ref() == known && !(feels && breeze.is_turbulent())
+    }
+
+    /// Takes over the air that a cloth meets in `ball`.
+    pub fn renew(
+        &mut self,
+        breeze: Option<Breeze>,
+        pressure: Option<ClothPressure>,
+        field: &WindField,
+        ball: impl FnOnce() -> (Vec3, f32),
+    ) {
+        self.zones.clear();
+        if breeze.is_some() && !field.zones.is_empty() {
+            let (centre, radius) = ball();
+            self.zones.extend(field.near(centre, radius));
+        }
+        self.breeze = breeze.filter(|breeze| breeze.is_everywhere || !self.zones.is_empty());
+        self.pressure = pressure;
+    }
+
+    /// Shifts it with the world's origin; `placed` gives the current place of a zone.
+    pub fn shift(&mut self, shift: Shift, placed: impl Fn(Entity) -> Option<PlacedZone>) {
+        for zone in &mut self.zones {
+            *zone = zone.shifted(shift, placed(zone.entity));
+        }
+    }
+
+    /// Sets this air in the solver of a cloth.
+    pub fn set(
+        &self,
+        solver: &mut Solver,
+        surface: &Surface,
+        particles: &ClothParticles,
+        frame: &ClothFrame,
+        field: &WindField,
+    ) {
+        let to_cloth = frame.isometry().rotation.inverse();
+        // Air without density does nothing.
+        let Some(breeze) = self.breeze.filter(|breeze| breeze.density > 0.0) else {
+            let pressure = self.pressure;
+            let nothing = Air {
+                pressure,
+                ..Air::NONE
+            };
+            solver.set_air(surface, pressure.map(|_| nothing));
+            return solver.set_air_memory(self.memory);
+        };
+        let air = Air {
+            density: breeze.density,
+            drag: breeze.drag,
+            lift: breeze.lift,
+            wind: to_cloth * breeze.velocity,
+            pressure: self.pressure,
+        };
+        solver.set_air(surface, Some(air));
+        solver.set_air_memory(self.memory);
+        if breeze.is_turbulent() || !self.zones.is_empty() {
+            solver.set_local_wind(particles, |place| {
+                let place = frame.to_world(place);
+                let zones = self.zones.iter().map(|zone| zone.at(place));
+                to_cloth * (breeze.velocity + field.stray(&breeze, place) + zones.sum::<Vec3>())
+            });
+        }
+    }
+
+    /// Largest acceleration that the air may give a cloth with this largest `speed` (m/s²). Within one tick of
+    /// `seconds`, wind does not accelerate it beyond the wind's speed, and gas not beyond the speed at which it fills.
+    pub fn acceleration(&self, material: &ClothMaterial, speed: f32, seconds: f32) -> f32 {
+        let inside = match self.pressure {
+            Some(ClothPressure::Gauge(pressure)) => pressure.abs() / material.areal_density,
+            Some(ClothPressure::Gas { .. }) if seconds > 0.0 => FILLING / seconds,
+            // Gas fills nothing in zero time.
+            None | Some(ClothPressure::Gas { .. }) => 0.0,
+        };
+        let Some(breeze) = &self.breeze else {
+            return inside;
+        };
+        let zones = self.zones.iter().map(PlacedZone::fastest);
+        let wind = breeze.velocity.length() + 2.0 * breeze.stray + zones.sum::<f32>();
+        let relative = wind + speed;
+        let force = 0.5 * breeze.density * (breeze.drag + breeze.lift) * relative * relative;
+        let most = relative / seconds.max(f32::MIN_POSITIVE);
+        inside + (force / material.areal_density).min(most)
+    }
+}

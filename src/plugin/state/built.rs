@@ -1,0 +1,258 @@
+//! Everything that is built from a cloth's components.
+
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{change_detection::Tick, component::Component},
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::{notices::Noticed, pose::SkinLimits, shared::Shared, source::Source};
+use crate::{
+    cloth::{ClothError, ClothMaterial, ClothParticles, Pins, Springs, Surface},
+    hierarchy::QuadTree,
+    solver::{Solver, Tethers, material_stretch},
+};
+
+/// A cloth's surface, springs, tree of bounding volumes and solver. The plugin builds them from the cloth's other
+/// components, and again when those change. Empty until the first tick. Scenes and clones don't have it.
+#[derive(Component, Reflect, Debug, Default)]
+#[reflect(Default, Debug)]
+#[component(clone_behavior = Ignore)]
+pub struct ClothBuilt {
+    /// Shared by all cloths that are made alike.
+    #[reflect(ignore)]
+    pub(crate) shared: Arc<Shared>,
+    /// The inputs from which all this was built.
+    #[reflect(ignore)]
+    pub(crate) from: Option<BuiltFrom>,
+    /// The inputs from which nothing could be built, and why.
+    #[reflect(ignore)]
+    pub(crate) refused: Option<(Tried, ClothError)>,
+    /// What has been logged of it.
+    #[reflect(ignore)]
+    pub(crate) noticed: Noticed,
+    #[reflect(ignore)]
+    pub(crate) solver: Solver,
+    /// Whether there are tethers, and for which acceleration (m/s²), 0 without; `None` if they have to be made again.
+    #[reflect(ignore)]
+    tethered: Option<(bool, f32)>,
+    /// The stretch of the material itself, under the gravity of the tick and under the largest gravity so far.
+    #[reflect(ignore)]
+    pub(crate) material_stretch: f32,
+    #[reflect(ignore)]
+    pub(crate) largest_material_stretch: f32,
+    /// Masses of its lightest and heaviest free particle (kg).
+    #[reflect(ignore)]
+    pub(crate) masses: [f32; 2],
+    /// How far its particles may be from the pose that it follows, if it follows one.
+    #[reflect(ignore)]
+    pub(crate) skin: Option<Box<SkinLimits>>,
+    /// The particles that are pinned, in their order, and a number that is new whenever others are.
+    #[reflect(ignore)]
+    pub(crate) pinned: Vec<u32>,
+    #[reflect(ignore)]
+    pub(crate) pins_version: u32,
+}
+
+/// The inputs of a cloth, besides the recipe of its surface.
+#[derive(Debug, Clone)]
+pub(crate) struct BuiltFrom {
+    pub unevenness: f32,
+    /// When the `Cloth` was last changed.
+    pub changed: Tick,
+    pub material: ClothMaterial,
+    pub pins: Pins,
+}
+
+/// The inputs of a cloth that could not be built, besides the recipe of its surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Tried {
+    pub changed: Tick,
+    pub source: Option<Source>,
+    pub material: ClothMaterial,
+    pub pins: Pins,
+    pub scale: Vec3,
+    /// Its columns and rows.
+    pub particles: [u32; 2],
+}
+
+impl ClothBuilt {
+    /// The surface, scaled.
+    pub fn surface(&self) -> &Arc<Surface> {
+        &self.shared.surface
+    }
+
+    /// The springs, grouped by colour.
+    pub fn springs(&self) -> &Springs {
+        &self.shared.springs
+    }
+
+    /// The quad-tree of bounding volumes.
+    pub fn tree(&self) -> &QuadTree {
+        &self.shared.tree
+    }
+
+    /// Whether all this is of `particles`: not before the first tick, nor once a game has emptied the particles, until the
+    /// next.
+    pub(crate) fn matches(&self, particles: &ClothParticles) -> bool {
+        !particles.is_empty() && particles.matches(self.surface())
+    }
+
+    /// The mesh that it was made from, if it was.
+    pub(crate) fn source(&self) -> Option<Source> {
+        self.shared.recipe.as_ref().and_then(|recipe| recipe.source)
+    }
+
+    /// Whether it was made from a `Cloth` that was changed then, and from this material and these pins.
+    pub(crate) fn is_made_from(
+        &self,
+        changed: Tick,
+        material: &ClothMaterial,
+        pins: &Pins,
+    ) -> bool {
+        self.from.as_ref().is_some_and(|from| {
+            from.changed == changed && from.material == *material && from.pins == *pins
+        })
+    }
+
+    /// Gives particles the masses that material and pins give them.
+    pub(crate) fn give_masses(
+        &self,
+        of: impl Iterator<Item = usize> + Clone,
+        particles: &mut ClothParticles,
+    ) {
+        let Some(BuiltFrom { material, pins, .. }) = &self.from else {
+            return;
+        };
+        for index in of.clone() {
+            particles.assign_mass(index, self.surface(), material);
+        }
+        let given: std::collections::HashSet<usize> = of.collect();
+        if !given.is_empty() {
+            pins.for_each(self.surface(), |index| {
+                if given.contains(&index) {
+                    particles.pin(index);
+                }
+            });
+        }
+    }
+
+    /// Gives pinned particles the masses that the material gives them.
+    pub(crate) fn release_pins(&self, particles: &mut ClothParticles) {
+        let Some(BuiltFrom { material, .. }) = &self.from else {
+            return;
+        };
+        if !self.matches(particles) {
+            return;
+        }
+        for index in 0..particles.len() {
+            if particles.inverse_mass(index) == Some(0.0) {
+                particles.assign_mass(index, self.surface(), material);
+            }
+        }
+    }
+
+    /// Takes over masses and pins of particles that the game wrote.
+    pub(crate) fn weigh(&mut self, particles: &ClothParticles) {
+        self.masses = particles.free_masses();
+        if !pinned(particles).eq(self.pinned.iter().copied()) {
+            self.forget_tethers();
+        }
+    }
+
+    /// Has tethers be made again: other particles are pinned, or the material gives in another way.
+    pub(crate) fn forget_tethers(&mut self) {
+        self.tethered = None;
+    }
+
+    /// Makes tethers again if what they were made for has changed: the pins, the material, or that gravity
+    /// (m/s²) is larger than ever before; and what follows from the same. Returns whether it did.
+    pub(crate) fn tether(
+        &mut self,
+        wanted: bool,
+        material: &ClothMaterial,
+        particles: &ClothParticles,
+        gravity: f32,
+        largest_gravity: &mut f32,
+    ) -> bool {
+        if self.tethered.is_none() {
+            self.pinned.clear();
+            self.pinned.extend(pinned(particles));
+            self.masses = particles.free_masses();
+            self.pins_version = self.pins_version.wrapping_add(1);
+        }
+        let surface = &self.shared.surface;
+        let gives = |gravity: f32| material_stretch(surface, material, self.pinned.len(), gravity);
+        // Gravity that comes and goes finds all as it was; what it stretched before is no fault after.
+        *largest_gravity = largest_gravity.max(Tethers::made_for(gravity));
+        self.material_stretch = gives(gravity);
+        self.largest_material_stretch = gives(largest_gravity.max(gravity));
+        let made_for = Some((wanted, if wanted { *largest_gravity } else { 0.0 }));
+        if self.tethered == made_for {
+            return false;
+        }
+        self.tethered = made_for;
+        let tethers = if wanted {
+            Tethers::new(surface, material, particles, *largest_gravity)
+        } else {
+            Tethers::default()
+        };
+        self.solver.set_tethers(tethers);
+        true
+    }
+}
+
+/// The particles that are pinned, in their order.
+fn pinned(particles: &ClothParticles) -> impl Iterator<Item = u32> + '_ {
+    let masses = particles.inverse_masses().enumerate();
+    let pinned = masses.filter(|(_, inverse_mass)| *inverse_mass == 0.0);
+    pinned.map(|(index, _)| index as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::shared::{Recipe, SharedParts},
+        *,
+    };
+    use crate::cloth::Cloth;
+
+    /// Gravity swings between nothing and 60 m/s² for 200 ticks: tethers are made as it first grows, for 9.81 and each
+    /// doubling of it up to four fifths of 60, and never again.
+    #[test]
+    fn gravity_that_comes_and_goes_makes_no_tethers_again() {
+        let cloth = Cloth::new(8, 8, 0.1);
+        let surface = cloth.surface(Vec3::ONE).expect("a valid grid");
+        let material = ClothMaterial::COTTON;
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a material");
+        particles.pin(0);
+        let mut parts = SharedParts::default();
+        let recipe = Recipe {
+            shape: cloth.shape,
+            scale: Vec3::ONE,
+            source: None,
+        };
+        let mut built = ClothBuilt {
+            shared: parts
+                .get(&recipe, &material, || Ok(surface))
+                .expect("a surface"),
+            ..Default::default()
+        };
+        let mut largest = 0.0;
+        let mut made = |tick: u32, wanted: bool, largest: &mut f32| {
+            let gravity = 30.0 * (1.0 - (0.3 * tick as f32).cos());
+            built.tether(wanted, &material, &particles, gravity, largest)
+        };
+        let count = |ticks: std::ops::Range<u32>| {
+            ticks.filter(|&tick| made(tick, true, &mut largest)).count()
+        };
+        assert_eq!([0..200, 200..400].map(count), [4, 0]);
+        assert_eq!(largest, 8.0 * 9.81);
+        // And none are made where none are wanted, whatever pulls.
+        let mut largest = 0.0;
+        assert!(made(400, false, &mut largest));
+        assert!(!(401..600).any(|tick| made(tick, false, &mut largest)));
+    }
+}

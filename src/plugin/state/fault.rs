@@ -1,0 +1,53 @@
+//! Faults: cloths and colliders with bad input are left out.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::{Entity, MapEntities},
+        reflect::{ReflectComponent, ReflectMapEntities},
+        system::Commands,
+    },
+    reflect::Reflect,
+};
+
+use crate::{cloth::ClothError, plugin::naming::Part};
+
+/// On a cloth or collider that is left out of the simulation, with the reason. The plugin removes it as soon as the
+/// fault is corrected.
+#[derive(Component, Reflect, MapEntities, Debug, Clone, PartialEq)]
+#[reflect(Component, MapEntities, Debug, Clone, PartialEq)]
+#[component(clone_behavior = Ignore)]
+pub struct ClothFault {
+    /// The reason.
+    #[entities]
+    pub error: ClothError,
+    pub(crate) part: Part,
+}
+
+impl ClothFault {
+    /// Marks or clears `entity` by the outcome of the check of one part of it.
+    pub(crate) fn report(
+        commands: &mut Commands,
+        entity: Entity,
+        known: Option<&Self>,
+        part: Part,
+        outcome: Result<(), ClothError>,
+    ) {
+        match (outcome, known) {
+            (Ok(()), Some(known)) if known.part == part => {
+                commands.entity(entity).try_remove::<Self>();
+            }
+            (Err(error), known)
+                if known.is_none_or(|k| k.part == part && !k.error.is_same_fault(&error)) =>
+            {
+                commands.entity(entity).try_insert(Self { error, part });
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a line of the log may name both.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.part == other.part && self.error.is_same_fault(&other.error)
+    }
+}

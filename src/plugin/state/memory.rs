@@ -1,0 +1,165 @@
+//! Everything that a cloth's next tick depends on, besides its public components.
+
+use bevy::{
+    ecs::{
+        change_detection::Tick,
+        component::Component,
+        entity::{Entity, EntityMapper, MapEntities},
+    },
+    math::{Isometry3d, Vec3},
+};
+
+use super::{air::KnownAir, excess::Excess, lod::LodState, pose::Pose, resting::RestsOn};
+use crate::{
+    cloth::ClothParticles,
+    contact::{Carrier, ClothSelfCollision, NarrowPhase},
+    hierarchy::SearchMethod,
+    plugin::authoring::{Attached, ClothAttachment},
+    solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
+};
+
+/// The memory of a cloth from tick to tick, besides its [`ClothParticles`](crate::cloth::ClothParticles) and its
+/// [`ClothFrame`](crate::plugin::ClothFrame). The next tick depends on these three, on the game's components, from which
+/// [`ClothBuilt`](crate::plugin::ClothBuilt) is built, and on the motion of colliders; on nothing else.
+#[derive(Component, Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[component(map_entities)]
+pub struct ClothState {
+    /// Whether the last preparation found no error: an invalid cloth is neither moved nor drawn.
+    pub(crate) is_valid: bool,
+    /// Its level of detail.
+    pub(crate) lod: LodState,
+    /// Control of the coming tick's sub-steps.
+    pub(crate) control: Control,
+    pub(crate) rest: Rest,
+    /// Number of sub-steps that its layers want; 0 if none touched in the last tick.
+    pub(crate) layer_substeps: u32,
+    /// Stretch at the current positions: `RestShape` relies on it.
+    pub(crate) stretch: Stretch,
+    /// Speed of the fastest particle as the tick begins (m/s).
+    pub(crate) largest_speed: f32,
+    /// When the plugin last wrote the particles: a later change is the game's.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub(crate) written: Option<Tick>,
+    /// Inputs that wake a cloth at rest when they change, besides those that it is built from.
+    pub(crate) known: Option<(
+        ClothSettings,
+        SearchMethod,
+        NarrowPhase,
+        Option<ClothSelfCollision>,
+        Vec3,
+    )>,
+    /// The same for the air.
+    pub(crate) air: KnownAir,
+    /// The attachments from which `attached` was made, and the entities that they name.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub(crate) attachments: Vec<ClothAttachment>,
+    pub(crate) targets: Vec<Entity>,
+    pub(crate) attached: Vec<Attached>,
+    /// Last place of the first attachment's target.
+    pub(crate) first_target: Option<Isometry3d>,
+    /// The pose that it follows, as the last tick ended.
+    pub(crate) pose: Pose,
+    /// The colliders that it touched as it fell asleep, each with its place then.
+    pub(crate) rests_on: Vec<RestsOn>,
+    /// The particles that carried bodies as the last tick ended.
+    pub(crate) carriers: Vec<(Entity, Carrier)>,
+    /// The largest gravity so far, as 9.81 or a doubling of that (m/s²): tethers are made for it.
+    pub(crate) largest_gravity: f32,
+    /// Whether it continues from a snapshot, though nothing is built yet.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub(crate) resumes: bool,
+    /// Excess over each limit.
+    pub(crate) excess: [Excess; ClothLimit::ALL.len()],
+    /// Whether it was reported that a jump dragged it along.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub(crate) was_dragged: bool,
+}
+
+impl ClothState {
+    /// Copies `other` into its own memory.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let Self {
+            is_valid,
+            lod,
+            control,
+            ref rest,
+            layer_substeps,
+            stretch,
+            largest_speed,
+            written,
+            known,
+            ref air,
+            ref attachments,
+            ref targets,
+            ref attached,
+            first_target,
+            ref pose,
+            ref rests_on,
+            ref carriers,
+            largest_gravity,
+            resumes,
+            excess,
+            was_dragged,
+        } = *other;
+        self.rest.copy_from(rest);
+        self.air.clone_from(air);
+        self.attachments.clone_from(attachments);
+        self.targets.clone_from(targets);
+        self.attached.clone_from(attached);
+        self.pose.copy_from(pose);
+        self.rests_on.clone_from(rests_on);
+        self.carriers.clone_from(carriers);
+        (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
+        (self.layer_substeps, self.stretch) = (layer_substeps, stretch);
+        (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
+        (self.written, self.known, self.first_target) = (written, known, first_target);
+        (self.resumes, self.excess) = (resumes, excess);
+        self.was_dragged = was_dragged;
+    }
+
+    /// Whether this state, read from a file, matches these particles.
+    pub(crate) fn is_sound(&self, particles: &ClothParticles) -> bool {
+        let len = particles.len();
+        let is_of_all = |count: usize| count == 0 || count == len;
+        let is_attached = |attached: &Attached| {
+            (attached.particle as usize) < len && attached.attachment < self.targets.len()
+        };
+        let blocks = particles.blocks().len();
+        self.rest.is_sound()
+            && is_of_all(self.pose.places.len())
+            && is_of_all(self.pose.normals.len())
+            && self.attached.iter().all(is_attached)
+            && self
+                .carriers
+                .iter()
+                .all(|(_, carrier)| carrier.is_in(blocks))
+    }
+
+    /// Forgets attachments, carried bodies and gravity, because the particles have been replaced.
+    pub(crate) fn detach(&mut self) {
+        self.largest_gravity = 0.0;
+        self.carriers.clear();
+        self.attached.clear();
+        self.attachments.clear();
+        self.first_target = None;
+        self.pose = Pose::default();
+    }
+}
+
+impl MapEntities for ClothState {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        let targets = self.targets.iter_mut();
+        let carried = self.carriers.iter_mut().map(|(entity, _)| entity);
+        for entity in targets.chain(carried) {
+            *entity = mapper.get_mapped(*entity);
+        }
+        for attachment in &mut self.attachments {
+            attachment.map_entities(mapper);
+        }
+        for known in &mut self.rests_on {
+            known.map_entities(mapper);
+        }
+        self.air.map_entities(mapper);
+    }
+}

@@ -1,0 +1,40 @@
+//! Components and resources that the plugin keeps for each cloth, and for the world.
+//!
+//! [`ClothState`] is the memory from tick to tick, [`ClothBuilt`] is built from the game's components, [`ClothScratch`]
+//! is handed from stage to stage within a tick. Stages write them; nothing here is a system, except for the log of notices.
+
+mod air;
+mod built;
+mod contacts;
+mod excess;
+mod fault;
+mod lod;
+mod memory;
+mod notices;
+mod parts;
+mod pose;
+mod resting;
+mod scratch;
+mod search;
+mod shared;
+mod source;
+mod stats;
+mod wind_field;
+
+pub use built::ClothBuilt;
+pub(crate) use built::{BuiltFrom, Tried};
+pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
+pub use fault::ClothFault;
+pub(crate) use lod::{Frozen, Turn};
+pub use memory::ClothState;
+pub(crate) use notices::{Notice, Notices, log_notices};
+pub(crate) use parts::ClothParts;
+pub(crate) use pose::{Pose, SkinLimits};
+pub(crate) use resting::RestsOn;
+pub use scratch::ClothScratch;
+pub(crate) use search::BroadPhaseBounds;
+pub use search::ClothSearch;
+pub(crate) use shared::{Recipe, Shared, SharedParts, stiffnesses};
+pub(crate) use source::Source;
+pub use stats::ClothStats;
+pub(crate) use wind_field::{Breeze, WindField};

@@ -1,0 +1,76 @@
+//! Warnings about cloths that are simulated all the same: each is logged once, by name.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        resource::Resource,
+        system::{Query, Res, ResMut},
+    },
+    log::warn,
+};
+
+use crate::plugin::naming::{Named, Part};
+
+/// What can hardly be meant, and is no fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Notice {
+    /// A predicate holds for no particle.
+    PinsNothing,
+    /// A tick can't be simulated in the time that it stands for.
+    TooSlow,
+    /// It is drawn in place of a mesh of the game's.
+    #[cfg(feature = "mesh")]
+    ReplacesMesh,
+}
+
+/// Notices that have yet to be logged, each with its cloth and its text.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Notices(Vec<(Entity, Notice, String)>);
+
+impl Notices {
+    /// Has a notice of a cloth be logged as the frame ends.
+    pub fn add(&mut self, cloth: Entity, notice: Notice, text: String) {
+        self.0.push((cloth, notice, text));
+    }
+
+    /// Whether there is anything to log.
+    pub fn are_there(notices: Res<Self>) -> bool {
+        !notices.0.is_empty()
+    }
+}
+
+/// Which notices a cloth has been given.
+#[derive(Debug, Default)]
+pub(crate) struct Noticed {
+    /// Whether it was built, and not looked at since.
+    pub is_due: bool,
+    given: Vec<Notice>,
+}
+
+impl Noticed {
+    /// Whether it is the first notice of its kind.
+    pub fn is_first(&mut self, notice: Notice) -> bool {
+        let is_first = !self.given.contains(&notice);
+        if is_first {
+            self.given.push(notice);
+        }
+        is_first
+    }
+}
+
+/// Logs the notices of a frame; equal texts in one line.
+pub(crate) fn log_notices(mut notices: ResMut<Notices>, names: Query<Named>) {
+    let mut all = std::mem::take(&mut notices.0);
+    all.retain(|(cloth, ..)| names.contains(*cloth));
+    while let Some((cloth, _, text)) = all.first().cloned() {
+        let Ok(name) = names.get(cloth) else {
+            return;
+        };
+        let name = name.describe(Part::Cloth);
+        match all.iter().filter(|(.., other)| *other == text).count() {
+            1 => warn!("{name}: {text}"),
+            alike => warn!("{name} and {} more: {text}", alike - 1),
+        }
+        all.retain(|(.., other)| *other != text);
+    }
+}

@@ -1,0 +1,33 @@
+//! The components of a cloth that the plugin keeps.
+
+use super::{
+    built::ClothBuilt,
+    contacts::ClothContacts,
+    memory::ClothState,
+    scratch::ClothScratch,
+    search::{BroadPhaseBounds, ClothSearch},
+    stats::ClothStats,
+};
+use crate::{
+    contact::NarrowPhase,
+    hierarchy::SearchMethod,
+    plugin::{authoring::ClothOrder, frame::ClothFrame},
+    solver::ClothSettings,
+};
+
+/// Components that the plugin adds to a cloth. They are not required components: those can't be declared any more once
+/// a cloth was spawned before the plugin was added.
+pub(crate) type ClothParts = (
+    ClothOrder,
+    ClothSettings,
+    SearchMethod,
+    NarrowPhase,
+    ClothBuilt,
+    ClothFrame,
+    ClothSearch,
+    ClothContacts,
+    ClothStats,
+    ClothState,
+    ClothScratch,
+    BroadPhaseBounds,
+);

@@ -1,0 +1,146 @@
+//! Data shared by cloths that are made alike.
+
+use std::sync::{Arc, OnceLock, Weak};
+
+use bevy::{ecs::resource::Resource, math::Vec3};
+
+use super::source::Source;
+use crate::{
+    cloth::{ClothError, ClothMaterial, ClothShape, Skinning, SpringKind, Springs, Surface},
+    contact::Sheet,
+    hierarchy::QuadTree,
+    solver::{Bending, Solver},
+};
+
+/// A surface with its springs and tree.
+#[derive(Debug, Default)]
+pub(crate) struct Shared {
+    pub recipe: Option<Recipe>,
+    stiffnesses: [f32; 3],
+    pub surface: Arc<Surface>,
+    pub springs: Springs,
+    pub tree: QuadTree,
+    /// An unused solver, of which each cloth gets a clone.
+    pub solver: Solver,
+    /// For contact of cloth with cloth: made when a cloth needs it.
+    sheet: OnceLock<Arc<Sheet>>,
+    /// The skinning by joints: made when a cloth has joints.
+    skinning: OnceLock<Skinning>,
+}
+
+impl Shared {
+    /// The sheet that contact of cloth with cloth searches.
+    pub fn sheet(&self) -> &Arc<Sheet> {
+        self.sheet
+            .get_or_init(|| Arc::new(Sheet::new(&self.surface, &self.tree)))
+    }
+
+    /// The skinning of its particles by joints, if it has been made.
+    pub fn known_skinning(&self) -> Option<&Skinning> {
+        self.skinning.get()
+    }
+
+    /// The skinning of its particles by joints; `None` if it is not made from an asset.
+    ///
+    /// # Errors
+    /// The error that `make` finds in the asset.
+    pub fn skinning(
+        &self,
+        make: impl FnOnce(Source, &Surface) -> Result<Skinning, ClothError>,
+    ) -> Result<Option<&Skinning>, ClothError> {
+        let Some(source) = self.recipe.as_ref().and_then(|recipe| recipe.source) else {
+            return Ok(None);
+        };
+        if let Some(known) = self.known_skinning() {
+            return Ok(Some(known));
+        }
+        let made = make(source, &self.surface)?;
+        Ok(Some(self.skinning.get_or_init(|| made)))
+    }
+}
+
+/// The inputs of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Recipe {
+    pub shape: ClothShape,
+    pub scale: Vec3,
+    /// The mesh, if it is made from an asset.
+    pub source: Option<Source>,
+}
+
+/// All shared data in use.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct SharedParts {
+    known: Vec<Weak<Shared>>,
+}
+
+impl SharedParts {
+    /// The shared data of cloths with this recipe and material: made by `make` if there is none yet.
+    ///
+    /// # Errors
+    /// The error that `make` finds in the surface.
+    pub fn get(
+        &mut self,
+        recipe: &Recipe,
+        material: &ClothMaterial,
+        make: impl FnOnce() -> Result<Surface, ClothError>,
+    ) -> Result<Arc<Shared>, ClothError> {
+        let stiffnesses = stiffnesses(material);
+        let mut alike = None;
+        for known in self.known.iter().filter_map(Weak::upgrade) {
+            if known.recipe.as_ref() == Some(recipe) {
+                if known.stiffnesses == stiffnesses {
+                    return Ok(known);
+                }
+                alike = Some(known);
+            }
+        }
+        let surface = match &alike {
+            Some(known) => known.surface.clone(),
+            None => Arc::new(make()?),
+        };
+        let springs = Springs::of_surface(&surface, material);
+        let diagonals = springs.has(SpringKind::Shear);
+        // A tree does not know of stiffness.
+        let known = alike.filter(|known| known.springs.has(SpringKind::Shear) == diagonals);
+        let tree = match known {
+            Some(known) => known.tree.clone(),
+            None => QuadTree::of_surface(&surface, diagonals),
+        };
+        let mut solver = Solver::of_surface(&surface, &springs);
+        solver.set_bending(Bending::new(&surface, material));
+        let shared = Arc::new(Shared {
+            recipe: Some(recipe.clone()),
+            stiffnesses,
+            solver,
+            surface,
+            springs,
+            tree,
+            sheet: OnceLock::new(),
+            skinning: OnceLock::new(),
+        });
+        self.known.retain(|known| known.strong_count() > 0);
+        self.known.push(Arc::downgrade(&shared));
+        Ok(shared)
+    }
+
+    /// The same for a cloth whose material has changed.
+    pub fn with_material(&mut self, shared: &Arc<Shared>, material: &ClothMaterial) -> Arc<Shared> {
+        let Some(recipe) = &shared.recipe else {
+            return shared.clone();
+        };
+        // A surface of that recipe exists, so it can't be refused.
+        let other = self.get(recipe, material, || Ok((*shared.surface).clone()));
+        other.unwrap_or_else(|_| shared.clone())
+    }
+}
+
+/// The values of a material that its solver depends on: compliances of stretch and shear (m/N), flexural rigidity
+/// (N·m).
+pub(crate) fn stiffnesses(material: &ClothMaterial) -> [f32; 3] {
+    [
+        material.stretch_compliance,
+        material.shear_compliance,
+        material.bend_rigidity,
+    ]
+}

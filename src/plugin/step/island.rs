@@ -1,0 +1,247 @@
+//! The sub-steps of cloths that may touch each other, run together.
+
+use bevy::{
+    ecs::{
+        entity::{Entity, EntityIndexSet},
+        system::Query,
+    },
+    log::warn,
+    math::Isometry3d,
+    platform::time::Instant,
+};
+
+use super::tick::{Colliders, Integrating, IntegratingItem};
+use crate::{
+    contact::{ClothLayers, Inside, MutualContact, Participant},
+    plugin::{
+        clock::milliseconds_since,
+        naming::{Named, Part},
+        prepare::Island,
+    },
+    solver::{LimitInputs, StartedTick, Stretch, SubStep, Substepping, TickStep},
+};
+
+/// A cloth of an island, in its tick.
+struct Member<'w, 's> {
+    cloth: IntegratingItem<'w, 's>,
+    /// `None` of one that sleeps.
+    step: Option<TickStep>,
+    to_common: Option<Isometry3d>,
+}
+
+/// Simulates the tick of all cloths of an island, and repeats it with more sub-steps while the tolerance of one of them
+/// needs it.
+pub(crate) fn integrate_together(
+    island: &mut Island,
+    cloths: &mut Query<Integrating>,
+    colliders: &Colliders,
+    names: &Query<Named>,
+) {
+    let start = Instant::now();
+    let entities: EntityIndexSet = island.cloths.iter().map(|(_, cloth)| *cloth).collect();
+    let mut members = Vec::new();
+    let mut first = None;
+    for mut cloth in cloths.iter_many_unique_mut(&entities) {
+        let is_asleep = cloth.state.rest.is_asleep();
+        // One that sleeps stays prepared while nothing changes.
+        let step = match is_asleep {
+            true => cloth.scratch.step,
+            false => cloth.scratch.step.take(),
+        };
+        let Some(step) = step else {
+            continue;
+        };
+        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
+            continue;
+        }
+        let frame = cloth.frame.isometry();
+        let to_common = first.map(|first: Isometry3d| first.inverse() * frame);
+        first = first.or(Some(frame));
+        cloth.stats.is_asleep = is_asleep;
+        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+        members.push(Member {
+            cloth,
+            step: (!is_asleep).then_some(step),
+            to_common,
+        });
+    }
+    // All take the largest number of sub-steps that any of them needs.
+    let mut substeps = members
+        .iter()
+        .filter_map(|member| member.step.map(|step| step.substeps))
+        .max()
+        .unwrap_or(1);
+    let may_repeat = members.iter().any(|member| {
+        matches!(
+            member.cloth.scratch.substepping,
+            Substepping::Adaptive { .. }
+        )
+    });
+    if may_repeat {
+        for member in members.iter_mut().filter(|member| member.step.is_some()) {
+            let backup = &mut member.cloth.scratch.backup;
+            backup.copy_from(&member.cloth.particles);
+        }
+    }
+    loop {
+        let more = advance(
+            &mut members,
+            substeps,
+            &mut island.contact,
+            colliders,
+            names,
+        );
+        let Some(more) = more else {
+            break;
+        };
+        substeps = more;
+        for member in members.iter_mut().filter(|member| member.step.is_some()) {
+            member.cloth.restart();
+        }
+        island.contact.forget();
+    }
+    let milliseconds = milliseconds_since(start) / members.len().max(1) as f64;
+    for Member { cloth, step, .. } in &mut members {
+        if let Some(step) = step {
+            let own = cloth.limit_inputs(TickStep { substeps, ..*step });
+            let lost = island.contact.lost();
+            cloth.scratch.limit_inputs = Some(LimitInputs { lost, ..own });
+            cloth.finish(milliseconds);
+            cloth.state.layer_substeps = island.contact.wanted_substeps();
+            cloth.stats.layer_pairs = island.contact.pairs();
+            cloth.stats.layer_searches = island.contact.searches();
+        }
+    }
+}
+
+/// A single run through the sub-steps of all. Returns the number that a tolerance needs, if these were too few.
+fn advance(
+    members: &mut [Member],
+    substeps: u32,
+    contact: &mut MutualContact,
+    colliders: &Colliders,
+    names: &Query<Named>,
+) -> Option<u32> {
+    let seconds = members.iter().find_map(|member| member.step)?.seconds;
+    let dt = seconds / substeps as f32;
+    let mut ticks: Vec<Option<StartedTick>> = members
+        .iter_mut()
+        .map(|Member { cloth, step, .. }| {
+            let step = TickStep {
+                substeps,
+                ..(*step)?
+            };
+            cloth.recall_carriers(substeps);
+            let solver = &mut cloth.built.solver;
+            solver.set_bands(1);
+            Some(solver.begin(&mut cloth.particles, step, &cloth.scratch.pins))
+        })
+        .collect();
+    let layers: Vec<ClothLayers> = members
+        .iter()
+        .map(|member| member.cloth.layers.copied().unwrap_or_default())
+        .collect();
+    let meets = |a: usize, b: usize| layers[a].interacts_with(layers[b]);
+    contact.begin(&participants(members), meets);
+    warn_of_inside(members, contact, names);
+    let mut is_pushed = vec![false; members.len()];
+    let mut moved: Vec<Option<SubStep>> = Vec::with_capacity(members.len());
+    for _ in 0..substeps {
+        moved.clear();
+        for (Member { cloth, .. }, tick) in members.iter_mut().zip(&mut ticks) {
+            let substep = tick.as_mut().and_then(|tick| {
+                let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);
+                let mut substep = solver.substep(&mut cloth.particles, pins, tick)?;
+                if cloth.hold(&mut substep) {
+                    tick.note_push(&mut cloth.particles);
+                }
+                Some(substep)
+            });
+            moved.push(substep);
+        }
+        contact.note_before_colliders(&participants(members));
+        for ((member, tick), substep) in members.iter_mut().zip(&mut ticks).zip(&moved) {
+            if let (Some(tick), Some(substep)) = (tick, *substep)
+                && member.cloth.touch(substep, colliders)
+            {
+                tick.note_push(&mut member.cloth.particles);
+            }
+        }
+        is_pushed.fill(false);
+        let farthest = contact.respond(&mut participants(members), meets, dt, &mut is_pushed);
+        for ((member, tick), is_pushed) in members.iter_mut().zip(&mut ticks).zip(&is_pushed) {
+            if let Some(tick) = tick
+                && *is_pushed
+            {
+                member.cloth.scratch.detection.note_push(farthest);
+                tick.note_push(&mut member.cloth.particles);
+            }
+        }
+    }
+    let mut wanted = None;
+    for (Member { cloth, step, .. }, tick) in members.iter_mut().zip(ticks) {
+        let (Some(mut tick), Some(step)) = (tick, step) else {
+            continue;
+        };
+        let solver = &mut cloth.built.solver;
+        // Forces have half a push left.
+        let rest = solver.substep(&mut cloth.particles, &cloth.scratch.pins, &mut tick);
+        debug_assert!(rest.is_none(), "all sub-steps are done");
+        let mut stretch: Stretch = solver.end(&mut cloth.particles, &cloth.scratch.pins, tick);
+        stretch.load_substeps = cloth.load_substeps(step);
+        let taken = TickStep { substeps, ..*step };
+        stretch.contact_substeps = cloth.contact_substeps(&taken, &stretch);
+        cloth.stats.substeps += substeps;
+        cloth.state.stretch = stretch;
+        let substepping = cloth.scratch.substepping;
+        let more = cloth.state.control.observe(substepping, stretch);
+        // Without a tolerance the tick is not begun again, and the next one takes more.
+        if matches!(substepping, Substepping::Adaptive { .. }) {
+            wanted = wanted.max(more);
+        }
+    }
+    wanted
+}
+
+/// Warns of cloths that begin inside each other. A later tick, or this one done again, does not ask.
+fn warn_of_inside(members: &mut [Member], contact: &MutualContact, names: &Query<Named>) {
+    if members.iter().all(|member| !member.cloth.scratch.begins) {
+        return;
+    }
+    let begin: Vec<(Entity, bool)> = members
+        .iter_mut()
+        .map(|Member { cloth, .. }| (cloth.entity, std::mem::take(&mut cloth.scratch.begins)))
+        .collect();
+    let inside = contact.begin_inside(&participants(members), |cloth| begin[cloth].1);
+    let Some(Inside {
+        cloths,
+        share,
+        distance,
+        others,
+    }) = inside
+    else {
+        return;
+    };
+    let names = cloths.map(|cloth| names.get(begin[cloth].0));
+    let [Ok(first), Ok(second)] = names else {
+        return;
+    };
+    let [first, second] = [first, second].map(|name| name.describe(Part::Cloth));
+    let others = match others {
+        0 => String::new(),
+        others => format!(" (and {others} more likewise)"),
+    };
+    let (share, distance) = (100.0 * share, 1000.0 * distance);
+    warn!(
+        "{first} begins inside {second}{others}: {share:.0} % of its particles are nearer than {distance:.1} mm: spawn them a thickness apart, or keep them from meeting with `ClothLayers`"
+    );
+}
+
+fn participants<'a>(members: &'a mut [Member]) -> Vec<Participant<'a>> {
+    let each = members.iter_mut();
+    each.map(|member| {
+        let settings = member.cloth.scratch.self_collision.unwrap_or_default();
+        member.cloth.participant(settings, member.to_common)
+    })
+    .collect()
+}

@@ -1,0 +1,12 @@
+//! The stage that moves the cloths: all sub-steps of a tick.
+//!
+//! In: the step of each cloth, the colliders near it, and the candidates of the search. Out: particles, state, contacts,
+//! statistics, and the pushes on bodies.
+
+mod integrate;
+mod island;
+mod push;
+mod tick;
+
+pub(crate) use integrate::integrate;
+pub(crate) use push::push_bodies;

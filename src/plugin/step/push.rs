@@ -1,0 +1,131 @@
+//! Pushes of cloth on the bodies that it touches.
+
+use bevy::{
+    ecs::{
+        change_detection::DetectChangesMut,
+        entity::Entity,
+        hierarchy::ChildOf,
+        query::Has,
+        system::{Local, Query},
+    },
+    math::Vec3,
+    transform::components::Transform,
+};
+
+use crate::{
+    contact::BodyChange,
+    plugin::{
+        authoring::{ClothBody, ClothOrder, ClothPush, Ordered},
+        prepare::ColliderMotion,
+        state::ClothScratch,
+    },
+};
+
+/// The bodies that may be pushed. One without a collider or a transform is not: its push is zero.
+type Pushed = (
+    Entity,
+    &'static mut ClothPush,
+    Option<&'static ClothBody>,
+    Option<&'static mut ColliderMotion>,
+    Option<&'static mut Transform>,
+    Has<ChildOf>,
+);
+
+/// Sums the changes of each body's motion by all cloths, and moves the body by them. A body that several cloths push is
+/// cut into equal parts, one for each cloth, which move on together.
+pub(crate) fn push_bodies(
+    cloths: Query<(Entity, Option<&ClothOrder>, &ClothScratch)>,
+    mut bodies: Query<Pushed>,
+    mut pushes: Local<Vec<(Ordered, Entity, BodyChange)>>,
+) {
+    pushes.clear();
+    if bodies.is_empty() {
+        return;
+    }
+    for (cloth, order, scratch) in &cloths {
+        let cloth = (order.copied().unwrap_or_default(), cloth);
+        pushes.extend(
+            scratch
+                .pushed
+                .iter()
+                .map(|&(body, change)| (cloth, body, change)),
+        );
+    }
+    // A sum of floats is that of its order.
+    pushes.sort_unstable_by_key(|(cloth, body, _)| (*cloth, *body));
+    for (entity, mut push, body, motion, transform, is_child) in &mut bodies {
+        let (Some(body), Some(mut motion), Some(mut transform)) = (body, motion, transform) else {
+            push.set_if_neq(ClothPush::default());
+            continue;
+        };
+        let of_this = pushes.iter().filter(|(_, pushed, _)| *pushed == entity);
+        let count = of_this.clone().count() as u32;
+        let sum = sum(of_this.map(|(_, _, change)| change), motion.cloths(), body);
+        push.set_if_neq(ClothPush {
+            velocity: sum.velocity,
+            angular_velocity: sum.angular_velocity,
+        });
+        if count > 0 || motion.cloths() > 1 {
+            motion.set_cloths(count);
+        }
+        if is_child || (sum.translation == Vec3::ZERO && sum.rotation == Vec3::ZERO) {
+            continue;
+        }
+        let (gone, turned) = motion.pushed(&sum, body);
+        transform.translation += gone;
+        transform.rotation = (turned * transform.rotation).normalize();
+    }
+}
+
+/// The total of changes by several cloths, each of which pushed a part of the body. Changes that are not finite count
+/// as zero.
+fn sum<'a>(
+    changes: impl Iterator<Item = &'a BodyChange>,
+    parts: u32,
+    body: &ClothBody,
+) -> BodyChange {
+    let parts = parts as f32;
+    let mut sum = BodyChange::default();
+    for change in changes {
+        sum.velocity += change.velocity / parts;
+        sum.angular_velocity += change.angular_velocity / parts;
+        sum.translation += change.translation / parts;
+        sum.rotation += change.rotation / parts;
+    }
+    if !sum.is_finite() {
+        return BodyChange::default();
+    }
+    // To the last bit, which they lost on their way from the cloths' frames.
+    BodyChange {
+        velocity: body.free_translation(sum.velocity),
+        angular_velocity: body.free_rotation(sum.angular_velocity),
+        translation: sum.translation,
+        rotation: body.free_rotation(sum.rotation),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One cloth whose change is no number does not move the body.
+    #[test]
+    fn what_is_no_number_moves_nothing() {
+        let body = ClothBody::ball(1.0, 0.1);
+        let fine = BodyChange {
+            velocity: Vec3::X,
+            ..BodyChange::default()
+        };
+        for bad in [f32::NAN, f32::INFINITY] {
+            let bad = BodyChange {
+                rotation: Vec3::new(0.0, bad, 0.0),
+                ..fine
+            };
+            assert_eq!(
+                sum([&fine, &bad].into_iter(), 2, &body),
+                BodyChange::default()
+            );
+        }
+        assert_eq!(sum([&fine, &fine].into_iter(), 2, &body), fine);
+    }
+}

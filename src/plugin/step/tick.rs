@@ -1,0 +1,411 @@
+//! All sub-steps of a cloth's tick.
+
+use bevy::{
+    ecs::{
+        change_detection::DetectChanges,
+        entity::{Entity, EntityHashSet},
+        query::QueryData,
+        system::Query,
+    },
+    math::{Isometry3d, Vec3},
+    platform::time::Instant,
+};
+
+use crate::{
+    cloth::ClothParticles,
+    contact::{
+        BodyChange, ClothLayers, ClothSelfCollision, ColliderShape, MovingCollider, MutualContact,
+        Participant,
+    },
+    hierarchy::Core,
+    plugin::{
+        authoring::Carried,
+        clock::milliseconds_since,
+        frame::ClothFrame,
+        prepare::ColliderMotion,
+        state::{ClothBuilt, ClothContacts, ClothScratch, ClothState, ClothStats, RestsOn},
+        threads::{MIN_TO_SPLIT, threads},
+    },
+    solver::{LimitInputs, Stretch, SubStep, Substepping, TickStep},
+};
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Integrating {
+    pub entity: Entity,
+    pub built: &'static mut ClothBuilt,
+    pub frame: &'static ClothFrame,
+    pub particles: &'static mut ClothParticles,
+    pub state: &'static mut ClothState,
+    pub scratch: &'static mut ClothScratch,
+    pub contacts: &'static mut ClothContacts,
+    pub stats: &'static mut ClothStats,
+    pub layers: Option<&'static ClothLayers>,
+}
+
+/// All colliders, however far.
+pub(crate) type Colliders<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static ColliderMotion,
+        Option<&'static ClothLayers>,
+    ),
+>;
+
+impl IntegratingItem<'_, '_> {
+    pub fn integrate(&mut self, colliders: &Colliders) {
+        // Cloths that may touch each other have been moved.
+        if self.scratch.is_in_island {
+            return;
+        }
+        // Taken: a cloth that is not prepared again does not move again.
+        let Some(step) = self.scratch.step.take() else {
+            return;
+        };
+        // A schedule may run without time passing.
+        if !self.built.matches(&self.particles) || step.seconds == 0.0 {
+            return;
+        }
+        let is_asleep = self.state.rest.is_asleep();
+        self.stats.is_asleep = is_asleep;
+        if is_asleep {
+            // It stays prepared while nothing changes.
+            self.scratch.step = Some(step);
+            self.stats.integrate_ms = 0.0;
+            self.stats.substeps = 0;
+            return;
+        }
+        let start = Instant::now();
+        self.solve(step, colliders);
+        self.finish(milliseconds_since(start));
+    }
+
+    /// Takes over the results of a tick; its sub-steps took this time (ms).
+    pub(crate) fn finish(&mut self, milliseconds: f64) {
+        self.stats.integrate_ms = milliseconds;
+        self.scratch.begins = false;
+        // Particles that are lost here are a fault before the game sees them.
+        let survey = self.particles.survey();
+        self.state.is_valid &= survey.is_valid;
+        self.state.largest_speed = survey.largest_speed;
+        self.state.written = Some(self.particles.last_changed());
+        self.remember_contacts();
+        self.push_bodies();
+        let rotation = self.frame.isometry().rotation;
+        self.contacts
+            .renew(&self.scratch.near, &self.scratch.detection, rotation);
+        self.stats.requeries = self.scratch.detection.requeries();
+        self.stats.stretch = self.state.stretch;
+        self.stats.air_impulse = rotation * self.built.solver.air_impulse();
+        (self.stats.enclosed_volume, self.stats.gauge_pressure) = self.built.solver.enclosed();
+        self.state.air.memory = self.built.solver.air_memory();
+        self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
+    }
+
+    /// Remembers the contacts of the cloth, in case it falls asleep.
+    fn remember_contacts(&mut self) {
+        let ClothScratch {
+            near, detection, ..
+        } = &*self.scratch;
+        let touches = detection.touches().iter();
+        let known =
+            touches.filter_map(|touch| Some(RestsOn::new(near.get(touch.id)?.0, &touch.collider)));
+        self.state.rests_on.clear();
+        self.state.rests_on.extend(known);
+    }
+
+    /// Notes the cloth's pushes on bodies. While it pushes one, it does not rest.
+    fn push_bodies(&mut self) {
+        let ClothScratch {
+            near,
+            detection,
+            pushed,
+            ..
+        } = &mut *self.scratch;
+        let ClothState { carriers, rest, .. } = &mut *self.state;
+        carriers.clear();
+        let rotation = self.frame.isometry().rotation;
+        for (id, (entity, _)) in near
+            .iter()
+            .enumerate()
+            .filter(|(_, near)| near.1.body.is_some())
+        {
+            let carrying = detection.carriers(id).iter();
+            carriers.extend(carrying.map(|carrier| (*entity, *carrier)));
+            if let Some(change) = detection.body_change(id)
+                && change != BodyChange::default()
+            {
+                pushed.push((*entity, change.turned(rotation)));
+                rest.disturb();
+            }
+        }
+    }
+
+    /// Simulates the tick, and repeats it with more sub-steps while the tolerance needs them.
+    fn solve(&mut self, mut step: TickStep, colliders: &Colliders) {
+        let substepping = self.scratch.substepping;
+        let bands = if self.particles.len() < MIN_TO_SPLIT {
+            1
+        } else {
+            threads()
+        };
+        self.built.solver.set_bands(bands);
+        let may_repeat = match substepping {
+            Substepping::Fixed(_) => false,
+            Substepping::Automatic => {
+                let near = self.scratch.near.iter();
+                near.map(|(_, near)| &near.shape)
+                    .any(ColliderShape::has_edges)
+            }
+            Substepping::Adaptive { .. } => true,
+        };
+        if may_repeat {
+            self.scratch.backup.copy_from(&self.particles);
+        }
+        self.stats.substeps = 0;
+        loop {
+            let mut stretch = self.advance(step, colliders);
+            stretch.load_substeps = self.load_substeps(&step);
+            stretch.contact_substeps = self.contact_substeps(&step, &stretch);
+            self.stats.substeps += step.substeps;
+            self.state.stretch = stretch;
+            let more = self.state.control.observe(substepping, stretch);
+            let Some(more) = more.filter(|_| may_repeat) else {
+                break;
+            };
+            step.substeps = more;
+            self.restart();
+            if let Some(mutual) = &mut self.scratch.mutual {
+                mutual.forget();
+            }
+        }
+        self.scratch.limit_inputs = Some(self.limit_inputs(step));
+    }
+
+    /// Goes back to where the tick began.
+    pub(crate) fn restart(&mut self) {
+        self.particles.copy_from(&self.scratch.backup);
+        self.scratch.detection.restart();
+        let air = self.state.air.memory;
+        self.built.solver.set_air_memory(air);
+    }
+
+    /// The quantities of the tick's last run of sub-steps that are compared with the limits.
+    pub(crate) fn limit_inputs(&self, step: TickStep) -> LimitInputs {
+        let spacing = self.built.surface().spacing();
+        let root = self
+            .built
+            .tree()
+            .root_sphere(&self.particles, self.state.stretch.bound);
+        let count = step.substeps as f32;
+        // The colliders that reach the ball around the cloth; a capsule's rotation counts.
+        let around = root.radius() + self.scratch.reach;
+        let travels = self.scratch.near.iter().filter_map(|(_, collider)| {
+            let core = Core::Segment([collider.from.translation.into(), collider.to]);
+            if !core.may_reach(root.center.into(), around + collider.shape.extent()) {
+                return None;
+            }
+            let travel = match collider.shape {
+                ColliderShape::Ball { .. } => collider.travel(),
+                _ => collider.max_surface_travel(f32::INFINITY),
+            };
+            LimitInputs::travel_in_radii(collider.shape.radius()?, travel / count, spacing.longest)
+        });
+        let mutual = self.scratch.mutual.as_ref();
+        LimitInputs {
+            lost: mutual.map_or(0, |mutual| mutual.lost()),
+            embedded: self.scratch.detection.embedded(),
+            collider_travel: travels.fold(0.0, f32::max),
+            stretch: self.state.stretch.structural,
+            substepping: self.scratch.substepping,
+            is_beyond: self.state.control.is_beyond(),
+            substep: step.seconds / count,
+            damping: step.damping,
+            material_stretch: self.built.largest_material_stretch,
+            holds_weight: self.built.surface().as_grid().is_some()
+                || !self.built.solver.tethers().is_empty(),
+            masses: self.built.masses,
+            distance: (Vec3::from(root.center).length() - root.radius()).max(0.0),
+            spacing: spacing.shortest,
+        }
+    }
+
+    /// Sub-steps that hold what the cloth carries.
+    pub(crate) fn load_substeps(&self, step: &TickStep) -> f32 {
+        let (gravity, spacing) = (step.acceleration.length(), self.built.surface().spacing());
+        let ratio = (self.scratch.detection).load_ratio(gravity * step.seconds);
+        Substepping::for_load(ratio, gravity, spacing.shortest, step.seconds)
+    }
+
+    /// Sub-steps that hold the cloth together where something that moves forces it over the edges of a collider: these pass
+    /// between particles.
+    pub(crate) fn contact_substeps(&self, step: &TickStep, stretch: &Stretch) -> f32 {
+        let ClothScratch {
+            detection, pins, ..
+        } = &*self.scratch;
+        let is_pulled = !pins.is_empty();
+        let is_forced = detection.touches().iter().any(|touch| {
+            let moves = is_pulled || touch.collider.max_surface_travel(f32::INFINITY) > 0.0;
+            moves && touch.deepest > 0.0 && touch.collider.shape.has_edges()
+        });
+        // A force of its own draws embedded cloth out.
+        if !is_forced || detection.embedded() > 0.0 {
+            return 0.0;
+        }
+        let given = stretch.material.max(step.material_stretch);
+        Substepping::for_contact(stretch.structural - given, step.substeps)
+    }
+
+    /// One way through the sub-steps.
+    fn advance(&mut self, step: TickStep, colliders: &Colliders) -> Stretch {
+        self.recall_carriers(step.substeps.max(1));
+        let mut alone = self.begin_alone();
+        let layers = self.layers.copied().unwrap_or_default();
+        let ClothScratch {
+            pins,
+            near,
+            near_set,
+            detection,
+            contact_settings,
+            constraints,
+            carried,
+            ..
+        } = &mut *self.scratch;
+        let built = &mut *self.built;
+        let (sheet, dt) = (&built.shared, step.seconds / step.substeps.max(1) as f32);
+        let place = Place {
+            frame: self.frame,
+            carried: *carried,
+            layers,
+        };
+        let stretch =
+            built
+                .solver
+                .advance(&mut self.particles, step, pins, |particles, mut substep| {
+                    let settings = *contact_settings;
+                    let is_held =
+                        !constraints.is_empty() && constraints.hold(particles, &mut substep);
+                    let numbered = |numbered: &mut Vec<(usize, MovingCollider)>| {
+                        add_far(near, near_set, &place, colliders, numbered);
+                    };
+                    let Some((mutual, layers)) = &mut alone else {
+                        return is_held
+                            | detection.respond(particles, &settings, substep, numbered);
+                    };
+                    let sheet = sheet.sheet();
+                    let itself = Participant::alone(particles, sheet, *layers);
+                    mutual.note_before_colliders(&[itself]);
+                    let is_touched = detection.respond(particles, &settings, substep, numbered);
+                    let mut is_pushed = [false];
+                    let itself = Participant::alone(particles, sheet, *layers);
+                    let farthest = mutual.respond(&mut [itself], |_, _| true, dt, &mut is_pushed);
+                    detection.note_push(farthest);
+                    is_held | is_touched | is_pushed[0]
+                });
+        if let Some((mutual, _)) = alone {
+            self.state.layer_substeps = mutual.wanted_substeps();
+            self.stats.layer_pairs = mutual.pairs();
+            self.stats.layer_searches = mutual.searches();
+            self.scratch.mutual = Some(mutual);
+        }
+        stretch
+    }
+
+    /// Restores the bodies that particles carried as the last tick ended.
+    pub(crate) fn recall_carriers(&mut self, substeps: u32) {
+        let ClothScratch {
+            near, detection, ..
+        } = &mut *self.scratch;
+        let carriers = &self.state.carriers;
+        detection.recall(&mut self.particles, substeps, |id| {
+            let body = near[id].0;
+            let own = carriers.iter().filter(move |(entity, _)| *entity == body);
+            own.map(|(_, carrier)| *carrier)
+        });
+    }
+
+    /// Begins contact of a cloth with itself, if it has any.
+    fn begin_alone(&mut self) -> Option<(Box<MutualContact>, ClothSelfCollision)> {
+        let settings = self.scratch.self_collision?;
+        if !settings.with_itself {
+            return None;
+        }
+        let mut mutual = self.scratch.mutual.take().unwrap_or_default();
+        mutual.begin(&[self.participant(settings, None)], |_, _| true);
+        Some((mutual, settings))
+    }
+
+    /// The cloth, as contact of cloth with cloth sees it.
+    pub(crate) fn participant(
+        &mut self,
+        settings: ClothSelfCollision,
+        to_common: Option<Isometry3d>,
+    ) -> Participant<'_> {
+        Participant {
+            particles: &mut self.particles,
+            sheet: self.built.shared.sheet(),
+            to_common,
+            settings,
+            is_fixed: self.state.rest.is_asleep(),
+        }
+    }
+
+    /// Holds it near its pose as a sub-step ends, if it follows one. Returns whether anything moved.
+    pub(crate) fn hold(&mut self, substep: &mut SubStep) -> bool {
+        let constraints = &self.scratch.constraints;
+        !constraints.is_empty() && constraints.hold(&mut self.particles, substep)
+    }
+
+    /// Pushes it out of colliders. Returns whether anything moved.
+    pub(crate) fn touch(&mut self, substep: SubStep, colliders: &Colliders) -> bool {
+        let ClothScratch {
+            near,
+            near_set,
+            detection,
+            contact_settings,
+            carried,
+            ..
+        } = &mut *self.scratch;
+        let place = Place {
+            frame: self.frame,
+            carried: *carried,
+            layers: self.layers.copied().unwrap_or_default(),
+        };
+        detection.respond(&mut self.particles, contact_settings, substep, |numbered| {
+            add_far(near, near_set, &place, colliders, numbered);
+        })
+    }
+}
+
+/// The frame in which a cloth sees colliders, and its layers.
+struct Place<'a> {
+    frame: &'a ClothFrame,
+    carried: Option<Carried>,
+    layers: ClothLayers,
+}
+
+/// Adds the colliders that were far away as the tick began: they may be near now. Known colliders keep their number.
+fn add_far(
+    near: &mut Vec<(Entity, MovingCollider)>,
+    near_set: &mut EntityHashSet,
+    place: &Place,
+    colliders: &Colliders,
+    numbered: &mut Vec<(usize, MovingCollider)>,
+) {
+    near_set.clear();
+    near_set.extend(near.iter().map(|(known, _)| *known));
+    for (entity, motion, others) in colliders {
+        if others
+            .copied()
+            .unwrap_or_default()
+            .interacts_with(place.layers)
+            && !near_set.contains(&entity)
+            && let Some(collider) = motion.seen_from(place.frame, place.carried.as_ref())
+        {
+            numbered.push((near.len(), collider.clone()));
+            near.push((entity, collider));
+        }
+    }
+}

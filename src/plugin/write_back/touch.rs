@@ -1,0 +1,83 @@
+//! Sends a message when a cloth and a collider begin to touch, and when they no longer do.
+
+use bevy::ecs::{
+    entity::Entity,
+    entity_disabling::Disabled,
+    lifecycle::Discard,
+    message::MessageWriter,
+    observer::On,
+    query::Allow,
+    system::{Local, Query},
+};
+
+use crate::plugin::{
+    authoring::{ClothOrder, Ordered},
+    state::{ClothContacts, ClothState, ClothTouchStarted, ClothTouchStopped},
+};
+
+/// Sends messages of the difference between this tick and the last.
+pub(crate) fn send_touch_messages(
+    mut cloths: Query<(Entity, Option<&ClothOrder>, &ClothState, &mut ClothContacts)>,
+    mut started: MessageWriter<ClothTouchStarted>,
+    mut stopped: MessageWriter<ClothTouchStopped>,
+    mut touching: Local<Vec<Ordered>>,
+) {
+    touching.clear();
+    for (cloth, order, _, contacts) in &cloths {
+        if !(contacts.now.is_empty() && contacts.reported.is_empty()) {
+            touching.push((order.copied().unwrap_or_default(), cloth));
+        }
+    }
+    touching.sort_unstable();
+    let mut each = cloths.iter_many_mut(touching.iter().map(|(_, cloth)| cloth));
+    while let Some((cloth, _, state, mut contacts)) = each.fetch_next() {
+        let ClothContacts { now, reported, .. } = &mut *contacts;
+        if !state.is_valid {
+            now.clear();
+        }
+        for contact in now.iter() {
+            if let Some(reported) = reported
+                .iter_mut()
+                .find(|reported| reported.collider == contact.collider)
+            {
+                reported.particles = reported.particles.max(contact.particles);
+                reported.deepest_penetration = reported
+                    .deepest_penetration
+                    .max(contact.deepest_penetration);
+            } else {
+                reported.push(*contact);
+                started.write(ClothTouchStarted {
+                    cloth,
+                    collider: contact.collider,
+                    particles: contact.particles,
+                    deepest_penetration: contact.deepest_penetration,
+                });
+            }
+        }
+        reported.retain(|reported| {
+            let lasts = now
+                .iter()
+                .any(|contact| contact.collider == reported.collider);
+            if !lasts {
+                stopped.write(reported.stopped(cloth));
+            }
+            lasts
+        });
+    }
+}
+
+/// Ends the contacts of a cloth that is removed, and contacts that a game replaces, of a disabled cloth too.
+pub(crate) fn send_stopped_messages(
+    removed: On<Discard, ClothContacts>,
+    contacts: Query<&ClothContacts, Allow<Disabled>>,
+    mut stopped: MessageWriter<ClothTouchStopped>,
+) {
+    if let Ok(contacts) = contacts.get(removed.entity) {
+        stopped.write_batch(
+            contacts
+                .reported
+                .iter()
+                .map(|reported| reported.stopped(removed.entity)),
+        );
+    }
+}
