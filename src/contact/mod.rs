@@ -1,71 +1,43 @@
-//! Floor 2: contact: collider shapes, swept tests, push-out, friction, penetration depth and area.
+//! Floor 2, contact: what a cloth touches, and the response.
+//!
+//! ```text
+//!   colliders, friction → candidates → particles → triangles → edges ─┐
+//!                                              bodies ────────────────┴→ detection        layers: cloth on cloth
+//! ```
+//!
+//! A folder imports from those before it. [`Detection`] keeps what a cloth may touch in a tick, and pushes it out in each
+//! sub-step. [`MutualContact`] does the same for cloth on cloth.
 
-mod body;
-mod boxes;
+mod bodies;
 mod candidates;
-mod carriers;
-mod cells;
-mod collider;
-mod corners;
-mod depth;
+mod colliders;
 mod detection;
-mod edge_contact;
-mod edge_room;
-mod eight;
-mod embedded;
-mod faces;
-mod fan_view;
+mod edges;
 mod friction;
-mod geometry;
-mod guard;
-mod held;
-mod kept;
-mod lanes;
 mod layers;
-mod mass;
-mod moving;
-mod mutual;
-mod narrow_phase;
-mod nearest;
-mod particle;
-mod planes;
-mod pushing;
-mod response;
-mod shape;
-mod shape_cache;
-mod shape_memory;
-mod sharp;
-mod source;
+mod particles;
 #[cfg(test)]
 mod tests;
-mod touch;
-mod triangle;
+mod triangles;
 
 #[doc(hidden)]
-pub use body::BodyChange;
-pub(crate) use carriers::Carrier;
-pub use collider::{ClothCollider, MeshCollider};
+pub use bodies::BodyChange;
+pub(crate) use bodies::Carrier;
+pub use candidates::{ContactPoint, NarrowPhase};
 #[doc(hidden)]
-pub use corners::meets_triangles;
+pub use candidates::{ContactSettings, PARTICLES_FROM, Touch};
 #[doc(hidden)]
-pub use depth::deepest_penetration;
+pub use colliders::{BodyMass, MovingCollider};
+pub use colliders::{
+    ClothCollider, ClothLayers, ColliderGeometry, ColliderShape, MeshCollider, SharedCollider,
+};
 #[doc(hidden)]
 pub use detection::Detection;
-pub use geometry::ColliderGeometry;
-pub use layers::ClothLayers;
+pub use layers::ClothSelfCollision;
 #[doc(hidden)]
-pub use mass::BodyMass;
+pub use layers::intersections;
+pub(crate) use layers::{Inside, MutualContact, Participant, Sheet};
 #[doc(hidden)]
-pub use moving::MovingCollider;
-pub use mutual::ClothSelfCollision;
+pub use particles::deepest_penetration;
 #[doc(hidden)]
-pub use mutual::intersections;
-pub(crate) use mutual::{Inside, MutualContact, Participant, Sheet};
-pub use narrow_phase::NarrowPhase;
-#[doc(hidden)]
-pub use narrow_phase::PARTICLES_FROM;
-pub use shape::ColliderShape;
-pub use source::SharedCollider;
-pub use touch::ContactPoint;
-#[doc(hidden)]
-pub use touch::{ContactSettings, Touch};
+pub use triangles::meets_triangles;

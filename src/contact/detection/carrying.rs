@@ -3,7 +3,10 @@
 use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
-    contact::{MovingCollider, body::Body, carriers::Carrier},
+    contact::{
+        bodies::{Body, Carrier},
+        colliders::MovingCollider,
+    },
     solver::SubStep,
 };
 

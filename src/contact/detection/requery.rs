@@ -5,7 +5,7 @@ use bevy::math::Vec3;
 use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
-    contact::{candidates::Ranges, touch::ContactSettings},
+    contact::candidates::{ContactSettings, Ranges},
 };
 
 /// Number of measurements of the particles' displacements in a sub-step, before a new search.
@@ -124,7 +124,7 @@ impl Detection {
 
     /// Clears the memory of edges.
     #[cfg(test)]
-    pub(in crate::contact) fn forget_edges(&mut self) {
+    pub(crate) fn forget_edges(&mut self) {
         self.shapes.forget_edges();
     }
 }

@@ -5,7 +5,10 @@ use bevy::math::{Isometry3d, Mat3, Quat, Vec3};
 use super::{all_of, build};
 use crate::{
     cloth::ClothParticles,
-    contact::{BodyMass, ColliderShape, ContactSettings, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::{BodyMass, ColliderShape, MovingCollider},
+    },
     solver::SubStep,
 };
 

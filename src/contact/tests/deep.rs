@@ -5,7 +5,11 @@ use bevy::math::Vec3;
 use super::{ONLY, build, deepest_at, random::Random};
 use crate::{
     cloth::ClothParticles,
-    contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::MovingCollider,
+        detection::Detection,
+    },
 };
 
 /// A ball appears with its centre just beyond a sheet whose noise is larger than that distance: the nearest ways out of a

@@ -4,7 +4,10 @@ use bevy::math::{Isometry3d, Vec3};
 
 use super::{all_of, build};
 use crate::{
-    contact::{ColliderShape, ContactSettings, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::{ColliderShape, MovingCollider},
+    },
     solver::SubStep,
 };
 

@@ -9,7 +9,10 @@ use super::{
 };
 use crate::{
     cloth::ClothError,
-    contact::{ClothCollider, ColliderShape, ContactSettings, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::{ClothCollider, ColliderShape},
+    },
     solver::SubStep,
 };
 

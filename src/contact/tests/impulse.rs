@@ -5,7 +5,10 @@ use bevy::math::{DVec3, Quat, Vec3};
 use super::{all_of, at, build};
 use crate::{
     cloth::{ClothMaterial, ClothParticles, Springs},
-    contact::{ColliderShape, ContactSettings, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::{ColliderShape, MovingCollider},
+    },
     solver::{Solver, TickStep},
 };
 

@@ -7,19 +7,18 @@ use super::random::{Random, cases};
 use crate::{
     cloth::{Block, ClothParticles, LANES, Layout},
     contact::{
-        ClothCollider, ColliderShape,
         candidates::ContactBlock,
-        cells::{Place, push_cells, push_cells_baseline},
-        eight::{Cells, nearest},
-        friction::{Axle, hold_all, hold_all_baseline},
-        held::Held,
-        lanes::{
-            Cuboid, HalfSpace, LaneMotion, Round, Sums, push_cuboid, push_cuboid_baseline,
-            push_half_space, push_half_space_baseline, push_round, push_round_baseline,
+        colliders::{ClothCollider, ColliderShape},
+        friction::{Held, PushOut},
+        particles::{
+            Cuboid, Frame, HalfSpace, LaneMotion, Planes, Round, Sums, find_planes, push_cuboid,
+            push_cuboid_baseline, push_half_space, push_half_space_baseline, push_planes,
+            push_planes_baseline, push_round, push_round_baseline,
         },
-        planes::{Frame, Planes, find_planes, push_planes, push_planes_baseline},
-        response::PushOut,
-        triangle,
+        triangles::{
+            Axle, Cells, Place, hold_all, hold_all_baseline, nearest, nearest_of_each, push_cells,
+            push_cells_baseline,
+        },
     },
 };
 
@@ -210,9 +209,9 @@ proptest! {
             }
         }
         let point = random.within(0.5);
-        let near = nearest(&views[0], &views[1], &views[2], point.to_array());
+        let near = nearest_of_each(&views[0], &views[1], &views[2], point.to_array());
         for (lane, triangle) in triangles.iter().enumerate() {
-            let truth = triangle::nearest(*triangle, [point; 2]).offset.length();
+            let truth = nearest(*triangle, [point; 2]).offset.length();
             prop_assert!((near.distance[lane] - truth).abs() < 1e-5, "{} {truth}", near.distance[lane]);
         }
     }

@@ -4,7 +4,7 @@ use bevy::math::{Vec3, bounding::BoundingSphere};
 use proptest::prelude::*;
 
 use super::random::{Random, cases};
-use crate::contact::{ColliderShape, MovingCollider};
+use crate::contact::colliders::{ColliderShape, MovingCollider};
 
 /// Some point inside of a collider when a part of the tick has passed, that is no farther than `beyond` (m) from its
 /// origin.

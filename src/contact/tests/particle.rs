@@ -7,7 +7,11 @@ use bevy::math::{Isometry3d, Quat, Vec3};
 use super::{ONLY, all_of, at, build, deepest_at, loose};
 use crate::{
     cloth::{ClothParticles, Springs},
-    contact::{ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::{ColliderShape, MovingCollider},
+        detection::Detection,
+    },
     solver::{Solver, SubStep, TickStep},
 };
 

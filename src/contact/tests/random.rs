@@ -3,7 +3,7 @@
 use bevy::math::{Isometry3d, Quat, Vec3};
 use proptest::prelude::ProptestConfig;
 
-use crate::contact::{ClothCollider, ColliderShape, MovingCollider};
+use crate::contact::colliders::{ClothCollider, ColliderShape, MovingCollider};
 
 /// Whether tests are to run at their full length, which takes minutes: CI sets `BEVY_DRAPE_LONG`.
 fn is_long() -> bool {

@@ -7,7 +7,10 @@ use bevy::math::{Isometry3d, Quat, Vec3};
 use super::{all_of, at};
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
-    contact::{ColliderShape, ContactSettings, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::{ColliderShape, MovingCollider},
+    },
     solver::{Solver, TickStep},
 };
 

@@ -4,7 +4,10 @@ use bevy::math::{Isometry3d, Vec3};
 use proptest::prelude::*;
 
 use super::random::{Random, cases};
-use crate::contact::{ClothCollider, ColliderShape, triangle::at};
+use crate::contact::{
+    colliders::{ClothCollider, ColliderShape},
+    triangles::at,
+};
 
 fn shape(collider: &ClothCollider) -> ColliderShape {
     collider.scaled(Vec3::ONE).expect("a valid collider")
@@ -85,7 +88,7 @@ proptest! {
         for _ in 0..20 {
             let part = random.between(0.01, 0.99);
             let level = height * (0.5 - part);
-            let crossing = |edges: &[crate::contact::geometry::SharpEdge]| {
+            let crossing = |edges: &[crate::contact::colliders::SharpEdge]| {
                 let mut angles: Vec<f32> = edges.iter().filter_map(|edge| {
                     let [a, b] = edge.ends;
                     let is_crossing = a.y.min(b.y) <= level && a.y.max(b.y) > level;

@@ -12,8 +12,9 @@ use super::{
 use crate::{
     cloth::{ClothParticles, Surface},
     contact::{
-        ClothCollider, ColliderShape, ContactPoint, ContactSettings, Detection, MovingCollider,
-        NarrowPhase,
+        candidates::{ContactPoint, ContactSettings, NarrowPhase},
+        colliders::{ClothCollider, ColliderShape, MovingCollider},
+        detection::Detection,
     },
     solver::SubStep,
 };

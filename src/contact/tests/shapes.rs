@@ -8,7 +8,10 @@ use super::{
     random::{Random, cases},
 };
 use crate::{
-    contact::{ContactSettings, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::MovingCollider,
+    },
     solver::SubStep,
 };
 

@@ -8,7 +8,9 @@ use super::{
     random::{Random, cases},
 };
 use crate::contact::{
-    ColliderShape, ContactSettings, MovingCollider, NarrowPhase, response::first_touch,
+    candidates::{ContactSettings, NarrowPhase},
+    colliders::{ColliderShape, MovingCollider},
+    friction::first_touch,
 };
 
 /// One particle against one collider: where it ends, and its displacement.

@@ -11,7 +11,11 @@ use super::{
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, SpringKind, Springs, Surface},
-    contact::{ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::{ColliderShape, MovingCollider},
+        detection::Detection,
+    },
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     solver::{Solver, TickStep},
 };

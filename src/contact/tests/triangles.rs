@@ -9,7 +9,11 @@ use super::{
 };
 use crate::{
     cloth::{ClothParticles, Surface},
-    contact::{ContactSettings, MovingCollider, NarrowPhase, triangle::nearest},
+    contact::{
+        candidates::{ContactSettings, NarrowPhase},
+        colliders::MovingCollider,
+        triangles::nearest,
+    },
 };
 
 const SPACING: f32 = 0.1;

@@ -5,7 +5,10 @@ use std::f32::consts::PI;
 use bevy::math::{Quat, Vec3};
 
 use super::{ONLY, all_of, at, build};
-use crate::contact::{ColliderShape, ContactSettings, MovingCollider, NarrowPhase};
+use crate::contact::{
+    candidates::{ContactSettings, NarrowPhase},
+    colliders::{ColliderShape, MovingCollider},
+};
 
 /// A flat grid of 2 m, 101 × 101, cut by a ball at height h: a disc of radius a = √(R² − h²), whose particles stand
 /// for its area to a ring of half a spacing around its edge; they are as deep as the ball there, 0 at the edge, so

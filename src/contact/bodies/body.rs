@@ -1,0 +1,313 @@
+//! Dynamic colliders: bodies with a mass, which cloth pushes back.
+
+use bevy::math::{DVec3, Isometry3d, Quat, Vec3};
+
+use super::carriers::Carriers;
+use crate::{
+    cloth::{Block, ClothParticles, LANES},
+    contact::{
+        colliders::{BodyMass, ColliderSubstep, MovingCollider},
+        friction::Impulse,
+    },
+    solver::SubStep,
+};
+
+/// The change that cloth has made to a body's motion.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub struct BodyChange {
+    /// Change of the velocity of its centre of mass (m/s).
+    pub velocity: Vec3,
+    /// Change of its angular velocity (rad/s).
+    pub angular_velocity: Vec3,
+    /// Change of its shape's origin at the end of the tick (m).
+    pub translation: Vec3,
+    /// Change of its rotation at the end of the tick: axis × angle (rad).
+    pub rotation: Vec3,
+}
+
+impl BodyChange {
+    /// Whether all values are finite.
+    pub fn is_finite(&self) -> bool {
+        self.velocity.is_finite()
+            && self.angular_velocity.is_finite()
+            && self.translation.is_finite()
+            && self.rotation.is_finite()
+    }
+
+    /// The same change in a rotated frame.
+    pub fn turned(self, rotation: Quat) -> Self {
+        Self {
+            velocity: rotation * self.velocity,
+            angular_velocity: rotation * self.angular_velocity,
+            translation: rotation * self.translation,
+            rotation: rotation * self.rotation,
+        }
+    }
+}
+
+/// A body during a tick, changed by the pushes of each sub-step.
+///
+/// A sub-step first pushes the particles as if the body were static. That gives the impulse `g = Σ m Δx` and, with the
+/// body's inverse mass matrix W, the body's displacement `W g` under that impulse. Particles and body then share the
+/// correction: the particles move by the fraction `s` of theirs, and the body by `s W g`. The mass-weighted remaining
+/// error is least for
+///
+/// ```text
+/// s = a / (a + gᵀ W g),   a = Σ m Δx²
+/// ```
+///
+/// A heavy body gives s = 1; particles of mass m moving one way and a body of mass M share as M to m. Momentum is
+/// conserved, and kinetic energy never grows: where the full push takes `a`, it changes by
+/// `−s a + s² (a + gᵀ W g) / 2 ≤ 0`.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    /// Index of the caller's collider.
+    pub id: usize,
+    mass: BodyMass,
+    /// Its motion without any contact.
+    start: MovingCollider,
+    /// Its motion when candidates were last searched for.
+    searched: MovingCollider,
+    change: BodyChange,
+    /// The particles that carry it while springs are solved.
+    pub carriers: Carriers,
+}
+
+/// Blocks of particles before a push.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Before(Vec<(usize, Block)>);
+
+/// Linear and angular impulse times the sub-step, given by particles (kg·m, kg·m²) about a centre, and `Σ m Δx²`
+/// (kg·m²).
+#[derive(Debug, Default, Clone, Copy)]
+struct PushSum {
+    push: DVec3,
+    turn: DVec3,
+    square: f64,
+}
+
+impl PushSum {
+    fn add(&mut self, mass: f64, offset: DVec3, way: Vec3) {
+        let way = way.as_dvec3();
+        self.push += mass * way;
+        self.turn += offset.cross(mass * way);
+        self.square += mass * way.length_squared();
+    }
+
+    /// The fraction that the particles keep, and the body's displacement and rotation.
+    fn shared(&self, mass: &BodyMass) -> (f32, DVec3, DVec3) {
+        let go = f64::from(mass.inverse_mass) * (mass.free.as_dmat3() * self.push);
+        let turn = mass.inverse_inertia.as_dmat3() * self.turn;
+        let body = go.dot(self.push) + turn.dot(self.turn);
+        let part = self.square / (self.square + body);
+        // Nothing was pushed, or the numbers are not finite.
+        if !(part.is_finite() && go.is_finite() && turn.is_finite()) {
+            return (1.0, DVec3::ZERO, DVec3::ZERO);
+        }
+        (part as f32, -part * go, -part * turn)
+    }
+}
+
+impl Before {
+    /// Saves these blocks; some may be named twice.
+    pub fn save(&mut self, blocks: impl Iterator<Item = usize>, particles: &ClothParticles) {
+        self.0.clear();
+        self.0
+            .extend(blocks.map(|block| (block, particles.blocks()[block])));
+        self.0.sort_unstable_by_key(|(block, _)| *block);
+        self.0.dedup_by_key(|(block, _)| *block);
+    }
+}
+
+impl Body {
+    /// The body of a collider, if the collider is dynamic. Reuses the memory of an earlier body.
+    pub fn of(id: usize, collider: &MovingCollider, spare: &mut Vec<Carriers>) -> Option<Self> {
+        let mass = collider.body?;
+        let mut carriers = spare.pop().unwrap_or_default();
+        carriers.clear();
+        Some(Self {
+            id,
+            mass,
+            start: collider.clone(),
+            searched: collider.clone(),
+            change: BodyChange::default(),
+            carriers,
+        })
+    }
+
+    /// The change of its motion so far in the tick.
+    pub fn change(&self) -> BodyChange {
+        self.change
+    }
+
+    /// Begins the tick again. Returns the original motion.
+    pub fn restart(&mut self) -> MovingCollider {
+        self.change = BodyChange::default();
+        self.carriers.clear();
+        self.start.clone()
+    }
+
+    /// Notes the motion with which candidates have been searched for.
+    pub fn set_searched(&mut self, way: &MovingCollider) {
+        self.searched = way.clone();
+    }
+
+    /// Largest distance of any point of its surface from its expected position in the rest of the tick (m).
+    pub fn deviation(&self, way: &MovingCollider, passed: f32) -> f32 {
+        let deviation = |part: f32| {
+            let (expected, is) = (self.searched.pose_at(part), way.pose_at(part));
+            let turned = is.rotation.angle_between(expected.rotation);
+            let swing = if turned > 0.0 {
+                turned * way.shape.core_extent()
+            } else {
+                0.0
+            };
+            Vec3::from(is.translation).distance(expected.translation.into()) + swing
+        };
+        deviation(passed).max(deviation(1.0))
+    }
+
+    /// Shares a push between particles, which were pushed as if the body were static, and the body. Returns the
+    /// fraction of the momentum that the particles keep, and the body's displacement (m).
+    pub fn share(
+        &mut self,
+        before: &Before,
+        particles: &mut ClothParticles,
+        way: &mut MovingCollider,
+        substep: SubStep,
+    ) -> [f32; 2] {
+        let (pose, centre) = self.centre(way, substep.end());
+        let out = |place: Vec3| way.shape.nearest(pose, place).normal;
+        let (mut places, mut moves) = (PushSum::default(), PushSum::default());
+        for (index, old) in &before.0 {
+            let new = &particles.blocks()[*index];
+            self.carriers.note(*index, [old, new], out);
+            for lane in 0..LANES {
+                let inverse_mass = new.inverse_mass(lane);
+                let position = new.position(lane);
+                if inverse_mass == 0.0 || position == old.position(lane) {
+                    continue;
+                }
+                let mass = 1.0 / f64::from(inverse_mass);
+                let offset = position.as_dvec3() - centre;
+                places.add(mass, offset, position - old.position(lane));
+                moves.add(
+                    mass,
+                    offset,
+                    new.displacement(lane) - old.displacement(lane),
+                );
+            }
+        }
+        let (place_part, go, turn) = places.shared(&self.mass);
+        let (move_part, push, spin) = moves.shared(&self.mass);
+        for (index, old) in &before.0 {
+            let new = &mut particles.blocks_mut()[*index];
+            for lane in 0..LANES {
+                let position = old.position(lane).lerp(new.position(lane), place_part);
+                let displacement = old
+                    .displacement(lane)
+                    .lerp(new.displacement(lane), move_part);
+                if new.position(lane) != old.position(lane) {
+                    new.set_position(lane, position);
+                    new.set_displacement(lane, displacement);
+                }
+            }
+        }
+        self.carriers.add_noted();
+        let gone = self.send_on(way, substep, particles.substep(), [go, turn, push, spin]);
+        [move_part, gone]
+    }
+
+    /// Makes particles carry the body in the coming sub-step, unless they already carry another one.
+    pub fn lend<'a>(
+        &mut self,
+        particles: &mut ClothParticles,
+        (way, coming): (&MovingCollider, SubStep),
+        others: impl Iterator<Item = &'a Carriers> + Clone,
+    ) {
+        let (pose, centre) = self.centre(way, coming.start());
+        let motion = ColliderSubstep {
+            origin: pose.translation.into(),
+            ..way.in_substep(coming)
+        };
+        let surface = |place: Vec3| motion.surface_motion(place);
+        let body = (&self.mass, centre);
+        self.carriers.lend(particles, body, surface, others);
+    }
+
+    /// Collects the impulses of the particles that carried the body in a sub-step, and updates its motion. Returns the
+    /// impulse about the origin of its shape, and the body's displacement (m); `None` if there was no impulse.
+    pub fn take_back(
+        &mut self,
+        particles: &mut ClothParticles,
+        way: &mut MovingCollider,
+        substep: SubStep,
+    ) -> Option<(Impulse, f32)> {
+        let (pose, centre) = self.centre(way, substep.end());
+        let [push, turn] = self.carriers.take_back(particles, centre);
+        let arm = centre - Vec3::from(pose.translation).as_dvec3();
+        let given = Impulse {
+            linear: push,
+            angular: turn + arm.cross(push),
+        };
+        let go = f64::from(self.mass.inverse_mass) * (self.mass.free.as_dmat3() * push);
+        let spin = self.mass.inverse_inertia.as_dmat3() * turn;
+        if !(go.is_finite() && spin.is_finite()) || [push, turn] == [DVec3::ZERO; 2] {
+            return None;
+        }
+        let gone = self.send_on(way, substep, particles.substep(), [go, spin, go, spin]);
+        Some((given, gone))
+    }
+
+    /// Its pose at a fraction of the tick, and its centre of mass then (m).
+    fn centre(&self, way: &MovingCollider, passed: f32) -> (Isometry3d, DVec3) {
+        let pose = way.pose_at(passed);
+        let arm = self.arm(&pose);
+        (pose, (Vec3::from(pose.translation) + arm).as_dvec3())
+    }
+
+    /// Vector from the origin of its shape to its centre of mass (m).
+    fn arm(&self, pose: &Isometry3d) -> Vec3 {
+        pose.rotation * self.start.from.rotation.inverse() * self.mass.centre
+    }
+
+    /// Updates its motion at the end of a sub-step of `dt` (s), with an additional displacement (m) and rotation (rad),
+    /// and with a change of its displacement per sub-step. Returns the largest displacement of any of its points (m).
+    fn send_on(
+        &mut self,
+        way: &mut MovingCollider,
+        substep: SubStep,
+        dt: f32,
+        changes: [DVec3; 4],
+    ) -> f32 {
+        let passed = substep.end();
+        let pose = way.pose_at(passed);
+        let arm = self.arm(&pose);
+        let substeps = substep.count as f32;
+        let [go, turn, push, spin] = changes.map(DVec3::as_vec3);
+        self.change.velocity += push / dt;
+        self.change.angular_velocity += spin / dt;
+        // It continues from its current pose with its current velocity.
+        let rotation = (Quat::from_scaled_axis(turn) * pose.rotation).normalize();
+        let here = Vec3::from(pose.translation) + go + arm - Quat::from_scaled_axis(turn) * arm;
+        let step = way.to - Vec3::from(way.from.translation) + (push - spin.cross(arm)) * substeps;
+        way.turn += spin * substeps;
+        way.from = Isometry3d::new(
+            here - step * passed,
+            (Quat::from_scaled_axis(-way.turn * passed) * rotation).normalize(),
+        );
+        way.to = here + step * (1.0 - passed);
+        let (end, expected) = (way.pose_at(1.0), self.start.pose_at(1.0));
+        self.change.translation = way.to - self.start.to;
+        let rotation = end.rotation * expected.rotation.inverse();
+        let rotation = if rotation.w < 0.0 {
+            -rotation
+        } else {
+            rotation
+        };
+        self.change.rotation = rotation.to_scaled_axis();
+        let swing = turn.length() * (way.shape.core_extent() + arm.length());
+        let swing = if swing > 0.0 { swing } else { 0.0 };
+        go.length() + swing
+    }
+}

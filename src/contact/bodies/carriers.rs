@@ -1,0 +1,214 @@
+//! Particles that carry a body between sub-steps.
+//!
+//! A contact alone gives a body, in a sub-step, at most the momentum of the particles that it pushes. A heavy body on
+//! light cloth would displace them far before they held it. So while the springs are solved, each particle that the
+//! body has just pushed carries a part `μᵢ` of its mass, a [`Load`]. The springs move it by `Δᵢ`, and the body receives
+//! the impulse `μᵢ Δᵢ` there. Momentum and angular momentum are conserved.
+//!
+//! Let J be the motion of the body's surface at a point per unit of velocity and spin, and W its inverse mass matrix.
+//! The body then has the energy `½ ‖Σ Jᵢᵀ μᵢ Δᵢ‖²_W ≤ ½ Σ μᵢ Δᵢ² · K Σ μᵢ`. K is the largest inverse mass of the body
+//! at any of these points and directions. So no energy is gained as long as `Σ μᵢ ≤ 1/K`: for a ball, which turns, 2/7
+//! of its mass.
+//!
+//! A particle has one inverse mass, the same along the surface and across it. It begins the sub-step with the body's
+//! momentum there, in all directions: a carried body rolls, and does not slide. (With the particle's own momentum along
+//! the surface instead, the body came to rest as soon, but without friction it fell through: its particles slipped
+//! aside.)
+
+use bevy::math::{DVec3, Mat3, Vec3};
+
+use crate::{
+    cloth::{Block, ClothParticles, LANES, Load, Slot},
+    contact::colliders::BodyMass,
+};
+
+/// Number of sub-steps that a particle carries after its last push.
+const REMEMBERED: u8 = 3;
+
+/// Largest ratio of a particle's load to its own mass: threads hold larger ones badly.
+const MAX_LOAD: f32 = 3.0e3;
+
+/// A particle that carries a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Carrier {
+    slot: Slot,
+    /// Outward normal of the body at the last contact, of length 1.
+    normal: Vec3,
+    /// Number of sub-steps left.
+    left: u8,
+}
+
+impl Carrier {
+    /// Whether its block is one of `blocks`.
+    pub(crate) fn is_in(&self, blocks: usize) -> bool {
+        self.slot.block < blocks && self.slot.lane < LANES
+    }
+}
+
+/// The particles that carry a body, in the order of the cloth.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Carriers {
+    all: Vec<Carrier>,
+    /// Scratch memory for the next list.
+    next: Vec<Carrier>,
+    /// Range of their loads among those of the particles.
+    loads: [usize; 2],
+    /// Ratio of the body's mass to that of all particles of a row and a column through the carriers.
+    ratio: f32,
+}
+
+impl Carriers {
+    pub fn clear(&mut self) {
+        self.all.clear();
+        self.loads = [0; 2];
+        self.ratio = 0.0;
+    }
+
+    /// Ratio of the body's mass to that of the threads that hold it, times the fraction of its weight that the cloth
+    /// holds. `held` is the change of its velocity by the cloth (m/s) in a tick; `fall` is that by gravity (m/s).
+    pub fn load_ratio(&self, held: f32, fall: f32) -> f32 {
+        // Without a fall there is no weight to hold.
+        let part = held / fall.max(f32::MIN_POSITIVE);
+        if fall > 0.0 && part > 0.0 {
+            self.ratio * part.min(1.0)
+        } else {
+            0.0
+        }
+    }
+
+    pub fn as_slice(&self) -> &[Carrier] {
+        &self.all
+    }
+
+    /// Restores the carriers of an earlier tick.
+    pub fn recall(&mut self, carriers: impl Iterator<Item = Carrier>) {
+        self.clear();
+        self.all.extend(carriers);
+    }
+
+    fn position(&self, slot: Slot) -> Result<usize, usize> {
+        let key = |slot: Slot| (slot.block, slot.lane);
+        self.all
+            .binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
+    }
+
+    /// Notes the particles of a block that the body has just pushed. `out` gives the outward normal at a point. Blocks
+    /// come in the order of the cloth.
+    pub fn note(&mut self, block: usize, [old, new]: [&Block; 2], out: impl Fn(Vec3) -> Vec3) {
+        for lane in 0..LANES {
+            if new.inverse_mass(lane) == 0.0 || new.position(lane) == old.position(lane) {
+                continue;
+            }
+            let slot = Slot { block, lane };
+            let normal = out(new.position(lane));
+            let carrier = Carrier {
+                slot,
+                normal,
+                left: REMEMBERED,
+            };
+            match self.position(slot) {
+                Ok(at) => self.all[at] = carrier,
+                Err(_) => self.next.push(carrier),
+            }
+        }
+    }
+
+    /// Adds the noted particles that are new.
+    pub fn add_noted(&mut self) {
+        if !self.next.is_empty() {
+            self.all.append(&mut self.next);
+            self.all
+                .sort_unstable_by_key(|carrier| (carrier.slot.block, carrier.slot.lane));
+        }
+    }
+
+    /// Makes the particles carry a body around a centre (m) in the coming sub-step, in which its `surface` moves by
+    /// that much at each point. A particle carries one body at a time: the `others` come first.
+    pub fn lend<'a>(
+        &mut self,
+        particles: &mut ClothParticles,
+        (mass, centre): (&BodyMass, DVec3),
+        surface: impl Fn(Vec3) -> Vec3,
+        others: impl Iterator<Item = &'a Self> + Clone,
+    ) {
+        self.all.retain_mut(|carrier| {
+            let Slot { block, lane } = carrier.slot;
+            let block = particles.blocks().get(block);
+            let is_left = carrier.left > 0;
+            carrier.left = carrier.left.saturating_sub(1);
+            is_left
+                && block.is_some_and(|block| block.inverse_mass(lane) > 0.0)
+                && !others
+                    .clone()
+                    .any(|other| other.position(carrier.slot).is_ok())
+        });
+        let (mut sum, mut largest) = (0.0, 0.0_f32);
+        for carrier in &self.all {
+            let block = &particles.blocks()[carrier.slot.block];
+            sum += block.inverse_mass(carrier.slot.lane).recip();
+            let arm = block.position(carrier.slot.lane).as_dvec3() - centre;
+            largest = largest.max(turning(mass, arm.as_vec3()));
+        }
+        // The load hangs by as many threads as there are in both directions.
+        let count = self.all.len() as f32;
+        self.ratio = if count > 0.0 {
+            count.sqrt() / (2.0 * sum * mass.inverse_mass)
+        } else {
+            0.0
+        };
+        let most = (mass.inverse_mass + largest).recip();
+        let part = (most / sum).min(MAX_LOAD);
+        let from = particles.loads_mut().len();
+        if part.is_finite() && part > 0.0 {
+            for &Carrier { slot, normal, .. } in &self.all {
+                let block = &particles.blocks()[slot.block];
+                let mass = part / block.inverse_mass(slot.lane);
+                let surface = surface(block.position(slot.lane));
+                let load = Load::new(slot, mass, normal, surface);
+                particles.loads_mut().push(load);
+            }
+        }
+        self.loads = [from, particles.loads_mut().len()];
+    }
+
+    /// Removes the loads. Returns the linear and angular impulse of the sub-step times its duration (kg·m, kg·m²),
+    /// about a centre (m).
+    pub fn take_back(&mut self, particles: &mut ClothParticles, centre: DVec3) -> [DVec3; 2] {
+        let [mut push, mut turn] = [DVec3::ZERO; 2];
+        let [from, to] = std::mem::take(&mut self.loads);
+        for index in from..to {
+            let Load {
+                slot, mass, moved, ..
+            } = particles.loads_mut()[index];
+
+            let given = f64::from(mass) * moved.as_dvec3();
+            let place = particles.blocks()[slot.block].position(slot.lane);
+            push += given;
+            turn += (place.as_dvec3() - centre).cross(given);
+            // A particle pulled away from the body stops carrying it.
+            if let Ok(at) = self.position(slot)
+                && moved.dot(self.all[at].normal) > 0.0
+            {
+                self.all[at].left = 0;
+            }
+        }
+        [push, turn]
+    }
+}
+
+/// The largest inverse mass of a body by rotation at an arm from its centre of mass (m), in any direction (1/kg). It is
+/// the largest eigenvalue of `A = [r]ₓ I⁻¹ [r]ₓᵀ`. One eigenvalue, along r, is 0; the other two follow from the traces
+/// of A and A².
+fn turning(mass: &BodyMass, arm: Vec3) -> f32 {
+    let cross = Mat3::from_cols(
+        Vec3::new(0.0, arm.z, -arm.y),
+        Vec3::new(-arm.z, 0.0, arm.x),
+        Vec3::new(arm.y, -arm.x, 0.0),
+    );
+    let of_arm = cross * mass.inverse_inertia * cross.transpose();
+    let columns = [of_arm.x_axis, of_arm.y_axis, of_arm.z_axis];
+    let squares: f32 = columns.iter().map(|column| column.length_squared()).sum();
+    let trace = of_arm.x_axis.x + of_arm.y_axis.y + of_arm.z_axis.z;
+    (trace + (2.0 * squares - trace * trace).max(0.0).sqrt()) / 2.0
+}

@@ -1,0 +1,215 @@
+//! The particles and triangles that each collider may touch in a tick, in blocks of eight.
+
+use std::ops::Range;
+
+use crate::{
+    cloth::{Fan, Fans, LANES, Lanes, Layout, Slot, Surface},
+    contact::friction::Held,
+};
+
+/// A particle that a collider may touch in the tick, with the triangles that it owns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Candidate {
+    pub particle: u32,
+    /// Its lane, counted through the [`ContactBlock`]s.
+    pub place: u32,
+    /// Whether the triangles that it owns are tested.
+    pub has_faces: bool,
+}
+
+impl Candidate {
+    /// Its contact block and lane.
+    pub fn lane(&self) -> (usize, usize) {
+        (self.place as usize / LANES, self.place as usize % LANES)
+    }
+
+    /// The triangles that are tested for it.
+    pub fn fan<'a>(&self, fans: &'a Fans) -> Fan<'a> {
+        match self.has_faces {
+            true => fans.of(self.particle),
+            false => Fan::default(),
+        }
+    }
+}
+
+/// No contact block.
+const NONE: u32 = u32::MAX;
+
+/// Eight particles, some of which a collider may touch in the tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ContactBlock {
+    /// Which of the cloth's blocks.
+    pub block: u32,
+    /// Bit mask of the lanes that are candidates.
+    pub lanes: u8,
+    /// Blocks of the same collider with the other corners of a grid's cells: to the right, below, and below to the
+    /// right.
+    pub around: [u32; 3],
+    /// Bit mask of the lanes that are tested one by one in this sub-step.
+    pub left: u8,
+    /// Until everything has moved this far, no lane can touch (m).
+    pub clear_until: f32,
+    /// Largest displacement of its particles since the search (m), where that is measured; else 0.
+    pub moved: f32,
+    /// Each particle's share of the cloth's area (m²).
+    pub area: Lanes,
+    /// Largest depth of each (m); negative for the smallest distance.
+    pub depth: Lanes,
+}
+
+impl ContactBlock {
+    pub fn new(block: u32) -> Self {
+        Self {
+            block,
+            lanes: 0,
+            around: [NONE; 3],
+            left: 0,
+            clear_until: f32::NEG_INFINITY,
+            moved: 0.0,
+            area: [0.0; LANES],
+            depth: [f32::NEG_INFINITY; LANES],
+        }
+    }
+
+    /// Whether the cells that its particles own are known.
+    pub fn has_cells(&self) -> bool {
+        self.around[2] != NONE
+    }
+}
+
+/// Everything that colliders may touch in the tick.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Candidates {
+    pub all: Vec<Candidate>,
+    pub blocks: Vec<ContactBlock>,
+    /// For each block of the colliders that are tested against triangles.
+    pub helds: Vec<Held>,
+    /// The last contact block of each of the cloth's blocks.
+    marks: Vec<u32>,
+    /// A bit for each particle, to sort them.
+    found: Vec<u64>,
+}
+
+impl Candidates {
+    /// Clears everything.
+    pub fn clear(&mut self) {
+        self.all.clear();
+        self.blocks.clear();
+        self.helds.clear();
+    }
+
+    /// Begins the tick again.
+    pub fn restart(&mut self) {
+        for contact in &mut self.blocks {
+            contact.depth = [f32::NEG_INFINITY; LANES];
+            contact.clear_until = f32::NEG_INFINITY;
+        }
+        self.helds.fill(Held::NONE);
+    }
+
+    /// Adds the candidates of a collider, in any order. With `is_left_out`, adds the triangles that they own, too; it
+    /// returns whether a triangle is excluded. Returns the ranges of the candidates and their blocks, both in the order
+    /// of the cloth. So the result does not depend on the search method.
+    pub fn add(
+        &mut self,
+        found: &[u32],
+        surface: &Surface,
+        layout: Layout,
+        is_left_out: Option<&impl Fn(&[u32; 3]) -> bool>,
+    ) -> Ranges {
+        let first = [self.all.len(), self.blocks.len(), self.helds.len()];
+        self.sort(found, surface.len());
+        self.marks.resize(layout.blocks(), 0);
+        for index in first[0]..self.all.len() {
+            let particle = self.all[index].particle;
+            let Slot { block, lane } = layout.slot_of(particle as usize);
+            self.all[index].place = (block * LANES + lane) as u32;
+            self.mark(block, first[1]);
+            let Some(is_left_out) = is_left_out else {
+                continue;
+            };
+            // A triangle that is left out takes the particle's others with it.
+            if !surface.faces().of(particle).iter().any(is_left_out) {
+                let fan = surface.fans().of(particle);
+                self.all[index].has_faces = !fan.faces.is_empty();
+                for corner in fan.corners {
+                    self.mark(corner.block, first[1]);
+                }
+            }
+        }
+        self.blocks[first[1]..].sort_unstable_by_key(|contact| contact.block);
+        for (index, contact) in self.blocks.iter().enumerate().skip(first[1]) {
+            self.marks[contact.block as usize] = index as u32;
+        }
+        for candidate in &mut self.all[first[0]..] {
+            let (block, lane) = candidate.lane();
+            let index = self.marks[block] as usize;
+            candidate.place = (index * LANES + lane) as u32;
+            let contact = &mut self.blocks[index];
+            contact.lanes |= 1 << lane;
+            contact.area[lane] = surface.area_of(candidate.particle as usize);
+            if layout.rows > 1 && candidate.has_faces {
+                let strip = layout.strip as usize;
+                let is_last = (block + 1).is_multiple_of(strip);
+                let beside = if is_last {
+                    block + 1 - strip
+                } else {
+                    block + 1
+                };
+                let around = [beside, block + strip, beside + strip];
+                contact.around = around.map(|block| self.marks[block] - first[1] as u32);
+            }
+        }
+        if is_left_out.is_some() {
+            let count = self.blocks.len() - first[1];
+            self.helds.resize(first[2] + count, Held::NONE);
+        }
+        Ranges {
+            candidates: first[0]..self.all.len(),
+            blocks: first[1]..self.blocks.len(),
+            helds: first[2]..self.helds.len(),
+        }
+    }
+
+    /// Adds particles in the order of the cloth, each once.
+    fn sort(&mut self, found: &[u32], particles: usize) {
+        self.found.resize(particles.div_ceil(64), 0);
+        for &particle in found {
+            self.found[particle as usize / 64] |= 1 << (particle % 64);
+        }
+        for (word, bits) in (0_u32..).zip(&mut self.found) {
+            while *bits != 0 {
+                self.all.push(Candidate {
+                    particle: 64 * word + bits.trailing_zeros(),
+                    place: 0,
+                    has_faces: false,
+                });
+                *bits &= *bits - 1;
+            }
+        }
+    }
+
+    /// Makes a block of the cloth one of those from `first` on.
+    fn mark(&mut self, block: usize, first: usize) {
+        let mark = self.marks[block] as usize;
+        let known = self.blocks.get(mark).filter(|_| mark >= first);
+        if known.is_none_or(|known| known.block as usize != block) {
+            self.marks[block] = self.blocks.len() as u32;
+            self.blocks.push(ContactBlock::new(block as u32));
+        }
+    }
+
+    /// The largest depth of a candidate (m).
+    pub fn depth_of(&self, candidate: &Candidate) -> f32 {
+        let (block, lane) = candidate.lane();
+        self.blocks[block].depth[lane]
+    }
+}
+
+/// Ranges of a collider's candidates, their blocks, and their contents.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(crate) struct Ranges {
+    pub candidates: Range<usize>,
+    pub blocks: Range<usize>,
+    pub helds: Range<usize>,
+}

@@ -1,0 +1,72 @@
+//! Settings and results of a cloth's contacts.
+
+use bevy::{math::Vec3, reflect::Reflect};
+
+use super::{blocks::Ranges, narrow_phase::NarrowPhase};
+use crate::contact::colliders::MovingCollider;
+
+/// A particle near a collider, and its depth.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct ContactPoint {
+    /// Index of the particle. If the collider is tested against triangles, the particle that owns them.
+    pub particle: u32,
+    /// Its largest depth inside the collider in the tick (m). If it stayed outside, minus its smallest distance. −∞ if it
+    /// was not tested, because it is pinned or far away, and outside of shapes other than balls, capsules, planes and
+    /// boxes.
+    pub depth: f32,
+}
+
+/// A collider that may touch the cloth in this tick.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Touch {
+    /// The caller's ID of the collider.
+    pub id: usize,
+    /// Its shape and motion.
+    pub collider: MovingCollider,
+    /// Its narrow phase: never `Auto`.
+    pub narrow_phase: NarrowPhase,
+    /// The largest depth (m), 0 if nothing was inside.
+    pub deepest: f32,
+    /// The largest penetrating area of the cloth at the end of a sub-step (m²). Against triangles, it is measured in
+    /// every fourth sub-step and in the last.
+    pub area: f32,
+    /// The largest ∫ depth dA over that area (m³).
+    pub volume: f32,
+    /// The impulse of the cloth on the collider in the tick so far, in the cloth's frame (N·s): the momentum that
+    /// contact and friction took from the cloth. The release of an older overlap does not count.
+    pub impulse: Vec3,
+    /// The angular impulse about the collider's origin, at its position in each sub-step (N·m·s).
+    pub angular_impulse: Vec3,
+    pub(crate) of: Ranges,
+    /// Displacement in the tick so far (m).
+    pub(crate) traveled: f32,
+}
+
+/// The contact settings of a cloth in a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactSettings {
+    /// Radius of each particle (m).
+    pub particle_radius: f32,
+    /// Coulomb's μ.
+    pub friction: f32,
+    /// The narrow phase.
+    pub narrow_phase: NarrowPhase,
+    /// Whether fast motion is tested along its whole path; only comparisons turn this off.
+    #[doc(hidden)]
+    pub is_swept: bool,
+}
+
+impl Default for ContactSettings {
+    /// Points without friction.
+    fn default() -> Self {
+        Self {
+            particle_radius: 0.0,
+            friction: 0.0,
+            narrow_phase: NarrowPhase::Auto,
+            is_swept: true,
+        }
+    }
+}

@@ -1,0 +1,399 @@
+//! Colliders for cloth.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{Isometry3d, Vec3},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    transform::components::Transform,
+};
+use parry3d::{math::Pose, shape::SharedShape};
+
+use super::{
+    geometry::{ColliderGeometry, Parts},
+    shape::ColliderShape,
+    source::{SharedCollider, check_scale},
+};
+use crate::cloth::{ClothError, FARTHEST};
+
+/// A collider for cloth at the entity's [`Transform`]. Every cloth collides with it, unless
+/// [`ClothLayers`](crate::contact::ClothLayers) exclude it. Move it however you like. Cloth pushes it back only if it has a
+/// [`ClothBody`](crate::plugin::ClothBody).
+///
+/// Its velocity, and so its friction, comes from the change of its transform since the last tick. Move it in the
+/// cloth's schedule, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems). To teleport it without a velocity,
+/// insert [`ClothTeleport`](crate::plugin::ClothTeleport).
+///
+/// Fast colliders do not tunnel: if one moves farther in a sub-step than half of its thickness, it is tested along its
+/// whole path.
+///
+/// # Scale
+/// The transform's scale applies to all shapes, also if it is not uniform. A ball stays a ball, by the largest axis.
+/// Capsule, cylinder and cone stay round, by the larger of x and z. Points, meshes and height fields take any scale. A
+/// negative scale mirrors: symmetric shapes do not change, a cone points down, and a mesh is mirrored and keeps its
+/// outer side. A compound with a rotated part needs a uniform scale. No scale may be zero.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// let table = ClothCollider::cylinder(0.6, 0.05);
+/// let stone = ClothCollider::convex_hull(vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+/// let stool = ClothCollider::compound([
+///     (Isometry3d::from_xyz(0.0, 0.5, 0.0), ClothCollider::cuboid(0.4, 0.04, 0.4)),
+///     (Isometry3d::from_xyz(0.0, 0.24, 0.0), ClothCollider::cylinder(0.05, 0.48)),
+/// ]);
+/// let head = ClothCollider::from(Sphere::new(0.12));
+/// # let _ = (table, stone, stool, head);
+/// ```
+#[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(Transform)]
+#[non_exhaustive]
+pub enum ClothCollider {
+    /// A ball.
+    Ball {
+        /// Radius (m), before the transform's scale.
+        radius: f32,
+    },
+    /// A capsule along the entity's y axis, like Bevy's `Capsule3d`.
+    Capsule {
+        /// Radius (m), before the transform's scale.
+        radius: f32,
+        /// Half of the length between the centres of its two half-balls (m), before the transform's scale.
+        half_length: f32,
+    },
+    /// A box, like Bevy's `Cuboid`.
+    Cuboid {
+        /// Half of its side lengths (m), before the transform's scale.
+        half_size: Vec3,
+    },
+    /// The half-space below a plane, whose normal is the entity's y axis.
+    Plane,
+    /// A cylinder along the entity's y axis, like Bevy's `Cylinder`.
+    Cylinder {
+        /// Radius (m), before the transform's scale.
+        radius: f32,
+        /// Half of its height (m), before the transform's scale.
+        half_height: f32,
+    },
+    /// A cone along the entity's y axis with its tip up, like Bevy's `Cone`. Its origin is at half its height.
+    Cone {
+        /// Radius of its base (m), before the transform's scale.
+        radius: f32,
+        /// Half of its height (m), before the transform's scale.
+        half_height: f32,
+    },
+    /// The entity's `Mesh3d`, once its asset has loaded; needs feature `mesh`.
+    Mesh(MeshCollider),
+    /// Several shapes, each with a pose in the entity's frame (m).
+    Compound(Vec<(Isometry3d, Self)>),
+    /// Points, triangles or heights given in code. They cannot be serialized: loaded from a scene file, the collider
+    /// raises a [`ClothFault`](crate::plugin::ClothFault).
+    Shared(#[reflect(ignore)] SharedCollider),
+}
+
+/// The shape made from a mesh.
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[reflect(Default, Debug, Clone, PartialEq, Hash)]
+#[non_exhaustive]
+pub enum MeshCollider {
+    /// Its triangles. A closed mesh has an outer side only; an open mesh has two sides.
+    #[default]
+    Triangles,
+    /// The convex hull of its vertices: cheaper, and exact for a convex mesh.
+    Hull,
+}
+
+impl Default for ClothCollider {
+    /// The paper's ball, of radius 1.
+    fn default() -> Self {
+        Self::ball(1.0)
+    }
+}
+
+impl ClothCollider {
+    /// A ball of `radius` (m).
+    pub const fn ball(radius: f32) -> Self {
+        Self::Ball { radius }
+    }
+
+    /// A capsule of `radius`, with `length` between the centres of its two half-balls (m).
+    pub const fn capsule(radius: f32, length: f32) -> Self {
+        Self::Capsule {
+            radius,
+            half_length: length / 2.0,
+        }
+    }
+
+    /// A box with these side lengths (m).
+    pub const fn cuboid(x: f32, y: f32, z: f32) -> Self {
+        Self::Cuboid {
+            half_size: Vec3::new(x / 2.0, y / 2.0, z / 2.0),
+        }
+    }
+
+    /// The half-space below the entity's xz plane.
+    pub const fn plane() -> Self {
+        Self::Plane
+    }
+
+    /// A cylinder of `radius` and `height` (m).
+    pub const fn cylinder(radius: f32, height: f32) -> Self {
+        Self::Cylinder {
+            radius,
+            half_height: height / 2.0,
+        }
+    }
+
+    /// A cone of `height` with a base of `radius` (m).
+    pub const fn cone(radius: f32, height: f32) -> Self {
+        Self::Cone {
+            radius,
+            half_height: height / 2.0,
+        }
+    }
+
+    /// The convex hull of points (m), which must not all lie in one plane.
+    pub fn convex_hull(points: impl Into<Vec<Vec3>>) -> Self {
+        Self::Shared(SharedCollider::hull(points.into()))
+    }
+
+    /// Triangles between vertices (m). A closed mesh, with two triangles at each edge, is solid, whatever its winding
+    /// order. An open mesh is a sheet 1 mm thick, which cloth touches from both sides. Vertices at the same position
+    /// are merged.
+    ///
+    /// Built once and shared by all clones.
+    pub fn trimesh(vertices: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
+        Self::Shared(SharedCollider::triangles(vertices.into(), triangles.into()))
+    }
+
+    /// A height field around the entity's origin. `heights` are row by row: rows lie along z, with `columns` heights
+    /// along x. `size` (m) is its extent along x and z, and in y the scale of the heights. Everything below it is
+    /// inside.
+    pub fn heightfield(heights: impl Into<Vec<f32>>, columns: usize, size: Vec3) -> Self {
+        Self::Shared(SharedCollider::height_field(heights.into(), columns, size))
+    }
+
+    /// Several shapes as one, each with a pose in the entity's frame (m). Planes and meshes from an asset cannot be
+    /// parts.
+    pub fn compound(parts: impl IntoIterator<Item = (Isometry3d, Self)>) -> Self {
+        Self::Compound(parts.into_iter().collect())
+    }
+
+    /// The triangles of the entity's `Mesh3d`, once it has loaded.
+    pub const fn mesh() -> Self {
+        Self::Mesh(MeshCollider::Triangles)
+    }
+
+    /// The convex hull of the entity's `Mesh3d`, once it has loaded.
+    pub const fn mesh_hull() -> Self {
+        Self::Mesh(MeshCollider::Hull)
+    }
+
+    /// A shape of parry, the geometry library of rapier. It ignores the transform's scale.
+    pub fn parry(shape: SharedShape) -> Self {
+        Self::Shared(SharedCollider::parry(shape))
+    }
+
+    /// Pose of the shape's frame in the entity's frame: the identity, except for shapes from parry.
+    pub fn offset(&self) -> Isometry3d {
+        match self {
+            Self::Shared(shared) => shared.offset(),
+            _ => Isometry3d::IDENTITY,
+        }
+    }
+
+    /// Returns the shape under a transform's `scale`. A ball takes the largest axis, and so does the radius of a
+    /// capsule.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] for a length that is zero, negative or not finite, before or after scaling; a capsule's
+    /// length may be zero. [`ClothError::MeshNotLoaded`] for a mesh, because only the plugin can access the assets.
+    /// Errors of points, triangles, heights or parts.
+    pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
+        let sizes = Scale(scale.abs());
+        match *self {
+            Self::Shared(ref shared) => shared.scaled(scale),
+            Self::Compound(ref parts) => compound(parts, scale),
+            Self::Mesh(_) => Err(ClothError::MeshNotLoaded),
+            Self::Cylinder {
+                radius,
+                half_height,
+            } => {
+                let (radius, half_height) = sizes.round(radius, half_height, &CYLINDER)?;
+                let mut parts = Parts::default();
+                parts.add_cylinder(half_height, radius)?;
+                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+            }
+            Self::Cone {
+                radius,
+                half_height,
+            } => {
+                let (radius, half_height) = sizes.round(radius, half_height, &CONE)?;
+                let mut parts = Parts::default();
+                parts.add_cone(half_height, radius, scale.y > 0.0)?;
+                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+            }
+            Self::Ball { radius } => {
+                let largest = sizes.0.max_element();
+                let names = ["the ball's radius (m)", "the ball's scaled radius (m)"];
+                let radius = length(radius, largest, names)?;
+                Ok(ColliderShape::Ball { radius })
+            }
+            Self::Capsule {
+                radius,
+                half_length,
+            } => {
+                let names = [
+                    "the capsule's radius (m)",
+                    "the capsule's scaled radius (m)",
+                ];
+                let radius = sizes.across(radius, names)?;
+                let half_length = ClothError::check(
+                    half_length * sizes.0.y,
+                    |v| v >= 0.0 && v.is_finite(),
+                    "half of the capsule's scaled length (m)",
+                    "zero or more",
+                )?;
+                Ok(ColliderShape::Capsule {
+                    radius,
+                    half_length,
+                })
+            }
+            Self::Cuboid { half_size } => {
+                let names = [
+                    "half of the box's length (m)",
+                    "half of the box's scaled length (m)",
+                ];
+                for axis in 0..3 {
+                    length(half_size[axis], sizes.0[axis], names)?;
+                }
+                Ok(ColliderShape::Cuboid {
+                    half_size: half_size * sizes.0,
+                })
+            }
+            Self::Plane => Ok(ColliderShape::HalfSpace),
+        }
+    }
+}
+
+/// Names of the radius and the height of a round shape in errors, unscaled and scaled.
+type RoundNames = [[&'static str; 2]; 2];
+
+const CYLINDER: RoundNames = [
+    [
+        "the cylinder's radius (m)",
+        "the cylinder's scaled radius (m)",
+    ],
+    [
+        "half of the cylinder's height (m)",
+        "half of the cylinder's scaled height (m)",
+    ],
+];
+
+const CONE: RoundNames = [
+    ["the cone's radius (m)", "the cone's scaled radius (m)"],
+    [
+        "half of the cone's height (m)",
+        "half of the cone's scaled height (m)",
+    ],
+];
+
+/// A length under a scale, checked before and after scaling. `names` are the names of both.
+fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
+    let positive = |v: f32| v > 0.0 && v.is_finite();
+    ClothError::check(value, positive, names[0], "positive")?;
+    ClothError::check(value * scale, positive, names[1], "positive")
+}
+
+/// The scale of a shape along each axis, mirrored or not.
+struct Scale(Vec3);
+
+impl Scale {
+    /// A radius about the y axis, scaled by the larger of x and z.
+    fn across(&self, radius: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
+        length(radius, self.0.x.max(self.0.z), names)
+    }
+
+    /// The radius and half of the height of a shape that is round about the y axis.
+    fn round(
+        &self,
+        radius: f32,
+        half_height: f32,
+        names: &RoundNames,
+    ) -> Result<(f32, f32), ClothError> {
+        let radius = self.across(radius, names[0])?;
+        Ok((radius, length(half_height, self.0.y, names[1])?))
+    }
+}
+
+/// Several shapes as one.
+fn compound(
+    children: &[(Isometry3d, ClothCollider)],
+    scale: Vec3,
+) -> Result<ColliderShape, ClothError> {
+    check_scale(scale)?;
+    let no_such = |shape: &str| {
+        Err(ClothError::NoSuchShape {
+            shape: shape.to_string(),
+        })
+    };
+    if children.is_empty() {
+        return no_such("an empty compound");
+    }
+    let is_even = scale.abs_diff_eq(Vec3::splat(scale.x), 1.0e-5 * scale.length());
+    let mut parts = Parts::default();
+    for (part, (pose, child)) in children.iter().enumerate() {
+        let pose = part_pose(part, *pose)?;
+        if let ClothCollider::Mesh(_) = child {
+            return no_such("the entity's `Mesh3d` as a part of a compound");
+        }
+        // Rotating and then stretching along one axis would shear the part.
+        if !is_even && !pose.rotation.is_near_identity() {
+            return Err(ClothError::SkewedPart { scale });
+        }
+        let place = Vec3::from(pose.translation) * scale;
+        let pose = Isometry3d::new(place, pose.rotation) * child.offset();
+        let pose = Pose::from_parts(pose.translation.into(), pose.rotation);
+        let shape = match child.scaled(scale)? {
+            ColliderShape::Geometry(geometry) => {
+                parts.add_parts(pose, geometry.parts());
+                continue;
+            }
+            ColliderShape::HalfSpace => return no_such("a plane in a compound"),
+            ColliderShape::Ball { radius } => SharedShape::ball(radius),
+            ColliderShape::Capsule {
+                radius,
+                half_length,
+            } => SharedShape::capsule_y(half_length, radius),
+            ColliderShape::Cuboid { half_size: half } => {
+                SharedShape::cuboid(half.x, half.y, half.z)
+            }
+        };
+        parts.add(pose, &shape)?;
+    }
+    Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+}
+
+/// The pose of a compound's part, with a normalized rotation.
+///
+/// # Errors
+/// [`ClothError::PartPose`] for an invalid position or rotation.
+fn part_pose(part: usize, pose: Isometry3d) -> Result<Isometry3d, ClothError> {
+    let place = Vec3::from(pose.translation);
+    let rotation = pose.rotation.normalize();
+    // Not by the largest element, which ignores NaN.
+    let is_in_reach = place.abs().cmplt(Vec3::splat(FARTHEST)).all();
+    if is_in_reach && rotation.is_finite() && rotation.is_normalized() {
+        Ok(Isometry3d::new(place, rotation))
+    } else {
+        Err(ClothError::PartPose {
+            part,
+            place,
+            rotation: format!("{:?}", pose.rotation),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

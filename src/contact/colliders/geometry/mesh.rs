@@ -1,0 +1,101 @@
+//! Builds a mesh from positions and triangles: welded, oriented and with its edges.
+
+use bevy::math::{DVec3, Vec3};
+use parry3d::shape::{TriMesh, TriMeshFlags};
+
+use super::{
+    edges::{MeshEdges, SharpEdge},
+    solid::MeshSides,
+};
+use crate::cloth::{ClothError, FARTHEST};
+
+/// A mesh, its inside, and its sharp edges.
+pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
+
+/// Checks that all vertices are finite and in range.
+///
+/// # Errors
+/// [`ClothError::VertexNotFinite`] for the first invalid one.
+pub(crate) fn check_vertices(vertices: &[Vec3]) -> Result<(), ClothError> {
+    let is_beyond = |vertex: &Vec3| !(vertex.is_finite() && vertex.abs().max_element() < FARTHEST);
+    match vertices.iter().position(is_beyond) {
+        Some(vertex) => Err(ClothError::VertexNotFinite {
+            vertex,
+            position: vertices[vertex],
+        }),
+        None => Ok(()),
+    }
+}
+
+/// A mesh of triangles, solid if it is closed. An inside-out mesh is flipped.
+///
+/// # Errors
+/// For a vertex that is not finite or missing, and if no triangle has an area.
+pub(crate) fn build(
+    mut vertices: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    ground: bool,
+) -> Result<Built, ClothError> {
+    check_vertices(&vertices)?;
+    let count = triangles.len();
+    let is_beyond = |triangle: &[u32; 3]| {
+        triangle
+            .iter()
+            .any(|&corner| corner as usize >= vertices.len())
+    };
+    if let Some(triangle) = triangles.iter().position(is_beyond) {
+        return Err(ClothError::TriangleOutOfRange {
+            triangle,
+            corners: triangles[triangle],
+            vertices: vertices.len(),
+        });
+    }
+    // Merges equal vertices: −0 equals 0.
+    vertices.iter_mut().for_each(|vertex| *vertex += Vec3::ZERO);
+    let area: f32 = triangles
+        .iter()
+        .map(|triangle| {
+            let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
+            (b - a).cross(c - a).length()
+        })
+        .sum();
+    let without_area = ClothError::MeshWithoutArea { triangles: count };
+    if area <= 0.0 {
+        return Err(without_area);
+    }
+    let welded = TriMeshFlags::MERGE_DUPLICATE_VERTICES
+        | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
+        | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;
+    let Ok(mut mesh) = TriMesh::with_flags(vertices, triangles, welded) else {
+        return Err(without_area);
+    };
+    let edges = MeshEdges::of(mesh.indices());
+    let sides = if ground {
+        MeshSides::Ground
+    } else if edges.are_closed() {
+        MeshSides::Closed
+    } else {
+        MeshSides::Open
+    };
+    if sides == MeshSides::Closed && volume(&mesh) < 0.0 {
+        mesh.reverse();
+    }
+    if sides != MeshSides::Open {
+        // Parry refuses a mesh only if its topology is requested.
+        let _ = mesh.set_flags(welded | TriMeshFlags::ORIENTED);
+    }
+    let sharp = edges.sharp(mesh.vertices(), mesh.indices(), sides != MeshSides::Open);
+    Ok((mesh, sides, sharp))
+}
+
+/// The volume of a closed mesh (m³), negative if it is inside out.
+pub(crate) fn volume(mesh: &TriMesh) -> f64 {
+    // Relative to its middle, as it may be far from the origin.
+    let middle = mesh.local_aabb().center().as_dvec3();
+    let parts = mesh.indices().iter().map(|triangle| {
+        let [a, b, c]: [DVec3; 3] =
+            triangle.map(|corner| mesh.vertices()[corner as usize].as_dvec3() - middle);
+        a.dot(b.cross(c)) / 6.0
+    });
+    parts.sum()
+}

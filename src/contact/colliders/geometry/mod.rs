@@ -1,0 +1,150 @@
+//! Complex shapes: solids, meshes, and compounds.
+
+mod edges;
+mod mesh;
+mod parts;
+mod solid;
+
+use std::sync::Arc;
+
+use super::nearest::Nearest;
+use bevy::{math::Vec3, reflect::Reflect};
+pub(crate) use edges::SharpEdge;
+use edges::SharpEdges;
+pub(crate) use parts::{Parts, turn_up};
+use solid::Solid;
+
+/// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with precomputed
+/// data. Clones share the data. Two geometries are equal if they are clones of each other.
+#[derive(Reflect, Debug, Clone)]
+#[reflect(opaque, Debug, Clone, PartialEq)]
+pub struct ColliderGeometry(Arc<Geometry>);
+
+impl PartialEq for ColliderGeometry {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+#[derive(Debug)]
+struct Geometry {
+    /// Solids for tests against particles.
+    solids: Vec<Solid>,
+    /// Edges for tests against triangles.
+    edges: SharpEdges,
+    /// Bounding box (m).
+    bounds: [Vec3; 2],
+    /// Smallest depth at which a point can be nearer to the other side (m).
+    thickness: f32,
+}
+
+impl ColliderGeometry {
+    /// Builds it from one or more parts.
+    pub(crate) fn of(parts: Parts) -> Self {
+        let Parts { solids, edges } = parts;
+        let bounds = solids
+            .iter()
+            .map(|solid| solid.bounds)
+            .reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+            .unwrap_or_default();
+        let thickness = solids.iter().map(Solid::thickness);
+        let thickness = thickness.fold(f32::INFINITY, f32::min);
+        Self(Arc::new(Geometry {
+            edges: SharpEdges::of(edges),
+            solids,
+            bounds,
+            thickness,
+        }))
+    }
+
+    /// The minimum and maximum corners of its bounding box (m).
+    pub fn bounds(&self) -> [Vec3; 2] {
+        self.0.bounds
+    }
+
+    /// Number of triangles of its meshes.
+    pub fn triangles(&self) -> usize {
+        self.0.solids.iter().map(Solid::triangles).sum()
+    }
+
+    /// Whether any part is an open mesh, which has two sides.
+    pub fn is_two_sided(&self) -> bool {
+        self.0.solids.iter().any(Solid::is_open)
+    }
+
+    pub(crate) fn thickness(&self) -> f32 {
+        self.0.thickness
+    }
+
+    /// Its parts, for another geometry.
+    pub(crate) fn parts(&self) -> Parts {
+        Parts {
+            solids: self.0.solids.clone(),
+            edges: self.0.edges.as_slice().to_vec(),
+        }
+    }
+
+    /// The surface nearest to a point, of the deepest or nearest solid, which is probably `within` a distance (m): that
+    /// makes it faster. NaN for a point that is not finite.
+    pub(crate) fn nearest(&self, point: Vec3, within: f32) -> Nearest {
+        // A point that moves from beside a height field to above it may at once be as deep as the ground is high.
+        let is_alone = self.0.solids.len() == 1;
+        if is_alone || !self.0.solids.iter().any(Solid::is_ground) {
+            let found = self.find_nearest(point, within);
+            // A mesh farther away was not found, but another part may have been. False for NaN.
+            if found.distance <= within {
+                return found;
+            }
+        }
+        self.find_nearest(point, f32::MAX)
+    }
+
+    fn find_nearest(&self, point: Vec3, within: f32) -> Nearest {
+        let mut found = Nearest {
+            distance: f32::MAX,
+            normal: Vec3::Y,
+        };
+        for solid in &self.0.solids {
+            let [lower, upper] = solid.bounds;
+            let beyond = point.distance_squared(point.clamp(lower, upper));
+            if found.distance < f32::MAX && beyond > found.distance.max(0.0).powi(2) {
+                continue;
+            }
+            if let Some(nearest) = solid.nearest(point, within)
+                && nearest.distance < found.distance
+            {
+                found = nearest;
+            }
+        }
+        found
+    }
+
+    /// Distance of a point beside its height fields, if it is beside any (m); else infinite.
+    pub(crate) fn distance_beside_ground(&self, point: Vec3) -> f32 {
+        let solids = self.0.solids.iter();
+        let each = solids.map(|solid| solid.distance_beside_ground(point));
+        each.fold(f32::INFINITY, f32::min)
+    }
+
+    /// One of its edges.
+    #[inline]
+    pub(crate) fn edge(&self, index: u32) -> SharpEdge {
+        *self.0.edges.get(index)
+    }
+
+    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order; none of a surface with
+    /// a radius of at least `smooth` (m).
+    pub(crate) fn edges_near(
+        &self,
+        within: [Vec3; 2],
+        smooth: f32,
+        visit: impl FnMut(u32, &SharpEdge),
+    ) {
+        self.0.edges.near(within, smooth, visit);
+    }
+
+    /// Distance of the nearest edge (m); infinite if none is within the given distance.
+    pub(crate) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
+        self.0.edges.distance(point, within, smooth)
+    }
+}

@@ -1,0 +1,326 @@
+//! Converts shapes of parry into parts of a geometry.
+
+use std::sync::Arc;
+
+use bevy::math::{Quat, Vec3};
+use parry3d::{
+    math::Pose,
+    shape::{SharedShape, TriMesh, TypedShape},
+};
+
+use super::{
+    edges::SharpEdge,
+    mesh,
+    solid::{HALF_SHEET, MeshSides, Solid, SolidKind},
+};
+use crate::cloth::ClothError;
+
+/// Number of flat sides of a round shape for tests against triangles. Its edges lie on the shape, and its flat sides at
+/// most 0.2 % of the radius below.
+const SIDES: u32 = 48;
+
+/// The solids and the edges of a shape under construction.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Parts {
+    pub(super) solids: Vec<Solid>,
+    pub(super) edges: Vec<SharpEdge>,
+}
+
+type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
+
+impl Parts {
+    /// Adds triangles as a mesh, or as ground with everything below.
+    ///
+    /// # Errors
+    /// If they do not form a mesh.
+    pub fn add_mesh(
+        &mut self,
+        pose: Pose,
+        (vertices, triangles): Triangles,
+        is_ground: bool,
+    ) -> Result<(), ClothError> {
+        let (mesh, sides, edges) = mesh::build(vertices, triangles, is_ground)?;
+        self.add_built(pose, mesh.into(), sides);
+        self.add_edges(pose, &edges, 0.0);
+        Ok(())
+    }
+
+    fn add_built(&mut self, pose: Pose, mesh: Arc<TriMesh>, sides: MeshSides) {
+        let bounds = mesh.aabb(&pose);
+        // The ground reaches as deep as it is wide, for particles that have got below it.
+        let extents = bounds.extents();
+        let below = match sides {
+            MeshSides::Ground => Vec3::Y * extents.x.max(extents.z),
+            MeshSides::Open | MeshSides::Closed => Vec3::ZERO,
+        };
+        self.solids.push(Solid {
+            pose,
+            bounds: [bounds.mins - below, bounds.maxs],
+            kind: SolidKind::Mesh(mesh, sides),
+        });
+    }
+
+    /// Adds the closed mesh of a convex shape.
+    ///
+    /// # Errors
+    /// [`ClothError::FlatHull`] if it has no volume.
+    fn add_hull(&mut self, pose: Pose, triangles: Triangles) -> Result<(), ClothError> {
+        let points = triangles.0.len();
+        let (mesh, sides, edges) = mesh::build(triangles.0, triangles.1, false)?;
+        let size = mesh.local_aabb().extents().as_dvec3().max_element();
+        if sides != MeshSides::Closed || mesh::volume(&mesh) <= 1.0e-9 * size.powi(3) {
+            return Err(ClothError::FlatHull { points });
+        }
+        self.add_built(pose, mesh.into(), sides);
+        self.add_edges(pose, &edges, 0.0);
+        Ok(())
+    }
+
+    /// Adds the convex hull of points.
+    ///
+    /// # Errors
+    /// [`ClothError::FlatHull`] of points in one plane, [`ClothError::VertexNotFinite`].
+    pub fn add_hull_of(&mut self, points: &[Vec3]) -> Result<(), ClothError> {
+        mesh::check_vertices(points)?;
+        let flat = ClothError::FlatHull {
+            points: points.len(),
+        };
+        if are_flat(points) {
+            return Err(flat);
+        }
+        let hull = parry3d::transformation::try_convex_hull(points).map_err(|_| flat)?;
+        self.add_hull(Pose::IDENTITY, hull)
+    }
+
+    /// Adds a shape whose nearest point parry computes, with the edges of triangles on it.
+    fn add_convex(&mut self, pose: Pose, shape: SharedShape) {
+        let bounds = shape.compute_aabb(&pose);
+        self.solids.push(Solid {
+            pose,
+            bounds: [bounds.mins, bounds.maxs],
+            kind: SolidKind::Convex(shape),
+        });
+    }
+
+    /// A convex shape, given by triangles on it or in it, and its radius around those (m).
+    fn add_round(
+        &mut self,
+        pose: Pose,
+        shape: SharedShape,
+        triangles: Triangles,
+        radius: f32,
+    ) -> Result<(), ClothError> {
+        let (_, _, edges) = build(triangles)?;
+        self.add_convex(pose, shape);
+        self.add_edges(pose, &edges, radius);
+        Ok(())
+    }
+
+    fn add_line(&mut self, pose: Pose, shape: SharedShape, ends: [Vec3; 2], radius: f32) {
+        self.add_convex(pose, shape);
+        let line = SharpEdge {
+            ends,
+            outward: Vec3::ZERO,
+            radius,
+            round: 0.0,
+            part: 1.0,
+        };
+        self.add_edges(pose, &[line], 0.0);
+    }
+
+    fn add_edges(&mut self, pose: Pose, edges: &[SharpEdge], radius: f32) {
+        self.edges.extend(edges.iter().map(|edge| SharpEdge {
+            ends: edge.ends.map(|end| pose.transform_point(end)),
+            outward: pose.rotation * edge.outward,
+            radius: edge.radius + radius,
+            ..*edge
+        }));
+    }
+
+    /// Adds a cylinder along the y axis.
+    pub fn add_cylinder(&mut self, half_height: f32, radius: f32) -> Result<(), ClothError> {
+        self.add(Pose::IDENTITY, &SharedShape::cylinder(half_height, radius))
+    }
+
+    /// Adds a cone along the y axis with its tip up or down.
+    pub fn add_cone(
+        &mut self,
+        half_height: f32,
+        radius: f32,
+        is_upright: bool,
+    ) -> Result<(), ClothError> {
+        let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
+        let pose = if is_upright { Pose::IDENTITY } else { over };
+        self.add(pose, &SharedShape::cone(half_height, radius))
+    }
+
+    /// Adds other parts with a pose.
+    pub fn add_parts(&mut self, pose: Pose, parts: Self) {
+        let Self { solids, edges } = parts;
+        self.add_edges(pose, &edges, 0.0);
+        for solid in solids {
+            let pose = pose * solid.pose;
+            match solid.kind {
+                SolidKind::Convex(shape) => self.add_convex(pose, shape),
+                SolidKind::Mesh(mesh, sides) => self.add_built(pose, mesh, sides),
+            }
+        }
+    }
+
+    /// Adds a shape of parry with a pose.
+    ///
+    /// # Errors
+    /// [`ClothError::NoSuchShape`] for lines, for a half-space in a compound, and for custom shapes; errors of its
+    /// triangles.
+    pub fn add(&mut self, pose: Pose, shared: &SharedShape) -> Result<(), ClothError> {
+        let shape = shared.clone();
+        match shared.as_typed_shape() {
+            TypedShape::Ball(ball) => self.add_line(pose, shape, [Vec3::ZERO; 2], ball.radius),
+            TypedShape::Capsule(capsule) => {
+                let ends = [capsule.segment.a, capsule.segment.b];
+                self.add_line(pose, shape, ends, capsule.radius);
+            }
+            TypedShape::Segment(line) => {
+                let thin = SharedShape::capsule(line.a, line.b, HALF_SHEET);
+                self.add_line(pose, thin, [line.a, line.b], HALF_SHEET);
+            }
+            TypedShape::Triangle(triangle) => {
+                let corners = vec![triangle.a, triangle.b, triangle.c];
+                self.add_mesh(pose, (corners, vec![[0, 1, 2]]), false)?;
+            }
+            TypedShape::Voxels(voxels) => self.add_mesh(pose, voxels.to_trimesh(), false)?,
+            TypedShape::TriMesh(mesh) => {
+                let triangles = (mesh.vertices().to_vec(), mesh.indices().to_vec());
+                self.add_mesh(pose, triangles, false)?;
+            }
+            TypedShape::HeightField(field) => {
+                let cells = (field.nrows(), field.ncols());
+                let (vertices, mut triangles) = field.to_trimesh();
+                let is_whole = triangles.len() == 2 * cells.0 * cells.1;
+                turn_up(&vertices, &mut triangles);
+                self.add_mesh(pose, (vertices, triangles), is_whole)?;
+            }
+            TypedShape::Compound(compound) => {
+                for (offset, part) in compound.shapes() {
+                    self.add(pose * *offset, part)?;
+                }
+            }
+            TypedShape::ConvexPolyhedron(hull) => self.add_hull(pose, hull.to_trimesh())?,
+            TypedShape::Cuboid(cuboid) => self.add_round(pose, shape, cuboid.to_trimesh(), 0.0)?,
+            TypedShape::Cylinder(cylinder) => {
+                let (_, _, mut edges) = build(cylinder.to_trimesh(SIDES))?;
+                for edge in edges.iter_mut().filter(|edge| is_upright(edge)) {
+                    (edge.round, edge.part) = (cylinder.radius, 1.0);
+                }
+                self.add_convex(pose, shape);
+                self.add_edges(pose, &edges, 0.0);
+            }
+            TypedShape::Cone(cone) => {
+                let (_, _, edges) = build(cone.to_trimesh(SIDES))?;
+                self.add_convex(pose, shape);
+                self.add_edges(pose, &in_pieces(&edges, cone.radius), 0.0);
+            }
+            TypedShape::RoundCuboid(round) => {
+                let inner = round.inner_shape.to_trimesh();
+                self.add_round(pose, shape, inner, round.border_radius)?;
+            }
+            TypedShape::RoundTriangle(round) => {
+                let corners = vec![
+                    round.inner_shape.a,
+                    round.inner_shape.b,
+                    round.inner_shape.c,
+                ];
+                let inner = (corners, vec![[0, 1, 2]]);
+                self.add_round(pose, shape, inner, round.border_radius)?;
+            }
+            TypedShape::RoundCylinder(round) => {
+                let inner = round.inner_shape.to_trimesh(SIDES);
+                self.add_round(pose, shape, inner, round.border_radius)?;
+            }
+            TypedShape::RoundCone(round) => {
+                let inner = round.inner_shape.to_trimesh(SIDES);
+                self.add_round(pose, shape, inner, round.border_radius)?;
+            }
+            TypedShape::RoundConvexPolyhedron(round) => {
+                let inner = round.inner_shape.to_trimesh();
+                self.add_round(pose, shape, inner, round.border_radius)?;
+            }
+            TypedShape::Polyline(_) | TypedShape::HalfSpace(_) | TypedShape::Custom(_) => {
+                return Err(ClothError::NoSuchShape {
+                    shape: format!("{:?}", shared.shape_type()),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn build(
+    (vertices, triangles): Triangles,
+) -> Result<(TriMesh, MeshSides, Vec<SharpEdge>), ClothError> {
+    mesh::build(vertices, triangles, false)
+}
+
+/// Whether an edge runs along the side of a cylinder or cone, and not around it.
+fn is_upright(edge: &SharpEdge) -> bool {
+    let [a, b] = edge.ends;
+    a.y != b.y
+}
+
+/// The edges of a cone of `radius` (m), those along its side in pieces: at the upper end of each, the cone is half as wide as at the
+/// lower. Where it is narrow, some of them are left out, and its flat sides are again at most 0.2 % of the radius below.
+fn in_pieces(edges: &[SharpEdge], radius: f32) -> Vec<SharpEdge> {
+    let (side, mut pieces): (Vec<SharpEdge>, Vec<SharpEdge>) =
+        edges.iter().partition(|edge| is_upright(edge));
+    for (index, edge) in side.into_iter().enumerate() {
+        let [a, b] = edge.ends;
+        let (base, tip) = if a.y < b.y { (a, b) } else { (b, a) };
+        let mut wide = 1.0;
+        for (piece, each) in [1, 1, 2, 2, 4].into_iter().enumerate() {
+            let narrow = if piece == 4 { 0.0 } else { wide / 2.0 };
+            if index % each == 0 {
+                pieces.push(SharpEdge {
+                    ends: [tip.lerp(base, wide), tip.lerp(base, narrow)],
+                    round: narrow * radius,
+                    part: 1.0,
+                    ..edge
+                });
+            }
+            wide = narrow;
+        }
+    }
+    pieces
+}
+
+/// Turns the triangles of a height field so that their normals point up.
+pub(crate) fn turn_up(vertices: &[Vec3], triangles: &mut [[u32; 3]]) {
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
+        if (b - a).cross(c - a).y < 0.0 {
+            triangle.swap(1, 2);
+        }
+    }
+}
+
+/// Whether points lie in one plane, with a tolerance of 10⁻⁵ of their extent.
+fn are_flat(points: &[Vec3]) -> bool {
+    let Some(&first) = points.first() else {
+        return true;
+    };
+    let farthest = |measure: &dyn Fn(Vec3) -> f64| {
+        let measured = points.iter().map(|&point| (measure(point), point));
+        measured.fold(
+            (0.0, first),
+            |best, next| {
+                if next.0 > best.0 { next } else { best }
+            },
+        )
+    };
+    let from = |point: Vec3| point.as_dvec3() - first.as_dvec3();
+    let (size, second) = farthest(&|point| from(point).length());
+    let along = from(second).normalize_or_zero();
+    let (width, third) = farthest(&|point| from(point).cross(along).length());
+    let normal = along.cross(from(third)).normalize_or_zero();
+    let (height, _) = farthest(&|point| from(point).dot(normal).abs());
+    width <= 1.0e-5 * size || height <= 1.0e-5 * size
+}

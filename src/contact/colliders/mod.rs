@@ -1,0 +1,23 @@
+//! Colliders: their shapes, the nearest points and sharp edges of these, and their motion in a sub-step.
+
+mod boxes;
+mod collider;
+mod collision_layers;
+mod geometry;
+mod mass;
+mod moving;
+mod nearest;
+mod primitives;
+mod shape;
+mod source;
+
+pub use collider::{ClothCollider, MeshCollider};
+pub use collision_layers::ClothLayers;
+pub use geometry::ColliderGeometry;
+pub(crate) use geometry::SharpEdge;
+pub use mass::BodyMass;
+pub(crate) use moving::ColliderSubstep;
+pub use moving::MovingCollider;
+pub(crate) use nearest::Nearest;
+pub use shape::ColliderShape;
+pub use source::SharedCollider;

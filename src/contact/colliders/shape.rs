@@ -1,0 +1,266 @@
+//! Shapes of colliders, and the distance of a point from them.
+
+use bevy::{
+    math::{Isometry3d, Vec3},
+    reflect::Reflect,
+};
+
+pub(crate) use super::nearest::Nearest;
+use super::{
+    boxes,
+    geometry::{ColliderGeometry, SharpEdge},
+};
+use crate::hierarchy::Core;
+
+/// The shape of a collider, scaled, in its own frame.
+#[derive(Reflect, Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum ColliderShape {
+    /// A ball around the origin.
+    Ball {
+        /// Radius (m).
+        radius: f32,
+    },
+    /// All points within a radius of a segment along the y axis.
+    Capsule {
+        /// Radius (m).
+        radius: f32,
+        /// Half of the segment's length (m).
+        half_length: f32,
+    },
+    /// A box around the origin.
+    Cuboid {
+        /// Half of its side lengths (m).
+        half_size: Vec3,
+    },
+    /// The half-space below the xz plane.
+    HalfSpace,
+    /// Any other shape.
+    Geometry(ColliderGeometry),
+}
+
+impl ColliderShape {
+    /// The shape in a pose, as a core and a radius around it. For a geometry, its bounding box.
+    pub fn core(&self, pose: Isometry3d) -> (Core, f32) {
+        let centre = Vec3::from(pose.translation);
+        match *self {
+            Self::Geometry(ref geometry) => {
+                let [lower, upper] = geometry.bounds();
+                let pose = Isometry3d::new(
+                    centre + pose.rotation * lower.midpoint(upper),
+                    pose.rotation,
+                );
+                let half_size = (upper - lower) / 2.0;
+                (Core::Cuboid { pose, half_size }, 0.0)
+            }
+            Self::Ball { radius } => (Core::Point(centre), radius),
+            Self::Capsule {
+                radius,
+                half_length,
+            } => {
+                let half = pose.rotation * Vec3::Y * half_length;
+                (Core::Segment([centre - half, centre + half]), radius)
+            }
+            Self::Cuboid { half_size } => (Core::Cuboid { pose, half_size }, 0.0),
+            Self::HalfSpace => {
+                let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
+                (
+                    Core::HalfSpace {
+                        point: centre,
+                        normal,
+                    },
+                    0.0,
+                )
+            }
+        }
+    }
+
+    /// Distance from the origin to the farthest point of the shape (m); infinite for a half-space.
+    pub fn extent(&self) -> f32 {
+        match *self {
+            Self::Ball { radius } => radius,
+            Self::Capsule {
+                radius,
+                half_length,
+            } => radius + half_length,
+            Self::Cuboid { half_size } => half_size.length(),
+            Self::HalfSpace => f32::INFINITY,
+            Self::Geometry(ref geometry) => {
+                let [lower, upper] = geometry.bounds();
+                lower.abs().max(upper.abs()).length()
+            }
+        }
+    }
+
+    /// Distance from the origin to the farthest point of the core (m); infinite for a half-space.
+    pub(crate) fn core_extent(&self) -> f32 {
+        match *self {
+            Self::Ball { .. } => 0.0,
+            Self::Capsule { half_length, .. } => half_length,
+            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) => self.extent(),
+        }
+    }
+
+    /// Smallest depth at which a point can be nearer to the other side (m); infinite for a half-space.
+    pub fn thickness(&self) -> f32 {
+        match *self {
+            Self::Ball { radius } | Self::Capsule { radius, .. } => radius,
+            Self::Cuboid { half_size } => half_size.min_element(),
+            Self::HalfSpace => f32::INFINITY,
+            Self::Geometry(ref geometry) => geometry.thickness(),
+        }
+    }
+
+    /// The radius for tests against triangles (m); only balls and capsules have one.
+    pub fn radius(&self) -> Option<f32> {
+        match *self {
+            Self::Ball { radius } | Self::Capsule { radius, .. } => Some(radius),
+            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) => None,
+        }
+    }
+
+    /// Whether the shape has edges that may pass through a triangle whose corners are all outside.
+    pub fn has_edges(&self) -> bool {
+        matches!(self, Self::Cuboid { .. } | Self::Geometry(_))
+    }
+
+    /// Whether it is made of solids whose nearest point is expensive.
+    pub(crate) fn is_geometry(&self) -> bool {
+        matches!(self, Self::Geometry(_))
+    }
+
+    /// The edge with an index of [`edges_near`](Self::edges_near).
+    #[inline]
+    pub(crate) fn edge(&self, index: u32) -> Option<SharpEdge> {
+        match self {
+            Self::Cuboid { half_size } => Some(boxes::edge(*half_size, index)),
+            Self::Geometry(geometry) => Some(geometry.edge(index)),
+            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => None,
+        }
+    }
+
+    /// Visits the edges that may overlap a box of the shape's frame, with their indices, always in the same order; none
+    /// of a surface with a radius of at least `smooth` (m).
+    pub(crate) fn edges_near(
+        &self,
+        within: [Vec3; 2],
+        smooth: f32,
+        mut visit: impl FnMut(u32, &SharpEdge),
+    ) {
+        match self {
+            Self::Cuboid { half_size } => {
+                for index in 0..boxes::EDGES {
+                    visit(index, &boxes::edge(*half_size, index));
+                }
+            }
+            Self::Geometry(geometry) => geometry.edges_near(within, smooth, visit),
+            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => {}
+        }
+    }
+
+    /// Distance of a point of the shape's frame from the nearest of these edges (m); infinite if none is within the given
+    /// distance.
+    pub(crate) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
+        match self {
+            Self::Cuboid { half_size } => boxes::edge_distance(*half_size, point),
+            Self::Geometry(geometry) => geometry.edge_distance(point, within, smooth),
+            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => f32::INFINITY,
+        }
+    }
+
+    /// Distance at which the plane of a face of a box keeps points of its frame off it (m), at least; negative if none
+    /// does. Other shapes have no such planes.
+    #[inline]
+    pub(crate) fn gap(&self, points: &[Vec3]) -> f32 {
+        let Self::Cuboid { half_size } = *self else {
+            return f32::NEG_INFINITY;
+        };
+        let (mut lower, mut upper) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for &point in points {
+            (lower, upper) = (lower.min(point), upper.max(point));
+        }
+        let beyond = (lower - half_size).max(-half_size - upper);
+        // Smaller by rounding errors.
+        beyond.max_element() - 1.0e-6 * (half_size + upper.abs().max(lower.abs())).max_element()
+    }
+
+    /// Distance of a point of its frame beside a height field, which is solid below its surface but nowhere else (m):
+    /// having moved by this, the point may be deep inside. Infinite if it is beside none.
+    pub(crate) fn distance_beside_ground(&self, point: Vec3) -> f32 {
+        match self {
+            Self::Geometry(geometry) => geometry.distance_beside_ground(point),
+            _ => f32::INFINITY,
+        }
+    }
+
+    /// The surface nearest to a point of its frame, probably within a distance (m).
+    pub(crate) fn nearest_within(&self, point: Vec3, within: f32) -> Nearest {
+        match self {
+            Self::Geometry(geometry) => geometry.nearest(point, within),
+            _ => self.nearest(Isometry3d::IDENTITY, point),
+        }
+    }
+
+    /// The surface nearest to a point, with the shape in a pose.
+    #[inline]
+    pub(crate) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
+        let offset = point - Vec3::from(pose.translation);
+        match *self {
+            Self::Geometry(ref geometry) => {
+                let nearest = geometry.nearest(pose.rotation.inverse() * offset, f32::MAX);
+                Nearest {
+                    normal: pose.rotation * nearest.normal,
+                    ..nearest
+                }
+            }
+            Self::Ball { radius } => around(offset, radius),
+            Self::Capsule {
+                radius,
+                half_length,
+            } => {
+                let axis = pose.rotation * Vec3::Y;
+                let along = offset.dot(axis).clamp(-half_length, half_length);
+                around(offset - axis * along, radius)
+            }
+            Self::Cuboid { half_size } => {
+                let local = pose.rotation.inverse() * offset;
+                let outside = local - local.clamp(-half_size, half_size);
+                let (distance, normal) = if outside == Vec3::ZERO {
+                    let left = half_size - local.abs();
+                    let axis = left.min_position();
+                    let mut normal = Vec3::ZERO;
+                    normal[axis] = 1.0_f32.copysign(local[axis]);
+                    (-left[axis], normal)
+                } else {
+                    let distance = outside.length();
+                    (distance, outside / distance)
+                };
+                Nearest {
+                    distance,
+                    normal: pose.rotation * normal,
+                }
+            }
+            Self::HalfSpace => {
+                let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
+                Nearest {
+                    distance: offset.dot(normal),
+                    normal,
+                }
+            }
+        }
+    }
+}
+
+fn around(offset: Vec3, radius: f32) -> Nearest {
+    let distance = offset.length();
+    // A particle exactly at the centre may leave in any direction.
+    let normal = if distance > 0.0 {
+        offset / distance
+    } else {
+        Vec3::Y
+    };
+    Nearest {
+        distance: distance - radius,
+        normal,
+    }
+}

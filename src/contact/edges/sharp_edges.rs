@@ -1,0 +1,331 @@
+//! Tests of triangles against sharp edges and corners of a shape, which pass between particles.
+//!
+//! A triangle whose corners are all outside a solid can only intersect it where one of the solid's edges passes through
+//! the triangle. So only edges are tested beside the particles, and nothing for flat surfaces.
+
+use bevy::math::{Affine3A, Vec3};
+
+use super::{
+    edge_contact::{EdgeContact, NearEdge},
+    fan_view::FanView,
+    shape_memory::{Nearness, ShapeMemory},
+};
+use crate::{
+    cloth::{ClothParticles, Fan, Surface},
+    contact::{
+        candidates::{Candidate, ContactSettings, Guard},
+        colliders::ColliderSubstep,
+        friction::{Contact, Impulse, PushOut, first_touch},
+        particles::{Found, Pushing},
+        triangles::{Corners, at},
+    },
+};
+
+/// A triangle that the plane of a box's face keeps off by this fraction of the distance at which edges touch is not tested:
+/// particles keep it there, even if they sink in by a little before they are pushed out.
+const FLAT: f32 = 0.9;
+/// Smallest distance of triangles from edges for particles without a radius, in spacings.
+const SKIN: f32 = 0.02;
+/// Edges are remembered up to this fraction of a spacing beyond a triangle's reach, or up to the reach itself.
+const SLACK: f32 = 0.25;
+/// Largest side of a triangle, in spacings: a diagonal of a grid, stretched by 6 %.
+const SIDE: f32 = 1.5;
+/// Largest push of a corner, relative to that of a triangle's point.
+const MAX_SHARE: f32 = 2.0;
+
+/// No candidate.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// A shape's motion in a sub-step, for tests of triangles against its edges.
+pub(crate) struct EdgeMotion<'a> {
+    of: ColliderSubstep<'a>,
+    settings: &'a ContactSettings,
+    /// Distance at which an edge touches (m).
+    reach: f32,
+    /// A triangle that moves farther in the sub-step may have passed an edge (m).
+    fast: f32,
+    near: Nearness,
+    /// To its frame at the end.
+    to_local: Affine3A,
+    push_out: PushOut,
+}
+
+impl<'a> EdgeMotion<'a> {
+    /// On a cloth with a spacing (m), in a tick.
+    pub fn new(pushing: &Pushing<'a>, spacing: f32, tick: u32) -> Self {
+        let settings = pushing.settings;
+        let skin = SKIN * spacing;
+        let reach = settings.particle_radius.max(skin);
+        Self {
+            of: pushing.motion,
+            settings,
+            reach,
+            fast: reach / 2.0,
+            near: Nearness {
+                reach,
+                slack: reach.max(SLACK * spacing),
+                smooth: (SIDE * spacing).powi(2) / (6.0 * settings.particle_radius),
+                tick,
+            },
+            to_local: pushing.motion.pose.inverse().into(),
+            push_out: pushing.lanes.push_out,
+        }
+    }
+
+    /// Displacement relative to the shape for the swept test (m); 0 without one.
+    #[inline]
+    fn swept(&self, speed: f32) -> f32 {
+        if self.settings.is_swept && speed > self.fast && speed.is_finite() {
+            speed
+        } else {
+            0.0
+        }
+    }
+
+    /// The nearest edge at the first contact of a fast triangle.
+    fn hit(&self, corners: &Corners) -> Option<(Vec3, Vec3)> {
+        let speed = self.swept(self.of.speed(corners.displacements));
+        if speed == 0.0 {
+            return None;
+        }
+        let around = speed + self.reach;
+        let closest = |part: f32| {
+            let pose = self.of.pose_at(part);
+            let triangle = [0, 1, 2].map(|corner| {
+                let gone = corners.displacements[corner] * (1.0 - part);
+                pose.inverse() * (corners.positions[corner] - gone)
+            });
+            let limits = [self.reach, self.near.smooth];
+            NearEdge::of(&self.of.collider.shape, triangle, around, limits)
+        };
+        // For an edge that cut the triangle already, the original side is unknown.
+        if closest(0.0).is_close {
+            return None;
+        }
+        let tolerance = 1.0e-2 * self.reach;
+        let part = first_touch(speed, self.reach, tolerance, |part| closest(part).distance)?;
+        let (edge, pose) = (closest(part), self.of.pose_at(part));
+        let normal = edge.offset.try_normalize()?;
+        Some((self.of).carry(part, pose * edge.centre, pose.rotation * normal))
+    }
+}
+
+/// Pushes triangles off the edges of a shape that pass through them. Moves their corners by their weights and their
+/// inverse masses.
+pub(crate) fn push_off_edges(
+    particles: &mut ClothParticles,
+    pushing: &mut Pushing,
+    surface: &Surface,
+    (first, clear, near_edges): (usize, &mut [f32], &mut [u32]),
+    (guard, view, memory): (&mut Guard, &mut FanView, &mut ShapeMemory),
+    motion: &EdgeMotion,
+) -> Found {
+    memory.match_reach(motion.near);
+    let mut edges = OffEdges {
+        pushing,
+        motion,
+        guard,
+        view,
+        found: Found::default(),
+        farthest: 0.0,
+    };
+    let count = near_edges.len();
+    let (mut at, mut kept) = (0, 0);
+    // After motion that nobody expected, all others are looked at, too.
+    let mut all = edges.guard.is_outrun().then_some(0);
+    loop {
+        let index = all.unwrap_or_else(|| {
+            let number = near_edges.get(at).copied().unwrap_or(NONE);
+            (number as usize).saturating_sub(first)
+        });
+        if index >= count {
+            break;
+        }
+        at += 1;
+        let candidate = edges.pushing.candidates[index];
+        let fan = candidate.fan(surface.fans());
+        if !fan.faces.is_empty() && !edges.guard.is_clear(clear[index], fan.corners) {
+            let room = edges.push(particles, candidate, fan, memory);
+            clear[index] = edges.guard.until(room, fan.corners);
+        }
+        if all.is_some() || edges.guard.is_outrun() {
+            all = Some(index + 1);
+        } else if !fan.faces.is_empty() && !edges.guard.is_clear_for_good(clear[index]) {
+            near_edges[kept] = (first + index) as u32;
+            kept += 1;
+        }
+    }
+    if all.is_some() {
+        for (number, index) in near_edges.iter_mut().zip(first..) {
+            *number = index as u32;
+        }
+    } else if let Some(end) = near_edges.get_mut(kept) {
+        *end = NONE;
+    }
+    edges.found.farthest_push = edges.farthest * surface.max_faces() as f32;
+    edges.found
+}
+
+/// Pushes triangles off edges in a sub-step.
+struct OffEdges<'a, 'b> {
+    pushing: &'a mut Pushing<'b>,
+    motion: &'a EdgeMotion<'a>,
+    guard: &'a mut Guard,
+    view: &'a mut FanView,
+    found: Found,
+    /// Largest push by one triangle (m).
+    farthest: f32,
+}
+
+impl OffEdges<'_, '_> {
+    /// Pushes the triangles that a candidate owns. Returns the displacement of everything before one of them can touch
+    /// an edge (m); 0 if one does.
+    fn push(
+        &mut self,
+        particles: &mut ClothParticles,
+        candidate: Candidate,
+        fan: Fan,
+        memory: &mut ShapeMemory,
+    ) -> f32 {
+        let (motion, near) = (self.motion, self.motion.near);
+        self.view.look(
+            particles.blocks(),
+            fan.corners,
+            &motion.to_local,
+            &motion.of,
+        );
+        let shape = &motion.of.collider.shape;
+        let gap = shape.gap(self.view.corners()) - FLAT * near.reach;
+        let room = gap.max(memory.room(candidate.particle, self.view, near));
+        if room > motion.swept(self.view.speed) {
+            return room;
+        }
+        let faces = memory.faces(candidate.particle, fan);
+        let mut room = f32::INFINITY;
+        for (&face, known) in fan.faces.iter().zip(faces) {
+            let triangle = self.view.triangle(face);
+            let speed = motion.swept(self.view.speed);
+            let gap = shape.gap(&triangle) - FLAT * near.reach;
+            let moved = known.moved(triangle);
+            let left = gap.max(known.room - moved);
+            if left > speed {
+                room = room.min(left);
+                continue;
+            }
+            let slots = fan.slots(face);
+            let hit = if speed > 0.0 {
+                motion.hit(&Corners::of(particles, slots))
+            } else {
+                None
+            };
+            let contact = match hit {
+                Some(_) => None,
+                None => known.deepest(shape, triangle, near, moved),
+            };
+            let given = &mut self.found.given;
+            let (pushed, depth) = if let Some((centre, normal)) = hit {
+                let corners = Corners::of(particles, slots);
+                push_in_front(particles, &corners, centre, normal, motion, given)
+            } else if let Some(contact) = contact {
+                let corners = Corners::of(particles, slots);
+                push_point(particles, &corners, &contact, motion, given)
+            } else {
+                room = room.min(known.room).max(0.0);
+                continue;
+            };
+            room = 0.0;
+            for slot in slots {
+                self.guard.note(slot, pushed);
+            }
+            let blocks = particles.blocks();
+            self.view
+                .look(blocks, fan.corners, &motion.to_local, &motion.of);
+            let (index, slot) = self.pushing.place(&candidate);
+            self.pushing.note_depth(index, slot.lane, depth);
+            self.found.deepest = self.found.deepest.max(depth);
+            self.farthest = self.farthest.max(pushed);
+        }
+        room
+    }
+}
+
+/// Pushes a triangle's point along its normal. Returns the largest displacement of a corner and the depth (m).
+fn push_point(
+    particles: &mut ClothParticles,
+    corners: &Corners,
+    contact: &EdgeContact,
+    motion: &EdgeMotion,
+    given: &mut Impulse,
+) -> (f32, f32) {
+    let EdgeContact {
+        weights,
+        normal,
+        depth,
+    } = *contact;
+    let normal = motion.of.pose.rotation * normal;
+    let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
+    let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
+    // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
+    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
+    if mobility == 0.0 {
+        return (0.0, depth);
+    }
+    let point = at(corners.positions, weights) + normal * (depth - motion.reach);
+    let origin = motion.of.origin;
+    let surface = motion.of.surface_motion(point);
+    let push = Contact {
+        normal,
+        depth,
+        relative: at(corners.displacements, weights) - surface,
+    }
+    .push(motion.settings.friction, &motion.push_out);
+    let mut farthest = 0.0_f32;
+    for (corner, part) in parts.into_iter().enumerate() {
+        let share = part / mobility;
+        if share > 0.0 {
+            let push = [push.position * share, push.displacement * share];
+            farthest = farthest.max(push[0].length());
+            let pushed = corners.push(corner, particles, push);
+            given.add(pushed - origin, push[1], corners.inverse_masses[corner]);
+        }
+    }
+    (farthest, depth)
+}
+
+/// Pushes each corner of a triangle in front of the plane at its hit. Returns the largest displacement and the depth
+/// (m).
+fn push_in_front(
+    particles: &mut ClothParticles,
+    corners: &Corners,
+    centre: Vec3,
+    normal: Vec3,
+    motion: &EdgeMotion,
+    given: &mut Impulse,
+) -> (f32, f32) {
+    let origin = motion.of.origin;
+    let (mut farthest, mut deepest) = (0.0_f32, 0.0_f32);
+    for corner in 0..3 {
+        let position = corners.positions[corner];
+        let depth = motion.reach - normal.dot(position - centre);
+        if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
+            continue;
+        }
+        let point = position + normal * (depth - motion.reach);
+        let surface = motion.of.surface_motion(point);
+        let push = Contact {
+            normal,
+            depth,
+            relative: corners.displacements[corner] - surface,
+        }
+        .push(motion.settings.friction, &motion.push_out);
+        deepest = deepest.max(depth);
+        farthest = farthest.max(push.position.length());
+        let pushed = corners.push(corner, particles, [push.position, push.displacement]);
+        given.add(
+            pushed - origin,
+            push.displacement,
+            corners.inverse_masses[corner],
+        );
+    }
+    (farthest, deepest)
+}

@@ -1,0 +1,443 @@
+//! Contact of cloth with cloth: with itself, and with others.
+//!
+//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart.
+//!
+//! ```text
+//!   cloth → patches of a few faces (sheet)
+//!   boxes with room around patches, trees searched from the top down (near_patches) → near pairs of patches
+//!   features of near pairs, culled by boxes, compared eight at a time (compare, lanes) → slack, listed features
+//!   the pair's own motion since then (motion): used > until?                        → look again (near_features)
+//!   listed pairs that may touch in this sub-step                                    → contacts: push, certify
+//! ```
+//!
+//! # The guarantee
+//! At the end of a sub-step no two triangles intersect, if they did not at its beginning:
+//!
+//! 1. Two patches whose boxes do not overlap are a thickness apart.
+//! 2. Of two patches whose boxes overlap, features that are not listed were farther apart than a thickness by at least
+//!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
+//!    less, they are a thickness apart.
+//! 3. Two patches of a grid whose [tangents](tangents) differ little are apart, however they moved.
+//! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
+//!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
+//!    it has not passed, or it is stopped.
+//! 5. A push moves particles: 1 to 4 are done again, until nothing new is near.
+//!
+//! Patches that begin intersected are left alone until they are apart. More work than the [limit](work) is not done, and
+//! reported; such patches have less of it. Resting layers are [held](hold) for a few sub-steps, while none can have come
+//! near enough to pass.
+
+mod bounds;
+mod certificate;
+mod circumstances;
+mod compare;
+mod hold;
+mod inside;
+mod intersections;
+mod lanes;
+mod members;
+mod motion;
+mod near_features;
+mod near_patches;
+mod origin;
+mod pair;
+mod participant;
+mod patch_pair;
+mod response;
+mod settings;
+mod sheet;
+mod tangents;
+#[cfg(test)]
+mod tests;
+mod work;
+
+use certificate::{LEFT_OF_THICKNESS, Zones};
+use circumstances::Circumstances;
+use hold::Hold;
+use members::{Members, NOBODY};
+use motion::Motion;
+use near_features::NearFeatures;
+use near_patches::{Meets, Rooms};
+use origin::Origin;
+use pair::{NearPair, VERTEX_AND_FACE};
+use patch_pair::Candidate;
+use response::push;
+use work::Counts;
+
+pub(crate) use inside::Inside;
+pub use intersections::intersections;
+pub(crate) use participant::Participant;
+pub use settings::ClothSelfCollision;
+pub(crate) use sheet::Sheet;
+
+/// Largest number of times that features are looked for in a sub-step near those that were pushed.
+const ROUNDS: u32 = 4;
+
+/// Units of work for a contact that is listed and pushed.
+const WORK_OF_CONTACT: usize = 8;
+
+/// Largest number of sub-steps that layers want.
+const MOST_SUBSTEPS: f32 = 16.0;
+
+/// Number of ticks without contact after one with too much work.
+const TICKS_OFF: u32 = 8;
+
+/// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
+/// of their last pushes, for this many sub-steps at most, and this fraction of the way.
+const HELD: f32 = 0.08;
+const LONGEST_HOLD: u32 = 3;
+const PART_OF_WAY: f32 = 0.5;
+
+/// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
+const RESTING_SPEED: f32 = 0.25;
+
+/// Deviation of a patch from its reference, as a fraction of the smallest thickness, from which on it gets a new one.
+const REFERENCE: f32 = 0.05;
+
+/// Contact of cloths with themselves and with each other, from tick to tick. Can be dropped at any time.
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct MutualContact {
+    circumstances: Circumstances,
+    motion: Motion,
+    rooms: Rooms,
+    near: NearFeatures,
+    /// The pairs that may touch in the sub-step.
+    contacts: Vec<NearPair>,
+    overlapping: Vec<u32>,
+    members: Members,
+    zones: Zones,
+    /// The pushes that hold particles between tests.
+    hold: Hold,
+    last: LastTest,
+    /// Positions before colliders push particles in the sub-step, if noted.
+    before_colliders: Origin,
+    is_known: bool,
+    /// Number of ticks left without contact.
+    ticks_off: u32,
+    counts: Counts,
+}
+
+/// The last sub-step in which pairs were tested.
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+struct LastTest {
+    /// Positions of all particles at its end: up to there, layers are apart.
+    passed: Origin,
+    /// Number of sub-steps since, and of those left without a test.
+    waited: u32,
+    wait: u32,
+    /// Largest approach before others can touch (m).
+    free: f32,
+    /// The part of it that resting layers keep, to be held (m).
+    reserve: f32,
+}
+
+impl MutualContact {
+    /// Forgets all pairs: the particles are others, or have jumped.
+    pub fn forget(&mut self) {
+        (self.is_known, self.ticks_off) = (false, 0);
+    }
+
+    /// Begins a tick of these cloths. `meets` returns whether two of them may touch.
+    pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
+        let was_lost = self.counts.is_lost;
+        let particles = cloths.iter().map(|cloth| cloth.particles.len());
+        let particles = particles.sum::<usize>();
+        self.counts = Counts::new(particles);
+        let is_same = self.circumstances.renew(cloths, &meets);
+        if is_same && self.ticks_off > 0 {
+            self.ticks_off -= 1;
+            self.counts.is_lost = true;
+            return;
+        }
+        let is_new = !(self.is_known && self.motion.is_of(cloths));
+        if is_same && !is_new && !was_lost {
+            self.near.begin_tick(&mut self.motion);
+            self.tighten();
+            let approach = self.last.passed.approach(cloths);
+            if approach == 0.0 || approach <= self.last.free {
+                return;
+            }
+            // Something else has moved them.
+            self.motion.read(cloths);
+            self.motion.measure_drift();
+            self.motion.measure(cloths);
+            self.motion.pass(cloths, REFERENCE * thinnest(cloths));
+            // Both ends of the sub-step are here.
+            self.motion.end.clone_from(&self.motion.start);
+        } else {
+            let begins = is_new || was_lost;
+            if !begins {
+                self.tighten();
+            }
+            self.near.restart(begins);
+            self.motion.reset(cloths);
+            self.rooms.reset(cloths, self.motion.patches.len());
+            self.hold.clear(cloths);
+            self.contacts.clear();
+            (self.is_known, self.ticks_off) = (true, 0);
+        }
+        (self.last.wait, self.last.waited) = (0, 0);
+        self.last.passed.set(cloths);
+        match self.look(cloths, &meets) {
+            Some(free) => self.last.free = free,
+            None => self.lose(),
+        }
+        self.near.begins = false;
+        self.tighten();
+    }
+
+    /// Lowers the limit of work by what began inside each other.
+    fn tighten(&mut self) {
+        let tangled = self.near.tangled_share(self.motion.patches.len());
+        self.counts.tighten(self.motion.end.len(), tangled);
+    }
+
+    /// Number of times that the features of two patches were compared in the tick.
+    pub fn searches(&self) -> u32 {
+        self.counts.compared
+    }
+
+    /// Number of sub-steps that these layers want in the next tick, 0 if none touched. In a pile they carry its weight. In
+    /// each, fast layers move by a thickness.
+    pub fn wanted_substeps(&self) -> u32 {
+        if self.counts.touched == 0.0 {
+            return 0;
+        }
+        let pile = MOST_SUBSTEPS * self.counts.touched;
+        let fast = self.counts.motion * self.counts.substeps as f32;
+        pile.max(fast).clamp(1.0, MOST_SUBSTEPS) as u32
+    }
+
+    /// Number of sub-steps of the tick in which nothing was kept apart, because there was too much work.
+    pub fn lost(&self) -> u32 {
+        self.counts.lost
+    }
+
+    /// Number of pairs of features that may come near each other.
+    pub fn pairs(&self) -> usize {
+        self.near.len()
+    }
+
+    /// Notes the particles' positions in a sub-step before colliders push them. Particles cannot move against these
+    /// pushes.
+    pub fn note_before_colliders(&mut self, cloths: &[Participant]) {
+        if self.near.len() > 0 {
+            self.before_colliders.set(cloths);
+        } else {
+            self.before_colliders.clear();
+        }
+    }
+
+    /// Keeps the layers of cloths apart at the end of a sub-step of `dt` (s). Marks the cloths that were pushed.
+    /// Returns the largest push (m).
+    pub fn respond(
+        &mut self,
+        cloths: &mut [Participant],
+        meets: impl Fn(usize, usize) -> bool,
+        dt: f32,
+        is_pushed: &mut [bool],
+    ) -> f32 {
+        if self.counts.is_lost {
+            self.counts.lost += 1;
+            return 0.0;
+        }
+        self.counts.substeps += 1;
+        self.last.waited += 1;
+        let is_waiting = self.last.wait > 0;
+        self.last.wait = self.last.wait.saturating_sub(1);
+        let (held, approach) = if is_waiting {
+            self.hold.apply(cloths, &self.last.passed, is_pushed)
+        } else {
+            (0.0, self.last.passed.approach(cloths))
+        };
+        let has_none = self.contacts.is_empty() && !self.near.has_changed;
+        if (is_waiting || has_none) && approach <= self.last.free {
+            return held;
+        }
+        self.last.wait = 0;
+        self.motion.read(cloths);
+        self.motion.measure_drift();
+        self.motion.measure(cloths);
+        let is_apart = self.keep_apart(cloths, &meets, dt);
+        let pushed = self.members.farthest_push();
+        self.hold.pass();
+        self.members.scatter(cloths, is_pushed, &mut self.hold);
+        if !is_apart {
+            self.lose();
+            self.counts.lost += 1;
+            return pushed + held;
+        }
+        let thinnest = thinnest(cloths);
+        let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
+        self.counts.motion = self.counts.motion.max(0.5 * pace / thinnest);
+        self.motion.pass(cloths, REFERENCE * thinnest);
+        self.last.reserve = 0.0;
+        if !self.contacts.is_empty() {
+            let most = HELD * thinnest;
+            self.last.free = self.last.free.min(most);
+            if self.members.are_resting(RESTING_SPEED * dt) {
+                self.last.reserve = most.min(LONGEST_HOLD as f32 * pace / PART_OF_WAY);
+                self.last.wait = ((PART_OF_WAY * self.last.free / pace) as u32).min(LONGEST_HOLD);
+            }
+        }
+        self.last.passed.set(cloths);
+        self.last.waited = 0;
+        pushed + held
+    }
+
+    /// Pushes apart what touches, and looks for what the pushed particles may touch. Returns whether there was not too
+    /// much work.
+    fn keep_apart(
+        &mut self,
+        cloths: &[Participant],
+        meets: impl Fn(usize, usize) -> bool,
+        dt: f32,
+    ) -> bool {
+        for round in 0..ROUNDS {
+            let Some(free) = self.look(cloths, &meets) else {
+                return false;
+            };
+            self.last.free = free;
+            if round == 0 && !self.near.has_changed {
+                self.members
+                    .gather(cloths, &self.motion, &self.before_colliders);
+            } else if self.near.has_changed {
+                self.list(cloths, round == 0);
+            } else {
+                break;
+            }
+            self.counts.take(WORK_OF_CONTACT * self.contacts.len());
+            let mut has_moved = false;
+            if round == 0 {
+                let (overlapping, members) = (&mut self.overlapping, &mut self.members);
+                let touched = push(&self.contacts, overlapping, members, dt);
+                let each = touched as f32 / members.len().max(1) as f32;
+                self.counts.touched = self.counts.touched.max(each);
+                has_moved = touched > 0;
+            }
+            let (members, work) = (&mut self.members, &mut self.counts.work);
+            has_moved |= self.zones.certify(&self.contacts, members, work);
+            if !has_moved {
+                break;
+            }
+            self.members.put(&mut self.motion);
+            self.motion.measure(cloths);
+            self.last.free = f32::NEG_INFINITY;
+        }
+        true
+    }
+
+    /// Looks at the patches that have used up what they may. Returns the approach of any two particles before others
+    /// have (m); `None` if there was too much work.
+    fn look(
+        &mut self,
+        cloths: &[Participant],
+        meets: impl Fn(usize, usize) -> bool,
+    ) -> Option<f32> {
+        let Self {
+            motion,
+            rooms,
+            near,
+            last,
+            counts,
+            ..
+        } = self;
+        let (have_left, room) = rooms.renew(cloths, motion, last.reserve);
+        if have_left {
+            let among = Meets { cloths, meets };
+            near.renew(rooms, &among, motion, &mut counts.work);
+        }
+        let slack = near.look(cloths, motion, last.reserve, counts)?;
+        Some(slack.min(2.0 * room))
+    }
+
+    /// Lists the contacts. A `first` list of a sub-step has members of its own.
+    fn list(&mut self, cloths: &[Participant], is_first: bool) {
+        let Self {
+            near,
+            motion,
+            members,
+            contacts,
+            before_colliders,
+            ..
+        } = self;
+        if is_first {
+            members.clear(motion.end.len());
+        }
+        members.last_of.fill(NOBODY);
+        contacts.clear();
+        near.has_changed = false;
+        let add = |candidate: &Candidate, of: [u32; 2], near: f32| {
+            let particles = candidate.particles;
+            let members_of =
+                particles.map(|particle| members.of(particle, cloths, motion, before_colliders));
+            let split = candidate.split as usize;
+            let nearest = candidate.nearest;
+            let [a, b] = of.map(|cloth| cloths[cloth as usize].settings.friction);
+            let mut before = NOBODY;
+            if split == VERTEX_AND_FACE {
+                let last = &mut members.last_of[members_of[0] as usize];
+                before = std::mem::replace(last, contacts.len() as u32);
+            }
+            contacts.push(NearPair {
+                members: members_of,
+                split,
+                thickness: candidate.thickness,
+                friction: (a * b).sqrt(),
+                distance: nearest.distance,
+                normal: nearest.normal,
+                weights: nearest.weights,
+                is_pushed: split == VERTEX_AND_FACE || !nearest.is_at_border(),
+                before,
+                may_pass: candidate.nearest.distance
+                    <= near + LEFT_OF_THICKNESS * candidate.thickness,
+            });
+        };
+        near.contacts(motion, add);
+        self.leave_out_implied();
+    }
+
+    /// Marks the faces from which a nearer face already keeps a vertex away: the nearest point is on an edge of both.
+    fn leave_out_implied(&mut self) {
+        for index in 0..self.contacts.len() {
+            let pair = &self.contacts[index];
+            if pair.split != VERTEX_AND_FACE || pair.weights.iter().all(|&weight| weight != 0.0) {
+                continue;
+            }
+            let mut next = self.members.last_of[pair.members[0] as usize];
+            let mut is_implied = false;
+            while next != NOBODY && !is_implied && self.counts.work > 0 {
+                let other = &self.contacts[next as usize];
+                let is_nearer = other.distance < pair.distance
+                    || (other.distance == pair.distance && (next as usize) < index);
+                let has = |corner: usize| {
+                    pair.weights[corner] == 0.0
+                        || other.members[1..].contains(&pair.members[corner])
+                };
+                self.counts.take(1);
+                is_implied = next as usize != index
+                    && other.thickness >= pair.thickness
+                    && is_nearer
+                    && (1..4).all(has);
+                next = other.before;
+            }
+            self.contacts[index].is_pushed &= !is_implied;
+        }
+        self.contacts.retain(|pair| pair.is_pushed || pair.may_pass);
+    }
+
+    /// Keeps nothing apart for the rest of the tick and some more.
+    fn lose(&mut self) {
+        (self.counts.is_lost, self.ticks_off) = (true, TICKS_OFF);
+        self.near.clear();
+        self.contacts.clear();
+    }
+}
+
+/// The smallest thickness (m).
+fn thinnest(cloths: &[Participant]) -> f32 {
+    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
+    each.fold(f32::INFINITY, f32::min)
+}

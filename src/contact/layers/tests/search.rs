@@ -1,0 +1,423 @@
+//! No pair of near features is lost, and patches that are skipped cannot touch.
+
+use std::{collections::HashSet, sync::Arc};
+
+use bevy::math::{DVec3, Vec3, Vec3A};
+
+use super::{Scene, Sheeted, participants, settings};
+use crate::{
+    cloth::{Cloth, Surface},
+    contact::layers::{MutualContact, patch_pair::Candidate, sheet::Sheet},
+    hierarchy::QuadTree,
+};
+
+/// What a square of 1 m is bent into: flat, rolled up more and more, folded, wavy, crumpled.
+fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {
+    vec![
+        ("flat", |at| at),
+        ("wavy", |at| {
+            at + Vec3::Y * 0.08 * (9.0 * at.x).sin() * (7.0 * at.z).cos()
+        }),
+        ("rolled", |at| {
+            let angle = 14.0 * (at.z + 0.5);
+            let radius = 0.05 + 0.002 * angle;
+            Vec3::new(at.x, radius * angle.sin(), radius * angle.cos())
+        }),
+        ("folded", |at| {
+            if at.z > 0.0 {
+                Vec3::new(at.x + 0.011, 0.006 + 0.3 * at.z * at.x.abs(), -at.z)
+            } else {
+                at
+            }
+        }),
+        ("crumpled", |at| {
+            let turn = |k: f32| (k * at.x + 3.0 * at.z).sin();
+            Vec3::new(
+                0.2 * turn(17.0),
+                0.2 * turn(23.0),
+                0.2 * turn(29.0) + 0.1 * at.z,
+            )
+        }),
+    ]
+}
+
+type Feature = (Vec<u32>, Vec<u32>);
+
+/// A pair, whichever way its features are named.
+fn named(first: &[u32], second: &[u32]) -> Feature {
+    let sorted = |of: &[u32]| {
+        let mut of = of.to_vec();
+        of.sort_unstable();
+        of
+    };
+    let (first, second) = (sorted(first), sorted(second));
+    if (first.len(), &first) <= (second.len(), &second) {
+        (first, second)
+    } else {
+        (second, first)
+    }
+}
+
+/// The distance of two features, by looking at all of both: in f64, by alternating projections, which ends in the nearest points
+/// of two convex sets.
+fn distance(first: &[DVec3], second: &[DVec3]) -> f64 {
+    let onto = |of: &[DVec3], point: DVec3| -> DVec3 {
+        let segment = |a: DVec3, b: DVec3| {
+            let along = b - a;
+            a + along * ((point - a).dot(along) / along.length_squared()).clamp(0.0, 1.0)
+        };
+        match *of {
+            [a] => a,
+            [a, b] => segment(a, b),
+            [a, b, c] => {
+                let normal = (b - a).cross(c - a);
+                let flat = point - normal * ((point - a).dot(normal) / normal.length_squared());
+                let side = |p: DVec3, q: DVec3| (q - p).cross(flat - p).dot(normal) >= 0.0;
+                if side(a, b) && side(b, c) && side(c, a) {
+                    return flat;
+                }
+                [segment(a, b), segment(b, c), segment(c, a)]
+                    .into_iter()
+                    .min_by(|p, q| {
+                        p.distance_squared(point)
+                            .total_cmp(&q.distance_squared(point))
+                    })
+                    .expect("three")
+            }
+            _ => unreachable!("a vertex, an edge or a face"),
+        }
+    };
+    let mut point = first[0];
+    for _ in 0..400 {
+        point = onto(first, onto(second, point));
+    }
+    onto(second, point).distance(point)
+}
+
+/// The features of a surface, and which of them are near each other, by brute force.
+struct Brute {
+    faces: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+    vertices: u32,
+}
+
+impl Brute {
+    fn new(cloth: &Sheeted) -> Self {
+        let faces = cloth.surface.triangles().to_vec();
+        let sides = faces
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .map(|[a, b]| [a.min(b), a.max(b)]);
+        let mut edges: Vec<[u32; 2]> = sides.collect();
+        edges.sort_unstable();
+        edges.dedup();
+        Self {
+            faces,
+            edges,
+            vertices: cloth.surface.len() as u32,
+        }
+    }
+
+    /// Calls `near` with all features of which a vertex is nearer than `reach` to a face, or an edge nearer than half of
+    /// that to another.
+    fn near(&self, places: &[DVec3], reach: f64, mut near: impl FnMut(Feature, f64)) {
+        let at =
+            |of: &[u32]| -> Vec<DVec3> { of.iter().map(|&each| places[each as usize]).collect() };
+        let mut check = |first: &[u32], second: &[u32], reach: f64| {
+            let box_of = |of: &[u32]| {
+                let places = at(of);
+                let low = places
+                    .iter()
+                    .copied()
+                    .reduce(DVec3::min)
+                    .expect("a feature");
+                (
+                    low,
+                    places.into_iter().reduce(DVec3::max).expect("a feature"),
+                )
+            };
+            let ((low, high), (from, to)) = (box_of(first), box_of(second));
+            let is_far = (low - reach).cmpgt(to).any() || (high + reach).cmplt(from).any();
+            if is_far || first.iter().any(|each| second.contains(each)) {
+                return;
+            }
+            let apart = distance(&at(first), &at(second));
+            if apart < reach {
+                near(named(first, second), apart);
+            }
+        };
+        for vertex in 0..self.vertices {
+            for face in &self.faces {
+                check(&[vertex], face, reach);
+            }
+        }
+        for (index, first) in self.edges.iter().enumerate() {
+            for second in &self.edges[index + 1..] {
+                check(first, second, 0.5 * reach);
+            }
+        }
+    }
+}
+
+fn feature(candidate: &Candidate) -> Feature {
+    let (first, second) = candidate.particles.split_at(candidate.split as usize);
+    named(first, second)
+}
+
+fn places(cloth: &Sheeted) -> Vec<DVec3> {
+    let places = cloth.particles.positions();
+    places.map(Vec3::as_dvec3).collect()
+}
+
+/// Rounding in f32 of distances of a metre.
+const ROUNDING: f64 = 1.0e-5;
+
+#[test]
+fn no_pair_is_lost() {
+    for (name, shape) in shapes() {
+        for is_mesh in [false, true] {
+            let mut cloths = vec![Sheeted::of_kind(11, 1.0, is_mesh, shape)];
+            let thickness = 0.03;
+            let brute = Brute::new(&cloths[0]);
+            let places = places(&cloths[0]);
+            let mut contact = MutualContact::default();
+            contact.begin(&participants(&mut cloths, settings(thickness)), |_, _| true);
+            let known: HashSet<Feature> = contact.near.all().map(feature).collect();
+            assert_eq!(known.len(), contact.near.len(), "{name}: each once");
+            let mut near = 0;
+            brute.near(
+                &places,
+                f64::from(thickness) - ROUNDING,
+                |feature, apart| {
+                    near += 1;
+                    assert!(
+                        known.contains(&feature),
+                        "{name}: {feature:?}, {apart} m apart"
+                    );
+                },
+            );
+            assert_eq!(
+                near == 0,
+                ["flat", "wavy"].contains(&name),
+                "{name}: {near}"
+            );
+        }
+    }
+}
+
+/// In each of many steps of any motion, everything that is near is a contact: folds, flaps and tears that nothing stops.
+#[test]
+fn no_pair_is_lost_on_the_way() {
+    let thickness = 0.03;
+    for (is_mesh, speed) in [(false, 1.0), (false, 4.0), (true, 1.0), (true, 4.0)] {
+        let mut cloths = vec![Sheeted::of_kind(9, 1.0, is_mesh, |at| at)];
+        let brute = Brute::new(&cloths[0]);
+        let rest: Vec<Vec3> = cloths[0].particles.positions().collect();
+        let mut contact = MutualContact::default();
+        let mut met = 0;
+        for step in 0..60 {
+            let time = speed * step as f32 / 60.0;
+            // A roll that closes, flaps on it, and a drift of all.
+            let bent = |at: Vec3| {
+                let turns = (9.0 * time).clamp(0.01, 14.0);
+                let angle = turns * at.z;
+                let radius = (1.0 + 0.1 * at.z) / turns;
+                let flap = 0.05 * (20.0 * time + 11.0 * at.x).sin();
+                let rolled = Vec3::new(0.0, radius * (1.0 - angle.cos()), radius * angle.sin());
+                rolled + Vec3::X * (at.x + flap) + 4.0 * time * Vec3::new(1.0, -1.0, 1.0)
+            };
+            for (index, &at) in rest.iter().enumerate() {
+                let set = cloths[0].particles.set_position(index, bent(at));
+                set.expect("it exists");
+            }
+            let of = participants(&mut cloths, settings(thickness));
+            if step == 0 {
+                contact.begin(&of, |_, _| true);
+                continue;
+            }
+            contact.counts.work = usize::MAX;
+            contact.motion.read(&of);
+            contact.motion.measure_drift();
+            contact.motion.measure(&of);
+            contact.look(&of, |_, _| true).expect("not too much work");
+            let mut known = HashSet::new();
+            contact.near.contacts(&contact.motion, |candidate, _, _| {
+                known.insert(feature(candidate));
+            });
+            contact.motion.pass(&of, 0.05 * thickness);
+            let places = places(&cloths[0]);
+            brute.near(
+                &places,
+                f64::from(thickness) - ROUNDING,
+                |feature, apart| {
+                    met += 1;
+                    assert!(
+                        known.contains(&feature),
+                        "step {step} at {speed}, mesh {is_mesh}: {feature:?}, {apart} m apart"
+                    );
+                },
+            );
+        }
+        assert!(met > 0, "something meets");
+    }
+}
+
+/// What has been folded by something else since the last tick, without a word, is found.
+#[test]
+fn no_pair_is_lost_after_a_sudden_fold() {
+    let thickness = 0.03;
+    let mut cloths = vec![Sheeted::new(11, 1.0, |at| at)];
+    let mut contact = MutualContact::default();
+    contact.begin(&participants(&mut cloths, settings(thickness)), |_, _| true);
+    assert_eq!(contact.near.all().count(), 0, "flat");
+    // A sharp fold between neighbouring patches.
+    let folded = Sheeted::new(11, 1.0, |at| {
+        Vec3::new(at.x, 0.2 * at.z.abs(), at.z.abs() + 0.02 * at.x)
+    });
+    cloths[0].particles.copy_from(&folded.particles);
+    contact.begin(&participants(&mut cloths, settings(thickness)), |_, _| true);
+    let known: HashSet<Feature> = contact.near.all().map(feature).collect();
+    let mut near = 0;
+    Brute::new(&cloths[0]).near(
+        &places(&cloths[0]),
+        f64::from(thickness) - ROUNDING,
+        |feature, apart| {
+            near += 1;
+            assert!(known.contains(&feature), "{feature:?}, {apart} m apart");
+        },
+    );
+    assert!(near > 0);
+}
+
+/// Long grids and strips need no search either: all patches that share particles are proved apart.
+#[test]
+fn long_sheets_are_proved_flat() {
+    for [columns, rows] in [
+        [64, 32],
+        [32, 64],
+        [64, 8],
+        [8, 64],
+        [30, 20],
+        [24, 32],
+        [7, 100],
+    ] {
+        let cloth = Cloth::new(columns, rows, 0.04).lying();
+        let surface = Surface::of_grid(&cloth.grid(Vec3::ONE).expect("a valid grid"));
+        let surface = Arc::new(surface);
+        let sheet = Sheet::new(&surface, &QuadTree::of_surface(&surface, true));
+        let bent = surface.rest_positions().iter();
+        let bent = bent.map(|at| Vec3A::from(*at + 0.01 * (7.0 * at.x).sin() * Vec3::Y));
+        let places: Vec<Vec3A> = bent.collect();
+        let patches = 0..sheet.patch_count() as u32;
+        for (a, b) in patches
+            .clone()
+            .flat_map(|a| (a..patches.end).map(move |b| (a, b)))
+        {
+            let others = sheet.particles_of(b);
+            if sheet
+                .particles_of(a)
+                .iter()
+                .any(|each| others.contains(each))
+            {
+                let bound = sheet.unfolded([a, b], &places);
+                assert!(
+                    bound > Some(0.01),
+                    "{columns} × {rows}, {a} and {b}: {bound:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Whatever a grid is bent into, no two points of two patches are nearer than the bound says, but for features
+/// with a common particle. Points are vertices, middles of edges and middles of faces.
+#[test]
+fn what_is_hardly_bent_keeps_its_points_apart() {
+    let mut has_bound = 0;
+    for (name, shape) in shapes() {
+        for scale in [1.0, 0.4, 0.1] {
+            let shape = move |at: Vec3| shape(at * scale) / scale;
+            let cloth = Sheeted::new(9, 1.0, shape);
+            let places: Vec<Vec3A> = cloth.particles.positions().map(Vec3A::from).collect();
+            let points = |patch: u32| {
+                let particles = cloth.sheet.particles_of(patch);
+                let named = |of: &[u16]| -> Vec<u32> {
+                    of.iter().map(|&at| particles[usize::from(at)]).collect()
+                };
+                let vertices = particles.iter().map(|&particle| vec![particle]);
+                let edges = cloth.sheet.edges_of(patch).iter().map(|of| named(of));
+                let faces = cloth.sheet.faces_of(patch).iter().map(|of| named(of));
+                let all = vertices.chain(edges).chain(faces);
+                all.map(|of| {
+                    let sum = of.iter().map(|&each| places[each as usize]).sum::<Vec3A>();
+                    (sum / of.len() as f32, of)
+                })
+                .collect::<Vec<_>>()
+            };
+            let patches = cloth.sheet.patch_count() as u32;
+            let all: Vec<_> = (0..patches).map(points).collect();
+            for (a, first) in (0..).zip(&all) {
+                for (b, second) in (a..).zip(&all[a as usize..]) {
+                    let bound = cloth.sheet.unfolded([b, a], &places);
+                    let Some(bound) = bound else { continue };
+                    has_bound += usize::from(bound > 0.0);
+                    for (at, of) in first {
+                        for (to, others) in second {
+                            let apart = at.distance(*to);
+                            assert!(
+                                apart >= bound || of.iter().any(|each| others.contains(each)),
+                                "{name}: {apart}, {bound}, {of:?}, {others:?}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(has_bound > 300, "{has_bound}");
+}
+
+/// A search ends, however many features are near each other, and finds no more than it may: of a sheet that is crammed into a tenth of a
+/// spacing or thrown asunder, and of one so thick that everything is near. It is said that layers were not kept apart, and what comes
+/// back into shape is kept apart again.
+#[test]
+fn what_is_too_much_to_look_for_is_let_go() {
+    let scattered = |size: f32| {
+        move |at: Vec3| {
+            let turn = |k: f32| (k * at.x + 1.7 * k * at.z).sin();
+            size * Vec3::new(turn(1.0e3), turn(2.3e3), turn(3.1e3))
+        }
+    };
+    let side = 24;
+    let particles = (side * side) as usize;
+    for (name, size, thickness) in [
+        ("crammed", 0.003, 0.01),
+        ("asunder", 1.0e6, 0.01),
+        ("thick", 1.0, 30.0),
+    ] {
+        let mut scene = Scene::new(vec![Sheeted::new(side, 1.0, scattered(size))], thickness);
+        for _ in 0..3 {
+            let cloth = &mut scene.cloths[0];
+            for index in 0..particles {
+                // In each tick others are where none had been.
+                let at = cloth.particles.position(index).expect("it exists");
+                let at = at + Vec3::splat(0.37);
+                let at = Vec3::new(at.y, at.z, at.x);
+                cloth.particles.set_position(index, at).expect("finite");
+            }
+            scene.tick(|_, _, _| {});
+            let contact = &scene.contact;
+            if contact.lost() == scene.step.substeps {
+                assert_eq!(contact.pairs(), 0);
+            }
+        }
+        assert!(name == "asunder" || scene.contact.lost() > 0, "{name}");
+        let again = Sheeted::new(side, 1.0, |at| at);
+        scene.cloths[0].particles.copy_from(&again.particles);
+        // As the plugin does where particles are put elsewhere.
+        scene.contact.forget();
+        scene.settings = settings(0.01);
+        scene.tick(|_, _, _| {});
+        assert_eq!(scene.contact.lost(), 0, "{name}");
+    }
+}

@@ -1,0 +1,227 @@
+//! Particles against the planes of a shape's surface nearest to them, for shapes whose nearest point is expensive.
+//!
+//! A particle's distance is a statement about positions: having moved by less since, it cannot touch, however much time
+//! has passed. One that touched is tested against the same plane while it hardly moves, in that tick.
+
+use bevy::math::{Isometry3d, Mat3, Vec3};
+use multiversion::multiversion;
+
+use super::lanes::{LaneMotion, Near, Sums, is_clear, push, survey};
+use crate::{
+    cloth::{Block, LANES, Lanes, View, W, X, Y, Z},
+    contact::{candidates::ContactBlock, colliders::ColliderShape},
+};
+
+/// A particle that has moved less than this fraction of its radius is tested against the last plane. For a flat surface
+/// that is exact; another part of a mesh may be nearer by at most twice as much.
+const SAME_PLANE: f32 = 0.1;
+
+/// The planes nearest to eight particles, in the shape's frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Planes {
+    /// Where each particle was when its plane was found (m); NaN before.
+    at: [Lanes; 3],
+    /// Its distance then (m), and the plane's normal.
+    distance: Lanes,
+    normal: [Lanes; 3],
+    /// Displacement up to which the plane is reused (m); negative if the particle did not touch it in this tick.
+    same: Lanes,
+    /// The tick of that.
+    tick: u32,
+}
+
+/// A shape's frame at the end of a sub-step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Frame {
+    centre: [f32; 3],
+    axes: [[f32; 3]; 3],
+    /// Radius of a particle, and its displacement up to which a plane is reused (m).
+    reach: f32,
+    same: f32,
+    tick: u32,
+}
+
+impl Planes {
+    pub const UNKNOWN: Self = Self {
+        at: [[f32::NAN; LANES]; 3],
+        distance: [f32::INFINITY; LANES],
+        normal: [[0.0; LANES], [1.0; LANES], [0.0; LANES]],
+        same: [-1.0; LANES],
+        tick: 0,
+    };
+
+    /// Finds the plane nearest to a particle.
+    fn find(&mut self, lane: usize, shape: &ColliderShape, local: Vec3, frame: &Frame) {
+        let known = Vec3::from([0, 1, 2].map(|axis| self.at[axis][lane]));
+        let within = self.distance[lane].abs() + local.distance(known);
+        let nearest = shape.nearest_within(local, within * (1.0 + 1.0e-3) + 1.0e-3);
+        let is_touching = nearest.distance <= frame.reach;
+        let beside = if is_touching {
+            f32::INFINITY
+        } else {
+            shape.distance_beside_ground(local)
+        };
+        self.distance[lane] = nearest.distance.min(beside);
+        self.same[lane] = if is_touching { frame.same } else { -1.0 };
+        let (at, normal) = (local.to_array(), nearest.normal.to_array());
+        for axis in 0..3 {
+            self.at[axis][lane] = at[axis];
+            self.normal[axis][lane] = normal[axis];
+        }
+    }
+}
+
+impl Planes {
+    /// Clears the positions of those that are not reused.
+    #[cfg(test)]
+    pub fn forget(&mut self) {
+        for lane in (0..LANES).filter(|&lane| self.same[lane] < 0.0) {
+            self.at[0][lane] = f32::NAN;
+        }
+    }
+}
+
+impl Frame {
+    pub fn new(pose: Isometry3d, particle_radius: f32, tick: u32) -> Self {
+        Self {
+            centre: Vec3::from(pose.translation).to_array(),
+            axes: Mat3::from_quat(pose.rotation).to_cols_array_2d(),
+            reach: particle_radius,
+            same: SAME_PLANE * particle_radius,
+            tick,
+        }
+    }
+}
+
+/// A particle relative to its plane.
+struct Moved {
+    /// Its position in the shape's frame (m).
+    at: [f32; 3],
+    /// Its displacement since its plane was found (m), and the length of that.
+    offset: [f32; 3],
+    length: f32,
+    /// Lower bound of its distance (m).
+    least: f32,
+}
+
+#[inline(always)]
+fn moved(view: &View, planes: &Planes, frame: &Frame, l: usize) -> Moved {
+    let [cx, cy, cz] = frame.centre;
+    let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
+    let at = frame.axes.map(|[u, v, w]| x * u + y * v + z * w);
+    let offset = [
+        at[0] - planes.at[0][l],
+        at[1] - planes.at[1][l],
+        at[2] - planes.at[2][l],
+    ];
+    let [a, b, c] = offset;
+    let length = (a * a + b * b + c * c).sqrt();
+    let distance = planes.distance[l];
+    // Smaller by rounding errors: whether a particle is tested must not depend on where its plane was found.
+    let size = at[0].abs() + at[1].abs() + at[2].abs() + distance.abs();
+    Moved {
+        at,
+        offset,
+        length,
+        least: distance - length * (1.0 + 1.0e-5) - 2.0e-6 * size,
+    }
+}
+
+/// Bit mask of the particles that may touch the shape, but not their last planes.
+#[inline(always)]
+fn stale(view: &View, planes: &Planes, frame: &Frame) -> u8 {
+    let mut is_stale = [0_u32; LANES];
+    for l in 0..LANES {
+        let moved = moved(view, planes, frame, l);
+        // Both false for NaN.
+        let is_far = moved.least > frame.reach;
+        let is_same = moved.length <= planes.same[l];
+        let is_free = view[W + l] > 0.0;
+        is_stale[l] = if !is_far & !is_same & is_free { 1 } else { 0 };
+    }
+    (0..LANES).fold(0, |mask, l| mask | (is_stale[l] as u8) << l)
+}
+
+/// Finds the planes nearest to the particles that need new ones.
+pub(crate) fn find_planes(
+    blocks: &[Block],
+    contacts: &[ContactBlock],
+    planes: &mut [Planes],
+    (shape, frame, motion): (&ColliderShape, &Frame, &LaneMotion),
+) {
+    for contact in contacts {
+        if contact.lanes == 0 || is_clear(contact, motion) {
+            continue;
+        }
+        let planes = &mut planes[contact.block as usize];
+        if planes.tick != frame.tick {
+            (planes.same, planes.tick) = ([-1.0; LANES], frame.tick);
+        }
+        let view = blocks[contact.block as usize].view();
+        let mask = stale(view, planes, frame) & contact.lanes;
+        for lane in (0..LANES).filter(|lane| mask & (1 << lane) != 0) {
+            let at = moved(view, planes, frame, lane).at;
+            planes.find(lane, shape, at.into(), frame);
+        }
+    }
+}
+
+#[inline(always)]
+fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
+    let mut near = Near::NONE;
+    let [u, v, w] = frame.axes;
+    for l in 0..LANES {
+        let moved = moved(view, planes, frame, l);
+        let [a, b, c] = moved.offset;
+        let (na, nb, nc) = (
+            planes.normal[0][l],
+            planes.normal[1][l],
+            planes.normal[2][l],
+        );
+        let is_same = moved.length <= planes.same[l];
+        let depth = frame.reach - (planes.distance[l] + na * a + nb * b + nc * c);
+        near.depth[l] = if is_same { depth } else { f32::NEG_INFINITY };
+        // Another part may be nearer than the plane.
+        near.bound[l] = frame.reach - moved.least;
+        near.offset[0][l] = u[0] * na + v[0] * nb + w[0] * nc;
+        near.offset[1][l] = u[1] * na + v[1] * nb + w[1] * nc;
+        near.offset[2][l] = u[2] * na + v[2] * nb + w[2] * nc;
+        near.length[l] = 1.0;
+    }
+    near
+}
+
+/// Pushes the particles of blocks out of the half-spaces below their planes.
+#[multiversion(targets("x86_64+avx+avx2"))]
+pub(crate) fn push_planes(
+    blocks: &mut [Block],
+    contacts: &mut [ContactBlock],
+    planes: &[Planes],
+    (frame, motion): (&Frame, &LaneMotion),
+    sums: &mut Sums,
+) {
+    push_planes_baseline(blocks, contacts, planes, (frame, motion), sums);
+}
+
+#[inline(always)]
+pub(crate) fn push_planes_baseline(
+    blocks: &mut [Block],
+    contacts: &mut [ContactBlock],
+    planes: &[Planes],
+    (frame, motion): (&Frame, &LaneMotion),
+    sums: &mut Sums,
+) {
+    let mut own = *sums;
+    for contact in contacts {
+        if contact.lanes == 0 || is_clear(contact, motion) {
+            continue;
+        }
+        let block = contact.block as usize;
+        let view = blocks[block].view_mut();
+        let mut near = near_planes(view, &planes[block], frame);
+        if survey(view, &mut near, contact, motion, &mut own) {
+            push(view, &near, &contact.area, motion, &mut own);
+        }
+    }
+    *sums = own;
+}

@@ -1,0 +1,209 @@
+//! Tests of a cloth triangle against a collider, at the end of a sub-step and on the way there.
+
+use bevy::math::{Isometry3d, Vec3};
+
+use super::triangle::{NearestPoints, at, nearest};
+use crate::{
+    cloth::{Block, ClothParticles, Slot, Surface},
+    contact::{
+        candidates::ContactSettings,
+        colliders::{ColliderSubstep, MovingCollider},
+        friction::first_touch,
+    },
+    hierarchy::{Core, Probe},
+};
+
+/// A triangle's particles at the end of a sub-step.
+pub(crate) struct Corners {
+    pub slots: [Slot; 3],
+    pub positions: [Vec3; 3],
+    pub displacements: [Vec3; 3],
+    pub inverse_masses: [f32; 3],
+}
+
+impl Corners {
+    pub fn of(particles: &ClothParticles, slots: [Slot; 3]) -> Self {
+        let block = |slot: Slot| &particles.blocks()[slot.block];
+        Self {
+            slots,
+            positions: slots.map(|slot| block(slot).position(slot.lane)),
+            displacements: slots.map(|slot| block(slot).displacement(slot.lane)),
+            inverse_masses: slots.map(|slot| block(slot).inverse_mass(slot.lane)),
+        }
+    }
+
+    /// Moves a corner, and adds a displacement to its motion (m). Returns its new position.
+    pub fn push(
+        &self,
+        corner: usize,
+        particles: &mut ClothParticles,
+        [way, displacement]: [Vec3; 2],
+    ) -> Vec3 {
+        let Slot { block, lane } = self.slots[corner];
+        let block = &mut particles.blocks_mut()[block];
+        let pushed = self.positions[corner] + way;
+        block.set_position(lane, pushed);
+        block.set_displacement(lane, self.displacements[corner] + displacement);
+        pushed
+    }
+
+    /// Positions at a fraction of the sub-step.
+    fn when(&self, part: f32) -> [Vec3; 3] {
+        [0, 1, 2].map(|corner| self.positions[corner] - self.displacements[corner] * (1.0 - part))
+    }
+}
+
+/// The contact of a triangle.
+pub(crate) struct Touching {
+    pub weights: [f32; 3],
+    pub normal: Vec3,
+    /// The core's point (m).
+    pub centre: Vec3,
+    /// Whether the sweep found it, on a path longer than half of the reach.
+    pub is_swept: bool,
+}
+
+/// A ball's or a capsule's motion in a sub-step, for tests against triangles.
+pub(crate) struct CoreMotion<'a> {
+    pub of: ColliderSubstep<'a>,
+    pub settings: &'a ContactSettings,
+    /// Distance from the core at which it touches (m).
+    pub reach: f32,
+    /// The core at the end of the sub-step.
+    pub at_end: [Vec3; 2],
+}
+
+impl<'a> CoreMotion<'a> {
+    pub fn new(of: ColliderSubstep<'a>, settings: &'a ContactSettings) -> Self {
+        Self {
+            of,
+            settings,
+            reach: of.collider.shape.radius().unwrap_or(0.0) + settings.particle_radius,
+            at_end: segment(of.collider, of.pose),
+        }
+    }
+
+    /// The smallest distance of a particle's faces from a touch (m), and their largest displacement relative to the
+    /// collider in the sub-step (m). `corners` are the corners of all faces, and `own` is the particle.
+    #[inline]
+    pub fn clearance(&self, blocks: &[Block], own: Slot, corners: &[Slot]) -> [f32; 2] {
+        let first = blocks[own.block].position(own.lane);
+        let (mut edge, mut speed) = (0.0_f32, 0.0_f32);
+        for &Slot { block, lane } in corners {
+            let block = &blocks[block];
+            edge = edge.max(block.position(lane).distance_squared(first));
+            speed = speed.max(block.displacement(lane).distance_squared(self.of.slide));
+        }
+        let [start, end] = self.at_end;
+        let along = end - start;
+        let part = ((first - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        let nearest = if part > 0.0 {
+            start + along * part
+        } else {
+            start
+        };
+        // Larger by rounding errors and by the tolerance of a touch.
+        let near = (1.0 + 4.0e-3) * self.reach + edge.sqrt();
+        let rounding = 1.0e-5 * (near + first.length());
+        let clear = first.distance(nearest) - near - rounding;
+        [clear, speed.sqrt() + self.of.swing]
+    }
+
+    /// The contact of a triangle at the end of the sub-step or at its first hit, and its penetration along the normal
+    /// (m), negative outside.
+    pub fn touch(&self, corners: &Corners) -> Option<(Touching, f32)> {
+        let reach = self.reach;
+        let segment = |part: f32| segment(self.of.collider, self.of.pose_at(part));
+        let touching = |nearest: NearestPoints, [start, end]: [Vec3; 2], triangle: [Vec3; 3]| {
+            let (normal, distance) = match nearest.offset.length() {
+                0.0 => (face_normal(triangle, start.midpoint(end)), 0.0),
+                distance => (nearest.offset / distance, distance),
+            };
+            let centre = start.lerp(end, nearest.along);
+            (
+                Touching {
+                    weights: nearest.weights,
+                    normal,
+                    centre,
+                    is_swept: false,
+                },
+                distance,
+            )
+        };
+        let speed = self.of.speed(corners.displacements);
+        let nearest_at_end = nearest(corners.positions, self.at_end);
+        // Most candidates are too far away for a hit.
+        let distance = nearest_at_end.offset.length();
+        if distance.is_nan() || distance - speed > reach {
+            return None;
+        }
+        // A triangle that moved less than half of the reach, and is not nearer, is still on its original side.
+        let is_plain = speed <= reach / 2.0 && distance >= reach / 2.0;
+        if self.settings.is_swept && !is_plain && speed.is_finite() {
+            let tolerance = 1.0e-3 * reach;
+            let hit = first_touch(speed, reach, tolerance, |part| {
+                nearest(corners.when(part), segment(part)).offset.length()
+            });
+            if let Some(part) = hit {
+                let (triangle, core) = (corners.when(part), segment(part));
+                let (mut touch, _) = touching(nearest(triangle, core), core, triangle);
+                touch.is_swept = speed > reach / 2.0;
+                // The position that it would have, had it moved on with the surface.
+                (touch.centre, touch.normal) = self.of.carry(part, touch.centre, touch.normal);
+                let offset = at(corners.positions, touch.weights) - touch.centre;
+                let depth = reach - touch.normal.dot(offset);
+                if depth > 0.0 {
+                    return Some((touch, depth));
+                }
+            }
+        }
+        let (touch, distance) = touching(nearest_at_end, self.at_end, corners.positions);
+        Some((touch, reach - distance))
+    }
+}
+
+/// The core of a ball or a capsule in a pose.
+fn segment(collider: &MovingCollider, pose: Isometry3d) -> [Vec3; 2] {
+    match collider.shape.core(pose).0 {
+        Core::Point(centre) => [centre; 2],
+        Core::Segment(ends) => ends,
+        Core::Cuboid { .. } | Core::HalfSpace { .. } => [Vec3::NAN; 2],
+    }
+}
+
+/// Normal of a triangle that contains the core's point, away from the core's middle.
+fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
+    let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
+    if normal.dot(a - middle) < 0.0 {
+        -normal
+    } else {
+        normal
+    }
+}
+
+/// Whether a probe meets a triangle that any of the `found` particles owns, at the current positions. For a box or a
+/// half-space, whether any particle was found.
+pub fn meets_triangles(
+    surface: &Surface,
+    particles: &ClothParticles,
+    found: &[u32],
+    probe: &Probe,
+) -> bool {
+    let segment = match probe.core {
+        Core::Point(centre) => [centre; 2],
+        Core::Segment(ends) => ends,
+        Core::Cuboid { .. } | Core::HalfSpace { .. } => return !found.is_empty(),
+    };
+    let reach = probe.reach() as f32;
+    let layout = particles.layout();
+    let mut faces = found
+        .iter()
+        .flat_map(|&particle| surface.faces().of(particle));
+    faces.any(|face| {
+        let corners = Corners::of(
+            particles,
+            face.map(|corner| layout.slot_of(corner as usize)),
+        );
+        nearest(corners.positions, segment).offset.length_squared() < reach * reach
+    })
+}

@@ -1,0 +1,153 @@
+//! Pushes one triangle.
+
+use bevy::math::Vec3;
+
+use super::{Pushed, ResumePoint};
+use crate::{
+    cloth::{ClothParticles, Slot},
+    contact::{
+        friction::{Contact, PushOut},
+        triangles::{
+            corners::{CoreMotion, Corners, Touching},
+            lanes::MAX_SHARE,
+            triangle::{at, cap},
+        },
+    },
+};
+
+impl Pushed<'_> {
+    /// Pushes one triangle of a particle of a contact block.
+    pub(super) fn push_one(
+        &mut self,
+        particles: &mut ClothParticles,
+        motion: &CoreMotion,
+        (contact, lane): (usize, usize),
+        slots: [Slot; 3],
+        push_out: &PushOut,
+        resume: &mut ResumePoint,
+    ) {
+        let reach = motion.reach;
+        let corners = Corners::of(particles, slots);
+        let Some((touch, depth)) = motion.touch(&corners) else {
+            return;
+        };
+        let own = &mut self.contacts[contact].depth[lane];
+        *own = own.max(depth.min(reach));
+        if depth <= 0.0 {
+            return;
+        }
+        let pushed = if touch.is_swept {
+            self.push_corners(particles, &corners, &touch, motion, push_out)
+        } else {
+            self.push_point(particles, &corners, (&touch, depth), motion, push_out)
+        };
+        if pushed == 0.0 {
+            return;
+        }
+        resume.is_swept |= touch.is_swept;
+        self.passed = self.passed.max(pushed);
+        self.found.deepest = self.found.deepest.max(depth.min(reach));
+        if self.is_measured && resume.pass == 0 {
+            let (area, volume) = cap(corners.positions, touch.centre, reach);
+            self.found.area += area;
+            self.found.volume += volume;
+        }
+    }
+
+    /// Pushes a triangle's nearest point out. Moves its corners by their weights in it and their inverse masses.
+    /// Returns the largest displacement (m).
+    fn push_point(
+        &mut self,
+        particles: &mut ClothParticles,
+        corners: &Corners,
+        (touch, depth): (&Touching, f32),
+        motion: &CoreMotion,
+        push_out: &PushOut,
+    ) -> f32 {
+        let (weights, normal) = (touch.weights, touch.normal);
+        let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
+        let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
+        // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
+        let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
+        if mobility == 0.0 {
+            return 0.0;
+        }
+        let point =
+            at(corners.positions, weights) + normal * (depth - motion.settings.particle_radius);
+        let surface = motion.of.surface_motion(point);
+        let [momentum, far] = Contact {
+            normal,
+            depth,
+            relative: at(corners.displacements, weights) - surface,
+        }
+        .stopped_and_out(push_out);
+        let mut farthest = 0.0_f32;
+        for (corner, part) in parts.into_iter().enumerate() {
+            let share = part / mobility;
+            if share > 0.0 {
+                let push = [normal * (far * share), normal * (momentum * share)];
+                farthest = farthest.max(self.move_corner(particles, corners, corner, push, motion));
+            }
+        }
+        farthest
+    }
+
+    /// Pushes each corner of a triangle that was hit on its way in front of the surface's plane there, so that all of
+    /// it stays on its side. Its point alone is not enough: a corner with a tiny weight would stay behind, and the
+    /// triangle would turn out of a fast collider's way. Returns the largest displacement (m).
+    fn push_corners(
+        &mut self,
+        particles: &mut ClothParticles,
+        corners: &Corners,
+        touch: &Touching,
+        motion: &CoreMotion,
+        push_out: &PushOut,
+    ) -> f32 {
+        let normal = touch.normal;
+        let mut farthest = 0.0_f32;
+        for corner in 0..3 {
+            let position = corners.positions[corner];
+            let depth = motion.reach - normal.dot(position - touch.centre);
+            if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
+                continue;
+            }
+            let point = position + normal * (depth - motion.settings.particle_radius);
+            let surface = motion.of.surface_motion(point);
+            let contact = Contact {
+                normal,
+                depth,
+                relative: corners.displacements[corner] - surface,
+            };
+            let [momentum, _] = contact.stopped_and_out(push_out);
+            // All of it at once: the collider would pass a triangle left behind.
+            let push = [normal * depth, normal * momentum];
+            farthest = farthest.max(self.move_corner(particles, corners, corner, push, motion));
+        }
+        farthest
+    }
+
+    /// Moves a corner by a fraction of its push, as displacement and as momentum (m). Returns the distance.
+    fn move_corner(
+        &mut self,
+        particles: &mut ClothParticles,
+        corners: &Corners,
+        corner: usize,
+        [way, momentum]: [Vec3; 2],
+        motion: &CoreMotion,
+    ) -> f32 {
+        let slot = corners.slots[corner];
+        let pushed = corners.push(corner, particles, [way, momentum]);
+        let weight = corners.inverse_masses[corner];
+        self.found
+            .given
+            .add(pushed - motion.of.origin, momentum, weight);
+        let block = slot.block as u32;
+        if let Ok(at) = self
+            .contacts
+            .binary_search_by_key(&block, |contact| contact.block)
+        {
+            self.helds[at].add_one(slot.lane, momentum.to_array());
+        }
+        way.length()
+    }
+}

@@ -1,0 +1,160 @@
+//! Friction of triangles, at their particles: the contacts' [push](Held) times μ is the budget of each.
+
+use multiversion::multiversion;
+
+use crate::{
+    cloth::{Block, DX, DY, DZ, LANES, View, W, X, Y, Z},
+    contact::{
+        candidates::ContactBlock,
+        friction::Held,
+        particles::{LaneMotion, Sums},
+    },
+};
+
+/// Decay time of an unspent budget, to 1/e (s).
+const KEPT_FOR: f32 = 0.01;
+
+/// A budget below this is empty (m).
+const NONE_LEFT: f32 = 1.0e-15;
+
+/// The axis of a ball or a capsule, which defines its surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axle {
+    pub axis: [f32; 3],
+    /// Half of the length; 0 for a ball (m).
+    pub half_length: f32,
+    pub radius: f32,
+}
+
+/// Applies friction to the particles of a block, relative to the surface of a ball or a capsule.
+#[inline(always)]
+fn hold(
+    view: &mut View,
+    held: &mut Held,
+    axle: &Axle,
+    motion: &LaneMotion,
+    kept: f32,
+    sums: &mut Sums,
+) {
+    let ([ox, oy, oz], [sx, sy, sz]) = (motion.origin, motion.slide);
+    let ([wx, wy, wz], [ux, uy, uz]) = (motion.spin, axle.axis);
+    let mut left = [0.0; LANES];
+    for l in 0..LANES {
+        let weight = view[W + l];
+        let (px, py, pz) = (held.push[0][l], held.push[1][l], held.push[2][l]);
+        let pushed = (px * px + py * py + pz * pz).sqrt();
+        let is_new = pushed > 0.0;
+        let nx = if is_new {
+            px / pushed
+        } else {
+            held.normal[0][l]
+        };
+        let ny = if is_new {
+            py / pushed
+        } else {
+            held.normal[1][l]
+        };
+        let nz = if is_new {
+            pz / pushed
+        } else {
+            held.normal[2][l]
+        };
+        let budget = held.budget[l] * kept + motion.friction * pushed;
+        let (x, y, z) = (view[X + l] - ox, view[Y + l] - oy, view[Z + l] - oz);
+        let along = x * ux + y * uy + z * uz;
+        let along = if along < axle.half_length {
+            along
+        } else {
+            axle.half_length
+        };
+        let along = if along > -axle.half_length {
+            along
+        } else {
+            -axle.half_length
+        };
+        // Displacement of the surface at the contact.
+        let ax = ux * along + nx * axle.radius;
+        let ay = uy * along + ny * axle.radius;
+        let az = uz * along + nz * axle.radius;
+        let rx = view[DX + l] - (sx + (wy * az - wz * ay));
+        let ry = view[DY + l] - (sy + (wz * ax - wx * az));
+        let rz = view[DZ + l] - (sz + (wx * ay - wy * ax));
+        let apart = nx * rx + ny * ry + nz * rz;
+        let (tx, ty, tz) = (rx - nx * apart, ry - ny * apart, rz - nz * apart);
+        let slip = (tx * tx + ty * ty + tz * tz).sqrt();
+        let grip = if slip > budget { budget / slip } else { 1.0 };
+        let is_held = weight > 0.0 && budget > NONE_LEFT;
+        let grip = if is_held { grip } else { 0.0 };
+        let (fx, fy, fz) = (-tx * grip, -ty * grip, -tz * grip);
+        view[X + l] += fx;
+        view[Y + l] += fy;
+        view[Z + l] += fz;
+        view[DX + l] += fx;
+        view[DY + l] += fy;
+        view[DZ + l] += fz;
+        let budget = budget - slip * grip;
+        let budget = if is_held && budget > NONE_LEFT {
+            budget
+        } else {
+            0.0
+        };
+        left[l] = budget;
+        held.normal[0][l] = nx;
+        held.normal[1][l] = ny;
+        held.normal[2][l] = nz;
+        held.budget[l] = budget;
+        let moved = fx * fx + fy * fy + fz * fz;
+        sums.farthest_push[l] = if moved > sums.farthest_push[l] {
+            moved
+        } else {
+            sums.farthest_push[l]
+        };
+        let mass = if is_held { 1.0 / weight } else { 0.0 };
+        let (gx, gy, gz) = (-fx * mass, -fy * mass, -fz * mass);
+        let (x, y, z) = (x + fx, y + fy, z + fz);
+        sums.linear[0][l] += gx;
+        sums.linear[1][l] += gy;
+        sums.linear[2][l] += gz;
+        sums.angular[0][l] += y * gz - z * gy;
+        sums.angular[1][l] += z * gx - x * gz;
+        sums.angular[2][l] += x * gy - y * gx;
+    }
+    held.push = [[0.0; LANES]; 3];
+    held.is_active = left.into_iter().any(|left| left > 0.0);
+}
+
+/// Applies friction to everything that contacts have pushed.
+#[multiversion(targets("x86_64+avx+avx2"))]
+pub(crate) fn hold_all(
+    blocks: &mut [Block],
+    contacts: &[ContactBlock],
+    helds: &mut [Held],
+    axle: &Axle,
+    motion: &LaneMotion,
+    seconds: f32,
+    sums: &mut Sums,
+) {
+    hold_all_baseline(blocks, contacts, helds, axle, motion, seconds, sums);
+}
+
+#[inline(always)]
+pub(crate) fn hold_all_baseline(
+    blocks: &mut [Block],
+    contacts: &[ContactBlock],
+    helds: &mut [Held],
+    axle: &Axle,
+    motion: &LaneMotion,
+    seconds: f32,
+    sums: &mut Sums,
+) {
+    // Not an exponential function: its rounding differs between instruction sets.
+    let kept = KEPT_FOR / (KEPT_FOR + seconds);
+    let mut own = *sums;
+    for (contact, held) in contacts.iter().zip(helds) {
+        if held.is_active {
+            let view = blocks[contact.block as usize].view_mut();
+            hold(view, held, axle, motion, kept, &mut own);
+        }
+    }
+    *sums = own;
+}
