@@ -2,12 +2,7 @@
 //!
 //! No operation is fused or reordered from lane to lane, so every instruction set gives the same bits.
 //!
-//! # The floor
-//! A spring needs one division and no square root ([`relax`]): 34 additions, subtractions and multiplications of eight
-//! lanes, 15 loads and 6 stores. A core that starts two or three of the former per cycle, and a division of eight lanes
-//! every five cycles, needs 13 to 17 cycles for eight springs. That is 0.6 to 0.75 ns per spring at 2.8 GHz. Memory is
-//! no limit: a sub-step reads and writes each block of 256 bytes once, 32 bytes per particle. All stages follow each
-//! other down the rows while these are in the first cache.
+//! A kernel imports no caller. [`Kernels`] is the table of all of them, compiled for one instruction set.
 
 use bevy::math::Vec4;
 use multiversion::{inherit_target, multiversion};
@@ -28,7 +23,6 @@ use super::{
         Breath, Prediction, begin_past, predict, predict_first, predict_first_in_air,
         predict_in_air,
     },
-    run::Run,
     threads::{
         Columns, Family, Left, RowSprings, RowThreads, Solved, Step, Threads, bundle_backward,
         bundle_forward, measure_elastic_left, measure_elastic_left_at, measure_given, measure_left,
@@ -37,82 +31,7 @@ use super::{
     },
     twist::{twist_backward, twist_forward, twist_links},
 };
-use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, W, X, Y, Z};
-
-/// Moves the ends of eight springs towards their rest lengths, in inverse proportion to their masses: the XPBD
-/// distance constraint `λ = −C / (w_a + w_b + α/Δt²)` with one sweep a sub-step (Macklin et al. 2016, 2019).
-///
-/// Position + displacement is where a particle is during a sweep, and only the displacement is changed: it never
-/// sees the rounding of the position.
-///
-/// With q the squared length and r the rest length, C over the length, `1 − r/√q`, is taken as
-/// `(q − r²) / (1.5 q + 0.5 r²)`, the first step of Halley's iteration for the root. At a stretch ε it is off by
-/// the part ε²/4 of the correction (6·10⁻⁴ at 5 %), never too strong in a stretched spring, and finite where
-/// the ends coincide.
-#[inline(always)]
-fn relax(a: &mut View, b: &mut View, rest_square: impl Fn(usize) -> f32, softness: &Lanes) {
-    for l in 0..LANES {
-        let x = (b[X + l] - a[X + l]) + (b[DX + l] - a[DX + l]);
-        let y = (b[Y + l] - a[Y + l]) + (b[DY + l] - a[DY + l]);
-        let z = (b[Z + l] - a[Z + l]) + (b[DZ + l] - a[DZ + l]);
-        let q = x * x + y * y + z * z;
-        let r2 = rest_square(l);
-        let weight = a[W + l] + b[W + l] + softness[l];
-        let share = (q - r2) / ((1.5 * q + 0.5 * r2) * weight);
-        let (share_a, share_b) = (share * a[W + l], share * b[W + l]);
-        a[DX + l] += share_a * x;
-        a[DY + l] += share_a * y;
-        a[DZ + l] += share_a * z;
-        b[DX + l] -= share_b * x;
-        b[DY + l] -= share_b * y;
-        b[DZ + l] -= share_b * z;
-    }
-}
-
-/// A row's horizontal springs: from even blocks, from odd ones, and from the last block into the first.
-#[inline(always)]
-fn across(row: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    for from in 0..2 {
-        let pairs = row[from..].chunks_exact_mut(2);
-        for (pair, softness) in pairs.zip(run.softness[from..].iter().step_by(2)) {
-            if let [a, b] = pair {
-                relax(a.view_mut(), b.view_mut(), rest, softness);
-            }
-        }
-    }
-    if let ([first, .., last], Some(softness)) = (row, run.softness.last()) {
-        relax(last.view_mut(), first.shifted_mut(), rest, softness);
-    }
-}
-
-/// Vertical springs, or vertical bend springs, between two rows.
-#[inline(always)]
-fn down(upper: &mut [Block], lower: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    for ((a, b), softness) in upper.iter_mut().zip(lower).zip(&run.softness) {
-        relax(a.view_mut(), b.view_mut(), rest, softness);
-    }
-}
-
-/// From each column of one row to the next column of the other.
-#[inline(always)]
-fn diagonal(left: &mut [Block], right: &mut [Block], run: &Run) {
-    let rest = |_| run.rest_square;
-    if let ([.., a], [b, ..], [.., softness]) = (&mut *left, &mut *right, &run.softness[..]) {
-        relax(a.view_mut(), b.shifted_mut(), rest, softness);
-    }
-    for ((a, b), softness) in left.iter_mut().zip(&mut right[1..]).zip(&run.softness) {
-        relax(a.view_mut(), b.view_mut(), rest, softness);
-    }
-}
-
-/// Both diagonals between two rows.
-#[inline(always)]
-fn diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run) {
-    diagonal(upper, lower, run);
-    diagonal(lower, upper, run);
-}
+use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, X, Y, Z};
 
 /// Pulls each particle back that is farther from its anchor than its tether is long: a unilateral constraint
 /// against a particle that nothing moves.
@@ -177,9 +96,9 @@ impl Longest {
     }
 }
 
-/// Raises `largest` to the squared lengths of eight springs, those of infinite softness left out.
+/// Raises `largest` to the squared lengths of eight springs; where `hold` is infinite there is none.
 #[inline(always)]
-fn measure(a: &View, b: &View, softness: &Lanes, largest: &mut Lanes) {
+fn measure(a: &View, b: &View, hold: &Lanes, largest: &mut Lanes) {
     for l in 0..LANES {
         let (x, y, z) = (
             b[X + l] - a[X + l],
@@ -187,45 +106,45 @@ fn measure(a: &View, b: &View, softness: &Lanes, largest: &mut Lanes) {
             b[Z + l] - a[Z + l],
         );
         let q = x * x + y * y + z * z;
-        let q = if softness[l] < f32::INFINITY { q } else { 0.0 };
+        let q = if hold[l] < f32::INFINITY { q } else { 0.0 };
         largest[l] = if q > largest[l] { q } else { largest[l] };
     }
 }
 
 /// Measures a row's horizontal springs.
 #[inline(always)]
-fn measure_within(row: &[Block], run: &Run, longest: &mut Longest) {
-    for (pair, softness) in row.windows(2).zip(&run.softness) {
+fn measure_within(row: &[Block], springs: &Family, longest: &mut Longest) {
+    for (pair, hold) in row.windows(2).zip(&springs.hold) {
         measure(
             pair[0].view(),
             pair[1].view(),
-            softness,
+            hold,
             &mut longest.across,
         );
     }
-    if let (Some(first), Some(last), Some(softness)) =
-        (row.first(), row.last(), run.softness.last())
+    if let (Some(first), Some(last), Some(hold)) =
+        (row.first(), row.last(), springs.hold.last())
     {
-        measure(last.view(), first.shifted(), softness, &mut longest.across);
+        measure(last.view(), first.shifted(), hold, &mut longest.across);
     }
 }
 
 /// Measures the vertical springs between two rows.
 #[inline(always)]
-fn measure_down(upper: &[Block], lower: &[Block], run: &Run, longest: &mut Longest) {
-    for ((a, b), softness) in upper.iter().zip(lower).zip(&run.softness) {
-        measure(a.view(), b.view(), softness, &mut longest.down);
+fn measure_down(upper: &[Block], lower: &[Block], springs: &Family, longest: &mut Longest) {
+    for ((a, b), hold) in upper.iter().zip(lower).zip(&springs.hold) {
+        measure(a.view(), b.view(), hold, &mut longest.down);
     }
 }
 
 /// Measures the springs from each column of one row to the next column of the other.
 #[inline(always)]
-fn measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Longest) {
-    for ((a, b), softness) in left.iter().zip(&right[1..]).zip(&run.softness) {
-        measure(a.view(), b.view(), softness, &mut longest.diagonal);
+fn measure_diagonal(left: &[Block], right: &[Block], springs: &Family, longest: &mut Longest) {
+    for ((a, b), hold) in left.iter().zip(&right[1..]).zip(&springs.hold) {
+        measure(a.view(), b.view(), hold, &mut longest.diagonal);
     }
-    if let (Some(a), Some(b), Some(softness)) = (left.last(), right.first(), run.softness.last()) {
-        measure(a.view(), b.shifted(), softness, &mut longest.diagonal);
+    if let (Some(a), Some(b), Some(hold)) = (left.last(), right.first(), springs.hold.last()) {
+        measure(a.view(), b.shifted(), hold, &mut longest.diagonal);
     }
 }
 
@@ -306,9 +225,6 @@ kernels! {
     relax_packets(rows: &mut [Row], packets: &[Packet], pace: &Pace),
     relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], pace: &Pace),
     relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &[Vec4], pace: &Pace),
-    across(row: &mut [Block], run: &Run),
-    down(upper: &mut [Block], lower: &mut [Block], run: &Run),
-    diagonals(upper: &mut [Block], lower: &mut [Block], run: &Run),
     plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Trio]),
     plate_moments(places: [&[Trio]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
     plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),
@@ -323,7 +239,7 @@ kernels! {
     twist_forward(links: [&[Trio]; 2], stiffness: &[Lanes], moments: &mut [Trio], before: &[Trio], factors: &[Factor], out: &mut [Trio]),
     twist_backward(row: &mut [Block], is_odd: bool, factors: [&[Factor]; 2], next: &[Trio], out: &mut [Trio]),
     tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_square: &[Lanes]),
-    measure_within(row: &[Block], run: &Run, longest: &mut Longest),
-    measure_down(upper: &[Block], lower: &[Block], run: &Run, longest: &mut Longest),
-    measure_diagonal(left: &[Block], right: &[Block], run: &Run, longest: &mut Longest),
+    measure_within(row: &[Block], springs: &Family, longest: &mut Longest),
+    measure_down(upper: &[Block], lower: &[Block], springs: &Family, longest: &mut Longest),
+    measure_diagonal(left: &[Block], right: &[Block], springs: &Family, longest: &mut Longest),
 }

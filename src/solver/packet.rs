@@ -11,7 +11,10 @@
 
 use bevy::math::{Mat4, Vec4};
 
-use super::{pace::Pace, run::MIN_SOFTNESS};
+use super::pace::Pace;
+
+/// Added to `w_a + w_b` (1/kg): negligible, but it keeps a spring between two pins from dividing by zero.
+const MIN_SOFTNESS: f32 = 1.0e-18;
 
 /// Springs in a packet.
 pub(super) const SPRINGS: usize = 4;

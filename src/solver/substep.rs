@@ -5,8 +5,6 @@ mod started;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use bevy::math::Vec3;
 
 use super::{
@@ -15,7 +13,6 @@ use super::{
     bands::with_threads_awake,
     forces::Forces,
     list::ListSweep,
-    pipeline::GridSweep,
     sweep::Sweep,
     tether::Anchors,
     threads::ThreadSweep,
@@ -70,27 +67,6 @@ impl Solver {
     /// If the springs belong to another grid, or join more particles than there are.
     pub fn new(springs: &Springs, particles: &ClothParticles) -> Self {
         Self::of_layout(springs, particles.layout())
-    }
-
-    /// A solver of `springs` by one sweep over them in each sub-step, spring after spring, which is of first order in
-    /// time. The lab compares with it.
-    ///
-    /// # Panics
-    /// See [`new`](Self::new).
-    #[doc(hidden)]
-    pub fn of_one_sweep(springs: &Springs, particles: &ClothParticles) -> Self {
-        match springs.storage() {
-            SpringStorage::Grid(grid, compliances) if particles.layout().strip > 1 => {
-                let sweep = Box::new(GridSweep::new(grid, compliances));
-                Self::of(particles.layout(), sweep)
-            }
-            SpringStorage::List(list) => {
-                let list = Arc::new(list.without_threads());
-                let sweep = Box::new(ListSweep::new(&list, particles.layout()));
-                Self::of(particles.layout(), sweep)
-            }
-            SpringStorage::Grid(..) => Self::new(springs, particles),
-        }
     }
 
     /// A solver of `springs` between the particles of a surface. Its clones share the data of the springs.

@@ -111,8 +111,9 @@ fn a_sub_step_is_that_of_a_plain_solver_in_f64() {
                 ..ClothMaterial::COTTON
             };
             let (grid, mut particles) = crumpled(columns, rows, &material);
-            let springs = Springs::of_grid(&grid, &material);
-            let mut solver = Solver::of_one_sweep(&springs, &particles);
+            let springs = Springs::of_grid(&grid, &material).to_vec();
+            let springs = Springs::of_list(&springs, particles.len()).expect("valid springs");
+            let mut solver = Solver::new(&springs, &particles);
             for _ in 0..64 {
                 solver.advance(&mut particles, STEP, &[], |_, _| false);
             }
@@ -242,7 +243,7 @@ fn a_list_of_springs_is_solved_like_a_grid() {
     let list = Springs::of_list(&springs.to_vec(), listed.len()).expect("valid springs");
     let mut solver = Solver::new(&list, &listed);
     let mut built = start;
-    let mut on_grid = Solver::of_one_sweep(&springs, &built);
+    let mut on_grid = Solver::new(&springs, &built);
     let (mut stretch, mut truth) = (Stretch::default(), Stretch::default());
     for _ in 0..64 * 15 {
         stretch = solver.advance(&mut listed, STEP, &[], |_, _| false);
@@ -304,7 +305,8 @@ fn no_particle_is_beyond_its_tether() {
             })
         };
         // What one sweep leaves to do is more than threads do.
-        let mut swept = Solver::of_one_sweep(&springs, &particles);
+        let list = Springs::of_list(&springs.to_vec(), particles.len()).expect("valid springs");
+        let mut swept = Solver::new(&list, &particles);
         let without = largest(&mut swept, &mut particles.clone());
         solver.set_tethers(tethers.clone());
         // Pins farther apart than the cloth between them is long stay where they are put all the same.

@@ -27,11 +27,16 @@ pub use scene::{GRAVITY, Scene};
 pub use stability::largest_frequency;
 pub use state::{MassSpring, Real};
 
-use bevy_drape::solver::{Bending, Solver};
+use bevy_drape::{
+    cloth::Springs,
+    solver::{Bending, Solver},
+};
 
-/// The plugin's former solver for a scene: one sweep over the springs in each sub-step, of first order.
+/// A solver for a scene's springs as a list: one sweep over them in each sub-step, spring by spring, of first order.
 pub fn one_sweep(scene: &Scene) -> Solver {
-    let mut solver = Solver::of_one_sweep(&scene.springs, &scene.particles);
+    let list = Springs::of_list(&scene.springs.to_vec(), scene.particles.len());
+    let list = list.expect("springs of a scene are valid");
+    let mut solver = Solver::new(&list, &scene.particles);
     solver.set_bending(Bending::new(&scene.surface, &scene.material));
     solver
 }

@@ -48,15 +48,6 @@ pub(crate) struct SpringList {
 }
 
 impl SpringList {
-    /// The same springs, all swept one by one.
-    pub fn without_threads(&self) -> Self {
-        Self {
-            springs: self.springs.clone(),
-            colours: self.colours.clone(),
-            threads: Threads::default(),
-        }
-    }
-
     /// Adds springs between `particles` particles, in colours of their own. Each takes the first colour that is free at
     /// both of its ends. Returns the index of each.
     fn add(&mut self, springs: &[Spring], particles: usize) -> Vec<u32> {

@@ -19,7 +19,6 @@ use crate::{
         bands::{MAX_BANDS, in_bands, take},
         kernel::{Kernels, Longest},
         pace::Pace,
-        run::Run,
         sweep::{Motion, Sweep, Swept},
     },
 };
@@ -37,8 +36,6 @@ pub(in crate::solver) struct ThreadSweep {
     down: Family,
     /// If there are any.
     diagonal: Option<Family>,
-    /// For measuring: within a row, down, diagonal.
-    runs: [Run; 3],
     scratch: Scratch,
     /// One for each band.
     rows: Vec<RowScratch>,
@@ -63,11 +60,6 @@ impl ThreadSweep {
         let layout = Layout::new(grid.columns(), grid.rows());
         let strip = layout.strip as usize;
         let family = |step, row| Family::new(grid, layout, compliances, step, row);
-        let mut run =
-            [(0, 1), (1, 0), (1, 1)].map(|step| Run::new(grid, layout, compliances, step, 0));
-        for run in &mut run {
-            run.soften(1.0);
-        }
         let across = [family((0, 1), 0), family((0, 1), 1)];
         let down = family((1, 0), 0);
         let ripple_stiffness =
@@ -81,7 +73,6 @@ impl ThreadSweep {
             down,
             ripple_stiffness,
             diagonal: compliances.shear.is_finite().then(|| family((1, 1), 0)),
-            runs: run,
             scratch: Scratch::new(layout),
             rows: vec![RowScratch::new(strip)],
             pace: Pace::default(),
@@ -143,13 +134,13 @@ impl ThreadSweep {
     fn measure_rows(&self, blocks: &[Block], rows: Range<usize>, kernels: &Kernels) -> Longest {
         let mut longest = Longest::default();
         let strip = self.layout.strip as usize;
-        let [across, down, diagonal] = &self.runs;
+        let [across, _] = &self.across;
         for row in rows {
             let (upper, lower) = blocks[row * strip..].split_at(strip);
             (kernels.measure_within)(upper, across, &mut longest);
             if let Some(lower) = lower.get(..strip) {
-                (kernels.measure_down)(upper, lower, down, &mut longest);
-                if self.diagonal.is_some() {
+                (kernels.measure_down)(upper, lower, &self.down, &mut longest);
+                if let Some(diagonal) = &self.diagonal {
                     (kernels.measure_diagonal)(upper, lower, diagonal, &mut longest);
                     (kernels.measure_diagonal)(lower, upper, diagonal, &mut longest);
                 }
@@ -159,12 +150,14 @@ impl ThreadSweep {
     }
 
     fn stretch(&self, longest: &Longest) -> Stretch {
-        let ratio = |lanes: &Lanes, run: &Run| {
-            (lanes.iter().copied().fold(0.0, f32::max) / run.rest_square).sqrt()
+        let ratio = |lanes: &Lanes, springs: &Family| {
+            lanes.iter().copied().fold(0.0, f32::max).sqrt() * springs.inverse_rest
         };
         let structural =
-            ratio(&longest.across, &self.runs[0]).max(ratio(&longest.down, &self.runs[1]));
-        let bound = structural.max(ratio(&longest.diagonal, &self.runs[2]));
+            ratio(&longest.across, &self.across[0]).max(ratio(&longest.down, &self.down));
+        let diagonal = self.diagonal.iter();
+        let diagonal = diagonal.map(|springs| ratio(&longest.diagonal, springs));
+        let bound = diagonal.fold(structural, f32::max);
         Stretch::of_ratios(structural, bound)
     }
 
