@@ -4,7 +4,7 @@ use std::fmt;
 
 use bevy::reflect::Reflect;
 
-use super::{Substepping, step::DAMPING_REFERENCE};
+use super::{step::DAMPING_REFERENCE, substepping::Substepping};
 
 /// A limit of the envelope in which a cloth is simulated well. Beyond a limit, the simulation stays finite and
 /// continues, but the cloth no longer moves as its material should. Each limit was measured by the lab's experiment

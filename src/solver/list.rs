@@ -12,12 +12,10 @@ use std::sync::Arc;
 use bevy::math::Vec4;
 
 use super::{
-    Stretch,
-    kernel::Kernels,
-    pace::Pace,
-    packet::{Packet, Row, SPRINGS},
+    chains::Bundles,
+    kernels::{Kernels, Pace, Packet, Row, SPRINGS},
+    stretch::Stretch,
     sweep::{Motion, Sweep, Swept},
-    threads::Bundles,
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringList, W, X, Y, Z};
 

@@ -64,21 +64,15 @@
 
 mod air;
 mod bands;
-mod barrier;
 mod bending;
-mod commit;
+mod chains;
 mod drift;
 mod energy;
 mod envelope;
 mod forces;
-mod kernel;
+mod kernels;
 mod list;
 mod motion;
-mod pace;
-mod packet;
-mod pentadiagonal;
-mod plate;
-mod predict;
 mod rest;
 mod settings;
 mod spin;
@@ -90,8 +84,6 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod tether;
-mod threads;
-mod twist;
 
 #[doc(hidden)]
 pub use air::Air;
@@ -102,7 +94,7 @@ pub use bending::Bending;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]
-pub use kernel::SimdLevel;
+pub use kernels::SimdLevel;
 pub(crate) use motion::MotionConstraints;
 #[doc(hidden)]
 pub use rest::Rest;

@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use super::{
-    TimeOrder,
+    step::TimeOrder,
     substepping::{MAX_SUBSTEPS, Substepping},
 };
 use crate::cloth::ClothError;
@@ -28,7 +28,7 @@ pub struct ClothSettings {
     pub particle_radius: f32,
     /// Whether tethers limit the distance of each particle from the pins to the length of cloth between them, with room
     /// for the stretch of the material and 1 % more. Solved threads don't need them. They reduce the stretch of a fine
-    /// cloth that hangs by single points and runs with fewer sub-steps than it needs: see [`Tethers`](super::Tethers).
+    /// cloth that hangs by single points and runs with fewer sub-steps than it needs: see [`Tethers`](crate::solver::Tethers).
     pub tethers: bool,
     /// Order of the motion in time: the error falls with the square of a sub-step's length, or, as in the paper, in
     /// proportion to it. In second order, the springs of soft grids act by explicit forces where that is stable.

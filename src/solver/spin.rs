@@ -8,7 +8,7 @@
 
 use bevy::math::Vec3;
 
-use super::{PinMotion, TickStep};
+use super::step::{PinMotion, TickStep};
 use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
 
 /// Largest distance of pins from the line, in metres per metre along it.

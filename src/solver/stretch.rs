@@ -30,7 +30,7 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Measures every structural and shear spring one by one. [`Solver::measure`](super::Solver::measure) does the same
+    /// Measures every structural and shear spring one by one. [`Solver::measure`](crate::solver::Solver::measure) does the same
     /// for many at once.
     pub fn measure(springs: &Springs, particles: &ClothParticles) -> Self {
         let (mut structural, mut bound) = (1.0_f32, 1.0_f32);

@@ -3,9 +3,8 @@
 use std::fmt;
 
 use super::{
-    Stretch,
-    kernel::Kernels,
-    pace::Pace,
+    kernels::{Kernels, Pace},
+    stretch::Stretch,
     tether::{Anchors, Tethers},
 };
 use crate::cloth::{Block, Lanes};

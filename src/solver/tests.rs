@@ -3,8 +3,12 @@
 use bevy::math::{DVec3, Vec3};
 
 use super::{
-    Bending, DampingFrame, PinMotion, SimdLevel, Solver, Stretch, Tethers, TickStep, TimeOrder,
-    commit::MIN_MOVE,
+    bending::Bending,
+    kernels::{MIN_MOVE, SimdLevel},
+    step::{DampingFrame, PinMotion, TickStep, TimeOrder},
+    stretch::Stretch,
+    substep::Solver,
+    tether::Tethers,
 };
 use crate::cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Spring, Springs, Surface};
 

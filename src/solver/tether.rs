@@ -6,7 +6,7 @@
 
 use bevy::math::Vec2;
 
-use super::kernel::Kernels;
+use super::kernels::Kernels;
 use crate::cloth::{
     Block, ClothMaterial, ClothParticles, Flat, Graph, LANES, Lanes, Layout, Slot, Surface,
 };

@@ -15,10 +15,9 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::areas::Enclosed;
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, W},
-    solver::pentadiagonal::Trio,
+    solver::kernels::{Enclosed, Trio},
 };
 
 /// Largest speed at which gas moves a face outwards (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.

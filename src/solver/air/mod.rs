@@ -31,9 +31,7 @@
 //! **Cost** (64², 20 sub-steps, one thread): 4 % of a tick in a uniform wind, 6 % in any other (`cargo bench --profile
 //! dev --bench solver -- air`).
 
-mod areas;
 mod gas;
-mod law;
 mod pressure;
 #[cfg(test)]
 mod tests;
@@ -43,17 +41,10 @@ use bevy::math::{DVec3, Vec3};
 
 pub(crate) use self::gas::FILLING;
 pub use self::pressure::ClothPressure;
-use self::{
-    areas::{Enclosed, Triangles},
-    gas::{Amount, Gas},
-    wind::LocalWind,
-};
-pub(crate) use self::{
-    areas::{Rows, air_areas},
-    law::{Felt, Law, acceleration, air_feel, air_given, air_push},
-};
-use super::{kernel::Kernels, pentadiagonal::Trio};
+use super::kernels::{Enclosed, Felt, Kernels, Law, Rows, Triangles, Trio};
 use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, Surface};
+use gas::{Amount, Gas};
+use wind::LocalWind;
 
 /// The faces are evaluated again after this time (s) at the latest: twice in a tick of 1/64 s. A flag of 1.4 × 0.9 m in
 /// 8 m/s then waves 4.7 times a second (80 sub-steps, 200 s). It waves 5.0 times with four evaluations, and 5.15 times

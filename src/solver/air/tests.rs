@@ -3,9 +3,10 @@
 use bevy::math::Vec3;
 
 use super::*;
+use crate::solver::kernels::air_areas;
 use crate::{
     cloth::{Cloth, ClothMaterial, Springs},
-    solver::{SimdLevel, Solver, TickStep},
+    solver::{kernels::SimdLevel, step::TickStep, substep::Solver},
 };
 
 const AIR: Air = Air {

@@ -2,10 +2,9 @@
 
 use bevy::math::Vec3;
 
-use super::areas::between;
 use crate::{
     cloth::{ClothParticles, LANES, Layout},
-    solver::pentadiagonal::Trio,
+    solver::kernels::{Trio, between},
 };
 
 /// Intervals along a row and along a column of a grid, and along the longest side of a mesh.

@@ -1,6 +1,6 @@
 //! A thread's pentadiagonal system and a strip's tridiagonal one, factored.
 
-use crate::solver::pentadiagonal::Factor;
+use crate::solver::kernels::Factor;
 
 /// Puts a thread's numbers into its lane.
 pub(super) fn set(factors: &mut Factor, lane: usize, factor: [f32; 3]) {

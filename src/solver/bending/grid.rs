@@ -1,13 +1,13 @@
 //! The bending of a grid: pushed by its forces where it is soft, solved where it is stiff.
 
 use super::{
+    chains::ThreadBending,
     plate::Plate,
     push::{LIMIT, Push},
-    threads::ThreadBending,
 };
 use crate::{
     cloth::{Block, ClothGrid},
-    solver::kernel::Kernels,
+    solver::kernels::Kernels,
 };
 
 /// The largest of the weights that take turns, over the smallest: where one of them needs factors, room for them is made at once.

@@ -6,6 +6,7 @@
 //! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A grid
 //! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction.
 
+mod chains;
 mod factor;
 mod grid;
 mod mesh;
@@ -14,11 +15,11 @@ mod plate;
 mod push;
 #[cfg(test)]
 mod tests;
-mod threads;
 
-use self::{grid::GridBending, mesh::MeshBending};
-use super::kernel::Kernels;
+use super::kernels::Kernels;
 use crate::cloth::{Block, ClothMaterial, Surface};
+use grid::GridBending;
+use mesh::MeshBending;
 
 /// A surface's resistance to bending.
 #[derive(Debug, Clone)]

@@ -8,11 +8,7 @@
 use super::plate::Plate;
 use crate::{
     cloth::{Block, LANES, Lanes, W},
-    solver::{
-        kernel::Kernels,
-        pentadiagonal::Trio,
-        plate::{EDGE, Moments, Stiffness},
-    },
+    solver::kernels::{EDGE, Kernels, Moments, Stiffness, Trio},
 };
 
 /// Forces push where A is below this: the fastest bending mode, a ripple from particle to particle, gets at most a

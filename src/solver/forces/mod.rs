@@ -28,20 +28,17 @@
 //! sub-steps, it is as cheap, and far more exact. An example is a 64² of 1 mm/N that falls, hung by its upper row.
 //! After half a second it is off by 0.01 mm with 92 sub-steps in 1/60 s; threads with 80 are off by 0.05 mm.
 
-mod pass;
 #[cfg(test)]
 mod tests;
 
 use std::array;
 
-pub(crate) use self::pass::{ElasticGrid, Force, Kick, kick};
 use super::{
-    Bending, PinMotion, SubStep, TickStep,
-    air::Felt,
     bands::{MAX_BANDS, in_bands, take},
+    bending::Bending,
     drift::Drift,
-    kernel::Kernels,
-    step::{DAMPING_REFERENCE, existing},
+    kernels::{ElasticGrid, Felt, Force, Kernels, Kick},
+    step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, existing},
 };
 use crate::cloth::{Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, W, X, Y, Z};
 

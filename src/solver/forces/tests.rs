@@ -5,7 +5,13 @@ use bevy::math::{DVec3, Isometry3d, Vec3};
 use super::*;
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Spring, SpringStorage, Springs, Surface},
-    solver::{Bending, SimdLevel, Solver, Substepping, TickStep, TimeOrder},
+    solver::{
+        bending::Bending,
+        kernels::SimdLevel,
+        step::{TickStep, TimeOrder},
+        substep::Solver,
+        substepping::Substepping,
+    },
 };
 
 /// Neither bending nor damping, and soft.

@@ -3,7 +3,10 @@
 use super::Solver;
 use crate::{
     cloth::ClothParticles,
-    solver::{Substepping, TickStep, TimeOrder, substepping::MAX_SUBSTEPS},
+    solver::{
+        step::{TickStep, TimeOrder},
+        substepping::{MAX_SUBSTEPS, Substepping},
+    },
 };
 
 /// Number of sub-steps of forces that cost as much as one in which threads are solved.
@@ -38,11 +41,7 @@ impl Solver {
     }
 
     /// Whether the springs of the coming tick act by explicit forces.
-    pub(in crate::solver) fn is_explicit(
-        &self,
-        particles: &ClothParticles,
-        step: &TickStep,
-    ) -> bool {
+    pub(crate) fn is_explicit(&self, particles: &ClothParticles, step: &TickStep) -> bool {
         let dt = step.seconds / step.substeps.max(1) as f32;
         step.order == TimeOrder::Second
             // Forces do not include the bodies that particles carry.

@@ -4,14 +4,13 @@ use super::{AFTER_CONTACT, RESOLVED, Solver, UNSOLVED, WARY_TICKS};
 use crate::{
     cloth::{Block, ClothParticles, Earlier, StepKind},
     solver::{
-        PinMotion, Stretch, SubStep, TickStep, TimeOrder,
         bands::in_bands,
         drift::Drift,
         energy::Energy,
-        pace::Pace,
-        predict::{Breath, Prediction, weight},
+        kernels::{Breath, Pace, Prediction, weight},
         spin::Spin,
-        step::{DAMPING_REFERENCE, existing, put_pins},
+        step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, TimeOrder, existing, put_pins},
+        stretch::Stretch,
         sweep::Motion,
     },
 };

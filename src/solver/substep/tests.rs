@@ -5,7 +5,7 @@ use bevy::math::Vec3;
 use super::*;
 use crate::{
     cloth::{Cloth, ClothMaterial, Pins, Spring, SpringKind, Surface},
-    solver::TimeOrder,
+    solver::step::TimeOrder,
 };
 
 /// Beyond the end there is nothing to move, in the last block's unused lanes neither.

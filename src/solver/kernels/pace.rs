@@ -2,7 +2,7 @@
 
 /// The parameters of a sub-step in the equations of springs.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(super) struct Pace {
+pub(crate) struct Pace {
     /// 1/(c Δt²) (1/s²), where c Δt² w is the displacement per force of a particle with inverse mass w.
     pub inverse_weight: f32,
     /// κ = 1/(1 + τ/Δt), with τ the decay time of a stretch by damping along springs (s): 1 without damping.

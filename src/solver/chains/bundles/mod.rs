@@ -5,10 +5,9 @@ mod tests;
 
 use std::{ops::Range, sync::Arc};
 
-use super::bundle::{Solved, Step};
 use crate::{
     cloth::{LANES, Lanes, SpringList},
-    solver::{kernel::Kernels, pace::Pace, packet::Row},
+    solver::kernels::{Kernels, Pace, Row, Solved, Step},
 };
 
 /// Up to eight threads that share no particle.
@@ -22,7 +21,7 @@ struct Bundle {
 
 /// All threads of a list of springs, colour by colour.
 #[derive(Debug, Default, Clone)]
-pub(in crate::solver) struct Bundles {
+pub(crate) struct Bundles {
     bundles: Arc<[Bundle]>,
     steps: Arc<[Step]>,
     /// The multipliers of the springs of each step from the forward pass (kg).

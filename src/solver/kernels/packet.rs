@@ -17,12 +17,12 @@ use super::pace::Pace;
 const MIN_SOFTNESS: f32 = 1.0e-18;
 
 /// Springs in a packet.
-pub(super) const SPRINGS: usize = 4;
+pub(crate) const SPRINGS: usize = 4;
 
 /// A particle during a sweep.
 #[derive(Debug, Default, Clone, Copy)]
 #[repr(C, align(32))]
-pub(super) struct Row {
+pub(crate) struct Row {
     /// Position (m), and inverse mass (1/kg).
     pub place: Vec4,
     /// Displacement (m), and 0.
@@ -31,7 +31,7 @@ pub(super) struct Row {
 
 /// Springs of one colour: no two of them share an end, unless that is no particle's.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Packet {
+pub(crate) struct Packet {
     /// The rows of both ends.
     pub from: [u32; SPRINGS],
     pub to: [u32; SPRINGS],
@@ -43,7 +43,7 @@ pub(super) struct Packet {
 
 /// Moves the ends of all springs, one packet after the other: what [`kernel`](super::kernel) does to the springs of a grid.
 #[inline(always)]
-pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], pace: &Pace) {
+pub(crate) fn relax_packets(rows: &mut [Row], packets: &[Packet], pace: &Pace) {
     for packet in packets {
         relax(rows, packet, pace, None);
     }
@@ -51,7 +51,7 @@ pub(super) fn relax_packets(rows: &mut [Row], packets: &[Packet], pace: &Pace) {
 
 /// The same on the way there, of which the way back is to know what each spring has pulled with, as a part of its length.
 #[inline(always)]
-pub(super) fn relax_packets_there(
+pub(crate) fn relax_packets_there(
     rows: &mut [Row],
     packets: &[Packet],
     pulls: &mut [Vec4],
@@ -64,7 +64,7 @@ pub(super) fn relax_packets_there(
 
 /// The way back: the last packet first. A spring that gives has pulled already, which it does not do twice.
 #[inline(always)]
-pub(super) fn relax_packets_back(
+pub(crate) fn relax_packets_back(
     rows: &mut [Row],
     packets: &[Packet],
     pulls: &[Vec4],

@@ -3,17 +3,17 @@
 use crate::cloth::LANES;
 
 /// Rows that are worked on at once: while one waits for its divisions, others need not.
-pub(super) const GROUP: usize = 8;
+pub(crate) const GROUP: usize = 8;
 
 /// The lanes of all rows of a group, one after the other, and as many on either side as a step of the reduction looks at.
-pub(super) type Wide = [f32; BESIDE + GROUP * LANES + BESIDE];
-pub(super) const BESIDE: usize = 4;
+pub(crate) type Wide = [f32; BESIDE + GROUP * LANES + BESIDE];
+pub(crate) const BESIDE: usize = 4;
 
 /// The system for the last springs of strips. The last strip's leads nowhere: infinitely held, it takes nothing and hands on
 /// nothing, so that rows need not be kept apart.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
-pub(super) struct Reduced {
+pub(crate) struct Reduced {
     pub diagonal: Wide,
     /// Coupling to the lane before.
     pub off: Wide,
@@ -49,7 +49,7 @@ impl Reduced {
 /// The first and last springs of a group's strips.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
-pub(super) struct Ends {
+pub(crate) struct Ends {
     /// Of the first particles (1/kg).
     pub weight: Wide,
     /// Of the first springs and of the last, in rest lengths.

@@ -8,14 +8,17 @@ mod tests;
 use bevy::math::Vec3;
 
 use super::{
-    Air, Bending, PinMotion, SimdLevel, Stretch, SubStep, Tethers, TickStep,
-    air::{AirMemory, Airflow},
+    air::{Air, AirMemory, Airflow},
     bands::with_threads_awake,
+    bending::Bending,
+    chains::ThreadSweep,
     forces::Forces,
+    kernels::SimdLevel,
     list::ListSweep,
+    step::{PinMotion, SubStep, TickStep},
+    stretch::Stretch,
     sweep::Sweep,
-    tether::Anchors,
-    threads::ThreadSweep,
+    tether::{Anchors, Tethers},
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
 

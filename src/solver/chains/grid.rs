@@ -3,22 +3,16 @@
 
 use std::ops::Range;
 
-use super::{
-    again::{Again, Solved},
-    beside::{Scratch, Threads},
-    direction::Direction,
-    ends::GROUP,
-    link::Family,
-    rows::{RowScratch, RowThreads},
-    unsolved::largest,
-};
+use super::again::{Again, Solved};
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
     solver::{
-        Stretch,
         bands::{MAX_BANDS, in_bands, take},
-        kernel::{Kernels, Longest},
-        pace::Pace,
+        kernels::{
+            Direction, Family, GROUP, Kernels, Longest, Pace, RowScratch, RowThreads, Scratch,
+            Threads, largest,
+        },
+        stretch::Stretch,
         sweep::{Motion, Sweep, Swept},
     },
 };
@@ -29,7 +23,7 @@ const MIN_BLOCKS: usize = 2;
 
 /// The springs of a grid, thread by thread.
 #[derive(Debug, Clone)]
-pub(in crate::solver) struct ThreadSweep {
+pub(crate) struct ThreadSweep {
     layout: Layout,
     /// Within a row: one on a border, one that is not.
     across: [Family; 2],
@@ -80,7 +74,7 @@ impl ThreadSweep {
     }
 
     /// Solves all threads that lead from row to row in one direction.
-    pub(super) fn solve_down(
+    pub(crate) fn solve_down(
         &mut self,
         blocks: &mut [Block],
         direction: Direction,
@@ -98,7 +92,7 @@ impl ThreadSweep {
     }
 
     /// Solves all threads within rows.
-    pub(super) fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+    pub(crate) fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         let mut rows = RowThreads {
             blocks,
             first: 0,
@@ -111,7 +105,7 @@ impl ThreadSweep {
     }
 
     /// What solves again what is left in rows and columns, after all threads were solved in this many bands.
-    pub(super) fn again(&mut self, bands: usize) -> (&mut Again, Solved<'_>) {
+    pub(crate) fn again(&mut self, bands: usize) -> (&mut Again, Solved<'_>) {
         let strip = self.layout.strip as usize;
         if let Some(pulled) = self.again.pulled[1].get_mut(strip..) {
             self.scratch.multipliers(strip, bands, pulled);

@@ -7,28 +7,28 @@
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, X, Y, Z};
 
 /// x, y and z of eight particles.
-pub(super) type Trio = [Lanes; 3];
+pub(crate) type Trio = [Lanes; 3];
 
 /// A particle's row of L, and of the inverse of D: to the particle before it, to the one before that, 1/D.
-pub(super) type Factor = [Lanes; 3];
+pub(crate) type Factor = [Lanes; 3];
 
 /// Where each quantity of a [`Trio`] is in a block.
-pub(super) const PLACES: [usize; 3] = [X, Y, Z];
-pub(super) const MOVES: [usize; 3] = [DX, DY, DZ];
+pub(crate) const PLACES: [usize; 3] = [X, Y, Z];
+pub(crate) const MOVES: [usize; 3] = [DX, DY, DZ];
 
 /// Smaller values count as zero (kg m, and m): far from any motion they would be subnormal numbers, which are slow.
-pub(super) const MIN_MOMENT: f32 = 1.0e-25;
-pub(super) const MIN_MOVE: f32 = 1.0e-18;
+pub(crate) const MIN_MOMENT: f32 = 1.0e-25;
+pub(crate) const MIN_MOVE: f32 = 1.0e-18;
 
 #[inline(always)]
-pub(super) fn flush(number: f32, least: f32) -> f32 {
+pub(crate) fn flush(number: f32, least: f32) -> f32 {
     // NaN stays to be seen.
     if number.abs() < least { 0.0 } else { number }
 }
 
 /// From each particle of `a` to that of `b` in the same lane.
 #[inline(always)]
-pub(super) fn link(a: &View, b: &View, out: &mut Trio) {
+pub(crate) fn link(a: &View, b: &View, out: &mut Trio) {
     for axis in 0..3 {
         let (place, moved) = (PLACES[axis], MOVES[axis]);
         for l in 0..LANES {
@@ -39,7 +39,7 @@ pub(super) fn link(a: &View, b: &View, out: &mut Trio) {
 
 /// From each particle of a row to the one below it.
 #[inline(always)]
-pub(super) fn thread_links(from: &[Block], to: &[Block], links: &mut [Trio]) {
+pub(crate) fn thread_links(from: &[Block], to: &[Block], links: &mut [Trio]) {
     for ((a, b), out) in from.iter().zip(to).zip(links) {
         link(a.view(), b.view(), out);
     }
@@ -95,7 +95,7 @@ fn backward(
 
 /// Moments of a row (kg m), from the links that lead to it and away from it.
 #[inline(always)]
-pub(super) fn thread_moments(
+pub(crate) fn thread_moments(
     [before, after]: [&[Trio]; 2],
     stiffness: &[Lanes],
     moments: &mut [Trio],
@@ -111,7 +111,7 @@ pub(super) fn thread_moments(
 /// Solves a row forwards: `moments` are those of the row before, of this and of the next one, `solved` the row before and the
 /// one before that.
 #[inline(always)]
-pub(super) fn thread_forward(
+pub(crate) fn thread_forward(
     moments: [&[Trio]; 3],
     solved: [&[Trio]; 2],
     factors: &[Factor],
@@ -132,7 +132,7 @@ pub(super) fn thread_forward(
 
 /// Solves a row backwards and moves its particles: `solved` and `factors` are those of the next row and of the one after that.
 #[inline(always)]
-pub(super) fn thread_backward(
+pub(crate) fn thread_backward(
     blocks: &mut [Block],
     own: &[Factor],
     solved: [&[Trio]; 2],
@@ -177,7 +177,7 @@ fn transpose(from: &[Lanes; LANES]) -> [Lanes; LANES] {
 
 /// The links along up to eight rows, column by column: the lanes of a column are the rows.
 #[inline(always)]
-pub(super) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio]) {
+pub(crate) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio]) {
     for j in 0..strip {
         let mut links = [[[0.0; LANES]; LANES]; 3];
         for (row, blocks) in rows.chunks_exact(strip).enumerate() {
@@ -202,7 +202,7 @@ pub(super) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio])
 
 /// Solves eight rows, each from its first column to its last and back, in place of their links.
 #[inline(always)]
-pub(super) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Factor]) {
+pub(crate) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Factor]) {
     let none = [[0.0; LANES]; 3];
     let count = columns.len();
     let moment = |before: &Trio, after: &Trio| {
@@ -251,7 +251,7 @@ pub(super) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Fa
 
 /// Moves the particles of up to eight rows by their solutions, column by column.
 #[inline(always)]
-pub(super) fn thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]) {
+pub(crate) fn thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]) {
     for j in 0..strip {
         for axis in 0..3 {
             let of_columns = std::array::from_fn(|lane| columns[lane * strip + j][axis]);

@@ -2,7 +2,7 @@
 
 /// The direction of threads from row to row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Direction {
+pub(crate) enum Direction {
     Down,
     /// A column further right in each row.
     Right,

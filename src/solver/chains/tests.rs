@@ -2,21 +2,20 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::{direction::Direction, grid::ThreadSweep};
+use super::grid::ThreadSweep;
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Compliances, Surface},
     solver::{
-        SimdLevel, Tethers,
-        pace::Pace,
+        kernels::{Direction, Pace, SimdLevel},
         sweep::{Motion, Sweep},
-        tether::Anchors,
+        tether::{Anchors, Tethers},
     },
 };
 
 const WEIGHT_DT2: f32 = 1.0 / 1200.0 / 1200.0;
 
 /// `SplitMix64`, from −1 to 1.
-pub(super) fn random(seed: &mut u64) -> f32 {
+pub(crate) fn random(seed: &mut u64) -> f32 {
     *seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let z = (*seed ^ (*seed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -66,7 +65,7 @@ fn threads(grid: &ClothGrid, (down, across): (u32, i32)) -> Vec<Vec<(u32, u32)>>
 }
 
 /// Solves a system by elimination with pivots.
-pub(super) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+pub(crate) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
     for at in 0..n {
         let best = (at..n)

@@ -7,9 +7,9 @@
 //! A spring needs one division, no root, and some 26 additions and multiplications. A core with AVX2 starts two of
 //! these per cycle, each on eight lanes: 13 cycles for eight springs, 0.55 ns per spring at 3 GHz.
 
-use crate::{
-    cloth::{Block, ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
-    solver::{barrier::one_block_at_a_time, commit::commit},
+use super::{barrier::one_block_at_a_time, commit::commit};
+use crate::cloth::{
+    Block, ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z,
 };
 
 /// x, y and z of the forces on eight particles (N).
@@ -19,7 +19,7 @@ const NONE: Force = [[0.0; LANES]; 3];
 
 /// Springs of a grid that lie alike.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Elastic {
+pub(crate) struct Elastic {
     /// One over the squared length at rest (1/m²).
     inverse_rest_square: f32,
     /// Stiffness (N/m) of those that begin in a row's blocks, 0 where there is none.
@@ -58,12 +58,12 @@ impl Elastic {
 /// All springs of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ElasticGrid {
-    pub(super) layout: Layout,
+    pub(crate) layout: Layout,
     /// Within a row: one on a border, one that is not.
-    pub(super) across: [Elastic; 2],
-    pub(super) down: Elastic,
+    pub(crate) across: [Elastic; 2],
+    pub(crate) down: Elastic,
     /// Of no stiffness if there are none.
-    pub(super) diagonal: Elastic,
+    pub(crate) diagonal: Elastic,
 }
 
 impl ElasticGrid {
@@ -80,7 +80,7 @@ impl ElasticGrid {
     }
 
     /// The shorter distance between neighbours (m).
-    pub(super) fn spacing(&self) -> f32 {
+    pub(crate) fn spacing(&self) -> f32 {
         let [across, down] = [&self.across[0], &self.down].map(|of| of.inverse_rest_square);
         across.max(down).sqrt().recip()
     }

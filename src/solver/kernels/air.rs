@@ -4,10 +4,8 @@
 //! A pass over eight particles needs three roots and two divisions, which take a core with AVX2 some 45 cycles. It also
 //! needs some 80 additions and multiplications, two per cycle. A sub-step adds 14 of these and six loads.
 
-use crate::{
-    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
-    solver::{barrier::one_block_at_a_time, pentadiagonal::Trio},
-};
+use super::{barrier::one_block_at_a_time, pentadiagonal::Trio};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
 
 /// The air's action on eight particles until its next evaluation: an acceleration of `push − drag (drag · v)` at the
 /// velocity v.

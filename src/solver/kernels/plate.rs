@@ -10,11 +10,11 @@ use super::pentadiagonal::{MIN_MOVE, MOVES, PLACES, Trio, flush};
 use crate::cloth::{Block, LANES, Lanes, W};
 
 /// Blocks on either side of a row that repeat its other end, so that each block has its neighbours beside it.
-pub(super) const EDGE: usize = 1;
+pub(crate) const EDGE: usize = 1;
 
 /// Of eight particles on an axis the moments (N m ⁄ m²) down the columns, along the rows, and of the cells below and to the right
 /// of them.
-pub(super) type Moments = [[Lanes; 3]; KINDS];
+pub(crate) type Moments = [[Lanes; 3]; KINDS];
 /// Numbers of [`Moments`] on an axis.
 const KINDS: usize = 3;
 const DOWN: usize = 0;
@@ -22,7 +22,7 @@ const ACROSS: usize = 1;
 const TWIST: usize = 2;
 
 /// k (N/m) of eight particles along the rows, down the columns and of their cells.
-pub(super) type Stiffness = [Lanes; 3];
+pub(crate) type Stiffness = [Lanes; 3];
 
 /// Each lane's left neighbour, in the lane before.
 #[inline(always)]
@@ -39,7 +39,7 @@ fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
 /// Where a row's particles will be after this part of their displacements, seen from `origin`: next to the cloth, so that no digit
 /// of a displacement is lost to its distance from the world's origin.
 #[inline(always)]
-pub(super) fn plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Trio]) {
+pub(crate) fn plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Trio]) {
     for (block, out) in row.iter().zip(&mut places[EDGE..]) {
         let view = block.view();
         for axis in 0..3 {
@@ -76,7 +76,7 @@ fn twist(stiffness: &Lanes, [a, b]: [&Lanes; 2], [c, d]: [&Lanes; 2]) -> Lanes {
 
 /// Moments of a row, from the places of the row above, of itself and of the row below.
 #[inline(always)]
-pub(super) fn plate_moments(
+pub(crate) fn plate_moments(
     [above, own, below]: [&[Trio]; 3],
     stiffness: &[Stiffness],
     moments: &mut [Moments],
@@ -130,7 +130,7 @@ fn pushed(
 /// Moves a row's particles by their forces times `weight` (s²) over their masses: `moments` are those of the row above, of this
 /// and of the row below.
 #[inline(always)]
-pub(super) fn plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]) {
+pub(crate) fn plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]) {
     let strip = row.len();
     let [above, own, below] = moments.map(|of| &of[..strip + 2 * EDGE]);
     for (j, block) in row.iter_mut().enumerate() {

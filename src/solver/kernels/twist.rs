@@ -11,7 +11,7 @@ use crate::cloth::{Block, LANES, Lanes, View, W};
 
 /// Each pair's difference, from left to right, of a row's even or odd pairs.
 #[inline(always)]
-pub(super) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Trio]) {
+pub(crate) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Trio]) {
     let pairs = row[usize::from(is_odd)..].chunks_exact(2);
     for (pair, out) in pairs.zip(&mut *links) {
         if let [a, b] = pair {
@@ -43,7 +43,7 @@ fn forward(
 /// Solves a row forwards. `links` are its own and the next row's, `moments` those of the cells above it, which become those of
 /// the cells below; `before` is the row before, solved.
 #[inline(always)]
-pub(super) fn twist_forward(
+pub(crate) fn twist_forward(
     [own, next]: [&[Trio]; 2],
     stiffness: &[Lanes],
     moments: &mut [Trio],
@@ -94,7 +94,7 @@ fn part(a: &mut View, b: &mut View, mass: &Lanes, changes: &Trio) {
 
 /// Solves a row backwards and moves its particles: `factors` are its own and the next row's, `next` the next row, solved.
 #[inline(always)]
-pub(super) fn twist_backward(
+pub(crate) fn twist_backward(
     row: &mut [Block],
     is_odd: bool,
     [own, below]: [&[Factor]; 2],

@@ -2,10 +2,8 @@
 
 use bevy::math::{Vec3, Vec3A};
 
-use crate::{
-    cloth::{Block, ClothParticles, LANES, Lanes, Slot, Surface, View, X},
-    solver::{barrier::one_block_at_a_time, pentadiagonal::Trio},
-};
+use super::{barrier::one_block_at_a_time, pentadiagonal::Trio};
+use crate::cloth::{Block, ClothParticles, LANES, Lanes, Slot, Surface, View, X};
 
 /// A row of a grid, and the rows above and below it, itself where there is none.
 pub(crate) struct Rows<'a> {
@@ -79,7 +77,7 @@ fn behind(last: &Trio, own: &View) -> Trio {
 
 /// The triangles of a mesh.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Triangles {
+pub(crate) struct Triangles {
     corners: Vec<[u32; 3]>,
     /// 1, or −1 where faces are turned inwards at rest.
     outwards: f64,
@@ -90,7 +88,7 @@ pub(super) struct Triangles {
 
 /// The volume that triangles enclose.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(super) struct Enclosed {
+pub(crate) struct Enclosed {
     /// Volume (m³), positive as long as it is not turned inside out.
     pub volume: f64,
     /// 1, or −1 where faces are turned inwards.
@@ -163,6 +161,6 @@ impl Triangles {
 }
 
 /// The lanes of one axis, from one end of a strip to the other.
-pub(super) fn between(from: &Lanes, to: &Lanes, part: f32) -> Lanes {
+pub(crate) fn between(from: &Lanes, to: &Lanes, part: f32) -> Lanes {
     std::array::from_fn(|l| from[l] + part * (to[l] - from[l]))
 }

@@ -13,10 +13,7 @@ use super::{
 };
 use crate::{
     cloth::{Block, LANES, Lanes, Layout, W},
-    solver::{
-        kernel::Kernels,
-        pentadiagonal::{Factor, Trio},
-    },
+    solver::kernels::{Factor, Kernels, Trio},
 };
 
 /// Which way a family is solved, in their order.

@@ -15,17 +15,17 @@ use crate::{
 
 /// Threads of one direction, beside each other.
 pub(crate) struct Threads<'a> {
-    pub(super) rows: Rows<'a>,
+    pub(crate) rows: Rows<'a>,
     /// Blocks in a row.
-    pub(super) width: usize,
+    pub(crate) width: usize,
     /// Row by row of springs.
-    pub(super) links: &'a mut [Link],
-    pub(super) before: &'a mut [Before],
-    pub(super) behind: &'a mut [Behind],
+    pub(crate) links: &'a mut [Link],
+    pub(crate) before: &'a mut [Before],
+    pub(crate) behind: &'a mut [Behind],
 }
 
 /// Their rows.
-pub(super) struct Rows<'a> {
+pub(crate) struct Rows<'a> {
     direction: Direction,
     strip: usize,
     count: usize,
@@ -42,7 +42,7 @@ enum Blocks<'a> {
 }
 
 /// A row's blocks in the order of the threads, in two pieces.
-pub(super) struct Row<T> {
+pub(crate) struct Row<T> {
     /// The number of the first.
     pub first: usize,
     high: T,
@@ -120,7 +120,7 @@ impl Rows<'_> {
 
 /// Memory in which threads from row to row are solved.
 #[derive(Debug, Clone)]
-pub(super) struct Scratch {
+pub(crate) struct Scratch {
     links: Vec<Link>,
     before: Vec<Before>,
     behind: Vec<Behind>,

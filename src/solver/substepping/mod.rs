@@ -2,7 +2,7 @@
 
 use bevy::reflect::Reflect;
 
-use super::Stretch;
+use super::stretch::Stretch;
 
 /// More would be a mistake in typing, and would hang the game.
 pub(super) const MAX_SUBSTEPS: u32 = 10_000;
@@ -49,7 +49,7 @@ pub enum Substepping {
     /// As many as the cloth needs:
     ///
     /// - By its number of particles, [`Substepping::needed`]; or, for a soft cloth, as many as explicit forces need,
-    ///   [`Solver::needed`](super::Solver::needed).
+    ///   [`Solver::needed`](crate::solver::Solver::needed).
     /// - More where it is taut as a membrane, until ripples across its threads are resolved,
     ///   [`Stretch::ripple_substeps`].
     /// - More where a body lies on it, until it holds that body, [`Stretch::load_substeps`].
@@ -66,7 +66,7 @@ pub enum Substepping {
         stretch: f32,
         /// Largest number of sub-steps in a tick, including repeated ones, from 1 to 10,000. If they don't suffice, or
         /// the material itself stretches more, the log says so:
-        /// [`ClothLimit::Tolerance`](super::ClothLimit::Tolerance).
+        /// [`ClothLimit::Tolerance`](crate::solver::ClothLimit::Tolerance).
         max_substeps: u32,
     },
 }

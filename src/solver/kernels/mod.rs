@@ -4,34 +4,52 @@
 //!
 //! A kernel imports no caller. [`Kernels`] is the table of all of them, compiled for one instruction set.
 
+mod air;
+mod air_areas;
+mod barrier;
+mod chains;
+mod commit;
+mod elastic;
+mod pace;
+mod packet;
+mod pentadiagonal;
+mod plate;
+mod predict;
+mod twist;
+
 use bevy::math::Vec4;
 use multiversion::{inherit_target, multiversion};
 
-use super::{
-    air::{Felt, Law, Rows, air_areas, air_feel, air_given, air_push},
-    barrier::one_block_at_a_time,
-    commit::commit,
-    forces::{ElasticGrid, Force, Kick, kick},
-    pace::Pace,
-    packet::{Packet, Row, relax_packets, relax_packets_back, relax_packets_there},
-    pentadiagonal::{
-        Factor, Trio, thread_backward, thread_columns, thread_finish, thread_forward, thread_links,
-        thread_moments, thread_rows,
-    },
-    plate::{Moments, Stiffness, plate_moments, plate_places, plate_push},
-    predict::{
-        Breath, Prediction, begin_past, predict, predict_first, predict_first_in_air,
-        predict_in_air,
-    },
-    threads::{
-        Columns, Family, Left, RowSprings, RowThreads, Solved, Step, Threads, bundle_backward,
-        bundle_forward, measure_elastic_left, measure_elastic_left_at, measure_given, measure_left,
-        measure_left_at, note_places, solve_columns, solve_columns_again, solve_damped_rows,
-        solve_damped_threads, solve_rows, solve_rows_again, solve_threads,
-    },
-    twist::{twist_backward, twist_forward, twist_links},
-};
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, X, Y, Z};
+
+pub(crate) use air::{Felt, Law, air_feel, air_given, air_push};
+pub(crate) use air_areas::{Enclosed, Rows, Triangles, air_areas, between};
+use barrier::one_block_at_a_time;
+pub(crate) use chains::{
+    Columns, Direction, Family, GROUP, Left, RowScratch, RowSprings, RowThreads, Scratch, Solved,
+    Step, Threads, bundle_backward, bundle_forward, largest, measure_elastic_left,
+    measure_elastic_left_at, measure_given, measure_left, measure_left_at, note_places,
+    solve_columns, solve_columns_again, solve_damped_rows, solve_damped_threads, solve_rows,
+    solve_rows_again, solve_threads,
+};
+#[cfg(test)]
+pub(crate) use commit::MIN_MOVE;
+pub(crate) use commit::commit;
+pub(crate) use elastic::{ElasticGrid, Force, Kick, kick};
+pub(crate) use pace::Pace;
+pub(crate) use packet::{
+    Packet, Row, SPRINGS, relax_packets, relax_packets_back, relax_packets_there,
+};
+pub(crate) use pentadiagonal::{
+    Factor, Trio, thread_backward, thread_columns, thread_finish, thread_forward, thread_links,
+    thread_moments, thread_rows,
+};
+pub(crate) use plate::{EDGE, Moments, Stiffness, plate_moments, plate_places, plate_push};
+pub(crate) use predict::{
+    Breath, Prediction, begin_past, predict, predict_first, predict_first_in_air, predict_in_air,
+    weight,
+};
+pub(crate) use twist::{twist_backward, twist_forward, twist_links};
 
 /// Pulls each particle back that is farther from its anchor than its tether is long: a unilateral constraint
 /// against a particle that nothing moves.
@@ -74,7 +92,7 @@ fn tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_
 
 /// The largest squared lengths found (m²), lane by lane: of springs, and of displacements.
 #[derive(Debug, Default, Clone, Copy)]
-pub(super) struct Longest {
+pub(crate) struct Longest {
     pub moved: Lanes,
     pub across: Lanes,
     pub down: Lanes,
@@ -115,16 +133,9 @@ fn measure(a: &View, b: &View, hold: &Lanes, largest: &mut Lanes) {
 #[inline(always)]
 fn measure_within(row: &[Block], springs: &Family, longest: &mut Longest) {
     for (pair, hold) in row.windows(2).zip(&springs.hold) {
-        measure(
-            pair[0].view(),
-            pair[1].view(),
-            hold,
-            &mut longest.across,
-        );
+        measure(pair[0].view(), pair[1].view(), hold, &mut longest.across);
     }
-    if let (Some(first), Some(last), Some(hold)) =
-        (row.first(), row.last(), springs.hold.last())
-    {
+    if let (Some(first), Some(last), Some(hold)) = (row.first(), row.last(), springs.hold.last()) {
         measure(last.view(), first.shifted(), hold, &mut longest.across);
     }
 }
@@ -160,7 +171,7 @@ pub enum SimdLevel {
 }
 
 impl SimdLevel {
-    pub(super) fn kernels(self) -> Kernels {
+    pub(crate) fn kernels(self) -> Kernels {
         match self {
             Self::Auto => widest(),
             Self::Baseline => baseline(),
@@ -174,7 +185,7 @@ macro_rules! kernels {
     ($($name:ident($($argument:ident: $kind:ty),*)),* $(,)?) => {
         /// The arithmetic, compiled for one instruction set.
         #[derive(Clone, Copy)]
-        pub(super) struct Kernels {
+        pub(crate) struct Kernels {
             $(pub $name: fn($($kind),*),)*
         }
 
@@ -183,7 +194,7 @@ macro_rules! kernels {
             $(
                 #[inherit_target]
                 fn $name($($argument: $kind),*) {
-                    super::kernel::$name($($argument),*);
+                    super::kernels::$name($($argument),*);
                 }
             )*
             Kernels { $($name),* }

@@ -7,11 +7,11 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, W, X};
 ///
 /// Its square, and its effect some springs farther, would be subnormal numbers, which are slow. A second of a flat
 /// cloth of 64² particles that a ball pushes took 90 ms with them, and takes 39 ms without, in 20 sub-steps per tick.
-pub(super) const MIN_MOVE: f32 = 1.0e-15;
+pub(crate) const MIN_MOVE: f32 = 1.0e-15;
 
 /// Ends a sub-step: displacements become positions. Raises `farthest` to the largest squared displacements (m²).
 #[inline(always)]
-pub(super) fn commit(row: &mut [Block], farthest: &mut Lanes) {
+pub(crate) fn commit(row: &mut [Block], farthest: &mut Lanes) {
     for block in row {
         let view = block.view_mut();
         for at in X..W {

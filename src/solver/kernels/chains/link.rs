@@ -2,11 +2,11 @@
 
 use crate::{
     cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
-    solver::pace::Pace,
+    solver::kernels::pace::Pace,
 };
 
 /// Keeps a spring between two pins from dividing by zero (1/kg).
-pub(super) const HOLD: f32 = 1.0e-18;
+pub(crate) const HOLD: f32 = 1.0e-18;
 
 /// ε: added to a rigid thread, as a fraction of its diagonal. Straight between two pins it would have no solution.
 const REGULARISATION: f32 = 1.0e-3;
@@ -153,14 +153,14 @@ impl Family {
 const FARTHEST: f32 = 1.0e4;
 
 #[inline(always)]
-pub(super) fn clamped(way: f32) -> f32 {
+pub(crate) fn clamped(way: f32) -> f32 {
     let way = if way > FARTHEST { FARTHEST } else { way };
     if way < -FARTHEST { -FARTHEST } else { way }
 }
 
 /// Diagonal (1/kg) and right side (m) of a spring with this way, between particles of these inverse masses together (1/kg).
 #[inline(always)]
-pub(super) fn terms(
+pub(crate) fn terms(
     [x, y, z]: [f32; 3],
     weight: f32,
     softness: f32,
@@ -182,7 +182,7 @@ pub(super) fn terms(
 /// makes `C + (τ/Δt)(C − C₀)` of C in its equation, which is divided by 1 + τ/Δt = 1/κ: `κ C + (1 − κ)(C − C₀)`, with a softness
 /// of κ α/(c Δt²).
 #[inline(always)]
-pub(super) fn damped(
+pub(crate) fn damped(
     right: f32,
     [a, b]: [&View; 2],
     [x, y, z]: [f32; 3],
@@ -201,7 +201,7 @@ pub(super) fn damped(
 
 /// The way of one lane's spring from the first to the second particle, in rest lengths.
 #[inline(always)]
-pub(super) fn way(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
+pub(crate) fn way(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
     [(X, DX), (Y, DY), (Z, DZ)].map(|(at, moved)| {
         clamped(((b[at + l] - a[at + l]) + (b[moved + l] - a[moved + l])) * inverse_rest)
     })
@@ -227,6 +227,6 @@ pub(crate) fn measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut 
 
 /// The right side that a spring which has pulled already has left, of that without a pull.
 #[inline(always)]
-pub(super) fn after(right: f32, [x, y, z]: [f32; 3], softness: f32, pulled: f32) -> f32 {
+pub(crate) fn after(right: f32, [x, y, z]: [f32; 3], softness: f32, pulled: f32) -> f32 {
     right - softness * (x * x + y * y + z * z) * pulled
 }

@@ -5,12 +5,12 @@ mod soft;
 
 use bevy::math::{DVec3, Vec3};
 
-use self::dense::expected;
 use super::*;
 use crate::{
     cloth::{Cloth, ClothParticles, TriangleMesh},
-    solver::SimdLevel,
+    solver::kernels::SimdLevel,
 };
+use dense::expected;
 
 /// A generator of numbers from −1 to 1.
 fn noise() -> impl FnMut() -> f64 {

@@ -22,7 +22,7 @@ use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
 
 /// The next displacement: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Prediction {
+pub(crate) struct Prediction {
     own: f32,
     one: f32,
     two: f32,
@@ -61,7 +61,7 @@ impl Prediction {
 }
 
 /// The weight c of forces and springs.
-pub(super) fn weight(kind: StepKind) -> f32 {
+pub(crate) fn weight(kind: StepKind) -> f32 {
     match kind {
         StepKind::First => 1.0,
         StepKind::Start => 0.5,
@@ -71,7 +71,7 @@ pub(super) fn weight(kind: StepKind) -> f32 {
 
 /// Without a past. Pinned particles keep the displacement that they were given.
 #[inline(always)]
-pub(super) fn predict_first(row: &mut [Block], prediction: &Prediction) {
+pub(crate) fn predict_first(row: &mut [Block], prediction: &Prediction) {
     for block in row {
         let view = block.view_mut();
         for (at, pull) in [DX, DY, DZ].into_iter().zip(prediction.pull) {
@@ -90,7 +90,7 @@ pub(super) fn predict_first(row: &mut [Block], prediction: &Prediction) {
 
 /// With a past, which moves on by a sub-step.
 #[inline(always)]
-pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction) {
+pub(crate) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction) {
     let Prediction {
         own,
         one,
@@ -121,14 +121,14 @@ pub(super) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
 
 /// Parameters of the air in a sub-step: its weight (s²), and one over its length (1/s).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Breath {
+pub(crate) struct Breath {
     pub weight: f32,
     pub inverse_substep: f32,
 }
 
 /// Without a past, in air.
 #[inline(always)]
-pub(super) fn predict_first_in_air(
+pub(crate) fn predict_first_in_air(
     row: &mut [Block],
     felt: &[Felt],
     prediction: &Prediction,
@@ -152,7 +152,7 @@ pub(super) fn predict_first_in_air(
 
 /// With a past, which moves on by a sub-step, in air.
 #[inline(always)]
-pub(super) fn predict_in_air(
+pub(crate) fn predict_in_air(
     row: &mut [Block],
     past: &mut [Earlier],
     felt: &[Felt],
@@ -196,7 +196,7 @@ pub(super) fn predict_in_air(
 
 /// Ends the first sub-step: the past is what the acceleration in it would have made it.
 #[inline(always)]
-pub(super) fn begin_past(row: &[Block], past: &mut [Earlier]) {
+pub(crate) fn begin_past(row: &[Block], past: &mut [Earlier]) {
     for (block, Earlier(earlier)) in row.iter().zip(past) {
         let view = block.view();
         for axis in 0..3 {

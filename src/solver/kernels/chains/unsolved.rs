@@ -7,7 +7,7 @@
 use super::link::Family;
 use crate::{
     cloth::{Block, DX, LANES, Lanes, View, X},
-    solver::pentadiagonal::Trio,
+    solver::kernels::pentadiagonal::Trio,
 };
 
 /// What is left: squared lengths of springs over those that they should have.
@@ -176,7 +176,7 @@ fn measure_at<const ELASTIC: bool>(
 
 /// The largest of eight numbers.
 #[inline(always)]
-pub(super) fn largest(mut lanes: Lanes) -> f32 {
+pub(crate) fn largest(mut lanes: Lanes) -> f32 {
     for half in [4, 2, 1] {
         for l in 0..half {
             let other = lanes[l + half];

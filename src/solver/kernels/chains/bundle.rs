@@ -10,7 +10,7 @@ use bevy::math::{Mat4, Vec4};
 use super::link::{HOLD, clamped, terms};
 use crate::{
     cloth::{LANES, Lanes, Spring},
-    solver::{pace::Pace, packet::Row},
+    solver::kernels::{pace::Pace, packet::Row},
 };
 
 /// The next spring of each thread of a bundle.

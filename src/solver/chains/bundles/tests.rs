@@ -2,14 +2,15 @@
 
 use bevy::math::{DVec3, Vec3, Vec4};
 
-use super::{Bundles, Row};
+use super::Bundles;
 use crate::{
     cloth::{ClothMaterial, ClothParticles, SpringList, SpringStorage, Springs, Surface},
     meshes,
     solver::{
-        SimdLevel, Solver, TickStep,
-        pace::Pace,
-        threads::tests::{random, solved},
+        chains::tests::{random, solved},
+        kernels::{Pace, Row, SimdLevel},
+        step::TickStep,
+        substep::Solver,
     },
 };
 

@@ -6,18 +6,13 @@
 //! measured then, and so on, for a few rounds. It is the iteration of Gauss and Seidel by threads (Saad 2003, section 4.1),
 //! for those equations alone that need it.
 
-use super::{
-    beside::Scratch,
-    down::Columns,
-    link::Family,
-    rows::{RowScratch, RowThreads},
-    unsolved::{Left, RowSprings, largest},
-};
 use crate::{
     cloth::{Block, LANES, Lanes, Layout},
     solver::{
         bands::{in_bands, take},
-        kernel::Kernels,
+        kernels::{
+            Columns, Family, Kernels, Left, RowScratch, RowSprings, RowThreads, Scratch, largest,
+        },
         sweep::Motion,
     },
 };
@@ -68,7 +63,7 @@ impl Threads {
 }
 
 /// The springs of a grid's rows and columns, and memory to solve them in.
-pub(super) struct Solved<'a> {
+pub(crate) struct Solved<'a> {
     /// Within a row: one on a border, one that is not.
     pub across: &'a [Family; 2],
     pub down: &'a Family,
@@ -78,7 +73,7 @@ pub(super) struct Solved<'a> {
 
 /// Finds what is left, and solves it.
 #[derive(Debug, Clone)]
-pub(super) struct Again {
+pub(crate) struct Again {
     strip: usize,
     rows: Threads,
     /// Of each block of a row: its columns.
@@ -176,7 +171,7 @@ impl Again {
     /// Solves all rows or all columns again.
     #[cfg(test)]
     pub fn solve_all(&mut self, blocks: &mut [Block], grid: &mut Solved, down: bool) {
-        let kernels = crate::solver::SimdLevel::Auto.kernels();
+        let kernels = crate::solver::kernels::SimdLevel::Auto.kernels();
         let threads = if down {
             &mut self.columns
         } else {
