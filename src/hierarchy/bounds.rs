@@ -3,8 +3,9 @@
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 use super::{
-    BoundRule, BoundingVolume, NodeVolume, QuadTree,
-    stored::{Volumes, each},
+    rule::BoundRule,
+    tree::{QuadTree, Volumes, each},
+    volume::{BoundingVolume, NodeVolume},
 };
 use crate::cloth::{ClothError, ClothParticles};
 

@@ -1,8 +1,7 @@
 //! The search without a tree, in f64: the reference for every query.
 
+use super::probe::Probe;
 use crate::cloth::ClothParticles;
-
-use super::Probe;
 
 /// Returns the indices of all particles that `probe` meets, tested one by one in f64.
 pub fn brute_force(particles: &ClothParticles, probe: &Probe) -> Vec<u32> {

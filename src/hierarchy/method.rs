@@ -7,7 +7,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{BoundRule, BoundingVolume};
+use super::{rule::BoundRule, volume::BoundingVolume};
 use crate::cloth::ClothError;
 
 /// A cloth with fewer particles is scanned. At 64 × 64, a scan of all particles, eight at a time, takes as long as the

@@ -119,10 +119,8 @@ mod found;
 mod method;
 mod probe;
 mod query;
-mod refit;
 mod rule;
 mod scan;
-mod stored;
 #[cfg(test)]
 mod tests;
 mod tree;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy::reflect::Reflect;
 
-use super::{NodeBounds, Probe, QuadTree, found::Found, scan::scan};
+use super::{bounds::NodeBounds, found::Found, probe::Probe, scan::scan, tree::QuadTree};
 use crate::cloth::ClothParticles;
 
 /// The result of the last search for a node.

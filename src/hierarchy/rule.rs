@@ -2,7 +2,7 @@
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
-use super::BoundingVolume;
+use super::volume::BoundingVolume;
 use crate::cloth::ClothError;
 
 /// The rule that defines the bounding volumes of a tree's nodes.

@@ -2,7 +2,7 @@
 
 use multiversion::multiversion;
 
-use super::Probe;
+use super::probe::Probe;
 use crate::cloth::{Block, ClothParticles, LANES, Layout};
 
 /// Appends the indices of all particles that `probe` meets.

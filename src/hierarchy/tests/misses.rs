@@ -8,7 +8,10 @@ use proptest::{
 };
 
 use super::states::{CoreKind, State, states};
-use crate::hierarchy::{BoundRule, BoundingVolume, NodeBounds, TopDownQuery, brute_force};
+use crate::hierarchy::{
+    bounds::NodeBounds, brute::brute_force, query::TopDownQuery, rule::BoundRule,
+    volume::BoundingVolume,
+};
 
 /// Figure 4's radius of a square patch, (n + 1)/2 spacings, is less than its half-diagonal, (n − 1)/√2: a ball
 /// that touches just the corner of a flat cloth of 16 × 16 is missed at the root. A box of that half side is not.

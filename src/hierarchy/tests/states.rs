@@ -8,7 +8,14 @@ use proptest::{
 
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, SpringKind, Springs, Surface},
-    hierarchy::{BoundRule, BoundingVolume, Core, NodeBounds, Probe, QuadTree, TopDownQuery},
+    hierarchy::{
+        bounds::NodeBounds,
+        probe::{Core, Probe},
+        query::TopDownQuery,
+        rule::BoundRule,
+        tree::QuadTree,
+        volume::BoundingVolume,
+    },
     solver::Stretch,
 };
 

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     cloth::{ClothMaterial, ClothParticles, SpringKind, Springs, Surface, TriangleMesh},
-    hierarchy::QuadTree,
+    hierarchy::tree::QuadTree,
     meshes::irregular,
     solver::Stretch,
 };

@@ -5,17 +5,18 @@ use std::ops::Range;
 use bevy::math::Vec3;
 
 use super::{
-    Node,
     halving::{GridTree, Level, Part},
+    node::Node,
     shape::Tree,
+    stored::{Bounds, Volumes, each, growth},
 };
 use crate::{
     cloth::{ClothParticles, Layout},
     hierarchy::{
-        BoundRule, NodeVolume, Probe,
         found::Found,
-        stored::{Bounds, Volumes, each, growth},
-        volume::Volume,
+        probe::Probe,
+        rule::BoundRule,
+        volume::{NodeVolume, Volume},
     },
 };
 

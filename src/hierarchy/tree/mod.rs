@@ -4,7 +4,9 @@ mod grid;
 mod halving;
 mod network;
 mod node;
+mod refit;
 mod shape;
+mod stored;
 #[cfg(test)]
 mod tests;
 
@@ -18,15 +20,15 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::stored::growth;
 use crate::cloth::{ClothError, ClothGrid, ClothParticles, Graph, Spring, SpringKind, Surface};
-
 use network::NetworkTree;
 use shape::Tree;
+use stored::growth;
 
 pub use node::Node;
+pub(crate) use stored::{Volumes, each};
 
-pub(super) use halving::{GridTree, Level, Part};
+use halving::GridTree;
 
 /// A tree over the particles of a cloth. Each node's patch is split into up to four, down to one particle in each leaf.
 /// It depends only on the rest shape, is built once, and is shared by its clones.

@@ -4,14 +4,18 @@ use std::ops::Range;
 
 use bevy::math::{DVec3, Vec3};
 
-use super::{Node, shape::Tree};
+use super::{
+    node::Node,
+    shape::Tree,
+    stored::{Bounds, Volumes, each, growth},
+};
 use crate::{
     cloth::{ClothParticles, Graph, Layout, ShortestPaths, Slot},
     hierarchy::{
-        BoundRule, NodeVolume, Probe,
         found::Found,
-        stored::{Bounds, Volumes, each, growth},
-        volume::Volume,
+        probe::Probe,
+        rule::BoundRule,
+        volume::{NodeVolume, Volume},
     },
 };
 

@@ -2,7 +2,7 @@
 
 use bevy::reflect::Reflect;
 
-/// A node of a [`QuadTree`](super::QuadTree): a patch of the cloth.
+/// A node of a [`QuadTree`](crate::hierarchy::QuadTree): a patch of the cloth.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     /// Its level, 0 for the root.

@@ -2,10 +2,10 @@
 
 use std::{fmt::Debug, ops::Range};
 
-use super::Node;
+use super::{node::Node, stored::Volumes};
 use crate::{
     cloth::{ClothParticles, Layout},
-    hierarchy::{BoundRule, NodeVolume, Probe, found::Found, stored::Volumes},
+    hierarchy::{found::Found, probe::Probe, rule::BoundRule, volume::NodeVolume},
 };
 
 /// A tree over a cloth's particles, built once for a surface.

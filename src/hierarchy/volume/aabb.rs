@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     cloth::{LANES, View, X, Y, Z},
-    hierarchy::{Core, Probe, probe::ROUNDING},
+    hierarchy::probe::{Core, Probe, ROUNDING},
 };
 
 impl Volume for Aabb3d {

@@ -6,7 +6,7 @@ use bevy::math::{DVec3, Vec3};
 
 use crate::{
     cloth::{LANES, View},
-    hierarchy::Probe,
+    hierarchy::probe::Probe,
 };
 
 /// A bounding volume of a tree. It bounds the centres of particles; tests against it add their radius to the reach.

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     cloth::{LANES, View, X, Y, Z},
-    hierarchy::{Core, Probe},
+    hierarchy::probe::{Core, Probe},
 };
 
 /// Normals of the faces, corners and edges of a cube.

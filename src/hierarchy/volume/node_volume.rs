@@ -8,7 +8,7 @@ use bevy::{
     reflect::Reflect,
 };
 
-use super::{Volume, kdop::KDop, obb::Obb};
+use super::{bounding::Volume, kdop::KDop, obb::Obb};
 
 /// The bounding volume of a node, around its particles including their radius.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
@@ -67,7 +67,7 @@ impl From<KDop<13>> for NodeVolume {
 
 impl NodeVolume {
     /// Inflated by `radius` (m): around particles including their radius.
-    pub(in crate::hierarchy) fn inflated(&self, radius: f32) -> Self {
+    pub(crate) fn inflated(&self, radius: f32) -> Self {
         match self {
             Self::Sphere(volume) => volume.inflated(radius).into(),
             Self::Aabb(volume) => volume.inflated(radius).into(),
@@ -79,7 +79,7 @@ impl NodeVolume {
     }
 
     /// Whether it contains a point, in `f64`, up to rounding errors.
-    pub(in crate::hierarchy) fn holds(&self, point: Vec3) -> bool {
+    pub(crate) fn holds(&self, point: Vec3) -> bool {
         let point = point.as_dvec3();
         match self {
             Self::Sphere(volume) => volume.holds(point, 0.0),
@@ -92,7 +92,7 @@ impl NodeVolume {
     }
 
     /// Whether it contains another volume of the same type, up to rounding errors.
-    pub(in crate::hierarchy) fn holds_volume(&self, other: &Self) -> bool {
+    pub(crate) fn holds_volume(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Sphere(volume), Self::Sphere(other)) => volume.holds_volume(other),
             (Self::Aabb(volume), Self::Aabb(other)) => volume.holds_volume(other),

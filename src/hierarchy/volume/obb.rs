@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     cloth::{LANES, View, X, Y, Z},
-    hierarchy::{Core, Probe, probe::ROUNDING},
+    hierarchy::probe::{Core, Probe, ROUNDING},
 };
 
 /// An oriented box: along a patch's rows and columns, and across it.

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::hierarchy::{Core, Probe, probe::ROUNDING};
+use crate::hierarchy::probe::{Core, Probe, ROUNDING};
 
 /// The interval of a volume along an axis: projections on the axis, whose length need not be 1.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     cloth::{LANES, View, X, Y, Z},
-    hierarchy::{Probe, probe::ROUNDING},
+    hierarchy::probe::{Probe, ROUNDING},
 };
 
 /// Growth factor of a radius on each level, beyond the rounding error of its own sum and root.

@@ -7,7 +7,7 @@ use bevy::math::{
 use proptest::prelude::*;
 
 use super::*;
-use crate::hierarchy::{Core, Probe};
+use crate::hierarchy::probe::{Core, Probe};
 
 fn within(limit: f32) -> impl Strategy<Value = Vec3> {
     (-limit..limit, -limit..limit, -limit..limit).prop_map(Vec3::from)

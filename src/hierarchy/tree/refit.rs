@@ -6,11 +6,8 @@
 
 use multiversion::multiversion;
 
-use super::{
-    tree::{GridTree, Level, Part},
-    volume::Volume,
-};
-use crate::cloth::Block;
+use super::halving::{GridTree, Level, Part};
+use crate::{cloth::Block, hierarchy::volume::Volume};
 
 /// The volumes of all levels but the last, whose nodes are the particles.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,12 +5,15 @@ use bevy::math::{
     bounding::{Aabb3d, BoundingSphere},
 };
 
-use super::{
-    BoundRule, BoundingVolume, KDop, Obb, probe::ROUNDING, refit::RefitLevels, volume::Volume,
+use super::refit::RefitLevels;
+use crate::hierarchy::{
+    probe::ROUNDING,
+    rule::BoundRule,
+    volume::{BoundingVolume, KDop, Obb, Volume},
 };
 
 /// Growth factor of a rest radius. Finite, so that a leaf's radius, 0 times this, is always 0.
-pub(super) fn growth(stretch: f32) -> f32 {
+pub(crate) fn growth(stretch: f32) -> f32 {
     ((1.0 + stretch) * ROUNDING).min(f32::MAX)
 }
 
@@ -65,7 +68,7 @@ impl Default for Volumes {
 /// Runs the same code for any type.
 macro_rules! each {
     ($volumes:expr, $bounds:ident => $code:expr) => {{
-        use $crate::hierarchy::stored::Volumes;
+        use $crate::hierarchy::tree::Volumes;
         match $volumes {
             Volumes::Sphere($bounds) => $code,
             Volumes::Aabb($bounds) => $code,
@@ -76,7 +79,7 @@ macro_rules! each {
         }
     }};
 }
-pub(super) use each;
+pub(crate) use each;
 
 impl Volumes {
     /// An empty set of a type.

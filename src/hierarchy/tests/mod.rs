@@ -6,8 +6,8 @@ mod surfaces;
 
 use proptest::{prelude::*, strategy::ValueTree, test_runner::TestRunner};
 
-use self::states::{Scene, State, states};
 use super::*;
+use states::{Scene, State, states};
 
 /// Each volume by each rule that misses nothing.
 const COMPLETE: [(BoundingVolume, BoundRule); 8] = [
