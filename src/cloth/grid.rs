@@ -5,9 +5,12 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{ClothError, MAX_PARTICLES, limits::FARTHEST};
+use super::{
+    error::ClothError,
+    limits::{FARTHEST, MAX_PARTICLES},
+};
 
-/// The plane of a [`Cloth`](super::Cloth) at rest, in its entity's frame.
+/// The plane of a [`Cloth`](crate::cloth::Cloth) at rest, in its entity's frame.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothPlane {

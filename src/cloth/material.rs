@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::ClothError;
+use super::error::ClothError;
 
 /// The material of a cloth. May change at any time.
 ///

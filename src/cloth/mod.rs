@@ -5,11 +5,14 @@ mod grid;
 mod lanes;
 mod limits;
 mod material;
+mod particle_id;
 mod particles;
+mod pin;
 mod pins;
 mod presence;
 mod recipe;
 mod skin;
+mod spring;
 mod springs;
 mod surface;
 
@@ -19,12 +22,16 @@ pub use grid::ClothGrid;
 pub use grid::{ClothPlane, GridShape};
 pub use limits::MAX_PARTICLES;
 pub use material::ClothMaterial;
-pub use particles::{ClothParticles, ParticleId};
-pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
+pub use particle_id::ParticleId;
+pub use particles::ClothParticles;
+pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
+pub use pins::Pins;
 pub use recipe::{Cloth, ClothShape};
 pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
 #[doc(hidden)]
-pub use springs::{Spring, SpringKind, Springs};
+pub use spring::{Spring, SpringKind};
+#[doc(hidden)]
+pub use springs::Springs;
 #[doc(hidden)]
 pub use surface::SurfaceBinding;
 pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttribute};
@@ -37,4 +44,4 @@ pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};
 #[cfg(feature = "mesh")]
 pub(crate) use surface::skin_of_asset;
-pub(crate) use surface::{Fan, Fans, Flat, Graph, JointWeights, Link, ShortestPaths, Threads};
+pub(crate) use surface::{Fan, Fans, Flat, Graph, ShortestPaths};

@@ -8,8 +8,13 @@ use bevy::{
 };
 
 use super::{
-    ClothError, ClothGrid, ClothMaterial, ClothParticles, ClothPlane, GridShape, Pins, Surface,
-    TriangleMesh, presence::log_unsimulated,
+    error::ClothError,
+    grid::{ClothGrid, ClothPlane, GridShape},
+    material::ClothMaterial,
+    particles::ClothParticles,
+    pins::Pins,
+    presence::log_unsimulated,
+    surface::{Surface, TriangleMesh},
 };
 
 /// A cloth: a grid of particles, or any triangle mesh.

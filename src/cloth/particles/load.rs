@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::{Block, Slot};
+use crate::cloth::lanes::{Block, Slot};
 
 /// Tolerance of a body's bounce at rest, in pulls of gravity. Gravity acts on a body once a tick, and the cloth returns
 /// that momentum sub-step by sub-step. So a resting body leaves its particles by a few sub-steps' pull, or by a

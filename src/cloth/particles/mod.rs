@@ -1,7 +1,6 @@
 //! The particles of a cloth, as a structure of arrays.
 
 mod body;
-mod id;
 mod load;
 mod loads;
 mod past;
@@ -17,9 +16,15 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{Block, ClothError, ClothMaterial, LANES, Layout, Pins, Slot, Surface, W};
+use super::{
+    error::ClothError,
+    lanes::{Block, LANES, Layout, Slot, W},
+    material::ClothMaterial,
+    particle_id::ParticleId,
+    pins::Pins,
+    surface::Surface,
+};
 
-pub use id::ParticleId;
 pub(crate) use load::Load;
 pub(crate) use past::{Earlier, Past, StepKind};
 
@@ -38,7 +43,7 @@ const AFTER_A_JUMP: u32 = 3;
 /// already applied. The state is (position, displacement) rather than two positions: the difference of two rounded
 /// positions loses gravity as steps shrink.
 ///
-/// Empty until the first tick after the [`Cloth`](super::Cloth) was spawned. Games may read and write it between ticks.
+/// Empty until the first tick after the [`Cloth`](crate::cloth::Cloth) was spawned. Games may read and write it between ticks.
 /// To rebuild the cloth at rest, empty it: `*particles = default()`.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -88,7 +93,7 @@ impl ClothParticles {
     /// Particles at rest, from positions (m) and inverse masses (1/kg, 0 for a pinned particle), in the order of their
     /// indices.
     ///
-    /// They are one row. A [`Cloth`](super::Cloth) that is a grid with as many particles lays them out in its rows in the
+    /// They are one row. A [`Cloth`](crate::cloth::Cloth) that is a grid with as many particles lays them out in its rows in the
     /// next tick: the particle at (row, column) is number `row × columns + column`.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::{Block, LANES, Lanes};
+use crate::cloth::lanes::{Block, LANES, Lanes};
 
 /// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the later one, then of
 /// the earlier one.

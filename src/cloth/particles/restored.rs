@@ -1,7 +1,10 @@
 //! Validation of particles that were read from a file.
 
 use super::{ClothParticles, DEFAULT_SUBSTEP};
-use crate::cloth::{Block, Lanes, Layout, MAX_PARTICLES, W};
+use crate::cloth::{
+    lanes::{Block, Lanes, Layout, W},
+    limits::MAX_PARTICLES,
+};
 
 impl ClothParticles {
     /// Whether the stored arrays fit the numbers of columns and rows.

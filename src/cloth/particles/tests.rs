@@ -1,7 +1,7 @@
 //! Indices, masses, velocities, and NaN.
 
 use super::*;
-use crate::cloth::Cloth;
+use crate::cloth::recipe::Cloth;
 
 fn particles() -> ClothParticles {
     let surface = Cloth::new(4, 3, 0.5)

@@ -2,9 +2,17 @@
 
 use bevy::math::{DVec3, Isometry3d, Vec3, bounding::BoundingSphere};
 
-use super::{AFTER_A_JUMP, ClothParticles, Earlier, Past, StepKind, validity::is_valid};
+use super::{
+    AFTER_A_JUMP, ClothParticles,
+    past::{Earlier, Past, StepKind},
+    validity::is_valid,
+};
 use crate::cloth::{
-    Block, ClothError, ClothMaterial, DX, DY, DZ, LANES, Layout, Pins, Slot, Surface, W, X, Y, Z,
+    error::ClothError,
+    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X, Y, Z},
+    material::ClothMaterial,
+    pins::Pins,
+    surface::Surface,
 };
 
 /// Number of blocks compared at a time.

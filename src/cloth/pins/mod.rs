@@ -1,16 +1,13 @@
 //! Pinned particles.
 
 mod names;
-mod pin;
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{ClothError, Surface};
-
-pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
+use super::{error::ClothError, pin::Pin, surface::Surface};
 
 /// The pinned particles, which move only with the entity's transform. By default the top row of a grid, and nothing of
 /// a mesh. May change at any time.
@@ -86,6 +83,7 @@ impl Pins {
 mod tests {
     use super::*;
     use crate::cloth::Cloth;
+    use crate::cloth::Corner;
     use bevy::math::Vec3;
 
     fn pinned(pins: &Pins) -> Vec<usize> {

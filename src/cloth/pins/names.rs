@@ -1,7 +1,11 @@
 //! The particles that each pin names on a surface.
 
-use super::{Corner, Pin};
-use crate::cloth::{ClothError, ClothGrid, Surface, VertexAttribute};
+use crate::cloth::{
+    error::ClothError,
+    grid::ClothGrid,
+    pin::{Corner, Pin},
+    surface::{Surface, VertexAttribute},
+};
 
 impl Pin {
     /// Checks that the pin names particles of `surface`. A predicate may match none.

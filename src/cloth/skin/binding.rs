@@ -2,9 +2,9 @@
 
 use bevy::math::{Affine3A, Vec3, Vec3A};
 
-use crate::cloth::JointWeights;
+use crate::cloth::surface::JointWeights;
 #[cfg(feature = "mesh")]
-use crate::cloth::{ClothError, Surface};
+use crate::cloth::{error::ClothError, surface::Surface};
 
 /// Linear blend skinning of a surface's particles, in the mesh's metres, before any scale.
 #[derive(Debug, Default, Clone, PartialEq)]

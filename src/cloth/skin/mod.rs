@@ -10,7 +10,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::ClothError;
+use super::error::ClothError;
 
 pub(crate) use binding::Skinning;
 pub use paint::{ClothPaint, RestFunction};

@@ -7,7 +7,10 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::{ClothError, Surface, VertexAttribute};
+use crate::cloth::{
+    error::ClothError,
+    surface::{Surface, VertexAttribute},
+};
 
 /// A value for each particle of a cloth: uniform, painted by an artist, or computed by code.
 ///

@@ -1,6 +1,5 @@
 //! The springs between the particles, sorted by colour.
 
-mod spring;
 #[cfg(test)]
 mod tests;
 
@@ -8,9 +7,14 @@ use std::{ops::Range, sync::Arc};
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
-use super::{ClothError, ClothGrid, ClothMaterial, Layout, Link, Surface, Threads};
-
-pub use spring::{Spring, SpringKind};
+use super::{
+    error::ClothError,
+    grid::ClothGrid,
+    lanes::Layout,
+    material::ClothMaterial,
+    spring::{Spring, SpringKind},
+    surface::{Link, Surface, Threads},
+};
 
 /// A cloth's springs, sorted by colour. No two springs of one colour share a particle, so that they can be solved in
 /// parallel and in any order.

@@ -1,7 +1,7 @@
 //! Colours and rest lengths.
 
 use super::*;
-use crate::cloth::Cloth;
+use crate::cloth::recipe::Cloth;
 use bevy::math::Vec3;
 use std::collections::HashSet;
 

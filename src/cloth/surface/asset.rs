@@ -9,8 +9,8 @@ use bevy::{
     },
 };
 
-use super::{JointWeights, TriangleMesh, VertexAttribute};
-use crate::cloth::ClothError;
+use super::triangles::{JointWeights, TriangleMesh, VertexAttribute};
+use crate::cloth::error::ClothError;
 
 /// Attributes that a surface stores in other ways or does not use.
 const OTHERS: [MeshVertexAttribute; 7] = [

@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use multiversion::multiversion;
 
-use crate::cloth::{LANES, Lanes};
+use crate::cloth::lanes::{LANES, Lanes};
 
 /// Valid range of a normal's or direction's squared length (m²). Outside it, rounding has destroyed the vector: the
 /// face is crushed or folded.

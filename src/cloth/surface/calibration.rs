@@ -7,8 +7,8 @@
 
 use bevy::math::{DMat2, DMat3, DVec2, DVec3, Vec3};
 
-use super::{Graph, Link};
-use crate::cloth::SpringKind;
+use super::{graph::Graph, springs::Link};
+use crate::cloth::spring::SpringKind;
 
 /// More passes would fit the springs around one particle at the cost of others: eight are worse than none.
 const PASSES: usize = 2;

@@ -1,7 +1,7 @@
 //! Where the corners of each particle's own faces are in memory.
 
-use super::Faces;
-use crate::cloth::{Layout, Slot};
+use super::faces::Faces;
+use crate::cloth::lanes::{Layout, Slot};
 
 /// The corners of all faces, by the owners of the faces.
 #[derive(Debug, Default, Clone)]

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use bevy::math::UVec2;
 
 use super::{Extent, Spacing, Surface};
-use crate::cloth::ClothGrid;
+use crate::cloth::grid::ClothGrid;
 
 impl Surface {
     /// The surface of a grid.

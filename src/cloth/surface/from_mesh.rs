@@ -5,13 +5,16 @@ use std::sync::OnceLock;
 use bevy::math::Vec3;
 
 use super::{
-    Extent, Faces, Graph, Spacing, Surface, TriangleMesh, VertexAttribute,
+    Extent, Spacing, Surface,
     calibration::calibrate,
+    faces::Faces,
+    graph::Graph,
     orientation::orient,
     springs::{Side, face_area, has_area, links, sides, sides_of},
+    triangles::{TriangleMesh, VertexAttribute},
     weld::same_places,
 };
-use crate::cloth::{ClothError, FARTHEST, SpringKind};
+use crate::cloth::{error::ClothError, limits::FARTHEST, spring::SpringKind};
 
 /// The most particles that a cloth from a mesh may have: more could not run in real time.
 pub const MAX_MESH_PARTICLES: usize = 1 << 18;

@@ -2,8 +2,8 @@
 
 use bevy::math::{DVec2, Vec2};
 
-use super::{Faces, Flat, Graph};
-use crate::cloth::ClothGrid;
+use super::{faces::Faces, flat::Flat, graph::Graph};
+use crate::cloth::grid::ClothGrid;
 
 /// From (0, 0) at particle (0, 0) to (1, 1) at the last one.
 pub(super) fn uvs(grid: &ClothGrid) -> Vec<Vec2> {

@@ -29,7 +29,7 @@ use std::{fmt, sync::OnceLock};
 
 use bevy::math::{Vec2, Vec3};
 
-use super::{ClothGrid, Layout, SpringKind};
+use super::{grid::ClothGrid, lanes::Layout, spring::SpringKind};
 
 pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;

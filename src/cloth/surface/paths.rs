@@ -2,7 +2,7 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use super::Graph;
+use super::graph::Graph;
 
 /// Shortest paths along the edges of a graph (Dijkstra 1959), with reused memory.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::SpringKind;
+use crate::cloth::spring::SpringKind;
 
 /// Lower limit of an area, as a fraction of the squared edge length.
 const SMALLEST_AREA: f32 = 1.0e-6;

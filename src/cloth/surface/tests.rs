@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 
 use super::*;
-use crate::cloth::{Cloth, ClothError};
+use crate::cloth::{error::ClothError, recipe::Cloth};
 
 /// A unit square of two triangles, each with corners of its own.
 fn square() -> TriangleMesh {

@@ -2,7 +2,7 @@
 
 use bevy::math::{Vec2, Vec3};
 
-/// Triangles to make a [`Surface`](super::Surface) from.
+/// Triangles to make a [`Surface`](crate::cloth::Surface) from.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct TriangleMesh {
     /// Positions of the vertices (m), before the transform's scale.

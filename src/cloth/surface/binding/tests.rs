@@ -1,5 +1,5 @@
 use super::*;
-use crate::cloth::{Cloth, TriangleMesh};
+use crate::cloth::{recipe::Cloth, surface::triangles::TriangleMesh};
 use bevy::math::{Mat3, Quat};
 
 /// A vertex where a surface takes it.

@@ -3,7 +3,10 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::cloth::{SpringKind, Surface, TriangleMesh};
+use crate::cloth::{
+    spring::SpringKind,
+    surface::{Surface, triangles::TriangleMesh},
+};
 
 /// A grid of triangles with the same diagonal everywhere, put somewhere by `place`. A column that is as many as there are is the
 /// first one again.

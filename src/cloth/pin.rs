@@ -44,7 +44,7 @@ pub enum Pin {
     #[default]
     Top,
     /// The particle of a mesh vertex, by the vertex index in the asset or in
-    /// [`Cloth::triangles`](super::super::Cloth::triangles). Welding does not change these indices.
+    /// [`Cloth::triangles`](crate::cloth::Cloth::triangles). Welding does not change these indices.
     Vertex(usize),
     /// Every particle within a radius of a point at rest.
     Near {
@@ -77,7 +77,7 @@ impl PinPredicate {
         Self(Arc::new(holds))
     }
 
-    pub(super) fn holds(&self, row: u32, column: u32) -> bool {
+    pub(crate) fn holds(&self, row: u32, column: u32) -> bool {
         (self.0)(row, column)
     }
 }
@@ -93,7 +93,7 @@ impl RestPredicate {
         Self(Arc::new(holds))
     }
 
-    pub(super) fn holds(&self, place: Vec3) -> bool {
+    pub(crate) fn holds(&self, place: Vec3) -> bool {
         (self.0)(place)
     }
 }

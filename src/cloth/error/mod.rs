@@ -5,7 +5,7 @@ mod check;
 use bevy::{ecs::entity::Entity, math::Vec3, reflect::Reflect};
 use thiserror::Error;
 
-use super::{MAX_PARTICLES, ParticleId, Pin, Spring};
+use super::{limits::MAX_PARTICLES, particle_id::ParticleId, pin::Pin, spring::Spring};
 
 /// The reason why a cloth or a collider is not simulated, with the value at fault.
 ///
@@ -203,7 +203,7 @@ pub enum ClothError {
         /// Number of triangles.
         triangles: usize,
     },
-    /// A mesh gives more particles than [`MAX_MESH_PARTICLES`](super::MAX_MESH_PARTICLES).
+    /// A mesh gives more particles than [`MAX_MESH_PARTICLES`](crate::cloth::MAX_MESH_PARTICLES).
     #[error("{particles} particles exceed the maximum of 262144 for a cloth from a mesh")]
     MeshTooLarge {
         /// Number of particles that the mesh gives.

@@ -21,7 +21,7 @@ use super::{
     Surface,
     bound::{Bound, Eight, Frame, write_eights},
 };
-use crate::cloth::{ClothError, FARTHEST, LANES};
+use crate::cloth::{error::ClothError, lanes::LANES, limits::FARTHEST};
 
 /// The least tangential part of a tangent, as a fraction, for the frame to follow it.
 const LEAST_ALONG: f32 = 0.1;
