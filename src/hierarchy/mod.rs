@@ -115,12 +115,12 @@
 
 mod bounds;
 mod brute;
-mod found;
 mod method;
 mod probe;
 mod query;
 mod rule;
 mod scan;
+mod search_buffers;
 #[cfg(test)]
 mod tests;
 mod tree;

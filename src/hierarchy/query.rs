@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use bevy::reflect::Reflect;
 
-use super::{bounds::NodeBounds, found::Found, probe::Probe, scan::scan, tree::QuadTree};
+use super::{
+    bounds::NodeBounds, probe::Probe, scan::scan, search_buffers::SearchBuffers, tree::QuadTree,
+};
 use crate::cloth::ClothParticles;
 
 /// The result of the last search for a node.
@@ -23,7 +25,7 @@ pub enum NodeState {
 /// does not allocate.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 pub struct TopDownQuery {
-    found: Found,
+    found: SearchBuffers,
 }
 
 impl TopDownQuery {

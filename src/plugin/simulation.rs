@@ -36,8 +36,8 @@ use super::{
     frame::ClothFrame,
     naming::Part,
     prepare::{
-        ColliderMotion, ColliderTree, Deprived, Islands, Jumped, choose_levels, find_islands,
-        follow_roots, forget_collider, note_enabled, note_removals, prepare_cloths,
+        ChangedColliders, ColliderMotion, ColliderTree, Islands, Teleporting, choose_levels,
+        find_islands, follow_roots, forget_collider, note_enabled, note_removals, prepare_cloths,
         prepare_colliders, prepare_wind,
     },
     search::{query_collisions, rebuild_hierarchies},
@@ -120,8 +120,8 @@ impl Plugin for ClothPlugin {
             .init_resource::<Islands>()
             .init_resource::<ColliderTree>()
             .init_resource::<WindField>()
-            .init_resource::<Deprived>()
-            .init_resource::<Jumped>()
+            .init_resource::<ChangedColliders>()
+            .init_resource::<Teleporting>()
             .add_observer(add_parts::<Cloth, ClothParts>)
             .add_observer(add_parts::<ClothCollider, ColliderParts>)
             .add_observer(add_parts::<ClothWindZone, ClothOrder>)

@@ -13,15 +13,15 @@ use bevy::math::Vec4;
 
 use super::{
     chains::Bundles,
-    kernels::{Kernels, Pace, Packet, Row, SPRINGS},
+    kernels::{Kernels, Packet, Row, SPRINGS, StepScale},
+    spring_solver::{Motion, SolvedSubstep, SpringSolver},
     stretch::Stretch,
-    sweep::{Motion, Sweep, Swept},
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringList, W, X, Y, Z};
 
 /// A list of springs as the sub-steps want them.
 #[derive(Debug, Default, Clone)]
-pub(super) struct ListSweep {
+pub(super) struct ListSolver {
     springs: Arc<SpringList>,
     /// Those on no thread.
     packets: Arc<[Packet]>,
@@ -29,13 +29,13 @@ pub(super) struct ListSweep {
     pulls: Vec<Vec4>,
     threads: Bundles,
     layout: Layout,
-    pace: Pace,
+    step_scale: StepScale,
     /// The particles of one sub-step, strip by strip: in the order of their indices, with what is no particle at the end of
     /// each row of the layout.
     rows: Vec<Row>,
 }
 
-impl ListSweep {
+impl ListSolver {
     /// For particles that lie as `layout` says.
     pub fn new(springs: &Arc<SpringList>, layout: Layout) -> Self {
         let row_of = |end: u32| {
@@ -74,7 +74,7 @@ impl ListSweep {
             packets: packets.into(),
             threads: Bundles::new(springs, row_of, none),
             layout,
-            pace: Pace::default(),
+            step_scale: StepScale::default(),
             rows: vec![Row::default(); layout.blocks() * LANES + 1],
         }
     }
@@ -134,9 +134,9 @@ impl ListSweep {
     }
 }
 
-impl Sweep for ListSweep {
-    fn set_pace(&mut self, pace: Pace) {
-        self.pace = pace;
+impl SpringSolver for ListSolver {
+    fn set_step_scale(&mut self, step_scale: StepScale) {
+        self.step_scale = step_scale;
     }
 
     fn is_exact(&self) -> bool {
@@ -147,24 +147,24 @@ impl Sweep for ListSweep {
         1
     }
 
-    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> Swept {
+    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> SolvedSubstep {
         let kernels = motion.kernels;
         self.load(blocks);
-        let (rows, packets, pace) = (&mut self.rows, &self.packets, &self.pace);
+        let (rows, packets, step_scale) = (&mut self.rows, &self.packets, &self.step_scale);
         if self.threads.is_empty() {
-            (kernels.relax_packets)(rows, packets, pace);
+            (kernels.relax_packets)(rows, packets, step_scale);
         } else {
-            self.threads.solve_there(rows, pace, kernels);
-            (kernels.relax_packets_there)(rows, packets, &mut self.pulls, pace);
-            (kernels.relax_packets_back)(rows, packets, &self.pulls, pace);
-            self.threads.solve_back(rows, pace, kernels);
+            self.threads.solve_there(rows, step_scale, kernels);
+            (kernels.relax_packets_there)(rows, packets, &mut self.pulls, step_scale);
+            (kernels.relax_packets_back)(rows, packets, &self.pulls, step_scale);
+            self.threads.solve_back(rows, step_scale, kernels);
         }
         self.store(blocks);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
         let stretch = motion.measures.then(|| self.measure(blocks, kernels));
-        Swept {
+        SolvedSubstep {
             moved,
             stretch,
             ripple: 0.0,
@@ -179,7 +179,7 @@ impl Sweep for ListSweep {
         self.stretch(|spring| place(spring.ends[0]).distance_squared(place(spring.ends[1])))
     }
 
-    fn boxed(&self) -> Box<dyn Sweep> {
+    fn boxed(&self) -> Box<dyn SpringSolver> {
         Box::new(self.clone())
     }
 }

@@ -34,30 +34,31 @@ pub(crate) struct MotionConstraints {
 #[derive(Debug, Clone, Copy)]
 struct Balls {
     from: [Lanes; 3],
-    way: [Lanes; 3],
+    displacement: [Lanes; 3],
     radius: Lanes,
 }
 
 impl Balls {
     const NONE: Self = Self {
         from: [[0.0; LANES]; 3],
-        way: [[0.0; LANES]; 3],
+        displacement: [[0.0; LANES]; 3],
         radius: [0.0; LANES],
     };
 
     fn set(&mut self, lane: usize, from: Vec3, to: Vec3, radius: f32) {
-        let way = to - from;
+        let displacement = to - from;
         for axis in 0..3 {
             self.from[axis][lane] = from[axis];
-            self.way[axis][lane] = way[axis];
+            self.displacement[axis][lane] = displacement[axis];
         }
         self.radius[lane] = radius;
     }
 
     /// A centre when a part of the tick has passed (m).
     fn centre(&self, lane: usize, part: f32) -> Vec3 {
-        let [from, way] = [self.from, self.way].map(|of| Vec3::from(of.map(|axis| axis[lane])));
-        from + way * part
+        let [from, displacement] =
+            [self.from, self.displacement].map(|of| Vec3::from(of.map(|axis| axis[lane])));
+        from + displacement * part
     }
 
     /// Squared distances of eight particles from the centres (m²).
@@ -67,7 +68,7 @@ impl Balls {
         let mut squares = [0.0; LANES];
         for axis in 0..3 {
             for lane in 0..LANES {
-                let centre = self.from[axis][lane] + self.way[axis][lane] * part;
+                let centre = self.from[axis][lane] + self.displacement[axis][lane] * part;
                 let offset = view[axis * LANES + lane] - centre;
                 squares[lane] += offset * offset;
             }
@@ -214,10 +215,11 @@ impl MotionConstraints {
                         (balls.centre(lane, part), balls.radius[lane])
                     }),
                 };
-                let way = Vec3::from(balls.way.map(|axis| axis[lane])) / substep.count as f32;
+                let displacement =
+                    Vec3::from(balls.displacement.map(|axis| axis[lane])) / substep.count as f32;
                 let place = block.position(lane);
                 let pushed = allowed.nearest(place) - place;
-                let moved = with_push(block.displacement(lane), pushed, way);
+                let moved = with_push(block.displacement(lane), pushed, displacement);
                 block.set_position(lane, place + pushed);
                 block.set_displacement(lane, moved);
                 farthest = farthest.max((moved.length() + pushed.length()).powi(2));
@@ -229,11 +231,11 @@ impl MotionConstraints {
     }
 }
 
-/// A displacement with a push, as seen from a place that goes some `way` (m): no longer than it was.
-fn with_push(moved: Vec3, pushed: Vec3, way: Vec3) -> Vec3 {
-    let before = moved - way;
+/// A displacement with a push, as seen from a place that goes some `displacement` (m): no longer than it was.
+fn with_push(moved: Vec3, pushed: Vec3, displacement: Vec3) -> Vec3 {
+    let before = moved - displacement;
     let after = before + pushed;
-    way + after.clamp_length_max(before.length())
+    displacement + after.clamp_length_max(before.length())
 }
 
 #[cfg(test)]

@@ -43,8 +43,8 @@ pub struct Rest {
 
 impl Rest {
     /// Whether this state, read from a file, is valid.
-    pub(crate) fn is_sound(&self) -> bool {
-        self.origin.is_sound()
+    pub(crate) fn is_valid(&self) -> bool {
+        self.origin.is_valid()
     }
 
     /// Takes the particles at the end of a tick of this many seconds. The cloth measures `diagonal` (m) at rest, is

@@ -25,7 +25,7 @@ pub(super) struct Spin {
     axis: Vec3,
     /// Displacement of the line in the tick, and in a sub-step (m).
     shift: Vec3,
-    way: Vec3,
+    displacement: Vec3,
     /// Its displacement in a sub-step, relative to the damping frame (m).
     against: Vec3,
     substeps: u32,
@@ -94,7 +94,7 @@ impl Spin {
                 origin,
                 axis,
                 shift,
-                way: shift / substeps as f32,
+                displacement: shift / substeps as f32,
                 against: shift / substeps as f32 - drift,
                 substeps,
                 before: Turning::default(),
@@ -110,7 +110,7 @@ impl Spin {
             let view = block.view();
             for lane in 0..LANES {
                 let turned = self.axis.cross(lane_of(view, X, lane) - origin);
-                let moved = lane_of(view, DX, lane) - self.way;
+                let moved = lane_of(view, DX, lane) - self.displacement;
                 let is_free = view[W + lane] > 0.0;
                 let mass = if is_free { 1.0 / view[W + lane] } else { 0.0 };
                 sums[0][lane] += mass * turned.dot(moved);

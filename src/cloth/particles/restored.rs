@@ -8,7 +8,7 @@ use crate::cloth::{
 
 impl ClothParticles {
     /// Whether the stored arrays fit the numbers of columns and rows.
-    pub(crate) fn is_sound(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         let Layout { columns, rows, .. } = self.layout;
         let is_laid_out = columns
             .checked_mul(rows)
@@ -26,9 +26,9 @@ impl ClothParticles {
     /// then rebuilt.
     pub(super) fn sound_layout(&self) -> Layout {
         let Layout { columns, rows, .. } = self.layout;
-        let is_sound =
+        let is_valid =
             self.blocks.len() == self.layout.blocks() && self.layout == Layout::new(columns, rows);
-        if is_sound {
+        if is_valid {
             self.layout
         } else {
             Layout::default()

@@ -55,10 +55,10 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
         let star = |particle: usize| {
             let mut star = Springs::NONE;
             for &(other, at) in graph.of(particle as u32) {
-                let way = rest[other as usize] - rest[particle];
-                let (at, length) = (at as usize, f64::from(way.length()));
+                let span = rest[other as usize] - rest[particle];
+                let (at, length) = (at as usize, f64::from(span.length()));
                 star.add(
-                    frames[particle].direction(way),
+                    frames[particle].direction(span),
                     length,
                     corrected[at],
                     areas[at],
@@ -116,9 +116,9 @@ impl Frame {
     }
 
     /// A direction on the surface, unfolded into the plane, of length 1.
-    fn direction(&self, way: Vec3) -> DVec2 {
+    fn direction(&self, span: Vec3) -> DVec2 {
         let Self([a, b, _]) = self;
-        DVec2::new(f64::from(way.dot(*a)), f64::from(way.dot(*b))).normalize_or_zero()
+        DVec2::new(f64::from(span.dot(*a)), f64::from(span.dot(*b))).normalize_or_zero()
     }
 
     /// Cosine and sine of the angle of another frame's first axis in this one, unfolded along the line between the

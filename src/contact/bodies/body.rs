@@ -87,11 +87,11 @@ struct PushSum {
 }
 
 impl PushSum {
-    fn add(&mut self, mass: f64, offset: DVec3, way: Vec3) {
-        let way = way.as_dvec3();
-        self.push += mass * way;
-        self.turn += offset.cross(mass * way);
-        self.square += mass * way.length_squared();
+    fn add(&mut self, mass: f64, offset: DVec3, moving: Vec3) {
+        let moving = moving.as_dvec3();
+        self.push += mass * moving;
+        self.turn += offset.cross(mass * moving);
+        self.square += mass * moving.length_squared();
     }
 
     /// The fraction that the particles keep, and the body's displacement and rotation.
@@ -148,17 +148,17 @@ impl Body {
     }
 
     /// Notes the motion with which candidates have been searched for.
-    pub fn set_searched(&mut self, way: &MovingCollider) {
-        self.searched = way.clone();
+    pub fn set_searched(&mut self, moving: &MovingCollider) {
+        self.searched = moving.clone();
     }
 
     /// Largest distance of any point of its surface from its expected position in the rest of the tick (m).
-    pub fn deviation(&self, way: &MovingCollider, passed: f32) -> f32 {
+    pub fn deviation(&self, moving: &MovingCollider, passed: f32) -> f32 {
         let deviation = |part: f32| {
-            let (expected, is) = (self.searched.pose_at(part), way.pose_at(part));
+            let (expected, is) = (self.searched.pose_at(part), moving.pose_at(part));
             let turned = is.rotation.angle_between(expected.rotation);
             let swing = if turned > 0.0 {
-                turned * way.shape.core_extent()
+                turned * moving.shape.core_extent()
             } else {
                 0.0
             };
@@ -173,11 +173,11 @@ impl Body {
         &mut self,
         before: &Before,
         particles: &mut ClothParticles,
-        way: &mut MovingCollider,
+        moving: &mut MovingCollider,
         substep: SubStep,
     ) -> [f32; 2] {
-        let (pose, centre) = self.centre(way, substep.end());
-        let out = |place: Vec3| way.shape.nearest(pose, place).normal;
+        let (pose, centre) = self.centre(moving, substep.end());
+        let out = |place: Vec3| moving.shape.nearest(pose, place).normal;
         let (mut places, mut moves) = (PushSum::default(), PushSum::default());
         for (index, old) in &before.0 {
             let new = &particles.blocks()[*index];
@@ -214,37 +214,37 @@ impl Body {
             }
         }
         self.carriers.add_noted();
-        let gone = self.send_on(way, substep, particles.substep(), [go, turn, push, spin]);
+        let gone = self.send_on(moving, substep, particles.substep(), [go, turn, push, spin]);
         [move_part, gone]
     }
 
     /// Makes particles carry the body in the coming sub-step, unless they already carry another one.
-    pub fn lend<'a>(
+    pub fn attach_load<'a>(
         &mut self,
         particles: &mut ClothParticles,
-        (way, coming): (&MovingCollider, SubStep),
+        (moving, coming): (&MovingCollider, SubStep),
         others: impl Iterator<Item = &'a Carriers> + Clone,
     ) {
-        let (pose, centre) = self.centre(way, coming.start());
+        let (pose, centre) = self.centre(moving, coming.start());
         let motion = ColliderSubstep {
             origin: pose.translation.into(),
-            ..way.in_substep(coming)
+            ..moving.in_substep(coming)
         };
         let surface = |place: Vec3| motion.surface_motion(place);
         let body = (&self.mass, centre);
-        self.carriers.lend(particles, body, surface, others);
+        self.carriers.attach_load(particles, body, surface, others);
     }
 
     /// Collects the impulses of the particles that carried the body in a sub-step, and updates its motion. Returns the
     /// impulse about the origin of its shape, and the body's displacement (m); `None` if there was no impulse.
-    pub fn take_back(
+    pub fn detach_load(
         &mut self,
         particles: &mut ClothParticles,
-        way: &mut MovingCollider,
+        moving: &mut MovingCollider,
         substep: SubStep,
     ) -> Option<(Impulse, f32)> {
-        let (pose, centre) = self.centre(way, substep.end());
-        let [push, turn] = self.carriers.take_back(particles, centre);
+        let (pose, centre) = self.centre(moving, substep.end());
+        let [push, turn] = self.carriers.detach_load(particles, centre);
         let arm = centre - Vec3::from(pose.translation).as_dvec3();
         let given = Impulse {
             linear: push,
@@ -255,13 +255,13 @@ impl Body {
         if !(go.is_finite() && spin.is_finite()) || [push, turn] == [DVec3::ZERO; 2] {
             return None;
         }
-        let gone = self.send_on(way, substep, particles.substep(), [go, spin, go, spin]);
+        let gone = self.send_on(moving, substep, particles.substep(), [go, spin, go, spin]);
         Some((given, gone))
     }
 
     /// Its pose at a fraction of the tick, and its centre of mass then (m).
-    fn centre(&self, way: &MovingCollider, passed: f32) -> (Isometry3d, DVec3) {
-        let pose = way.pose_at(passed);
+    fn centre(&self, moving: &MovingCollider, passed: f32) -> (Isometry3d, DVec3) {
+        let pose = moving.pose_at(passed);
         let arm = self.arm(&pose);
         (pose, (Vec3::from(pose.translation) + arm).as_dvec3())
     }
@@ -275,13 +275,13 @@ impl Body {
     /// and with a change of its displacement per sub-step. Returns the largest displacement of any of its points (m).
     fn send_on(
         &mut self,
-        way: &mut MovingCollider,
+        moving: &mut MovingCollider,
         substep: SubStep,
         dt: f32,
         changes: [DVec3; 4],
     ) -> f32 {
         let passed = substep.end();
-        let pose = way.pose_at(passed);
+        let pose = moving.pose_at(passed);
         let arm = self.arm(&pose);
         let substeps = substep.count as f32;
         let [go, turn, push, spin] = changes.map(DVec3::as_vec3);
@@ -290,15 +290,16 @@ impl Body {
         // It continues from its current pose with its current velocity.
         let rotation = (Quat::from_scaled_axis(turn) * pose.rotation).normalize();
         let here = Vec3::from(pose.translation) + go + arm - Quat::from_scaled_axis(turn) * arm;
-        let step = way.to - Vec3::from(way.from.translation) + (push - spin.cross(arm)) * substeps;
-        way.turn += spin * substeps;
-        way.from = Isometry3d::new(
+        let step =
+            moving.to - Vec3::from(moving.from.translation) + (push - spin.cross(arm)) * substeps;
+        moving.turn += spin * substeps;
+        moving.from = Isometry3d::new(
             here - step * passed,
-            (Quat::from_scaled_axis(-way.turn * passed) * rotation).normalize(),
+            (Quat::from_scaled_axis(-moving.turn * passed) * rotation).normalize(),
         );
-        way.to = here + step * (1.0 - passed);
-        let (end, expected) = (way.pose_at(1.0), self.start.pose_at(1.0));
-        self.change.translation = way.to - self.start.to;
+        moving.to = here + step * (1.0 - passed);
+        let (end, expected) = (moving.pose_at(1.0), self.start.pose_at(1.0));
+        self.change.translation = moving.to - self.start.to;
         let rotation = end.rotation * expected.rotation.inverse();
         let rotation = if rotation.w < 0.0 {
             -rotation
@@ -306,7 +307,7 @@ impl Body {
             rotation
         };
         self.change.rotation = rotation.to_scaled_axis();
-        let swing = turn.length() * (way.shape.core_extent() + arm.length());
+        let swing = turn.length() * (moving.shape.core_extent() + arm.length());
         let swing = if swing > 0.0 { swing } else { 0.0 };
         go.length() + swing
     }

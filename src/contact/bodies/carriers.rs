@@ -125,7 +125,7 @@ impl Carriers {
 
     /// Makes the particles carry a body around a centre (m) in the coming sub-step, in which its `surface` moves by
     /// that much at each point. A particle carries one body at a time: the `others` come first.
-    pub fn lend<'a>(
+    pub fn attach_load<'a>(
         &mut self,
         particles: &mut ClothParticles,
         (mass, centre): (&BodyMass, DVec3),
@@ -174,7 +174,7 @@ impl Carriers {
 
     /// Removes the loads. Returns the linear and angular impulse of the sub-step times its duration (kg·m, kg·m²),
     /// about a centre (m).
-    pub fn take_back(&mut self, particles: &mut ClothParticles, centre: DVec3) -> [DVec3; 2] {
+    pub fn detach_load(&mut self, particles: &mut ClothParticles, centre: DVec3) -> [DVec3; 2] {
         let [mut push, mut turn] = [DVec3::ZERO; 2];
         let [from, to] = std::mem::take(&mut self.loads);
         for index in from..to {

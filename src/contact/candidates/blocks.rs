@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::{
     cloth::{Fan, Fans, LANES, Lanes, Layout, Slot, Surface},
-    contact::friction::Held,
+    contact::friction::FrictionBudget,
 };
 
 /// A particle that a collider may touch in the tick, with the triangles that it owns.
@@ -83,7 +83,7 @@ pub(crate) struct Candidates {
     pub all: Vec<Candidate>,
     pub blocks: Vec<ContactBlock>,
     /// For each block of the colliders that are tested against triangles.
-    pub helds: Vec<Held>,
+    pub helds: Vec<FrictionBudget>,
     /// The last contact block of each of the cloth's blocks.
     marks: Vec<u32>,
     /// A bit for each particle, to sort them.
@@ -104,7 +104,7 @@ impl Candidates {
             contact.depth = [f32::NEG_INFINITY; LANES];
             contact.clear_until = f32::NEG_INFINITY;
         }
-        self.helds.fill(Held::NONE);
+        self.helds.fill(FrictionBudget::NONE);
     }
 
     /// Adds the candidates of a collider, in any order. With `is_left_out`, adds the triangles that they own, too; it
@@ -162,7 +162,7 @@ impl Candidates {
         }
         if is_left_out.is_some() {
             let count = self.blocks.len() - first[1];
-            self.helds.resize(first[2] + count, Held::NONE);
+            self.helds.resize(first[2] + count, FrictionBudget::NONE);
         }
         Ranges {
             candidates: first[0]..self.all.len(),

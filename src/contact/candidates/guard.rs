@@ -7,7 +7,7 @@ use crate::cloth::{Block, ClothParticles, DX, LANES, Lanes, Slot, X};
 
 /// Displacements since the search: of each particle, and of a shape's surface.
 ///
-/// A test of positions that finds nothing within a room r (m) holds until the particles and the surface have moved by r
+/// A test of positions that finds nothing within a clearance r (m) holds until the particles and the surface have moved by r
 /// since. With u the displacement from the search, that is so while u(now) ≤ r − u(then): the triangle inequality. So a
 /// fast corner of the cloth costs tests around it, and nowhere else.
 #[derive(Debug, Default, Clone)]
@@ -53,9 +53,9 @@ impl Guard {
         self.most = larger(self.most, *moved);
     }
 
-    /// Until when a room (m) lasts that was found around particles: for [`is_clear`](Self::is_clear).
-    pub fn until(&self, room: f32, around: &[Slot]) -> f32 {
-        room - self.moved(around) + self.carried
+    /// Until when a clearance (m) lasts that was found around particles: for [`is_clear`](Self::is_clear).
+    pub fn until(&self, clearance: f32, around: &[Slot]) -> f32 {
+        clearance - self.moved(around) + self.carried
     }
 
     /// Whether nothing moves as far as `until` before the next search, unless it is outrun.
@@ -137,10 +137,10 @@ mod tests {
         particles.blocks()[slot.block].position(slot.lane)
     }
 
-    /// Until when it is clear, its room (m), around whom, where they were, and how far the surface had been carried (m).
+    /// Until when it is clear, its clearance (m), around whom, where they were, and how far the surface had been carried (m).
     type Tested = (f32, f32, [Slot; 3], [Vec3; 3], f32);
 
-    /// Particles that walk at random, one of them far: what is said to be clear has not moved by its room since, from any
+    /// Particles that walk at random, one of them far: what is said to be clear has not moved by its clearance since, from any
     /// test to any later one, and most of what is far from the fast one is clear.
     #[test]
     fn what_is_clear_has_not_used_its_room() {
@@ -158,8 +158,8 @@ mod tests {
         let (mut clear, mut carried) = (0, 0.0);
         for step in 0..40 {
             for index in 0..particles.len() {
-                let way = random.within(if index == 77 { 0.1 } else { 0.002 });
-                particles.put(index, particles.position_at(index) + way);
+                let displacement = random.within(if index == 77 { 0.1 } else { 0.002 });
+                particles.put(index, particles.position_at(index) + displacement);
             }
             carried += random.between(0.0, 0.001);
             guard.measure(&particles, &origin, &contacts, [carried, 1.0]);
@@ -167,24 +167,27 @@ mod tests {
             let (slot, push) = (layout.slot_of(33), random.within(0.01));
             particles.put(33, particles.position_at(33) + push);
             guard.note(slot, push.length() * (1.0 + 1.0e-5));
-            for (until, room, around, places, then) in &tested {
+            for (until, clearance, around, places, then) in &tested {
                 if !guard.is_clear(*until, around) {
                     continue;
                 }
                 clear += 1;
                 for (slot, place) in around.iter().zip(places) {
                     let moved = at(&particles, *slot).distance(*place) + carried - then;
-                    assert!(moved < *room, "{moved} m of {room} m in step {step}");
+                    assert!(
+                        moved < *clearance,
+                        "{moved} m of {clearance} m in step {step}"
+                    );
                 }
             }
             for _ in 0..20 {
                 let first = random.below(380) as usize;
                 let around =
                     [first, first + 1, first + 20].map(|index| layout.slot_of(index.min(399)));
-                let room = random.between(0.0, 0.06);
+                let clearance = random.between(0.0, 0.06);
                 let places = around.map(|slot| at(&particles, slot));
-                let until = guard.until(room, &around);
-                tested.push((until, room, around, places, carried));
+                let until = guard.until(clearance, &around);
+                tested.push((until, clearance, around, places, carried));
             }
         }
         assert!(clear > 1000, "{clear} tests were spared");

@@ -2,12 +2,12 @@
 
 mod blocks;
 mod guard;
-mod kept;
 mod narrow_phase;
+mod saved;
 mod touch;
 
 pub(crate) use blocks::{Candidate, Candidates, ContactBlock, Ranges};
 pub(crate) use guard::Guard;
-pub(crate) use kept::Kept;
 pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
+pub(crate) use saved::SavedCandidates;
 pub use touch::{ContactPoint, ContactSettings, Touch};

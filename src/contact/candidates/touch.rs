@@ -42,7 +42,7 @@ pub struct Touch {
     pub angular_impulse: Vec3,
     pub(crate) of: Ranges,
     /// Displacement in the tick so far (m).
-    pub(crate) traveled: f32,
+    pub(crate) travelled: f32,
 }
 
 /// The contact settings of a cloth in a tick.

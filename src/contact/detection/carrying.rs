@@ -38,52 +38,52 @@ impl Detection {
         for body in &mut self.bodies {
             body.carriers.recall(of(body.id));
         }
-        self.lend(particles, SubStep::first_of(substeps));
+        self.attach_load(particles, SubStep::first_of(substeps));
     }
 
     /// Makes particles carry the bodies that have just pushed them, in the coming sub-step.
-    pub(super) fn lend(&mut self, particles: &mut ClothParticles, coming: SubStep) {
+    pub(super) fn attach_load(&mut self, particles: &mut ClothParticles, coming: SubStep) {
         particles.loads_mut().clear();
         for index in 0..self.bodies.len() {
             let (others, rest) = self.bodies.split_at_mut(index);
-            let Some(way) = way_of(&self.colliders, rest[0].id) else {
+            let Some(moving) = moving_of(&self.colliders, rest[0].id) else {
                 continue;
             };
             let others = others.iter().map(|body| &body.carriers);
-            rest[0].lend(particles, (way, coming), others);
+            rest[0].attach_load(particles, (moving, coming), others);
         }
     }
 
     /// Applies the impulses of the last sub-step to the carried bodies. Returns whether any moved.
-    pub(super) fn take_back(&mut self, particles: &mut ClothParticles, substep: SubStep) -> bool {
+    pub(super) fn detach_load(&mut self, particles: &mut ClothParticles, substep: SubStep) -> bool {
         if !particles.has_loads() {
             return false;
         }
         let mut has_carried = false;
         for body in &mut self.bodies {
-            let Some(way) = way_of(&self.colliders, body.id) else {
+            let Some(moving) = moving_of(&self.colliders, body.id) else {
                 continue;
             };
-            let mut way = way.clone();
-            let Some((given, gone)) = body.take_back(particles, &mut way, substep) else {
+            let mut moving = moving.clone();
+            let Some((given, gone)) = body.detach_load(particles, &mut moving, substep) else {
                 continue;
             };
             has_carried = true;
-            self.deviation = self.deviation.max(body.deviation(&way, substep.end()));
+            self.deviation = self.deviation.max(body.deviation(&moving, substep.end()));
             if let Some(touch) = self.touches.iter_mut().find(|touch| touch.id == body.id) {
-                touch.traveled += gone;
+                touch.travelled += gone;
                 let seconds = f64::from(particles.substep());
                 touch.impulse += (given.linear / seconds).as_vec3();
                 touch.angular_impulse += (given.angular / seconds).as_vec3();
             }
-            send_on(&mut self.touches, &mut self.colliders, body.id, &way);
+            send_on(&mut self.touches, &mut self.colliders, body.id, &moving);
         }
         particles.loads_mut().clear();
         has_carried
     }
 }
 
-fn way_of(colliders: &[(usize, MovingCollider)], id: usize) -> Option<&MovingCollider> {
+fn moving_of(colliders: &[(usize, MovingCollider)], id: usize) -> Option<&MovingCollider> {
     let known = colliders.iter().find(|(known, _)| *known == id);
-    known.map(|(_, way)| way)
+    known.map(|(_, moving)| moving)
 }

@@ -8,7 +8,7 @@ use crate::{
         candidates::{Candidate, ContactBlock, ContactSettings},
         colliders::{ColliderShape, ColliderSubstep, MovingCollider, Nearest},
         friction::MAX_STEPS,
-        particles::Found,
+        particles::ContactResult,
     },
 };
 
@@ -62,7 +62,7 @@ struct Embedded {
     /// While it is hidden (1/kg).
     inverse_mass: f32,
     /// Direction of its way, in the cloth's frame; `None` to leave it alone.
-    way: Option<Vec3>,
+    direction: Option<Vec3>,
 }
 
 /// A particle inside a collider.
@@ -86,7 +86,7 @@ struct Piece {
     count: usize,
     is_torn: bool,
     is_pinned: bool,
-    way: Option<Vec3>,
+    direction: Option<Vec3>,
 }
 
 impl Embedding {
@@ -136,7 +136,7 @@ impl Embedding {
                 ..
             } = self.pieces[piece];
             if count > 0 && is_torn && !is_pinned {
-                self.pieces[piece].way =
+                self.pieces[piece].direction =
                     self.choose(piece, collider, particle_radius, others.clone());
             }
         }
@@ -151,7 +151,7 @@ impl Embedding {
                     place: NOWHERE,
                     slot: layout.slot_of(inside.particle as usize),
                     inverse_mass: 0.0,
-                    way: piece.way,
+                    direction: piece.direction,
                 });
             }
         }
@@ -274,21 +274,24 @@ impl Embedding {
             own.step_by(count.div_ceil(SAMPLES))
         };
         let normal = normal.normalize_or_zero();
-        let ways = [normal, -normal, out.normalize_or_zero()];
+        let directions = [normal, -normal, out.normalize_or_zero()];
         let mut best = (f32::INFINITY, None);
-        for way in ways.into_iter().filter(|way| *way != Vec3::ZERO) {
+        for direction in directions
+            .into_iter()
+            .filter(|direction| *direction != Vec3::ZERO)
+        {
             let (mut longest, mut sampled, mut blocked) = (0.0_f32, 0, 0);
             for member in members() {
                 sampled += 1;
-                let far = way_out(collider, member.place, way, particle_radius);
-                let end = |far: f32| member.place + way * far;
+                let far = distance_out(collider, member.place, direction, particle_radius);
+                let end = |far: f32| member.place + direction * far;
                 match far.filter(|far| !is_in_another(others.clone(), end(*far), member.place)) {
                     Some(far) => longest = longest.max(far),
                     None => blocked += 1,
                 }
             }
             if 2 * blocked < sampled && longest < best.0 {
-                best = (longest, Some(way));
+                best = (longest, Some(direction));
             }
         }
         best.1
@@ -337,8 +340,8 @@ impl Embedding {
         contacts: &mut [ContactBlock],
         (id, of): (usize, &ColliderSubstep),
         settings: &ContactSettings,
-    ) -> Found {
-        let mut found = Found::default();
+    ) -> ContactResult {
+        let mut found = ContactResult::default();
         let own = self.of(id);
         if own.is_empty() {
             return found;
@@ -361,11 +364,13 @@ impl Embedding {
                 continue;
             }
             found.deepest = found.deepest.max(depth);
-            let Some(way) = one.way else { continue };
+            let Some(direction) = one.direction else {
+                continue;
+            };
             let relative = displacement - of.surface_motion(place);
             let slowed = relative * (1.0 - seconds / (seconds + SLOWED_FOR));
-            let faster = (fastest.min(depth) - slowed.dot(way)).clamp(0.0, most);
-            let push = slowed + way * faster - relative;
+            let faster = (fastest.min(depth) - slowed.dot(direction)).clamp(0.0, most);
+            let push = slowed + direction * faster - relative;
             let pushed = place + push;
             block.set_position(lane, pushed);
             block.set_displacement(lane, displacement + push);
@@ -401,10 +406,15 @@ fn join(inside: &mut [Inside], first: u32, second: u32) {
 }
 
 /// Distance along a way to the surface (m), unless it is too far along the inside of a box.
-fn way_out(collider: &MovingCollider, place: Vec3, way: Vec3, particle_radius: f32) -> Option<f32> {
+fn distance_out(
+    collider: &MovingCollider,
+    place: Vec3,
+    direction: Vec3,
+    particle_radius: f32,
+) -> Option<f32> {
     let mut gone = 0.0;
     for _ in 0..MAX_STEPS {
-        let nearest = collider.nearest(0.0, place + way * gone);
+        let nearest = collider.nearest(0.0, place + direction * gone);
         let depth = particle_radius - nearest.distance;
         if depth <= 1.0e-3 * gone {
             return Some(gone);

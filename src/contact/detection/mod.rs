@@ -13,12 +13,12 @@ use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
     bodies::{Before, Body, BodyChange, Carriers},
-    candidates::{Candidates, ContactPoint, ContactSettings, Kept, NarrowPhase, Touch},
+    candidates::{Candidates, ContactPoint, ContactSettings, NarrowPhase, SavedCandidates, Touch},
     colliders::{ColliderShape, MovingCollider},
     edges::{ShapeCache, push_shape},
     friction::PushOut,
-    particles::{Pushing, lane_motion, push_particles},
-    triangles::{CoreMotion, Pushed, ResumePoint},
+    particles::{ParticlesNearEdges, lane_motion, push_particles},
+    triangles::{CoreMotion, ResumePoint, TrianglePush},
 };
 use crate::{
     cloth::{ClothParticles, Surface},
@@ -66,7 +66,7 @@ pub struct Detection {
     odometer: f32,
     requeries: u32,
     found: TopDownQuery,
-    kept: Kept,
+    kept: SavedCandidates,
     /// The dynamic colliders, and their largest deviation from the motion that was searched for (m).
     bodies: Vec<Body>,
     /// Memory of earlier ones.
@@ -240,7 +240,7 @@ impl Detection {
                     impulse: Vec3::ZERO,
                     angular_impulse: Vec3::ZERO,
                     of,
-                    traveled: 0.0,
+                    travelled: 0.0,
                 },
             ),
         }
@@ -258,12 +258,12 @@ impl Detection {
         substep: SubStep,
         others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
-        let has_carried = self.take_back(particles, substep);
+        let has_carried = self.detach_load(particles, substep);
         let is_pushed = self.push_out(particles, settings, substep, others);
         if let Some(coming) = substep.next()
             && !self.bodies.is_empty()
         {
-            self.lend(particles, coming);
+            self.attach_load(particles, coming);
         }
         is_pushed || has_carried
     }
@@ -281,8 +281,8 @@ impl Detection {
         self.odometer += substep.farthest_move;
         self.measured = 0;
         for touch in &mut self.touches {
-            let way = touch.collider.max_surface_travel(f32::INFINITY);
-            touch.traveled += way / substep.count as f32;
+            let moving = touch.collider.max_surface_travel(f32::INFINITY);
+            touch.travelled += moving / substep.count as f32;
         }
         let mut is_pushed = false;
         let (mut next, mut from) = (0, ResumePoint::default());
@@ -311,7 +311,7 @@ impl Detection {
             }
             let has_edges = collider.shape.has_edges();
             // The guard measures the cloth.
-            let odometer = if has_edges { 0.0 } else { self.odometer } + touch.traveled;
+            let odometer = if has_edges { 0.0 } else { self.odometer } + touch.travelled;
             let motion = collider.in_substep(substep);
             let travel = motion.slide.length() + motion.swing;
             let shares = match touch.narrow_phase {
@@ -326,16 +326,16 @@ impl Detection {
             self.embedding.hide(touch.id, particles);
             let (found, stopped) = match touch.narrow_phase {
                 _ if has_edges => {
-                    self.shapes.make_room(count);
+                    self.shapes.reserve(count);
                     let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
                     let of = (touch.id, &collider.shape, self.surface.len());
                     let of = (by_triangles || collider.shape.is_geometry()).then_some(of);
                     let guard = &mut self.shapes.guard;
                     let limit = collider.max_surface_travel(f32::INFINITY) + self.margin;
-                    guard.measure(particles, &self.origin, contacts, [touch.traveled, limit]);
+                    guard.measure(particles, &self.origin, contacts, [touch.travelled, limit]);
                     let known = self.shapes.of(touch.of.candidates.clone(), of);
                     let edges = by_triangles.then_some(&*self.surface);
-                    let mut pushing = Pushing {
+                    let mut pushing = ParticlesNearEdges {
                         candidates: &all[touch.of.candidates.clone()],
                         contacts,
                         first,
@@ -347,7 +347,7 @@ impl Detection {
                 }
                 NarrowPhase::Triangles => {
                     let motion = CoreMotion::new(motion, settings);
-                    let mut pushed = Pushed::new(
+                    let mut pushed = TrianglePush::new(
                         &all[touch.of.candidates.clone()],
                         (contacts, first),
                         &mut helds[touch.of.helds.clone()],
@@ -372,16 +372,16 @@ impl Detection {
             if let Some(body) = body
                 && found.farthest_push > 0.0
             {
-                let mut way = touch.collider.clone();
-                let [kept, gone] = body.share(&self.before, particles, &mut way, substep);
+                let mut moving = touch.collider.clone();
+                let [kept, gone] = body.share(&self.before, particles, &mut moving, substep);
                 given.scale(f64::from(kept));
-                touch.traveled += gone;
-                self.deviation = self.deviation.max(body.deviation(&way, substep.end()));
+                touch.travelled += gone;
+                self.deviation = self.deviation.max(body.deviation(&moving, substep.end()));
                 send_on(
                     std::slice::from_mut(touch),
                     &mut self.colliders,
                     body.id,
-                    &way,
+                    &moving,
                 );
             }
             // Several triangles may push one particle.
@@ -436,12 +436,12 @@ fn send_on(
     touches: &mut [Touch],
     colliders: &mut [(usize, MovingCollider)],
     id: usize,
-    way: &MovingCollider,
+    moving: &MovingCollider,
 ) {
     for touch in touches.iter_mut().filter(|touch| touch.id == id) {
-        touch.collider.clone_from(way);
+        touch.collider.clone_from(moving);
     }
     for (_, collider) in colliders.iter_mut().filter(|(known, _)| *known == id) {
-        collider.clone_from(way);
+        collider.clone_from(moving);
     }
 }

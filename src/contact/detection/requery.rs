@@ -19,14 +19,14 @@ impl Detection {
         for touch in &mut self.touches {
             (touch.deepest, touch.area, touch.volume) = (0.0, 0.0, 0.0);
             (touch.impulse, touch.angular_impulse) = (Vec3::ZERO, Vec3::ZERO);
-            touch.traveled = 0.0;
+            touch.travelled = 0.0;
         }
         self.candidates.restart();
         self.odometer = 0.0;
         for body in &mut self.bodies {
-            let way = body.restart();
-            self.deviation = self.deviation.max(body.deviation(&way, 0.0));
-            send_on(&mut self.touches, &mut self.colliders, body.id, &way);
+            let moving = body.restart();
+            self.deviation = self.deviation.max(body.deviation(&moving, 0.0));
+            send_on(&mut self.touches, &mut self.colliders, body.id, &moving);
         }
         // Later searches used the particles' positions of that time.
         self.moved = if self.requeries > 0 {
@@ -79,8 +79,8 @@ impl Detection {
         self.remember(particles);
         self.deviation = 0.0;
         for body in &mut self.bodies {
-            if let Some((_, way)) = self.colliders.iter().find(|(id, _)| *id == body.id) {
-                body.set_searched(way);
+            if let Some((_, moving)) = self.colliders.iter().find(|(id, _)| *id == body.id) {
+                body.set_searched(moving);
             }
         }
         self.kept.take(&self.touches, &self.candidates);

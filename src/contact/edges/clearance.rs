@@ -31,7 +31,7 @@ struct Line {
 }
 
 /// Displacement of a triangle's corners before edges can touch it.
-pub(crate) struct EdgeRoom {
+pub(crate) struct EdgeClearance {
     plane: Plane,
     /// Altitude of each corner over the opposite side (m).
     altitudes: Vec3,
@@ -42,13 +42,13 @@ pub(crate) struct EdgeRoom {
     deepest: f32,
     /// Upper limit of the result (m).
     slack: f32,
-    /// The smallest room of all edges so far (m).
+    /// The smallest clearance of all edges so far (m).
     left: f32,
     rounding: f32,
 }
 
-impl EdgeRoom {
-    /// The room of a tested triangle, up to a `slack` (m).
+impl EdgeClearance {
+    /// The clearance of a tested triangle, up to a `slack` (m).
     pub fn new(test: &EdgeTest, slack: f32) -> Self {
         let EdgeTest {
             plane,

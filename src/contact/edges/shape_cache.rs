@@ -12,7 +12,7 @@ use crate::{
     contact::{
         candidates::Guard,
         colliders::ColliderShape,
-        particles::{Found, Pushing, push_particles},
+        particles::{ContactResult, ParticlesNearEdges, push_particles},
     },
 };
 
@@ -43,11 +43,11 @@ impl ShapeCache {
         self.memories.forget();
         let candidates = self.clear.len();
         self.clear();
-        self.make_room(candidates);
+        self.reserve(candidates);
     }
 
     /// Resizes for a number of candidates.
-    pub fn make_room(&mut self, candidates: usize) {
+    pub fn reserve(&mut self, candidates: usize) {
         if self.clear.len() < candidates {
             self.near_edges
                 .extend(self.clear.len() as u32..candidates as u32);
@@ -61,9 +61,9 @@ impl ShapeCache {
         &mut self,
         candidates: Range<usize>,
         shape: Option<(usize, &ColliderShape, usize)>,
-    ) -> Known<'_> {
+    ) -> ColliderCache<'_> {
         let memories = &mut self.memories;
-        Known {
+        ColliderCache {
             first: candidates.start,
             clear: &mut self.clear[candidates.clone()],
             near_edges: &mut self.near_edges[candidates],
@@ -75,7 +75,7 @@ impl ShapeCache {
 }
 
 /// The cache of a collider's candidates.
-pub(crate) struct Known<'a> {
+pub(crate) struct ColliderCache<'a> {
     /// Index of its first candidate among all.
     pub first: usize,
     pub clear: &'a mut [f32],
@@ -88,12 +88,12 @@ pub(crate) struct Known<'a> {
 /// Pushes particles out of a shape with edges. With a surface, pushes its triangles off the edges, too.
 pub(crate) fn push_shape(
     particles: &mut ClothParticles,
-    pushing: &mut Pushing,
-    mut known: Known,
+    pushing: &mut ParticlesNearEdges,
+    mut known: ColliderCache,
     triangles: Option<&Surface>,
-) -> Found {
+) -> ContactResult {
     // Particles come last, so that none is inside at the end.
-    let mut by_edges = Found::default();
+    let mut by_edges = ContactResult::default();
     if let Some(surface) = triangles
         && let Some(memory) = known.memory.as_deref_mut()
     {

@@ -1,12 +1,12 @@
 //! Memory of particles near a shape, and of triangles near its edges, so that most need not be tested again.
 //!
-//! Every entry is a statement about positions: a triangle whose corners have moved less than its room since the test
+//! Every entry is a statement about positions: a triangle whose corners have moved less than its clearance since the test
 //! touches no edge, however much time has passed. So it stays valid from tick to tick, and a lost entry is found again.
 
 use bevy::math::Vec3;
 
 use super::{
-    clearance::EdgeRoom,
+    clearance::EdgeClearance,
     edge_contact::{EdgeContact, EdgeTest, bounds_of},
     fan_view::FanView,
 };
@@ -22,7 +22,7 @@ const MAX_EDGES: usize = 8;
 /// reach. Only its side of the triangle matters.
 const SAME_SIDE: f32 = 0.1;
 
-/// Below this fraction of the slack, room counts as none, and for this many sub-steps it is then not measured.
+/// Below this fraction of the slack, clearance counts as none, and for this many sub-steps it is then not measured.
 const HARDLY: f32 = 0.02;
 const RESTS: u32 = 12;
 
@@ -91,8 +91,8 @@ pub(crate) struct Nearness {
 struct KnownEdge {
     index: u32,
     /// Displacement of the triangle's corners before it can touch (m); 0 or less if it may touch.
-    room: f32,
-    /// Number of sub-steps in which the room is not measured, because there was hardly any.
+    clearance: f32,
+    /// Number of sub-steps in which the clearance is not measured, because there was hardly any.
     rests: u32,
 }
 
@@ -104,7 +104,7 @@ pub(crate) struct KnownFace {
     corners: [Vec3; 3],
     listed: [Vec3; 3],
     /// Displacement from the first before any edge can touch it (m); 0 or less if one may.
-    pub room: f32,
+    pub clearance: f32,
     /// The edges that may touch it while its corners are within the slack of the second, unless there are too many.
     edges: [KnownEdge; MAX_EDGES],
     count: usize,
@@ -118,10 +118,10 @@ impl KnownFace {
     const UNKNOWN: Self = Self {
         corners: [Vec3::NAN; 3],
         listed: [Vec3::NAN; 3],
-        room: 0.0,
+        clearance: 0.0,
         edges: [KnownEdge {
             index: 0,
-            room: 0.0,
+            clearance: 0.0,
             rests: 0,
         }; MAX_EDGES],
         count: 0,
@@ -137,7 +137,7 @@ impl KnownFace {
     }
 
     /// The contact with the nearest edge, or with the deepest one through it, of a triangle whose corners have `moved`
-    /// this far (m). Updates the room.
+    /// this far (m). Updates the clearance.
     pub fn deepest(
         &mut self,
         shape: &ColliderShape,
@@ -148,14 +148,14 @@ impl KnownFace {
         let Nearness {
             reach, slack, tick, ..
         } = near;
-        self.room = 0.0;
+        self.clearance = 0.0;
         let mut test = EdgeTest::new(shape, corners, reach)?;
         let strayed = farthest(corners, self.listed);
         // False for NaN.
         let is_known = strayed <= slack;
         if is_known {
             for edge in &mut self.edges {
-                edge.room -= moved;
+                edge.clearance -= moved;
             }
             self.corners = corners;
         } else {
@@ -167,15 +167,15 @@ impl KnownFace {
             // Edges that are not listed are at least the slack away from the positions at the listing.
             let strayed = if is_known { strayed } else { 0.0 };
             let left = slack * (1.0 - 1.0e-3) - strayed;
-            self.room = self.test_listed(&mut test, slack).min(left);
+            self.clearance = self.test_listed(&mut test, slack).min(left);
         } else {
-            let mut room = EdgeRoom::new(&test, slack);
+            let mut clearance = EdgeClearance::new(&test, slack);
             let around = bounds_of(corners, reach + slack);
             shape.edges_near(around, near.smooth, |_, edge| {
-                room.see(edge);
+                clearance.see(edge);
                 test.see(edge);
             });
-            self.room = room.left();
+            self.clearance = clearance.left();
         }
         if let Some(outside) = test.outside
             && !is_same
@@ -190,22 +190,22 @@ impl KnownFace {
         let mut measure = None;
         let mut left = slack;
         for known in &mut self.edges[..self.count] {
-            if known.room <= 0.0
+            if known.clearance <= 0.0
                 && let Some(edge) = test.shape.edge(known.index)
             {
                 test.see(&edge);
-                known.room = 0.0;
+                known.clearance = 0.0;
                 if known.rests > 0 {
                     known.rests -= 1;
                 } else {
-                    let measure = measure.get_or_insert_with(|| EdgeRoom::new(test, slack));
-                    known.room = measure.of(&edge);
-                    if known.room < HARDLY * slack {
+                    let measure = measure.get_or_insert_with(|| EdgeClearance::new(test, slack));
+                    known.clearance = measure.of(&edge);
+                    if known.clearance < HARDLY * slack {
                         known.rests = RESTS;
                     }
                 }
             }
-            left = left.min(known.room);
+            left = left.min(known.clearance);
         }
         left
     }
@@ -214,17 +214,17 @@ impl KnownFace {
     fn list(&mut self, test: &EdgeTest, corners: [Vec3; 3], near: Nearness) {
         (self.corners, self.listed) = (corners, corners);
         self.count = 0;
-        let room = EdgeRoom::new(test, near.slack);
+        let clearance = EdgeClearance::new(test, near.slack);
         let around = bounds_of(corners, near.reach + near.slack);
         test.shape.edges_near(around, near.smooth, |index, edge| {
-            let left = room.of(edge);
+            let left = clearance.of(edge);
             if left >= near.slack * (1.0 - 1.0e-3) {
                 return;
             }
             if let Some(place) = self.edges.get_mut(self.count) {
                 *place = KnownEdge {
                     index,
-                    room: left,
+                    clearance: left,
                     rests: 0,
                 };
             }
@@ -281,13 +281,13 @@ impl ShapeMemory {
     }
 
     /// Displacement of everything before one of a particle's triangles, in view, can touch an edge (m).
-    pub fn room(&mut self, particle: u32, view: &FanView, near: Nearness) -> f32 {
+    pub fn clearance(&mut self, particle: u32, view: &FanView, near: Nearness) -> f32 {
         let (reach, extent) = (near.reach, view.extent);
         let known = &mut self.places[particle as usize];
-        let room = |distance: f32| (distance - extent) * (1.0 - 1.0e-4) - reach;
+        let clearance = |distance: f32| (distance - extent) * (1.0 - 1.0e-4) - reach;
         let moved = view.own.distance(known.at);
-        let left = room(known.distance - moved);
-        let is_near = room(known.distance + moved) <= 0.0;
+        let left = clearance(known.distance - moved);
+        let is_near = clearance(known.distance + moved) <= 0.0;
         if left > 0.0 || is_near {
             return left;
         }
@@ -296,7 +296,7 @@ impl ShapeMemory {
         known.at = view.own;
         let distance = self.shape.edge_distance(view.own, within, near.smooth);
         known.distance = distance.min(within);
-        room(known.distance)
+        clearance(known.distance)
     }
 
     /// The planes nearest to the particles of the cloth's `blocks`, with the current tick.

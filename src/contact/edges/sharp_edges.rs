@@ -16,7 +16,7 @@ use crate::{
         candidates::{Candidate, ContactSettings, Guard},
         colliders::ColliderSubstep,
         friction::{Contact, Impulse, PushOut, first_touch},
-        particles::{Found, Pushing},
+        particles::{ContactResult, ParticlesNearEdges},
         triangles::{Corners, at},
     },
 };
@@ -52,7 +52,7 @@ pub(crate) struct EdgeMotion<'a> {
 
 impl<'a> EdgeMotion<'a> {
     /// On a cloth with a spacing (m), in a tick.
-    pub fn new(pushing: &Pushing<'a>, spacing: f32, tick: u32) -> Self {
+    pub fn new(pushing: &ParticlesNearEdges<'a>, spacing: f32, tick: u32) -> Self {
         let settings = pushing.settings;
         let skin = SKIN * spacing;
         let reach = settings.particle_radius.max(skin);
@@ -114,19 +114,19 @@ impl<'a> EdgeMotion<'a> {
 /// inverse masses.
 pub(crate) fn push_off_edges(
     particles: &mut ClothParticles,
-    pushing: &mut Pushing,
+    pushing: &mut ParticlesNearEdges,
     surface: &Surface,
     (first, clear, near_edges): (usize, &mut [f32], &mut [u32]),
     (guard, view, memory): (&mut Guard, &mut FanView, &mut ShapeMemory),
     motion: &EdgeMotion,
-) -> Found {
+) -> ContactResult {
     memory.match_reach(motion.near);
     let mut edges = OffEdges {
         pushing,
         motion,
         guard,
         view,
-        found: Found::default(),
+        found: ContactResult::default(),
         farthest: 0.0,
     };
     let count = near_edges.len();
@@ -145,8 +145,8 @@ pub(crate) fn push_off_edges(
         let candidate = edges.pushing.candidates[index];
         let fan = candidate.fan(surface.fans());
         if !fan.faces.is_empty() && !edges.guard.is_clear(clear[index], fan.corners) {
-            let room = edges.push(particles, candidate, fan, memory);
-            clear[index] = edges.guard.until(room, fan.corners);
+            let clearance = edges.push(particles, candidate, fan, memory);
+            clear[index] = edges.guard.until(clearance, fan.corners);
         }
         if all.is_some() || edges.guard.is_outrun() {
             all = Some(index + 1);
@@ -168,11 +168,11 @@ pub(crate) fn push_off_edges(
 
 /// Pushes triangles off edges in a sub-step.
 struct OffEdges<'a, 'b> {
-    pushing: &'a mut Pushing<'b>,
+    pushing: &'a mut ParticlesNearEdges<'b>,
     motion: &'a EdgeMotion<'a>,
     guard: &'a mut Guard,
     view: &'a mut FanView,
-    found: Found,
+    found: ContactResult,
     /// Largest push by one triangle (m).
     farthest: f32,
 }
@@ -196,20 +196,20 @@ impl OffEdges<'_, '_> {
         );
         let shape = &motion.of.collider.shape;
         let gap = shape.gap(self.view.corners()) - FLAT * near.reach;
-        let room = gap.max(memory.room(candidate.particle, self.view, near));
-        if room > motion.swept(self.view.speed) {
-            return room;
+        let clearance = gap.max(memory.clearance(candidate.particle, self.view, near));
+        if clearance > motion.swept(self.view.speed) {
+            return clearance;
         }
         let faces = memory.faces(candidate.particle, fan);
-        let mut room = f32::INFINITY;
+        let mut clearance = f32::INFINITY;
         for (&face, known) in fan.faces.iter().zip(faces) {
             let triangle = self.view.triangle(face);
             let speed = motion.swept(self.view.speed);
             let gap = shape.gap(&triangle) - FLAT * near.reach;
             let moved = known.moved(triangle);
-            let left = gap.max(known.room - moved);
+            let left = gap.max(known.clearance - moved);
             if left > speed {
-                room = room.min(left);
+                clearance = clearance.min(left);
                 continue;
             }
             let slots = fan.slots(face);
@@ -230,10 +230,10 @@ impl OffEdges<'_, '_> {
                 let corners = Corners::of(particles, slots);
                 push_point(particles, &corners, &contact, motion, given)
             } else {
-                room = room.min(known.room).max(0.0);
+                clearance = clearance.min(known.clearance).max(0.0);
                 continue;
             };
-            room = 0.0;
+            clearance = 0.0;
             for slot in slots {
                 self.guard.note(slot, pushed);
             }
@@ -245,7 +245,7 @@ impl OffEdges<'_, '_> {
             self.found.deepest = self.found.deepest.max(depth);
             self.farthest = self.farthest.max(pushed);
         }
-        room
+        clearance
     }
 }
 

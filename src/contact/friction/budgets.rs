@@ -9,7 +9,7 @@ use crate::cloth::{LANES, Lanes};
 
 /// The friction budgets of eight particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Held {
+pub(crate) struct FrictionBudget {
     /// Pushes of contacts in this sub-step, along their normals (m).
     pub push: [Lanes; 3],
     /// Normal of the last contact.
@@ -20,7 +20,7 @@ pub(crate) struct Held {
     pub is_active: bool,
 }
 
-impl Held {
+impl FrictionBudget {
     pub const NONE: Self = Self {
         push: [[0.0; LANES]; 3],
         normal: [[0.0; LANES]; 3],

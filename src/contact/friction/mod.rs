@@ -3,5 +3,5 @@
 mod budgets;
 mod response;
 
-pub(crate) use budgets::Held;
+pub(crate) use budgets::FrictionBudget;
 pub(crate) use response::{Contact, Impulse, MAX_STEPS, PushOut, first_touch};

@@ -110,8 +110,8 @@ pub(super) fn cross(
         return false;
     }
     let [a, b] = pair.of.map(|patch| motion.patches[patch as usize].cloth);
-    let ways = 1 + usize::from(pair.of[0] != pair.of[1]);
-    [[0, 1], [1, 0]][..ways].iter().any(|of| {
+    let directions = 1 + usize::from(pair.of[0] != pair.of[1]);
+    [[0, 1], [1, 0]][..directions].iter().any(|of| {
         let [own, other] = of.map(|side| &sides[side]);
         let edges = own.sheet.edges_of(own.patch);
         let faces = other.sheet.faces_of(other.patch);

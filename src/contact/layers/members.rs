@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3A;
 
-use super::{hold::Hold, motion::Motion, origin::Origin, participant::Participant};
+use super::{mean_pushes::MeanPushes, motion::Motion, origin::Origin, participant::Participant};
 use crate::cloth::Slot;
 
 /// No member, no pair.
@@ -138,7 +138,12 @@ impl Members {
     }
 
     /// Writes changes back to the particles. Marks the affected cloths, and updates their holds.
-    pub fn scatter(&self, cloths: &mut [Participant], is_pushed: &mut [bool], hold: &mut Hold) {
+    pub fn scatter(
+        &self,
+        cloths: &mut [Participant],
+        is_pushed: &mut [bool],
+        means: &mut MeanPushes,
+    ) {
         for ((member, state), &[was, moved_by]) in
             self.of.iter().zip(&self.states).zip(&self.gathered)
         {
@@ -156,7 +161,7 @@ impl Members {
             block.set_position(slot.lane, block.position(slot.lane) + push);
             block.set_displacement(slot.lane, moved);
             if state.inverse_mass != 0.0 {
-                hold.add(index, slot, cloth.own_vector(slowed.into()));
+                means.add(index, slot, cloth.own_vector(slowed.into()));
             }
         }
     }

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //!   cloth → patches of a few faces (sheet)
-//!   boxes with room around patches, trees searched from the top down (near_patches) → near pairs of patches
+//!   boxes with clearance around patches, trees searched from the top down (near_patches) → near pairs of patches
 //!   features of near pairs, culled by boxes, compared eight at a time (compare, lanes) → slack, listed features
 //!   the pair's own motion since then (motion): used > until?                        → look again (near_features)
 //!   listed pairs that may touch in this sub-step                                    → contacts: push, certify
@@ -24,17 +24,17 @@
 //! 5. A push moves particles: 1 to 4 are done again, until nothing new is near.
 //!
 //! Patches that begin intersected are left alone until they are apart. More work than the [limit](work) is not done, and
-//! reported; such patches have less of it. Resting layers are [held](hold) for a few sub-steps, while none can have come
+//! reported; such patches have less of it. Resting layers are [held](mean_pushes) for a few sub-steps, while none can have come
 //! near enough to pass.
 
 mod bounds;
 mod certificate;
 mod circumstances;
 mod compare;
-mod hold;
 mod inside;
 mod intersections;
 mod lanes;
+mod mean_pushes;
 mod members;
 mod motion;
 mod near_features;
@@ -53,11 +53,11 @@ mod work;
 
 use certificate::{LEFT_OF_THICKNESS, Zones};
 use circumstances::Circumstances;
-use hold::Hold;
+use mean_pushes::MeanPushes;
 use members::{Members, NOBODY};
 use motion::Motion;
 use near_features::NearFeatures;
-use near_patches::{Meets, Rooms};
+use near_patches::{Clearances, Meets};
 use origin::Origin;
 use pair::{NearPair, VERTEX_AND_FACE};
 use patch_pair::Candidate;
@@ -100,7 +100,7 @@ const REFERENCE: f32 = 0.05;
 pub(crate) struct MutualContact {
     circumstances: Circumstances,
     motion: Motion,
-    rooms: Rooms,
+    clearances: Clearances,
     near: NearFeatures,
     /// The pairs that may touch in the sub-step.
     contacts: Vec<NearPair>,
@@ -108,7 +108,7 @@ pub(crate) struct MutualContact {
     members: Members,
     zones: Zones,
     /// The pushes that hold particles between tests.
-    hold: Hold,
+    mean_pushes: MeanPushes,
     last: LastTest,
     /// Positions before colliders push particles in the sub-step, if noted.
     before_colliders: Origin,
@@ -173,8 +173,8 @@ impl MutualContact {
             }
             self.near.restart(begins);
             self.motion.reset(cloths);
-            self.rooms.reset(cloths, self.motion.patches.len());
-            self.hold.clear(cloths);
+            self.clearances.reset(cloths, self.motion.patches.len());
+            self.mean_pushes.clear(cloths);
             self.contacts.clear();
             (self.is_known, self.ticks_off) = (true, 0);
         }
@@ -248,7 +248,7 @@ impl MutualContact {
         let is_waiting = self.last.wait > 0;
         self.last.wait = self.last.wait.saturating_sub(1);
         let (held, approach) = if is_waiting {
-            self.hold.apply(cloths, &self.last.passed, is_pushed)
+            self.mean_pushes.apply(cloths, &self.last.passed, is_pushed)
         } else {
             (0.0, self.last.passed.approach(cloths))
         };
@@ -262,8 +262,9 @@ impl MutualContact {
         self.motion.measure(cloths);
         let is_apart = self.keep_apart(cloths, &meets, dt);
         let pushed = self.members.farthest_push();
-        self.hold.pass();
-        self.members.scatter(cloths, is_pushed, &mut self.hold);
+        self.mean_pushes.pass();
+        self.members
+            .scatter(cloths, is_pushed, &mut self.mean_pushes);
         if !is_apart {
             self.lose();
             self.counts.lost += 1;
@@ -338,19 +339,19 @@ impl MutualContact {
     ) -> Option<f32> {
         let Self {
             motion,
-            rooms,
+            clearances,
             near,
             last,
             counts,
             ..
         } = self;
-        let (have_left, room) = rooms.renew(cloths, motion, last.reserve);
+        let (have_left, clearance) = clearances.renew(cloths, motion, last.reserve);
         if have_left {
             let among = Meets { cloths, meets };
-            near.renew(rooms, &among, motion, &mut counts.work);
+            near.renew(clearances, &among, motion, &mut counts.work);
         }
         let slack = near.look(cloths, motion, last.reserve, counts)?;
-        Some(slack.min(2.0 * room))
+        Some(slack.min(2.0 * clearance))
     }
 
     /// Lists the contacts. A `first` list of a sub-step has members of its own.

@@ -14,13 +14,13 @@
 use super::{
     compare::{compare, cross},
     motion::Motion,
-    near_patches::{Meets, Rooms},
+    near_patches::{Clearances, Meets},
     participant::Participant,
     patch_pair::{Candidate, PatchPair, Place, measure, unfolded_by},
     work::{Counts, MOST_LISTED},
 };
 
-/// Rest of that room, as a fraction, from which on contacts are measured together with others.
+/// Rest of that clearance, as a fraction, from which on contacts are measured together with others.
 const SOON: f32 = 0.5;
 
 /// The pairs of patches, and the features of those that are near each other.
@@ -106,14 +106,14 @@ impl NearFeatures {
     /// Drops the pairs of patches whose boxes are apart, and adds those whose boxes have begun to overlap.
     pub fn renew(
         &mut self,
-        rooms: &mut Rooms,
+        clearances: &mut Clearances,
         among: &Meets<impl Fn(usize, usize) -> bool>,
         motion: &Motion,
         work: &mut usize,
     ) {
         let (listed, has_changed) = (&mut self.listed, &mut self.has_changed);
         self.pairs.retain(|pair| {
-            let is_near = rooms.overlap(pair.of);
+            let is_near = clearances.overlap(pair.of);
             if !is_near {
                 *listed -= pair.count as usize;
                 *has_changed |= pair.has_contacts();
@@ -121,7 +121,7 @@ impl NearFeatures {
             is_near
         });
         let (pairs, were_tangled) = (&mut self.pairs, &self.were_tangled);
-        rooms.search(among, motion, work, |of| {
+        clearances.search(among, motion, work, |of| {
             let is_tangled = were_tangled.binary_search(&in_order(of)).is_ok();
             pairs.push(PatchPair::new(of, is_tangled));
         });

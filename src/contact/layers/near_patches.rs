@@ -1,4 +1,4 @@
-//! Pairs of patches that are near each other: a box around each patch leaves it room to move, and a patch that leaves
+//! Pairs of patches that are near each other: a box around each patch leaves it clearance to move, and a patch that leaves
 //! its box gets another one, for which the trees are searched from the top down.
 
 use bevy::math::Vec3A;
@@ -12,7 +12,7 @@ const AHEAD: f32 = 8.0;
 /// A box around each patch, in which it may move, and the boxes of the trees' nodes.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Rooms {
+pub(super) struct Clearances {
     /// Of each patch, without the motion that all have in common.
     boxes: Vec<Bounds>,
     /// Of the nodes of each cloth's tree.
@@ -40,7 +40,7 @@ impl<F: Fn(usize, usize) -> bool> Meets<'_, F> {
     }
 }
 
-impl Rooms {
+impl Clearances {
     /// Begins with patches that have no boxes.
     pub fn reset(&mut self, cloths: &[Participant], patches: usize) {
         self.boxes.clear();
@@ -58,7 +58,7 @@ impl Rooms {
         let (before, after) = (motion.drift - motion.drifted, motion.drift);
         self.left.clear();
         let mut free = f32::INFINITY;
-        for (index, (patch, room)) in motion.patches.iter().zip(&mut self.boxes).enumerate() {
+        for (index, (patch, clearance)) in motion.patches.iter().zip(&mut self.boxes).enumerate() {
             let cloth = &cloths[patch.cloth as usize];
             let half = Vec3A::splat(0.5 * cloth.settings.thickness);
             let at_end = patch.bounds_at_end();
@@ -66,13 +66,13 @@ impl Rooms {
                 min: at_end.min - after - half,
                 max: at_end.max - after + half,
             };
-            let inside = (at_end.min - room.min).min(room.max - at_end.max);
+            let inside = (at_end.min - clearance.min).min(clearance.max - at_end.max);
             // False for NaN.
             if inside.min_element() >= reserve {
                 free = free.min(inside.min_element());
                 continue;
             }
-            self.left.push((index as u32, *room));
+            self.left.push((index as u32, *clearance));
             let at_start = patch.bounds_at_start();
             let at_start = Bounds {
                 min: at_start.min - before - half,
@@ -83,7 +83,7 @@ impl Rooms {
             let around = ROOM * cloth.sheet.surface().spacing().shortest;
             free = free.min(around);
             let both = at_start.join(&at_end);
-            *room = Bounds {
+            *clearance = Bounds {
                 min: both.min - around + ahead.min(Vec3A::ZERO),
                 max: both.max + around + ahead.max(Vec3A::ZERO),
             };
@@ -126,7 +126,7 @@ impl Rooms {
             index.ok().map(|index| self.left[index].1)
         };
         for &(patch, had) in &self.left {
-            let room = self.boxes[patch as usize];
+            let clearance = self.boxes[patch as usize];
             let own = motion.patches[patch as usize].cloth as usize;
             for (other, cloth) in among.cloths.iter().enumerate() {
                 if !among.of(own, other) {
@@ -138,7 +138,7 @@ impl Rooms {
                     .extend((!cloth.sheet.nodes().is_empty()).then_some(0));
                 while let Some(node) = self.stack.pop() {
                     *work = work.saturating_sub(1);
-                    if !self.nodes[other][node as usize].overlaps(&room) {
+                    if !self.nodes[other][node as usize].overlaps(&clearance) {
                         continue;
                     }
                     let node: &Node = &cloth.sheet.nodes()[node as usize];

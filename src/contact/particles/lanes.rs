@@ -268,8 +268,8 @@ fn leave_out(
 ) {
     let slide = Vec3::from(motion.slide);
     for l in (0..LANES).filter(|&l| is_unusual[l] != 0) {
-        let way = Vec3::new(view[DX + l], view[DY + l], view[DZ + l]);
-        let speed = (way - slide).length() + motion.swing;
+        let displacement = Vec3::new(view[DX + l], view[DY + l], view[DZ + l]);
+        let speed = (displacement - slide).length() + motion.swing;
         let is_met = speed > motion.most && near.bound[l] + speed > -motion.tolerance;
         if near.depth[l] > motion.deepest || (is_met && motion.is_swept) {
             contact.left |= 1 << l;

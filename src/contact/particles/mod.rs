@@ -13,8 +13,8 @@ pub(crate) use lanes::{
     push_half_space_baseline, push_round, push_round_baseline,
 };
 pub(crate) use lanes::{LaneMotion, Sums};
-pub(crate) use near_edges::Pushing;
-pub(crate) use particle::{Found, lane_motion, push_particles};
+pub(crate) use near_edges::ParticlesNearEdges;
+pub(crate) use particle::{ContactResult, lane_motion, push_particles};
 pub(crate) use planes::Planes;
 #[cfg(test)]
 pub(crate) use planes::{Frame, find_planes, push_planes, push_planes_baseline};

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// The particles near a shape with edges, at the end of a sub-step.
-pub(crate) struct Pushing<'a> {
+pub(crate) struct ParticlesNearEdges<'a> {
     pub candidates: &'a [Candidate],
     /// Their blocks; `first` is the index of the first among all.
     pub contacts: &'a mut [ContactBlock],
@@ -20,7 +20,7 @@ pub(crate) struct Pushing<'a> {
     pub lanes: &'a LaneMotion,
 }
 
-impl Pushing<'_> {
+impl ParticlesNearEdges<'_> {
     /// Index of a candidate's block, and its slot in the cloth.
     pub fn place(&self, candidate: &Candidate) -> (usize, Slot) {
         let (block, lane) = candidate.lane();

@@ -17,7 +17,7 @@ use crate::{
 
 /// The result of a sub-step's contacts.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(crate) struct Found {
+pub(crate) struct ContactResult {
     /// Largest depth (m).
     pub deepest: f32,
     /// Largest push (m).
@@ -30,7 +30,7 @@ pub(crate) struct Found {
     pub given: Impulse,
 }
 
-impl Found {
+impl ContactResult {
     /// This and what was pushed after it.
     pub fn and(mut self, other: &Self) -> Self {
         self.deepest = self.deepest.max(other.deepest);
@@ -64,8 +64,8 @@ pub(crate) fn push_particles(
     (planes, tick): (&mut [Planes], u32),
     (of, settings): (&ColliderSubstep, &ContactSettings),
     motion: &LaneMotion,
-) -> Found {
-    let mut found = Found::default();
+) -> ContactResult {
+    let mut found = ContactResult::default();
     let mut sums = Sums::default();
     let pose = of.pose;
     let blocks = particles.blocks_mut();
@@ -183,7 +183,7 @@ fn push_left(
     contacts: &mut [ContactBlock],
     (of, settings): (&ColliderSubstep, &ContactSettings),
     motion: &LaneMotion,
-    found: &mut Found,
+    found: &mut ContactResult,
 ) {
     let particle_radius = settings.particle_radius;
     let (shape, thickness) = (&of.collider.shape, motion.thickness);

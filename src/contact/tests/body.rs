@@ -70,8 +70,8 @@ fn an_impact_shares_by_mass() {
         assert!(detection.respond(&mut particles, &SETTINGS, substep, |_| {}));
         let change = detection.body_change(0).expect("it was touched");
         let touch = &detection.touches()[0];
-        let way = touch.collider.clone();
-        let top = way.pose_at(substep.end()).translation.y + 0.5;
+        let moving = touch.collider.clone();
+        let top = moving.pose_at(substep.end()).translation.y + 0.5;
         for index in 0..9 {
             let position = particles.position(index).expect("it exists");
             let moved = f64::from(particles.velocity(index).expect("it exists").y);
@@ -93,7 +93,7 @@ fn an_impact_shares_by_mass() {
             );
         }
         // Straight on from there.
-        let rest = way.pose_at(1.0).translation.y - way.pose_at(substep.end()).translation.y;
+        let rest = moving.pose_at(1.0).translation.y - moving.pose_at(substep.end()).translation.y;
         let expected = change.velocity.y * SECONDS * 2.0;
         assert!(
             (rest - expected).abs() < 1e-6 * (1.0 + expected.abs()),

@@ -20,7 +20,7 @@ fn through(speed: f32, radius: f32, is_swept: bool, seed: u64) -> Option<u32> {
         is_swept,
         beside: [beside.x, beside.y],
         delay: random.part(),
-        way: Vec3::Z,
+        direction: Vec3::Z,
         spin: random.direction() * 50.0 * random.part(),
     }
     .through()
@@ -67,7 +67,7 @@ fn few_pass_at_a_grazing_angle() {
             is_swept: true,
             beside: [beside.x, beside.y],
             delay: random.part(),
-            way: along * angle.cos() + Vec3::Z * angle.sin(),
+            direction: along * angle.cos() + Vec3::Z * angle.sin(),
             spin: random.direction() * 50.0 * random.part(),
         };
         shot.through().is_some()

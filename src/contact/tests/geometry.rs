@@ -325,12 +325,15 @@ fn a_hint_changes_nothing() {
     for parts in wholes {
         let whole = shape(&ClothCollider::compound(parts));
         for _ in 0..2_000 {
-            let (before, way) = (random.within(1.2), random.within(0.1));
+            let (before, displacement) = (random.within(1.2), random.within(0.1));
             let known = distance(&whole, before).abs() as f32;
-            let exact = whole.nearest(Isometry3d::IDENTITY, before + way);
-            for within in [known + way.length() + 1.0e-3, f32::NAN, f32::MAX] {
-                let found = whole.nearest_within(before + way, within);
-                assert_eq!(found.distance, exact.distance, "{before} {way} {within}");
+            let exact = whole.nearest(Isometry3d::IDENTITY, before + displacement);
+            for within in [known + displacement.length() + 1.0e-3, f32::NAN, f32::MAX] {
+                let found = whole.nearest_within(before + displacement, within);
+                assert_eq!(
+                    found.distance, exact.distance,
+                    "{before} {displacement} {within}"
+                );
             }
         }
     }

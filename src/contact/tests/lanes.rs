@@ -9,15 +9,15 @@ use crate::{
     contact::{
         candidates::ContactBlock,
         colliders::{ClothCollider, ColliderShape},
-        friction::{Held, PushOut},
+        friction::{FrictionBudget, PushOut},
         particles::{
             Cuboid, Frame, HalfSpace, LaneMotion, Planes, Round, Sums, find_planes, push_cuboid,
             push_cuboid_baseline, push_half_space, push_half_space_baseline, push_planes,
             push_planes_baseline, push_round, push_round_baseline,
         },
         triangles::{
-            Axle, Cells, Place, hold_all, hold_all_baseline, nearest, nearest_of_each, push_cells,
-            push_cells_baseline,
+            CapsuleCore, Cells, Place, hold_all, hold_all_baseline, nearest, nearest_of_each,
+            push_cells, push_cells_baseline,
         },
     },
 };
@@ -165,14 +165,14 @@ proptest! {
             reach: 0.3,
             fastest: 0.05,
             pushed: 0.0,
-            room: 100.0,
+            clearance: 100.0,
             max_faces: 6.0,
             is_measured: true,
         };
-        let axle = Axle { axis: [0.0; 3], half_length: 0.0, radius: 0.29 };
+        let core = CapsuleCore { axis: [0.0; 3], half_length: 0.0, radius: 0.29 };
         let run = |is_widest: bool| {
             let (mut blocks, mut contacts) = (blocks.clone(), contacts.clone());
-            let mut helds = vec![Held::NONE; BLOCKS as usize];
+            let mut helds = vec![FrictionBudget::NONE; BLOCKS as usize];
             let mut sums = Sums::default();
             let of = (&motion, &cells);
             let from = Place::default();
@@ -183,9 +183,9 @@ proptest! {
                 push_cells_baseline(b, c, h, of, from, s)
             };
             if is_widest {
-                hold_all(b, c, h, &axle, &motion, 0.001, s);
+                hold_all(b, c, h, &core, &motion, 0.001, s);
             } else {
-                hold_all_baseline(b, c, h, &axle, &motion, 0.001, s);
+                hold_all_baseline(b, c, h, &core, &motion, 0.001, s);
             }
             (bits(&blocks, &contacts, &sums), stop, helds)
         };

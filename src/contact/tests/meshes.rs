@@ -46,7 +46,7 @@ fn no_small_fast_ball_gets_through_a_mesh() {
                     is_swept: true,
                     beside: [beside.x, beside.y],
                     delay: random.part(),
-                    way: Vec3::Z,
+                    direction: Vec3::Z,
                     spin: random.direction() * 50.0 * random.part(),
                 };
                 let through =

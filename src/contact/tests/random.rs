@@ -58,9 +58,9 @@ impl Random {
 
     pub fn direction(&mut self) -> Vec3 {
         loop {
-            let way = self.within(1.0);
-            if (0.01..1.0).contains(&way.length()) {
-                return way.normalize();
+            let direction = self.within(1.0);
+            if (0.01..1.0).contains(&direction.length()) {
+                return direction.normalize();
             }
         }
     }

@@ -70,9 +70,9 @@ impl Scene {
                 detection.respond(particles, settings, substep, |_| {})
             });
             for collider in colliders {
-                let way = collider.to - Vec3::from(collider.from.translation);
+                let displacement = collider.to - Vec3::from(collider.from.translation);
                 collider.from.translation = collider.to.into();
-                collider.to += way;
+                collider.to += displacement;
             }
             fastest = fastest.max(particles.largest_speed());
         }

@@ -89,14 +89,16 @@ impl Shaken {
         }
         let mut farthest = 0.0_f32;
         for index in 0..count {
-            let way = self.drift + self.random.within(self.jitter);
-            farthest = farthest.max(way.length());
+            let displacement = self.drift + self.random.within(self.jitter);
+            farthest = farthest.max(displacement.length());
             for particles in particles.iter_mut() {
                 let place = particles.position(index).expect("it exists");
                 particles
-                    .set_position(index, place + way)
+                    .set_position(index, place + displacement)
                     .expect("it exists");
-                particles.set_displacement(index, way).expect("it exists");
+                particles
+                    .set_displacement(index, displacement)
+                    .expect("it exists");
             }
         }
         farthest * (1.0 + 1.0e-5)
@@ -243,10 +245,14 @@ fn what_lands_far_from_an_origin_lands_the_same() {
             for index in 0..SUBSTEPS {
                 for particles in [&mut particles, &mut forgetful] {
                     for at in 0..particles.len() {
-                        let way = Vec3::NEG_Y * 0.0003;
+                        let displacement = Vec3::NEG_Y * 0.0003;
                         let place = particles.position(at).expect("it exists");
-                        particles.set_position(at, place + way).expect("it exists");
-                        particles.set_displacement(at, way).expect("it exists");
+                        particles
+                            .set_position(at, place + displacement)
+                            .expect("it exists");
+                        particles
+                            .set_displacement(at, displacement)
+                            .expect("it exists");
                     }
                 }
                 let substep = SubStep {

@@ -31,7 +31,7 @@ pub struct Shot {
     /// When in the first tick it meets the cloth, from 0 to 1.
     pub delay: f32,
     /// Its way, of length 1: along z it meets the cloth head on.
-    pub way: Vec3,
+    pub direction: Vec3,
     /// How it spins (rad/s).
     pub spin: Vec3,
 }
@@ -77,10 +77,12 @@ impl Shot {
         let width = (SIDE - 1) as f32 * SPACING;
         let [across, down] = self.beside;
         let beside = Vec3::new(across, down, 0.0) * (width / 6.0);
-        let behind = (self.radius + 0.01) / self.way.z + self.delay * self.speed * step.seconds;
-        let mut centre = Vec3::new(width / 2.0, -width / 2.0, 0.0) + beside - self.way * behind;
+        let behind =
+            (self.radius + 0.01) / self.direction.z + self.delay * self.speed * step.seconds;
+        let mut centre =
+            Vec3::new(width / 2.0, -width / 2.0, 0.0) + beside - self.direction * behind;
         for tick in 0..ticks {
-            let to = centre + self.way * self.speed * step.seconds;
+            let to = centre + self.direction * self.speed * step.seconds;
             let ball = MovingCollider {
                 turn: self.spin * step.seconds,
                 ..MovingCollider::ball(self.radius, centre, to)

@@ -106,11 +106,11 @@ proptest! {
         let shape = random.shape_of(kind, 0.5);
         let collider = MovingCollider::still(shape, random.pose(1.0));
         let centre = Vec3::from(collider.from.translation);
-        let way = random.direction();
-        let start = centre - way * random.between(1.5, 3.0);
-        let [end, _] = meet(&collider, start, way * random.between(3.0, 6.0), true);
+        let direction = random.direction();
+        let start = centre - direction * random.between(1.5, 3.0);
+        let [end, _] = meet(&collider, start, direction * random.between(3.0, 6.0), true);
         // Along a slanted face, it may slide past the middle.
-        let is_before = (end - centre).dot(way) < 0.0;
+        let is_before = (end - centre).dot(direction) < 0.0;
         prop_assert!(kind > 0 || is_before, "{collider:?} {start} {end}");
         let particles = loose(&[end], &[]);
         prop_assert!(deepest_at(&particles, &collider, 1.0, 0.0) < 1.2e-5);

@@ -37,11 +37,11 @@ impl Corners {
         &self,
         corner: usize,
         particles: &mut ClothParticles,
-        [way, displacement]: [Vec3; 2],
+        [push, displacement]: [Vec3; 2],
     ) -> Vec3 {
         let Slot { block, lane } = self.slots[corner];
         let block = &mut particles.blocks_mut()[block];
-        let pushed = self.positions[corner] + way;
+        let pushed = self.positions[corner] + push;
         block.set_position(lane, pushed);
         block.set_displacement(lane, self.displacements[corner] + displacement);
         pushed

@@ -1,4 +1,4 @@
-//! Friction of triangles, at their particles: the contacts' [push](Held) times μ is the budget of each.
+//! Friction of triangles, at their particles: the contacts' [push](FrictionBudget) times μ is the budget of each.
 
 use multiversion::multiversion;
 
@@ -6,7 +6,7 @@ use crate::{
     cloth::{Block, DX, DY, DZ, LANES, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
-        friction::Held,
+        friction::FrictionBudget,
         particles::{LaneMotion, Sums},
     },
 };
@@ -19,7 +19,7 @@ const NONE_LEFT: f32 = 1.0e-15;
 
 /// The axis of a ball or a capsule, which defines its surface.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Axle {
+pub(crate) struct CapsuleCore {
     pub axis: [f32; 3],
     /// Half of the length; 0 for a ball (m).
     pub half_length: f32,
@@ -30,14 +30,14 @@ pub(crate) struct Axle {
 #[inline(always)]
 fn hold(
     view: &mut View,
-    held: &mut Held,
-    axle: &Axle,
+    held: &mut FrictionBudget,
+    core: &CapsuleCore,
     motion: &LaneMotion,
     kept: f32,
     sums: &mut Sums,
 ) {
     let ([ox, oy, oz], [sx, sy, sz]) = (motion.origin, motion.slide);
-    let ([wx, wy, wz], [ux, uy, uz]) = (motion.spin, axle.axis);
+    let ([wx, wy, wz], [ux, uy, uz]) = (motion.spin, core.axis);
     let mut left = [0.0; LANES];
     for l in 0..LANES {
         let weight = view[W + l];
@@ -62,20 +62,20 @@ fn hold(
         let budget = held.budget[l] * kept + motion.friction * pushed;
         let (x, y, z) = (view[X + l] - ox, view[Y + l] - oy, view[Z + l] - oz);
         let along = x * ux + y * uy + z * uz;
-        let along = if along < axle.half_length {
+        let along = if along < core.half_length {
             along
         } else {
-            axle.half_length
+            core.half_length
         };
-        let along = if along > -axle.half_length {
+        let along = if along > -core.half_length {
             along
         } else {
-            -axle.half_length
+            -core.half_length
         };
         // Displacement of the surface at the contact.
-        let ax = ux * along + nx * axle.radius;
-        let ay = uy * along + ny * axle.radius;
-        let az = uz * along + nz * axle.radius;
+        let ax = ux * along + nx * core.radius;
+        let ay = uy * along + ny * core.radius;
+        let az = uz * along + nz * core.radius;
         let rx = view[DX + l] - (sx + (wy * az - wz * ay));
         let ry = view[DY + l] - (sy + (wz * ax - wx * az));
         let rz = view[DZ + l] - (sz + (wx * ay - wy * ax));
@@ -128,21 +128,21 @@ fn hold(
 pub(crate) fn hold_all(
     blocks: &mut [Block],
     contacts: &[ContactBlock],
-    helds: &mut [Held],
-    axle: &Axle,
+    helds: &mut [FrictionBudget],
+    core: &CapsuleCore,
     motion: &LaneMotion,
     seconds: f32,
     sums: &mut Sums,
 ) {
-    hold_all_baseline(blocks, contacts, helds, axle, motion, seconds, sums);
+    hold_all_baseline(blocks, contacts, helds, core, motion, seconds, sums);
 }
 
 #[inline(always)]
 pub(crate) fn hold_all_baseline(
     blocks: &mut [Block],
     contacts: &[ContactBlock],
-    helds: &mut [Held],
-    axle: &Axle,
+    helds: &mut [FrictionBudget],
+    core: &CapsuleCore,
     motion: &LaneMotion,
     seconds: f32,
     sums: &mut Sums,
@@ -153,7 +153,7 @@ pub(crate) fn hold_all_baseline(
     for (contact, held) in contacts.iter().zip(helds) {
         if held.is_active {
             let view = blocks[contact.block as usize].view_mut();
-            hold(view, held, axle, motion, kept, &mut own);
+            hold(view, held, core, motion, kept, &mut own);
         }
     }
     *sums = own;

@@ -10,7 +10,7 @@ use crate::{
     cloth::{Block, LANES, Layout, Slot, View},
     contact::{
         candidates::ContactBlock,
-        friction::Held,
+        friction::FrictionBudget,
         particles::{LaneMotion, Sums},
     },
 };
@@ -81,7 +81,7 @@ impl Corner {
 fn push_eight(
     blocks: &mut [Block],
     (contact, corners): (&mut ContactBlock, [Corner; 3]),
-    helds: &mut [Held],
+    helds: &mut [FrictionBudget],
     is_cell: &[bool; LANES],
     (motion, cells): (&LaneMotion, &Cells),
     sums: &mut Sums,
@@ -196,7 +196,7 @@ pub(crate) fn slots_of(
 pub(crate) fn push_cells(
     blocks: &mut [Block],
     contacts: &mut [ContactBlock],
-    helds: &mut [Held],
+    helds: &mut [FrictionBudget],
     of: (&LaneMotion, &Cells),
     from: Place,
     sums: &mut Sums,
@@ -208,7 +208,7 @@ pub(crate) fn push_cells(
 pub(crate) fn push_cells_baseline(
     blocks: &mut [Block],
     contacts: &mut [ContactBlock],
-    helds: &mut [Held],
+    helds: &mut [FrictionBudget],
     (motion, cells): (&LaneMotion, &Cells),
     from: Place,
     sums: &mut Sums,
@@ -249,7 +249,7 @@ pub(crate) fn push_cells_baseline(
                 };
                 return (left, next);
             }
-            if cells.pushed + sums.passed * cells.max_faces > cells.room {
+            if cells.pushed + sums.passed * cells.max_faces > cells.clearance {
                 return (Stop::Room, next);
             }
         }

@@ -26,7 +26,7 @@ pub(crate) struct Cells {
     /// Largest push of particles in earlier passes (m).
     pub pushed: f32,
     /// Largest push before candidates may be missing (m), and the number of triangles that may push each particle.
-    pub room: f32,
+    pub clearance: f32,
     pub max_faces: f32,
     /// Whether areas are wanted.
     pub is_measured: bool,
@@ -160,7 +160,7 @@ pub(crate) fn speeds(corners: [&View; 3], [sx, sy, sz]: [f32; 3]) -> Lanes {
 }
 
 /// The pushes of eight triangles.
-pub(crate) struct Pushes {
+pub(crate) struct CornerPushes {
     pub normal: [Lanes; 3],
     /// Displacement of the point along the normal, and the part of it that becomes momentum (m).
     pub far: Lanes,
@@ -177,9 +177,9 @@ pub(crate) fn pushes(
     motion: &LaneMotion,
     cells: &Cells,
     sums: &mut Sums,
-) -> Pushes {
+) -> CornerPushes {
     let zero = [0.0; LANES];
-    let mut pushes = Pushes {
+    let mut pushes = CornerPushes {
         normal: [zero; 3],
         far: zero,
         stopped: zero,
@@ -263,7 +263,7 @@ pub(crate) fn pushes(
 pub(crate) fn move_corner(
     view: &mut View,
     share: &Lanes,
-    pushes: &Pushes,
+    pushes: &CornerPushes,
     motion: &LaneMotion,
     sums: &mut Sums,
 ) -> [Lanes; 3] {

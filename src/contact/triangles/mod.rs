@@ -9,9 +9,9 @@ mod triangle;
 
 pub use corners::meets_triangles;
 pub(crate) use corners::{CoreMotion, Corners};
-pub(crate) use faces::{Pushed, ResumePoint};
+pub(crate) use faces::{ResumePoint, TrianglePush};
 #[cfg(test)]
-pub(crate) use friction::{Axle, hold_all, hold_all_baseline};
+pub(crate) use friction::{CapsuleCore, hold_all, hold_all_baseline};
 #[cfg(test)]
 pub(crate) use grid::{Place, push_cells, push_cells_baseline};
 #[cfg(test)]

@@ -13,9 +13,9 @@ use super::{
 use crate::{
     cloth::{ClothParticles, Layout},
     hierarchy::{
-        found::Found,
         probe::Probe,
         rule::BoundRule,
+        search_buffers::SearchBuffers,
         volume::{NodeVolume, Volume},
     },
 };
@@ -95,7 +95,7 @@ impl Tree for GridTree {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut Found,
+        found: &mut SearchBuffers,
     ) {
         let reach = probe.reach() as f32;
         each!(volumes, bounds => match bounds.rule {
@@ -171,10 +171,10 @@ fn descend(
     tree: &GridTree,
     particles: &ClothParticles,
     probe: &Probe,
-    found: &mut Found,
+    found: &mut SearchBuffers,
     touches: impl Fn(usize, [u32; 2], &Part, &Part) -> bool,
 ) {
-    let Found {
+    let SearchBuffers {
         visits,
         frontier: [here, next],
         candidates,

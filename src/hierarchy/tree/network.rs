@@ -12,9 +12,9 @@ use super::{
 use crate::{
     cloth::{ClothParticles, Graph, Layout, ShortestPaths, Slot},
     hierarchy::{
-        found::Found,
         probe::Probe,
         rule::BoundRule,
+        search_buffers::SearchBuffers,
         volume::{NodeVolume, Volume},
     },
 };
@@ -190,7 +190,7 @@ impl Tree for NetworkTree {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut Found,
+        found: &mut SearchBuffers,
     ) {
         if self.nodes.is_empty() {
             return;

@@ -5,7 +5,7 @@ use std::{fmt::Debug, ops::Range};
 use super::{node::Node, stored::Volumes};
 use crate::{
     cloth::{ClothParticles, Layout},
-    hierarchy::{found::Found, probe::Probe, rule::BoundRule, volume::NodeVolume},
+    hierarchy::{probe::Probe, rule::BoundRule, search_buffers::SearchBuffers, volume::NodeVolume},
 };
 
 /// A tree over a cloth's particles, built once for a surface.
@@ -40,6 +40,6 @@ pub(crate) trait Tree: Debug + Send + Sync {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut Found,
+        found: &mut SearchBuffers,
     );
 }

@@ -81,32 +81,33 @@ fn a_networks_radii_are_shortest_ways() {
         assert_eq!(tree.validate(rest.len()), Ok(()));
         // Floyd and Warshall.
         let count = rest.len();
-        let mut way = vec![vec![f64::INFINITY; count]; count];
-        for (index, ways) in way.iter_mut().enumerate() {
-            ways[index] = 0.0;
+        let mut distance = vec![vec![f64::INFINITY; count]; count];
+        for (index, distances) in distance.iter_mut().enumerate() {
+            distances[index] = 0.0;
         }
         for spring in springs
             .iter()
             .filter(|spring| spring.kind != SpringKind::Bend)
         {
             let [a, b] = spring.ends.map(|end| end as usize);
-            way[a][b] = f64::from(spring.rest_length);
-            way[b][a] = way[a][b];
+            distance[a][b] = f64::from(spring.rest_length);
+            distance[b][a] = distance[a][b];
         }
         for via in 0..count {
             for from in 0..count {
                 for to in 0..count {
-                    way[from][to] = way[from][to].min(way[from][via] + way[via][to]);
+                    distance[from][to] =
+                        distance[from][to].min(distance[from][via] + distance[via][to]);
                 }
             }
         }
         for index in 0..tree.len() as u32 {
             let node = tree.node(index);
-            let ways = tree
+            let distances = tree
                 .particles_of(index)
                 .into_iter()
-                .map(|particle| way[node.middle as usize][particle as usize]);
-            let farthest = ways.fold(0.0, f64::max);
+                .map(|particle| distance[node.middle as usize][particle as usize]);
+            let farthest = distances.fold(0.0, f64::max);
             let radius = f64::from(node.rest_radius);
             assert!(
                 radius >= farthest && radius <= farthest * (1.0 + 1e-6),

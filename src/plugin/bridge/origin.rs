@@ -53,9 +53,9 @@ use crate::{
 /// }
 /// ```
 pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), ClothError> {
-    for way in by.to_array() {
+    for displacement in by.to_array() {
         let quantity = "jump of the world's origin (m)";
-        ClothError::check(way, f32::is_finite, quantity, "finite")?;
+        ClothError::check(displacement, f32::is_finite, quantity, "finite")?;
     }
     // A world without the plugin remembers nothing.
     if world.contains_resource::<WindField>() {
@@ -67,7 +67,7 @@ pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), ClothError> {
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-struct Shifted {
+struct ShiftQuery {
     entity: Entity,
     frame: &'static mut ClothFrame,
     state: &'static mut ClothState,
@@ -78,7 +78,7 @@ struct Shifted {
 
 fn shift(
     In(shift): In<Shift>,
-    mut cloths: Query<Shifted, Allow<Disabled>>,
+    mut cloths: Query<ShiftQuery, Allow<Disabled>>,
     mut colliders: Query<(Entity, &mut ColliderMotion), Allow<Disabled>>,
     mut roots: Query<(Entity, &mut RootMotion), Allow<Disabled>>,
     zones: Query<&ClothWindZone, Allow<Disabled>>,

@@ -173,7 +173,7 @@ impl Plugin for ClothGizmosPlugin {
 /// Volumes and a search of the gizmos' own, kept from frame to frame: the tick's search may have touched no volume at
 /// all.
 #[derive(Default)]
-struct Drawing {
+struct DrawQuery {
     bounds: NodeBounds,
     query: TopDownQuery,
     states: Vec<NodeState>,
@@ -195,7 +195,7 @@ struct Drawn {
 fn draw_cloths(
     cloths: Query<Drawn>,
     store: Res<GizmoConfigStore>,
-    mut drawing: Local<Drawing>,
+    mut drawing: Local<DrawQuery>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
     let look = store.config::<ClothGizmos>().1;
@@ -217,7 +217,7 @@ fn draw_cloths(
     }
 }
 
-impl Drawing {
+impl DrawQuery {
     /// Finds the current place of each volume, and whether it was visited or touched.
     fn search(&mut self, cloth: &DrawnItem) {
         let (tree, surface) = (cloth.built.tree(), cloth.built.surface());

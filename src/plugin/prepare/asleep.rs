@@ -4,22 +4,22 @@ use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
 
 use super::{
     inputs::Inputs,
-    preparing::{NO_PINS, PreparingItem, Surroundings},
+    preparing::{NO_PINS, PrepareQueryItem, Surroundings},
 };
 use crate::{
     cloth::ClothParticles,
     plugin::{
         frame::{ClothFrame, global_transform},
-        state::{Breeze, ClothBuilt},
+        state::{ClothBuilt, EffectiveWind},
     },
 };
 
 /// Whether the cloth sleeps and its inputs have not changed: then there is nothing to prepare.
 pub(super) fn sleeps_as_it_was(
-    cloth: &PreparingItem,
+    cloth: &PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
-    breeze: &Option<Breeze>,
+    wind: &Option<EffectiveWind>,
     seconds: f32,
 ) -> bool {
     let Surroundings {
@@ -62,14 +62,14 @@ pub(super) fn sleeps_as_it_was(
         && cloth.fault.is_none()
         && built.is_made_from(cloth.cloth.last_changed(), &inputs.material, pins)
         && sources.find(cloth.entity, &cloth.cloth, source) == Ok(source)
-        && (state.air).is_still(breeze.as_ref(), cloth.pressure, field, || {
+        && (state.air).is_still(wind.as_ref(), cloth.pressure, field, || {
             ball(built, &cloth.particles, state.stretch.bound, &cloth.frame)
         })
         && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))
 }
 
 /// Whether its pose is the same as in the last tick, or it follows none.
-fn is_in_same_pose(cloth: &PreparingItem, around: &Surroundings) -> bool {
+fn is_in_same_pose(cloth: &PrepareQueryItem, around: &Surroundings) -> bool {
     let place = |joint| global_transform(&around.targets.transforms, joint);
     match (&cloth.skin, &cloth.built.skin) {
         (None, None) => true,

@@ -14,7 +14,7 @@ use crate::{
     plugin::{
         authoring::ClothAttachment,
         state::{
-            BuiltFrom, ClothBuilt, ClothState, Recipe, Shared, SharedParts, Source, Tried,
+            BuiltFrom, ClothBuilt, ClothState, FailedBuild, Recipe, Shared, SharedParts, Source,
             stiffnesses,
         },
     },
@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// The game's description of a cloth. Removed components count as their defaults, and as no pins.
-pub(crate) struct Wanted<'a> {
+pub(crate) struct BuildInputs<'a> {
     pub cloth: &'a Cloth,
     /// When the cloth was last changed.
     pub changed: Tick,
@@ -47,7 +47,7 @@ pub(crate) enum Build {
 
 /// Builds a new cloth, or follows changes of an old one. Changes nothing on an error.
 pub(crate) fn build(
-    wanted: &Wanted,
+    wanted: &BuildInputs,
     sources: &Sources,
     parts: &mut SharedParts,
     particles: &mut Mut<ClothParticles>,
@@ -59,7 +59,7 @@ pub(crate) fn build(
         return Ok(Build::Kept);
     }
     // Inputs that failed once are not tried again: checking a mesh takes milliseconds.
-    let tried = Tried {
+    let tried = FailedBuild {
         changed: wanted.changed,
         source: wanted.source,
         material: *wanted.material,
@@ -83,7 +83,7 @@ pub(crate) fn build(
 }
 
 /// Whether the built data belongs to that cloth, whatever its pins and material.
-fn is_built(wanted: &Wanted, built: &mut ClothBuilt) -> bool {
+fn is_built(wanted: &BuildInputs, built: &mut ClothBuilt) -> bool {
     let (Some(from), Some(recipe)) = (&mut built.from, &built.shared.recipe) else {
         return false;
     };
@@ -103,14 +103,14 @@ fn is_built(wanted: &Wanted, built: &mut ClothBuilt) -> bool {
 }
 
 fn build_new(
-    wanted: &Wanted,
+    wanted: &BuildInputs,
     sources: &Sources,
     parts: &mut SharedParts,
     particles: &mut Mut<ClothParticles>,
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<Build, ClothError> {
-    let Wanted {
+    let BuildInputs {
         cloth,
         material,
         pins,
@@ -162,7 +162,7 @@ fn build_new(
 /// The particles of a cloth of which only the resolution has changed, while the rectangle is the same; `None` for any
 /// other change.
 fn resampled(
-    wanted: &Wanted,
+    wanted: &BuildInputs,
     shared: &Shared,
     particles: &ClothParticles,
     built: &ClothBuilt,
@@ -199,7 +199,7 @@ fn resampled(
 
 /// The scale of a cloth. That of a mesh without its last digits, which depend on how the cloth is turned: so that those made
 /// alike share one surface.
-fn scale_of(wanted: &Wanted) -> Vec3 {
+fn scale_of(wanted: &BuildInputs) -> Vec3 {
     if wanted.cloth.as_grid().is_some() {
         return wanted.scale;
     }
@@ -208,7 +208,7 @@ fn scale_of(wanted: &Wanted) -> Vec3 {
 }
 
 /// The particles of a new cloth.
-fn at_rest(wanted: &Wanted, surface: &Surface) -> Result<ClothParticles, ClothError> {
+fn at_rest(wanted: &BuildInputs, surface: &Surface) -> Result<ClothParticles, ClothError> {
     let mut particles = ClothParticles::at_rest(surface, wanted.material)?;
     particles.assign_masses(surface, wanted.material, wanted.pins)?;
     // Attached particles will be pinned where they are.
@@ -227,13 +227,13 @@ fn at_rest(wanted: &Wanted, surface: &Surface) -> Result<ClothParticles, ClothEr
 /// Takes over another material or other pins: masses, springs and tree only where they change, so that a
 /// mass that the game has set outlasts a change of damping.
 fn follow_changes(
-    wanted: &Wanted,
+    wanted: &BuildInputs,
     parts: &mut SharedParts,
     particles: &mut Mut<ClothParticles>,
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<(), ClothError> {
-    let Wanted { material, pins, .. } = *wanted;
+    let BuildInputs { material, pins, .. } = *wanted;
     check_count(particles, built.surface())?;
     let Some(from) = &mut built.from else {
         return Ok(());

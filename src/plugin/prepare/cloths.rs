@@ -12,13 +12,13 @@ use super::{
     asleep::sleeps_as_it_was,
     attach::follow_targets,
     broad_phase::clear_stats,
-    build::{Build, Wanted, build},
+    build::{Build, BuildInputs, build},
     carry::{carry, new_from_old},
     drag::jump,
-    freeze::{stand, thaw},
+    freeze::{freeze, resume},
     inputs::Inputs,
     notice::notice_new,
-    preparing::{NO_PINS, Preparing, PreparingItem, Surroundings},
+    preparing::{NO_PINS, PrepareQuery, PrepareQueryItem, Surroundings},
     skin::{move_with_pose, place_pose, stand_in_pose},
     step::{prepare_contact, prepare_step, see_whether_it_rests},
 };
@@ -30,13 +30,13 @@ use crate::{
         },
         frame::{ClothFrame, global_transform},
         naming::Part,
-        state::{Breeze, ClothFault, Notices, SharedParts, Turn},
+        state::{ClothFault, EffectiveWind, LodAction, Notices, SharedParts},
     },
 };
 
 /// Prepares each cloth, or marks it with a fault.
 pub(crate) fn prepare_cloths(
-    mut cloths: Query<Preparing>,
+    mut cloths: Query<PrepareQuery>,
     around: Surroundings,
     (mut parts, mut notices): (ResMut<SharedParts>, ResMut<Notices>),
     gravity: Res<ClothGravity>,
@@ -53,8 +53,8 @@ pub(crate) fn prepare_cloths(
         if cloth.stats.level != level {
             cloth.stats.level = level;
         }
-        if cloth.state.lod.turn == Turn::Wait {
-            pass(&mut cloth);
+        if cloth.state.lod.turn == LodAction::Wait {
+            skip(&mut cloth);
             continue;
         }
         let (seconds, ticks) = cloth.state.lod.take(time.delta_secs());
@@ -69,24 +69,24 @@ pub(crate) fn prepare_cloths(
         let lod = cloth.lod.or(global_lod);
         let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
         let outcome = inputs.and_then(|inputs| {
-            if cloth.state.lod.turn == Turn::Stand {
-                pass(&mut cloth);
+            if cloth.state.lod.turn == LodAction::Stand {
+                skip(&mut cloth);
                 return stand_still(&mut cloth, &around);
             }
-            let breeze = around.field.of_cloth(cloth.air)?;
-            if sleeps_as_it_was(&cloth, &inputs, &around, &breeze, seconds) {
+            let wind = around.field.of_cloth(cloth.air)?;
+            if sleeps_as_it_was(&cloth, &inputs, &around, &wind, seconds) {
                 return Ok(());
             }
             // Forgets the work of an earlier tick.
             cloth.scratch.forget_tick();
             let seconds = (seconds, ticks);
-            prepare(&mut cloth, &inputs, &around, breeze, &mut parts, seconds)?;
+            prepare(&mut cloth, &inputs, &around, wind, &mut parts, seconds)?;
             notice_new(&mut cloth, &inputs, &mut notices);
             Ok(())
         });
         cloth.state.is_valid = outcome.is_ok();
         if outcome.is_err() {
-            pass(&mut cloth);
+            skip(&mut cloth);
             if !cloth.state.resumes {
                 cloth.state.rest.disturb();
             }
@@ -110,7 +110,7 @@ pub(crate) fn prepare_cloths(
 }
 
 /// Lets the tick pass without the cloth.
-fn pass(cloth: &mut PreparingItem) {
+fn skip(cloth: &mut PrepareQueryItem) {
     cloth.scratch.forget_tick();
     cloth.bounds.leave_out();
     clear_stats(&mut cloth.stats, false);
@@ -119,7 +119,7 @@ fn pass(cloth: &mut PreparingItem) {
 }
 
 /// Keeps the cloth's shape, and moves it with its carrier.
-fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), ClothError> {
+fn stand_still(cloth: &mut PrepareQueryItem, around: &Surroundings) -> Result<(), ClothError> {
     if cloth.state.written != Some(cloth.particles.last_changed()) {
         check_particles(&mut cloth.particles)?;
     }
@@ -129,7 +129,7 @@ fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), C
     let attachments = cloth
         .attachments
         .map_or(&[][..], ClothAttachments::as_slice);
-    stand(
+    freeze(
         cloth.entity,
         attachments,
         targets,
@@ -148,10 +148,10 @@ fn stand_still(cloth: &mut PreparingItem, around: &Surroundings) -> Result<(), C
 }
 
 fn prepare(
-    cloth: &mut PreparingItem,
+    cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
-    breeze: Option<Breeze>,
+    wind: Option<EffectiveWind>,
     parts: &mut SharedParts,
     (seconds, ticks): (f32, u32),
 ) -> Result<(), ClothError> {
@@ -163,7 +163,7 @@ fn prepare(
         cloth.state.is_valid && !has_stood,
         cloth.state.largest_speed,
     );
-    go_along(cloth, around, [&before, &frame], build, seconds, has_stood)?;
+    apply_motion(cloth, around, [&before, &frame], build, seconds, has_stood)?;
     let scratch = &mut *cloth.scratch;
     scratch.begins |= build == Build::New;
     // What stood still, or was at fault, may have been put anywhere meanwhile.
@@ -174,7 +174,7 @@ fn prepare(
     let (built, state) = (&mut *cloth.built, &mut *cloth.state);
     if was_written || cloth.scratch.teleports {
         state.stretch = built.solver.measure(&cloth.particles);
-        built.weigh(&cloth.particles);
+        built.refresh_masses(&cloth.particles);
         cloth.stats.stretch = state.stretch;
         state.rest.disturb();
     }
@@ -186,7 +186,7 @@ fn prepare(
         &mut state.largest_gravity,
     );
     cloth.scratch.was_put = was_written || build != Build::Kept || cloth.scratch.teleports;
-    see_whether_it_rests(cloth, inputs, around, breeze, acceleration, seconds);
+    see_whether_it_rests(cloth, inputs, around, wind, acceleration, seconds);
     prepare_step(cloth, inputs, around, acceleration, (seconds, ticks));
     prepare_contact(cloth, inputs, acceleration, seconds);
     clear_stats(&mut cloth.stats, cloth.state.rest.is_asleep());
@@ -196,7 +196,7 @@ fn prepare(
 
 /// Builds a cloth that is not built yet. Returns the place of its entity, and the result.
 fn build_cloth(
-    cloth: &mut PreparingItem,
+    cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
     parts: &mut SharedParts,
@@ -212,7 +212,7 @@ fn build_cloth(
         // How large it is in the world is the skeleton's matter.
         scale = scratch.pose.scale().unwrap_or(scale);
     }
-    let wanted = Wanted {
+    let wanted = BuildInputs {
         cloth: &cloth.cloth,
         changed: cloth.cloth.last_changed(),
         source: sources.find(cloth.entity, &cloth.cloth, built.source())?,
@@ -239,7 +239,7 @@ fn build_cloth(
 /// Takes over particles that the game wrote, and checks settings against the surface. Returns whether the particles
 /// differ from those of the last tick.
 fn take_over(
-    cloth: &mut PreparingItem,
+    cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
     [before, frame]: [&ClothFrame; 2],
@@ -249,7 +249,7 @@ fn take_over(
     // A cloth with a fault may have been moved anywhere meanwhile.
     let jumps = cloth.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
     let seconds = (seconds, jumps);
-    let has_stood = thaw(&around.targets, *frame, seconds, *before, particles, state);
+    let has_stood = resume(&around.targets, *frame, seconds, *before, particles, state);
     // Saving or restoring particles may mark them as changed without a change.
     let was_written = has_stood
         || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
@@ -268,8 +268,8 @@ fn take_over(
 }
 
 /// Follows the entity, the root that carries it, the pose, and the targets of attachments.
-fn go_along(
-    cloth: &mut PreparingItem,
+fn apply_motion(
+    cloth: &mut PrepareQueryItem,
     around: &Surroundings,
     [before, frame]: [&ClothFrame; 2],
     build: Build,
@@ -305,9 +305,9 @@ fn go_along(
         && moves
         && was_built
     {
-        let way = scratch.pose.farthest_from(&state.pose, new_from_old);
+        let displacement = scratch.pose.farthest_from(&state.pose, new_from_old);
         // A frozen cloth is put where its skeleton has moved meanwhile.
-        scratch.teleports |= has_stood || way > skin.teleport_distance;
+        scratch.teleports |= has_stood || displacement > skin.teleport_distance;
     }
     if scratch.teleports {
         scratch.carried = None;

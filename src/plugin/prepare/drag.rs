@@ -16,9 +16,9 @@ const FASTER: f32 = 2.0;
 /// tick takes `seconds` and stands for so many `ticks`.
 pub(crate) fn jump(pins: &[PinMotion], fastest: f32, (seconds, ticks): (f32, u32)) -> f32 {
     let squares = pins.iter().map(|pin| pin.from.distance_squared(pin.to));
-    let way = squares.fold(0.0, f32::max).sqrt();
-    let is_jump = way > FAR * ticks as f32 && way > FASTER * fastest * seconds;
-    if is_jump { way } else { 0.0 }
+    let displacement = squares.fold(0.0, f32::max).sqrt();
+    let is_jump = displacement > FAR * ticks as f32 && displacement > FASTER * fastest * seconds;
+    if is_jump { displacement } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -29,11 +29,11 @@ mod tests {
 
     const TICK: f32 = 1.0 / 64.0;
 
-    fn pins(way: f32) -> [PinMotion; 2] {
+    fn pins(displacement: f32) -> [PinMotion; 2] {
         [0.5, 1.0].map(|part| PinMotion {
             particle: 0,
             from: Vec3::X,
-            to: Vec3::X + Vec3::new(0.6, 0.0, 0.8) * part * way,
+            to: Vec3::X + Vec3::new(0.6, 0.0, 0.8) * part * displacement,
         })
     }
 

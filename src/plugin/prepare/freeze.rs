@@ -34,7 +34,7 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
 /// # Errors
 /// [`ClothError::Transform`], [`ClothError::NoTransform`], and [`ClothError::NoTarget`] if the target of the first of
 /// `attachments` is gone.
-pub(crate) fn stand(
+pub(crate) fn freeze(
     entity: Entity,
     attachments: &[ClothAttachment],
     targets: &Targets,
@@ -85,7 +85,7 @@ pub(crate) fn stand(
 
 /// Thaws a frozen cloth, whose entity is at `now`, in a tick of `seconds`. It gets the velocity of its carrier, or none
 /// if it `jumps`. Returns whether it was frozen.
-pub(crate) fn thaw(
+pub(crate) fn resume(
     targets: &Targets,
     now: ClothFrame,
     (seconds, jumps): (f32, bool),

@@ -31,7 +31,7 @@ const KEPT: u32 = 32;
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct Levelled {
+pub(crate) struct LodQuery {
     entity: Entity,
     lod: Option<&'static ClothLod>,
     built: &'static ClothBuilt,
@@ -47,7 +47,7 @@ pub(crate) struct Levelled {
 
 /// A cloth, and its wanted level.
 #[derive(Debug, Clone, Copy)]
-struct Wanted {
+struct WantedLevel {
     cloth: Ordered,
     level: ClothLodLevel,
     /// Around the whole of it, as far as it may get until it is moved again, in the world (m).
@@ -64,7 +64,7 @@ struct Wanted {
 /// Memory that a tick works in.
 #[derive(Debug, Default)]
 pub(crate) struct Work {
-    wanted: Vec<Wanted>,
+    wanted: Vec<WantedLevel>,
     groups: Islands,
 }
 
@@ -72,7 +72,7 @@ type Colliders<'w, 's> = Query<'w, 's, (&'static ColliderMotion, Option<&'static
 
 /// Decides what happens to each cloth in the tick. Costs nothing if there is no level of detail.
 pub(crate) fn choose_levels(
-    mut cloths: Query<Levelled>,
+    mut cloths: Query<LodQuery>,
     own: Query<(), With<ClothLod>>,
     global: Option<Res<GlobalClothLod>>,
     cameras: Cameras,
@@ -121,7 +121,7 @@ pub(crate) fn choose_levels(
     for (place, own) in wanted.iter_mut().enumerate() {
         (own.group, own.phase) = (place, place as u32);
     }
-    let is_coarse = |own: &Wanted| own.touches_cloth && own.level != ClothLodLevel::Full;
+    let is_coarse = |own: &WantedLevel| own.touches_cloth && own.level != ClothLodLevel::Full;
     if wanted.iter().any(is_coarse) {
         group(wanted, groups);
     }
@@ -139,7 +139,7 @@ pub(crate) fn choose_levels(
     }
 }
 
-impl LevelledItem<'_, '_> {
+impl LodQueryItem<'_, '_> {
     /// Middle and radius of a sphere around it, in its frame (m); `None` for one that is not built, nor resumed from a snapshot.
     fn sphere(&self) -> Option<(Vec3, f32)> {
         if self.state.is_valid && self.built.matches(self.particles) {
@@ -151,10 +151,10 @@ impl LevelledItem<'_, '_> {
     }
 
     /// The level that it would have alone.
-    fn wanted(&mut self, global: Option<&ClothLod>, cameras: &Cameras) -> Wanted {
+    fn wanted(&mut self, global: Option<&ClothLod>, cameras: &Cameras) -> WantedLevel {
         let layers = self.layers.copied().unwrap_or_default();
         let order = self.order.copied().unwrap_or_default();
-        let mut wanted = Wanted {
+        let mut wanted = WantedLevel {
             cloth: (order, self.entity),
             level: ClothLodLevel::Full,
             centre: Vec3::ZERO,
@@ -200,7 +200,7 @@ impl LevelledItem<'_, '_> {
 }
 
 /// Gives cloths that may touch each other the finest of their levels, and moves them in the same ticks.
-fn group(wanted: &mut [Wanted], groups: &mut Islands) {
+fn group(wanted: &mut [WantedLevel], groups: &mut Islands) {
     let spans = wanted.iter().filter(|own| own.touches_cloth);
     groups.begin(spans.map(|own| Span {
         cloth: own.cloth,
@@ -210,7 +210,8 @@ fn group(wanted: &mut [Wanted], groups: &mut Islands) {
         bounds: None,
     }));
     groups.join(|_| None);
-    let place_of = |wanted: &[Wanted], cloth| wanted.binary_search_by_key(&cloth, |own| own.cloth);
+    let place_of =
+        |wanted: &[WantedLevel], cloth| wanted.binary_search_by_key(&cloth, |own| own.cloth);
     for (cloth, root) in groups.roots() {
         let (Ok(place), Ok(root)) = (place_of(wanted, cloth), place_of(wanted, root)) else {
             continue;

@@ -30,13 +30,13 @@ mod wind;
 pub(crate) use broad_phase::cover;
 pub(crate) use cloths::prepare_cloths;
 pub(crate) use colliders::{
-    ColliderMemory, ColliderMotion, ColliderTree, Deprived, forget_collider, note_enabled,
+    ChangedColliders, ColliderMemory, ColliderMotion, ColliderTree, forget_collider, note_enabled,
     note_removals, prepare_colliders,
 };
 pub(crate) use drag::FAR;
 pub(crate) use islands::{Island, Islands, find_islands};
 pub(crate) use levels::choose_levels;
-pub(crate) use roots::{Jumped, follow_roots};
+pub(crate) use roots::{Teleporting, follow_roots};
 pub(crate) use skin::Skins;
 #[cfg(feature = "mesh")]
 pub(crate) use source::{ChangedMeshes, SharedMeshes, note_changed_meshes};

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use super::{cost::least_cost, inputs::Inputs, preparing::PreparingItem};
+use super::{cost::least_cost, inputs::Inputs, preparing::PrepareQueryItem};
 use crate::{
     cloth::{Pin, Pins, Surface},
     plugin::{
@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Looks once at a cloth that was built and has been prepared for a tick.
-pub(super) fn notice_new(cloth: &mut PreparingItem, inputs: &Inputs, notices: &mut Notices) {
+pub(super) fn notice_new(cloth: &mut PrepareQueryItem, inputs: &Inputs, notices: &mut Notices) {
     // While no time passes it is not known how many sub-steps there are.
     let step = cloth.scratch.step.filter(|step| step.seconds > 0.0);
     let Some(step) = step.filter(|_| cloth.built.noticed.is_due) else {

@@ -28,7 +28,7 @@ pub(super) static NO_PINS: Pins = Pins::none();
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct Preparing {
+pub(crate) struct PrepareQuery {
     pub entity: Entity,
     pub cloth: Ref<'static, Cloth>,
     pub material: Option<&'static ClothMaterial>,

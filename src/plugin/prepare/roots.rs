@@ -23,7 +23,7 @@ use crate::{
 
 /// Entities that teleport in this tick, with everything below them.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Jumped(Vec<Entity>);
+pub(crate) struct Teleporting(Vec<Entity>);
 
 /// Notes how far each root carries the cloths below it, and which roots teleport.
 pub(crate) fn follow_roots(
@@ -31,7 +31,7 @@ pub(crate) fn follow_roots(
     marked: Query<Entity, With<ClothTeleport>>,
     places: Places,
     time: Res<Time>,
-    mut jumped: ResMut<Jumped>,
+    mut jumped: ResMut<Teleporting>,
 ) {
     jumped.0.clear();
     jumped.0.extend(&marked);
@@ -57,16 +57,16 @@ pub(crate) fn follow_roots(
             continue;
         }
         motion.last = Some(place);
-        let way = Vec3::from(place.translation - last.translation);
+        let displacement = Vec3::from(place.translation - last.translation);
         let turn = last.rotation.angle_between(place.rotation);
-        if way.length() > inertia.teleport_distance || turn > inertia.teleport_angle {
+        if displacement.length() > inertia.teleport_distance || turn > inertia.teleport_angle {
             jumped.0.push(entity);
         } else if last != place && (inertia.linear < 1.0 || inertia.angular < 1.0) {
             let rotation = last.rotation.slerp(place.rotation, 1.0 - inertia.angular);
             motion.carried = Some(Carried {
                 from: last,
                 to: Isometry3d::new(
-                    Vec3::from(last.translation) + way * (1.0 - inertia.linear),
+                    Vec3::from(last.translation) + displacement * (1.0 - inertia.linear),
                     rotation,
                 ),
             });
@@ -79,7 +79,7 @@ pub(crate) fn follow_roots(
 pub(crate) struct Roots<'w, 's> {
     roots: Query<'w, 's, &'static RootMotion>,
     parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
-    jumped: Res<'w, Jumped>,
+    jumped: Res<'w, Teleporting>,
 }
 
 impl Roots<'_, '_> {

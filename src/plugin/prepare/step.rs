@@ -7,20 +7,20 @@ use super::{
     broad_phase::{reach, update_bounds},
     carry::carrier,
     inputs::Inputs,
-    preparing::{PreparingItem, Surroundings},
+    preparing::{PrepareQueryItem, Surroundings},
 };
 use crate::{
     contact::ContactSettings,
-    plugin::state::Breeze,
+    plugin::state::EffectiveWind,
     solver::{Substepping, TickStep},
 };
 
 /// Decides whether the cloth may sleep, and wakes it if other forces act on it than before.
 pub(super) fn see_whether_it_rests(
-    cloth: &mut PreparingItem,
+    cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
-    breeze: Option<Breeze>,
+    wind: Option<EffectiveWind>,
     acceleration: Vec3,
     seconds: f32,
 ) {
@@ -36,8 +36,8 @@ pub(super) fn see_whether_it_rests(
     ));
     let (field, pressure) = (&*around.field, cloth.pressure);
     let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
-    let is_still = state.air.is_still(breeze.as_ref(), pressure, field, ball);
-    state.air.renew(breeze, pressure.copied(), field, ball);
+    let is_still = state.air.is_still(wind.as_ref(), pressure, field, ball);
+    state.air.renew(wind, pressure.copied(), field, ball);
     if state.known != known || !is_still || !scratch.pins.is_empty() || !settings.sleeps {
         state.known = known;
         state.rest.disturb();
@@ -52,7 +52,7 @@ pub(super) fn see_whether_it_rests(
 
 /// Prepares what the solver does in the tick.
 pub(super) fn prepare_step(
-    cloth: &mut PreparingItem,
+    cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
     acceleration: Vec3,
@@ -101,7 +101,7 @@ pub(super) fn prepare_step(
 
 /// Prepares its search for contacts, and its reach.
 pub(super) fn prepare_contact(
-    cloth: &mut PreparingItem,
+    cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     acceleration: Vec3,
     seconds: f32,

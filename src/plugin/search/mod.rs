@@ -29,7 +29,7 @@ use crate::{
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct Searching {
+pub(crate) struct SearchQuery {
     built: &'static ClothBuilt,
     particles: &'static ClothParticles,
     frame: &'static ClothFrame,
@@ -89,7 +89,7 @@ impl Colliders<'_, '_, '_> {
 /// Finds the colliders near each cloth, chooses how to search, and updates the bounding volumes if the search needs
 /// them. A collider that comes near a sleeping cloth, or leaves it, wakes it.
 pub(crate) fn rebuild_hierarchies(
-    mut cloths: Query<Searching>,
+    mut cloths: Query<SearchQuery>,
     colliders: Query<Collider>,
     mut tree: ResMut<ColliderTree>,
 ) {
@@ -118,7 +118,7 @@ pub(crate) fn rebuild_hierarchies(
 }
 
 /// Finds the particles that each collider near may touch within the tick.
-pub(crate) fn query_collisions(mut cloths: Query<Searching>) {
+pub(crate) fn query_collisions(mut cloths: Query<SearchQuery>) {
     let searched = cloths
         .iter()
         .filter(|cloth| cloth.broad_phase.is_searched)
@@ -133,7 +133,7 @@ pub(crate) fn query_collisions(mut cloths: Query<Searching>) {
     }
 }
 
-impl SearchingItem<'_, '_> {
+impl SearchQueryItem<'_, '_> {
     /// Finds the colliders near, if the cloth takes part in the tick and there are any.
     fn look_around(&mut self, colliders: &Colliders) {
         let BroadPhaseBounds {
@@ -235,8 +235,8 @@ impl SearchingItem<'_, '_> {
         let rests_on = &self.state.rests_on;
         let rests_still = |known: &RestsOn| {
             let motion = colliders.get(known.entity, layers);
-            let way = motion.and_then(|motion| motion.seen_from(self.frame, None));
-            way.is_some_and(|way| known.is(&way))
+            let moving = motion.and_then(|motion| motion.seen_from(self.frame, None));
+            moving.is_some_and(|moving| known.is(&moving))
         };
         if !rests_on.iter().all(rests_still) {
             return false;

@@ -122,7 +122,7 @@ type Scanned = (
 );
 
 /// What a scan of all colliders finds near a cloth, as far as they drag it to others, in their order.
-fn scanned(cloth: &SearchingReadOnlyItem, colliders: &Query<Scanned>) -> Vec<Entity> {
+fn scanned(cloth: &SearchQueryReadOnlyItem, colliders: &Query<Scanned>) -> Vec<Entity> {
     let BroadPhaseBounds { centre, radius, .. } = *cloth.broad_phase;
     let root = cloth
         .built
@@ -155,7 +155,7 @@ fn scanned(cloth: &SearchingReadOnlyItem, colliders: &Query<Scanned>) -> Vec<Ent
 struct Found(Vec<(Vec<Entity>, Vec<Entity>)>);
 
 /// Scans for each cloth that has looked around, before anything moves it: a collider may throw it far within the tick.
-fn scan(cloths: Query<Searching>, colliders: Query<Scanned>, mut found: ResMut<Found>) {
+fn scan(cloths: Query<SearchQuery>, colliders: Query<Scanned>, mut found: ResMut<Found>) {
     found.0 = cloths
         .iter()
         .map(|cloth| {
@@ -217,8 +217,8 @@ proptest! {
                     let place = transforms.compute_global_transform(entity).ok()?;
                     // What is nowhere has no way, and each other has one.
                     let is_somewhere = place.affine().is_finite();
-                    let way = motion.seen_from(&ClothFrame::default(), None);
-                    Some((is_somewhere, way, place.translation()))
+                    let moving = motion.seen_from(&ClothFrame::default(), None);
+                    Some((is_somewhere, moving, place.translation()))
                 });
                 places.collect::<Vec<_>>()
             };
@@ -229,10 +229,10 @@ proptest! {
             for (near, scanned) in found {
                 prop_assert_eq!(near, scanned);
             }
-            for (is_somewhere, way, place) in places {
-                prop_assert_eq!(way.is_some(), is_somewhere, "{:?} at {}", way, place);
-                if let Some(way) = way {
-                    prop_assert_eq!(way.to, place);
+            for (is_somewhere, moving, place) in places {
+                prop_assert_eq!(moving.is_some(), is_somewhere, "{:?} at {}", moving, place);
+                if let Some(moving) = moving {
+                    prop_assert_eq!(moving.to, place);
                 }
             }
         }

@@ -5,7 +5,7 @@ use bevy::{
     math::Vec3,
 };
 
-use super::wind_field::{Breeze, WindField};
+use super::wind_field::{EffectiveWind, WindField};
 use crate::{
     cloth::{ClothMaterial, ClothParticles, Surface},
     plugin::{
@@ -18,15 +18,15 @@ use crate::{
 /// The air in which a cloth was last moved, in the world.
 #[derive(Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct KnownAir {
-    breeze: Option<Breeze>,
+pub(crate) struct AirState {
+    wind: Option<EffectiveWind>,
     pressure: Option<ClothPressure>,
     zones: Vec<PlacedZone>,
     /// The solver's memory of the last tick.
     pub memory: AirMemory,
 }
 
-impl MapEntities for KnownAir {
+impl MapEntities for AirState {
     fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
         for zone in &mut self.zones {
             zone.entity = mapper.get_mapped(zone.entity);
@@ -34,12 +34,12 @@ impl MapEntities for KnownAir {
     }
 }
 
-impl KnownAir {
+impl AirState {
     /// Whether a cloth with this pressure meets the same air as before, and whether that air is steady. `ball` is a
     /// ball around the cloth: centre and radius (m).
     pub fn is_still(
         &self,
-        breeze: Option<&Breeze>,
+        wind: Option<&EffectiveWind>,
         pressure: Option<&ClothPressure>,
         field: &WindField,
         ball: impl FnOnce() -> (Vec3, f32),
@@ -47,8 +47,8 @@ impl KnownAir {
         if self.pressure.as_ref() != pressure {
             return false;
         }
-        let Some(breeze) = breeze else {
-            return self.breeze.is_none();
+        let Some(wind) = wind else {
+            return self.wind.is_none();
         };
         let mut zones = self.zones.iter();
         let is_same = if field.zones.is_empty() {
@@ -57,25 +57,25 @@ impl KnownAir {
             let (centre, radius) = ball();
             zones.eq(field.near(centre, radius))
         };
-        let feels = breeze.is_everywhere || !self.zones.is_empty();
-        let known = feels.then_some(breeze);
-        is_same && self.breeze.as_ref() == known && !(feels && breeze.is_turbulent())
+        let feels = wind.is_everywhere || !self.zones.is_empty();
+        let known = feels.then_some(wind);
+        is_same && self.wind.as_ref() == known && !(feels && wind.is_turbulent())
     }
 
     /// Takes over the air that a cloth meets in `ball`.
     pub fn renew(
         &mut self,
-        breeze: Option<Breeze>,
+        wind: Option<EffectiveWind>,
         pressure: Option<ClothPressure>,
         field: &WindField,
         ball: impl FnOnce() -> (Vec3, f32),
     ) {
         self.zones.clear();
-        if breeze.is_some() && !field.zones.is_empty() {
+        if wind.is_some() && !field.zones.is_empty() {
             let (centre, radius) = ball();
             self.zones.extend(field.near(centre, radius));
         }
-        self.breeze = breeze.filter(|breeze| breeze.is_everywhere || !self.zones.is_empty());
+        self.wind = wind.filter(|wind| wind.is_everywhere || !self.zones.is_empty());
         self.pressure = pressure;
     }
 
@@ -97,7 +97,7 @@ impl KnownAir {
     ) {
         let to_cloth = frame.isometry().rotation.inverse();
         // Air without density does nothing.
-        let Some(breeze) = self.breeze.filter(|breeze| breeze.density > 0.0) else {
+        let Some(wind) = self.wind.filter(|wind| wind.density > 0.0) else {
             let pressure = self.pressure;
             let nothing = Air {
                 pressure,
@@ -107,19 +107,19 @@ impl KnownAir {
             return solver.set_air_memory(self.memory);
         };
         let air = Air {
-            density: breeze.density,
-            drag: breeze.drag,
-            lift: breeze.lift,
-            wind: to_cloth * breeze.velocity,
+            density: wind.density,
+            drag: wind.drag,
+            lift: wind.lift,
+            wind: to_cloth * wind.velocity,
             pressure: self.pressure,
         };
         solver.set_air(surface, Some(air));
         solver.set_air_memory(self.memory);
-        if breeze.is_turbulent() || !self.zones.is_empty() {
+        if wind.is_turbulent() || !self.zones.is_empty() {
             solver.set_local_wind(particles, |place| {
                 let place = frame.to_world(place);
                 let zones = self.zones.iter().map(|zone| zone.at(place));
-                to_cloth * (breeze.velocity + field.stray(&breeze, place) + zones.sum::<Vec3>())
+                to_cloth * (wind.velocity + field.deviation(&wind, place) + zones.sum::<Vec3>())
             });
         }
     }
@@ -133,13 +133,13 @@ impl KnownAir {
             // Gas fills nothing in zero time.
             None | Some(ClothPressure::Gas { .. }) => 0.0,
         };
-        let Some(breeze) = &self.breeze else {
+        let Some(wind) = &self.wind else {
             return inside;
         };
         let zones = self.zones.iter().map(PlacedZone::fastest);
-        let wind = breeze.velocity.length() + 2.0 * breeze.stray + zones.sum::<f32>();
-        let relative = wind + speed;
-        let force = 0.5 * breeze.density * (breeze.drag + breeze.lift) * relative * relative;
+        let fastest = wind.velocity.length() + 2.0 * wind.deviation + zones.sum::<f32>();
+        let relative = fastest + speed;
+        let force = 0.5 * wind.density * (wind.drag + wind.lift) * relative * relative;
         let most = relative / seconds.max(f32::MIN_POSITIVE);
         inside + (force / material.areal_density).min(most)
     }

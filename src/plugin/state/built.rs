@@ -29,7 +29,7 @@ pub struct ClothBuilt {
     pub(crate) from: Option<BuiltFrom>,
     /// The inputs from which nothing could be built, and why.
     #[reflect(ignore)]
-    pub(crate) refused: Option<(Tried, ClothError)>,
+    pub(crate) refused: Option<(FailedBuild, ClothError)>,
     /// What has been logged of it.
     #[reflect(ignore)]
     pub(crate) noticed: Noticed,
@@ -68,7 +68,7 @@ pub(crate) struct BuiltFrom {
 
 /// The inputs of a cloth that could not be built, besides the recipe of its surface.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Tried {
+pub(crate) struct FailedBuild {
     pub changed: Tick,
     pub source: Option<Source>,
     pub material: ClothMaterial,
@@ -155,7 +155,7 @@ impl ClothBuilt {
     }
 
     /// Takes over masses and pins of particles that the game wrote.
-    pub(crate) fn weigh(&mut self, particles: &ClothParticles) {
+    pub(crate) fn refresh_masses(&mut self, particles: &ClothParticles) {
         self.masses = particles.free_masses();
         if !pinned(particles).eq(self.pinned.iter().copied()) {
             self.forget_tethers();

@@ -71,7 +71,7 @@ impl ClothContacts {
     }
 
     /// Whether these contacts, read from a file, can belong to a cloth with that number of particles.
-    pub(crate) fn is_sound(&self, particles: usize) -> bool {
+    pub(crate) fn is_valid_for(&self, particles: usize) -> bool {
         (self.points.iter()).all(|point| (point.particle as usize) < particles)
     }
 

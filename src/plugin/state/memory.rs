@@ -9,7 +9,7 @@ use bevy::{
     math::{Isometry3d, Vec3},
 };
 
-use super::{air::KnownAir, excess::Excess, lod::LodState, pose::Pose, resting::RestsOn};
+use super::{air::AirState, excess::Excess, lod::LodState, pose::Pose, resting::RestsOn};
 use crate::{
     cloth::ClothParticles,
     contact::{Carrier, ClothSelfCollision, NarrowPhase},
@@ -50,7 +50,7 @@ pub struct ClothState {
         Vec3,
     )>,
     /// The same for the air.
-    pub(crate) air: KnownAir,
+    pub(crate) air: AirState,
     /// The attachments from which `attached` was made, and the entities that they name.
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub(crate) attachments: Vec<ClothAttachment>,
@@ -119,14 +119,14 @@ impl ClothState {
     }
 
     /// Whether this state, read from a file, matches these particles.
-    pub(crate) fn is_sound(&self, particles: &ClothParticles) -> bool {
+    pub(crate) fn is_valid_for(&self, particles: &ClothParticles) -> bool {
         let len = particles.len();
         let is_of_all = |count: usize| count == 0 || count == len;
         let is_attached = |attached: &Attached| {
             (attached.particle as usize) < len && attached.attachment < self.targets.len()
         };
         let blocks = particles.blocks().len();
-        self.rest.is_sound()
+        self.rest.is_valid()
             && is_of_all(self.pose.places.len())
             && is_of_all(self.pose.normals.len())
             && self.attached.iter().all(is_attached)

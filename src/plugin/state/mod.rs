@@ -22,10 +22,10 @@ mod stats;
 mod wind_field;
 
 pub use built::ClothBuilt;
-pub(crate) use built::{BuiltFrom, Tried};
+pub(crate) use built::{BuiltFrom, FailedBuild};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use fault::ClothFault;
-pub(crate) use lod::{Frozen, Turn};
+pub(crate) use lod::{Frozen, LodAction};
 pub use memory::ClothState;
 pub(crate) use notices::{Notice, Notices, log_notices};
 pub(crate) use parts::ClothParts;
@@ -37,4 +37,4 @@ pub use search::ClothSearch;
 pub(crate) use shared::{Recipe, Shared, SharedParts, stiffnesses};
 pub(crate) use source::Source;
 pub use stats::ClothStats;
-pub(crate) use wind_field::{Breeze, WindField};
+pub(crate) use wind_field::{EffectiveWind, WindField};

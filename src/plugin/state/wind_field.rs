@@ -33,7 +33,7 @@ pub(crate) struct WindField {
     noise: Option<(i32, FastNoiseLite)>,
     /// Time for which it has blown (s), and the distance that it has travelled (m).
     seconds: f64,
-    way: DVec3,
+    travelled: DVec3,
     /// The world's wind in the tick.
     world: Option<Result<World, ClothError>>,
 }
@@ -45,29 +45,29 @@ struct World {
     velocity: Vec3,
     density: f32,
     /// Largest deviation from that velocity (m/s), and the size of its eddies (m).
-    stray: f32,
+    deviation: f32,
     length: f32,
 }
 
 /// The air of a cloth in the tick, without zones, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Breeze {
+pub(crate) struct EffectiveWind {
     pub density: f32,
     pub drag: f32,
     pub lift: f32,
     /// Velocity (m/s).
     pub velocity: Vec3,
     /// See [`World`].
-    pub stray: f32,
+    pub deviation: f32,
     /// Whether there is air where no zone is.
     pub is_everywhere: bool,
 }
 
-impl Breeze {
+impl EffectiveWind {
     /// Whether it changes in each tick, wherever a cloth is.
     pub fn is_turbulent(&self) -> bool {
-        self.stray > 0.0
+        self.deviation > 0.0
     }
 }
 
@@ -80,17 +80,17 @@ impl WindField {
 
     /// Time for which it has blown (s), and the distance that it has travelled (m).
     pub fn memory(&self) -> (f64, DVec3) {
-        (self.seconds, self.way)
+        (self.seconds, self.travelled)
     }
 
     /// Goes with the world's origin, as eddies do.
     pub fn shift(&mut self, Shift(by): Shift) {
-        self.way += by.as_dvec3();
+        self.travelled += by.as_dvec3();
     }
 
     /// Continues from an earlier time, of a snapshot.
-    pub fn recall(&mut self, (seconds, way): (f64, DVec3)) {
-        (self.seconds, self.way) = (seconds, way);
+    pub fn recall(&mut self, (seconds, travelled): (f64, DVec3)) {
+        (self.seconds, self.travelled) = (seconds, travelled);
     }
 
     fn blow(&mut self, wind: &ClothWind, time: &Time) -> World {
@@ -101,15 +101,15 @@ impl WindField {
             velocity *= 1.0 + wind.gusts * noise.get_noise_2d(along, APART[1]);
             velocity = velocity.clamp_length_max(FASTEST);
         }
-        self.way += velocity.as_dvec3() * time.delta_secs_f64();
-        let stray = (wind.turbulence * velocity.length()).min(FASTEST);
-        if stray > 0.0 {
+        self.travelled += velocity.as_dvec3() * time.delta_secs_f64();
+        let deviation = (wind.turbulence * velocity.length()).min(FASTEST);
+        if deviation > 0.0 {
             self.noise(wind.seed);
         }
         World {
             velocity,
             density: wind.density,
-            stray,
+            deviation,
             length: wind.turbulence_length,
         }
     }
@@ -129,7 +129,7 @@ impl WindField {
     ///
     /// # Errors
     /// The first value that is out of range, of the world's wind if it blows here, or of the cloth's own.
-    pub fn of_cloth(&self, own: Option<&ClothAir>) -> Result<Option<Breeze>, ClothError> {
+    pub fn of_cloth(&self, own: Option<&ClothAir>) -> Result<Option<EffectiveWind>, ClothError> {
         if let Some(own) = own {
             own.validate()?;
         }
@@ -145,18 +145,18 @@ impl WindField {
             (Some(world), _) => (world.density, Some(world)),
         };
         // The velocity of a `ClothAir` has neither gusts nor eddies.
-        let (velocity, stray) = match (velocity, world) {
+        let (velocity, deviation) = match (velocity, world) {
             (Some(own), _) => (own, 0.0),
-            (None, Some(world)) => (world.velocity, world.stray),
+            (None, Some(world)) => (world.velocity, world.deviation),
             (None, None) => (Vec3::ZERO, 0.0),
         };
-        Ok(Some(Breeze {
+        Ok(Some(EffectiveWind {
             is_everywhere: world.is_some() || own.is_some_and(|own| own.velocity.is_some()),
             density,
             drag,
             lift,
             velocity,
-            stray,
+            deviation,
         }))
     }
 
@@ -167,16 +167,16 @@ impl WindField {
     }
 
     /// Deviation of the air from a cloth's breeze at a position in the world (m/s).
-    pub fn stray(&self, breeze: &Breeze, place: Vec3) -> Vec3 {
+    pub fn deviation(&self, breeze: &EffectiveWind, place: Vec3) -> Vec3 {
         let (Some(Ok(world)), Some((_, noise))) = (&self.world, &self.noise) else {
             return Vec3::ZERO;
         };
-        if breeze.stray == 0.0 {
+        if breeze.deviation == 0.0 {
             return Vec3::ZERO;
         }
-        let at = (place.as_dvec3() - self.way) / f64::from(world.length);
+        let at = (place.as_dvec3() - self.travelled) / f64::from(world.length);
         let at = at.rem_euclid(DVec3::splat(NOISE));
         let of = |apart: f64| noise.get_noise_3d(at.x + apart, at.y, at.z);
-        breeze.stray * Vec3::from(APART.map(of))
+        breeze.deviation * Vec3::from(APART.map(of))
     }
 }

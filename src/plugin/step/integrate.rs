@@ -4,7 +4,7 @@ use bevy::ecs::system::{Query, ResMut};
 
 use super::{
     island::integrate_together,
-    tick::{Colliders, Integrating},
+    tick::{Colliders, IntegrateQuery},
 };
 use crate::plugin::{naming::Named, prepare::Islands, threads::threads};
 
@@ -13,7 +13,7 @@ const MIN_TO_SHARE: usize = 64 * 64 * 20;
 
 /// Runs all sub-steps, of several cloths at once where there is enough to do; of those that may touch each other, together.
 pub(crate) fn integrate(
-    mut cloths: Query<Integrating>,
+    mut cloths: Query<IntegrateQuery>,
     colliders: Colliders,
     mut islands: ResMut<Islands>,
     names: Query<Named>,

@@ -10,7 +10,7 @@ use bevy::{
     platform::time::Instant,
 };
 
-use super::tick::{Colliders, Integrating, IntegratingItem};
+use super::tick::{Colliders, IntegrateQuery, IntegrateQueryItem};
 use crate::{
     contact::{ClothLayers, Inside, MutualContact, Participant},
     plugin::{
@@ -23,7 +23,7 @@ use crate::{
 
 /// A cloth of an island, in its tick.
 struct Member<'w, 's> {
-    cloth: IntegratingItem<'w, 's>,
+    cloth: IntegrateQueryItem<'w, 's>,
     /// `None` of one that sleeps.
     step: Option<TickStep>,
     to_common: Option<Isometry3d>,
@@ -33,7 +33,7 @@ struct Member<'w, 's> {
 /// needs it.
 pub(crate) fn integrate_together(
     island: &mut Island,
-    cloths: &mut Query<Integrating>,
+    cloths: &mut Query<IntegrateQuery>,
     colliders: &Colliders,
     names: &Query<Named>,
 ) {

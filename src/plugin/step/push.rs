@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// The bodies that may be pushed. One without a collider or a transform is not: its push is zero.
-type Pushed = (
+type PushedBody = (
     Entity,
     &'static mut ClothPush,
     Option<&'static ClothBody>,
@@ -35,7 +35,7 @@ type Pushed = (
 /// cut into equal parts, one for each cloth, which move on together.
 pub(crate) fn push_bodies(
     cloths: Query<(Entity, Option<&ClothOrder>, &ClothScratch)>,
-    mut bodies: Query<Pushed>,
+    mut bodies: Query<PushedBody>,
     mut pushes: Local<Vec<(Ordered, Entity, BodyChange)>>,
 ) {
     pushes.clear();

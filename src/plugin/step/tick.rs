@@ -31,7 +31,7 @@ use crate::{
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct Integrating {
+pub(crate) struct IntegrateQuery {
     pub entity: Entity,
     pub built: &'static mut ClothBuilt,
     pub frame: &'static ClothFrame,
@@ -54,7 +54,7 @@ pub(crate) type Colliders<'w, 's> = Query<
     ),
 >;
 
-impl IntegratingItem<'_, '_> {
+impl IntegrateQueryItem<'_, '_> {
     pub fn integrate(&mut self, colliders: &Colliders) {
         // Cloths that may touch each other have been moved.
         if self.scratch.is_in_island {

@@ -123,13 +123,13 @@ impl Gathered {
     /// A tick has passed. Returns what is to be logged of jumps that drag cloths along, if anything is.
     fn drag_line(&mut self) -> Option<String> {
         let (cloths, worst) = self.take()?;
-        let (name, [way, limit]) = (worst.name, worst.figures);
+        let (name, [displacement, limit]) = (worst.name, worst.figures);
         let (name, most) = match cloths {
             1 => (format!("{name} was"), String::new()),
             _ => (format!("{cloths} cloths were"), format!(", {name} most")),
         };
         Some(format!(
-            "{name} dragged along by a jump{most}: {way:.1} m in a tick (limit {limit} m): insert `ClothTeleport` on the cloth in the tick of the jump, or give its character a `ClothInertia`, which teleports it beyond `teleport_distance`"
+            "{name} dragged along by a jump{most}: {displacement:.1} m in a tick (limit {limit} m): insert `ClothTeleport` on the cloth in the tick of the jump, or give its character a `ClothInertia`, which teleports it beyond `teleport_distance`"
         ))
     }
 }

@@ -17,7 +17,7 @@ use bevy::math::{DVec3, Vec3};
 
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, W},
-    solver::kernels::{Enclosed, Trio},
+    solver::kernels::{Enclosed, Vec3Lanes},
 };
 
 /// Largest speed at which gas moves a face outwards (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
@@ -51,7 +51,7 @@ impl Gas {
         amount: Amount,
         enclosed: Enclosed,
         blocks: &mut [Block],
-        areas: &[Trio],
+        areas: &[Vec3Lanes],
         weight: f64,
         seconds: f64,
     ) -> DVec3 {

@@ -1,6 +1,6 @@
 //! Air: drag and lift of a wind, and pressure.
 //!
-//! The air moves at U, and a face with the normal n at v. So the face feels `u = U − v`: `u_n` along its normal, and
+//! The air places at U, and a face with the normal n at v. So the face feels `u = U − v`: `u_n` along its normal, and
 //! `u_t` in its plane. The force on a face of the area A is
 //!
 //! ```text
@@ -41,7 +41,9 @@ use bevy::math::{DVec3, Vec3};
 
 pub(crate) use self::gas::FILLING;
 pub use self::pressure::ClothPressure;
-use super::kernels::{Enclosed, Felt, Kernels, Law, Rows, Triangles, Trio};
+use super::kernels::{
+    AeroCoefficients, Enclosed, Kernels, LinearizedDrag, Rows, Triangles, Vec3Lanes,
+};
 use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, Surface};
 use gas::{Amount, Gas};
 use wind::LocalWind;
@@ -87,12 +89,12 @@ pub(super) struct Airflow {
     local: LocalWind,
     /// Whether the wind is `local`, and not the same everywhere.
     is_local: bool,
-    felt: Vec<Felt>,
-    /// As the faces were looked at, see [`Felt`].
-    ways: Vec<Lanes>,
+    linearized: Vec<LinearizedDrag>,
+    /// As the faces were looked at, see [`LinearizedDrag`].
+    places: Vec<Lanes>,
     /// Of a row, or of all of a mesh.
-    areas: Vec<Trio>,
-    winds: Vec<Trio>,
+    areas: Vec<Vec3Lanes>,
+    winds: Vec<Vec3Lanes>,
     /// Sub-steps between two looks, and since the last.
     stride: u32,
     /// Sub-steps between two looks at the wind.
@@ -127,8 +129,8 @@ impl Airflow {
             triangles: (!is_grid).then(|| Triangles::new(surface)),
             local: LocalWind::default(),
             is_local: false,
-            felt: vec![Felt::NONE; layout.blocks()],
-            ways: vec![[0.0; LANES]; layout.blocks()],
+            linearized: vec![LinearizedDrag::NONE; layout.blocks()],
+            places: vec![[0.0; LANES]; layout.blocks()],
             areas: vec![[[0.0; LANES]; 3]; strip],
             winds: vec![[[0.0; LANES]; 3]; strip],
             stride: 1,
@@ -223,11 +225,11 @@ impl Airflow {
         let strip = self.layout.strip as usize;
         let seconds = self.since as f32 * self.substep;
         let rows = particles.blocks().chunks(strip);
-        let known = self.felt.chunks(strip).zip(self.ways.chunks(strip));
+        let known = self.linearized.chunks(strip).zip(self.places.chunks(strip));
         let before = self.impulse;
-        for (row, (felt, ways)) in rows.zip(known) {
+        for (row, (linearized, places)) in rows.zip(known) {
             let mut sum = [[0.0; LANES]; 3];
-            (kernels.air_given)(row, felt, ways, seconds, &mut sum);
+            (kernels.air_impulse)(row, linearized, places, seconds, &mut sum);
             self.impulse += DVec3::from(sum.map(|lanes| lanes.into_iter().map(f64::from).sum()));
         }
         self.memory.force = (self.impulse - before).as_vec3() / seconds;
@@ -235,8 +237,8 @@ impl Airflow {
     }
 
     /// The air's action on each particle of a row.
-    pub fn felt(&self) -> &[Felt] {
-        &self.felt
+    pub fn linearized(&self) -> &[LinearizedDrag] {
+        &self.linearized
     }
 
     /// On a mesh, a wind that depends on the position is kept from the last evaluation unless `wind_is_asked`.
@@ -248,7 +250,7 @@ impl Airflow {
             wind,
             pressure,
         } = self.air;
-        let mut law = Law {
+        let mut coefficients = AeroCoefficients {
             drag: density * drag,
             lift: 0.5 * density * lift,
             pressure: 0.0,
@@ -263,8 +265,8 @@ impl Airflow {
             is_local,
             areas,
             winds,
-            felt,
-            ways,
+            linearized,
+            places,
             ..
         } = self;
         if !*is_local {
@@ -274,19 +276,19 @@ impl Airflow {
             let enclosed = triangles.areas(particles, areas);
             if let Some(ClothPressure::Gauge(pressure)) = pressure {
                 let outwards = enclosed.outwards * enclosed.volume.signum();
-                law.pressure = pressure * outwards as f32;
+                coefficients.pressure = pressure * outwards as f32;
             }
             self.enclosed = enclosed;
             if *is_local && wind_is_asked {
                 local.of_mesh(particles, winds);
             }
-            (kernels.air_feel)(blocks, areas, winds, &law, felt, ways);
+            (kernels.air_linearize)(blocks, areas, winds, &coefficients, linearized, places);
             return;
         }
         let last = layout.slot(0, layout.columns - 1);
         let row = |row: usize| &blocks[row * strip..(row + 1) * strip];
-        let outs = felt.chunks_mut(strip).zip(ways.chunks_mut(strip));
-        for (index, (felt, ways)) in outs.enumerate() {
+        let outs = linearized.chunks_mut(strip).zip(places.chunks_mut(strip));
+        for (index, (linearized, places)) in outs.enumerate() {
             let around = Rows {
                 own: row(index),
                 above: row(index.saturating_sub(1)),
@@ -297,7 +299,7 @@ impl Airflow {
             if *is_local {
                 local.of_row(index, layout, winds);
             }
-            (kernels.air_feel)(row(index), areas, winds, &law, felt, ways);
+            (kernels.air_linearize)(row(index), areas, winds, &coefficients, linearized, places);
         }
     }
 }

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use crate::{
     cloth::{ClothParticles, LANES, Layout},
-    solver::kernels::{Trio, between},
+    solver::kernels::{Vec3Lanes, between},
 };
 
 /// Intervals along a row and along a column of a grid, and along the longest side of a mesh.
@@ -52,7 +52,7 @@ impl LocalWind {
     /// Of the particles of a grid's row.
     ///
     /// The knots of a row are where its eight strips begin and end, so that of each block all lanes are as far between theirs.
-    pub fn of_row(&self, row: usize, layout: Layout, winds: &mut [Trio]) {
+    pub fn of_row(&self, row: usize, layout: Layout, winds: &mut [Vec3Lanes]) {
         let rows = layout.rows as usize;
         let border = |index: usize| index * (rows - 1) / ALONG_COLUMN;
         let index = (0..ALONG_COLUMN).find(|index| border(index + 1) > row);
@@ -77,7 +77,7 @@ impl LocalWind {
     }
 
     /// Of all particles of a mesh.
-    pub fn of_mesh(&self, particles: &ClothParticles, winds: &mut [Trio]) {
+    pub fn of_mesh(&self, particles: &ClothParticles, winds: &mut [Vec3Lanes]) {
         for (place, slot) in particles.positions().zip(particles.layout().slots()) {
             let wind = self.lattice.interpolate(&self.knots, place).to_array();
             for axis in 0..3 {
@@ -101,9 +101,9 @@ fn knot_places(particles: &ClothParticles) -> impl Iterator<Item = Vec3> + '_ {
             }
             // The strip that the row ends in goes on straight.
             let from = (column - layout.strip as usize).min(last);
-            let way = place(last) - place(from);
+            let displacement = place(last) - place(from);
             let part = layout.strip as f32 / (last - from).max(1) as f32;
-            place(from) + way * part
+            place(from) + displacement * part
         })
     })
 }

@@ -13,12 +13,12 @@ use super::{
 };
 use crate::{
     cloth::{Block, LANES, Lanes, Layout, W},
-    solver::kernels::{Factor, Kernels, Trio},
+    solver::kernels::{Factor, Kernels, Vec3Lanes},
 };
 
 /// Which way a family is solved, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum Direction {
     /// The cells between each even column and the next one, or each odd one.
     Twist { is_odd: bool },
     /// Down the columns.
@@ -30,7 +30,7 @@ enum Way {
 /// Threads, or strips of cells, that have no particle in common.
 #[derive(Debug, Clone)]
 struct Family {
-    way: Way,
+    direction: Direction,
     /// k (N/m) of a row's blocks, or pairs of blocks; of rows, that of each of eight rows, group by group. 0 where there is none.
     stiffness: Vec<Lanes>,
 }
@@ -61,11 +61,11 @@ pub(super) struct ThreadBending {
     inverse_masses: Vec<Lanes>,
     /// Those of the weights in use, the last one first.
     factors: [Factors; WEIGHTS],
-    links: [Vec<Trio>; 2],
-    moments: [Vec<Trio>; 3],
-    solved: Vec<Trio>,
-    columns: Vec<Trio>,
-    none: (Vec<Trio>, Vec<Factor>),
+    links: [Vec<Vec3Lanes>; 2],
+    moments: [Vec<Vec3Lanes>; 3],
+    solved: Vec<Vec3Lanes>,
+    columns: Vec<Vec3Lanes>,
+    none: (Vec<Vec3Lanes>, Vec<Factor>),
 }
 
 /// Weights that take turns: a method with a different start has three.
@@ -89,23 +89,28 @@ impl ThreadBending {
         };
         let groups = (rows as usize).div_ceil(LANES);
         let mut families = Vec::new();
-        let mut add = |way, stiffness| families.push(Family { way, stiffness });
+        let mut add = |direction, stiffness| {
+            families.push(Family {
+                direction,
+                stiffness,
+            })
+        };
         if rows > 1 {
             let cells: Vec<Lanes> = plate.of_columns(|column| plate.twist(0, column)).collect();
             for is_odd in [false, true] {
                 if columns > 1 + u32::from(is_odd) {
                     let first = usize::from(is_odd);
                     let of_pairs = cells.iter().skip(first).step_by(2);
-                    add(Way::Twist { is_odd }, of_pairs.copied().collect());
+                    add(Direction::Twist { is_odd }, of_pairs.copied().collect());
                 }
             }
         }
         if rows > 2 {
             let stiffness = plate.of_columns(|column| plate.down(1, column));
-            add(Way::Down, stiffness.collect());
+            add(Direction::Down, stiffness.collect());
         }
         if columns > 2 {
-            add(Way::Across, (0..groups).map(of_rows).collect());
+            add(Direction::Across, (0..groups).map(of_rows).collect());
         }
         let strip = layout.strip as usize;
         let row = || vec![NOTHING; strip];
@@ -128,8 +133,8 @@ impl ThreadBending {
     /// Room for those of a weight.
     fn no_factors(&self) -> Factors {
         let rows = self.layout.rows as usize;
-        let count = |family: &Family| match family.way {
-            Way::Across => family.stiffness.len() * self.columns.len(),
+        let count = |family: &Family| match family.direction {
+            Direction::Across => family.stiffness.len() * self.columns.len(),
             _ => family.stiffness.len() * rows,
         };
         Factors {
@@ -187,8 +192,8 @@ impl ThreadBending {
             f64::from(self.inverse_masses[slot.block][slot.lane])
         };
         let width = stiffness.len();
-        match family.way {
-            Way::Twist { is_odd } => {
+        match family.direction {
+            Direction::Twist { is_odd } => {
                 for column in (u32::from(is_odd)..columns - 1).step_by(2) {
                     let slot = self.layout.slot(0, column);
                     let pair = slot.block / 2;
@@ -202,7 +207,7 @@ impl ThreadBending {
                     );
                 }
             }
-            Way::Down => {
+            Direction::Down => {
                 for column in 0..columns {
                     let slot = self.layout.slot(0, column);
                     factor_thread(
@@ -216,7 +221,7 @@ impl ThreadBending {
                     );
                 }
             }
-            Way::Across => {
+            Direction::Across => {
                 let width = self.columns.len();
                 for row in 0..rows {
                     let (group, lane) = (row as usize / LANES, row as usize % LANES);
@@ -234,10 +239,10 @@ impl ThreadBending {
 
     pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         for at in 0..self.families.len() {
-            match self.families[at].way {
-                Way::Twist { is_odd } => self.solve_cells(at, is_odd, blocks, kernels),
-                Way::Down => self.solve_columns(at, blocks, kernels),
-                Way::Across => self.solve_rows(at, blocks, kernels),
+            match self.families[at].direction {
+                Direction::Twist { is_odd } => self.solve_cells(at, is_odd, blocks, kernels),
+                Direction::Down => self.solve_columns(at, blocks, kernels),
+                Direction::Across => self.solve_rows(at, blocks, kernels),
             }
         }
     }

@@ -8,7 +8,7 @@
 use super::plate::Plate;
 use crate::{
     cloth::{Block, LANES, Lanes, W},
-    solver::kernels::{EDGE, Kernels, Moments, Stiffness, Trio},
+    solver::kernels::{EDGE, Kernels, Moments, Stiffness, Vec3Lanes},
 };
 
 /// Forces push where A is below this: the fastest bending mode, a ripple from particle to particle, gets at most a
@@ -27,7 +27,7 @@ pub(super) struct Push {
     stiffness: [Vec<Stiffness>; 2],
     /// Bounds of a row's sum of K (N/m): of the first or last row, the second from there, and others.
     bounds: [Vec<Lanes>; ENDS],
-    places: [Vec<Trio>; 3],
+    places: [Vec<Vec3Lanes>; 3],
     moments: [Vec<Moments>; 3],
 }
 

@@ -3,17 +3,17 @@
 
 use std::ops::Range;
 
-use super::again::{Again, Solved};
+use super::second_pass::{GridSprings, SecondPass};
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
     solver::{
         bands::{MAX_BANDS, in_bands, take},
         kernels::{
-            Direction, Family, GROUP, Kernels, Longest, Pace, RowScratch, RowThreads, Scratch,
-            Threads, largest,
+            Direction, GROUP, Kernels, Longest, RowScratch, RowThreads, Scratch, SpringBand,
+            StepScale, Threads, largest,
         },
+        spring_solver::{Motion, SolvedSubstep, SpringSolver},
         stretch::Stretch,
-        sweep::{Motion, Sweep, Swept},
     },
 };
 
@@ -23,45 +23,45 @@ const MIN_BLOCKS: usize = 2;
 
 /// The springs of a grid, thread by thread.
 #[derive(Debug, Clone)]
-pub(crate) struct ThreadSweep {
+pub(crate) struct GridSolver {
     layout: Layout,
     /// Within a row: one on a border, one that is not.
-    across: [Family; 2],
-    down: Family,
+    across: [SpringBand; 2],
+    down: SpringBand,
     /// If there are any.
-    diagonal: Option<Family>,
+    diagonal: Option<SpringBand>,
     scratch: Scratch,
     /// One for each band.
     rows: Vec<RowScratch>,
     /// The numbers of all rows.
     numbers: Vec<u32>,
-    again: Again,
+    second_pass: SecondPass,
     /// That softnesses hold for.
-    pace: Pace,
+    step_scale: StepScale,
     /// Largest stiffness over length of springs across and down (N/m²), 0 of those that don't give.
     ripple_stiffness: [f32; 2],
 }
 
 /// Results of a band.
 #[derive(Default, Clone, Copy)]
-struct Found {
+struct PartitionResult {
     moved: Lanes,
     longest: Longest,
 }
 
-impl ThreadSweep {
+impl GridSolver {
     pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
         let layout = Layout::new(grid.columns(), grid.rows());
         let strip = layout.strip as usize;
-        let family = |step, row| Family::new(grid, layout, compliances, step, row);
+        let family = |step, row| SpringBand::new(grid, layout, compliances, step, row);
         let across = [family((0, 1), 0), family((0, 1), 1)];
         let down = family((1, 0), 0);
         let ripple_stiffness =
             [&across[1], &down].map(|family| family.stiffness() * family.inverse_rest);
-        let is_elastic = across.iter().chain([&down]).any(Family::is_elastic);
+        let is_elastic = across.iter().chain([&down]).any(SpringBand::is_elastic);
         Self {
             layout,
-            again: Again::new(layout, is_elastic),
+            second_pass: SecondPass::new(layout, is_elastic),
             numbers: (0..layout.rows).collect(),
             across,
             down,
@@ -69,7 +69,7 @@ impl ThreadSweep {
             diagonal: compliances.shear.is_finite().then(|| family((1, 1), 0)),
             scratch: Scratch::new(layout),
             rows: vec![RowScratch::new(strip)],
-            pace: Pace::default(),
+            step_scale: StepScale::default(),
         }
     }
 
@@ -82,7 +82,7 @@ impl ThreadSweep {
     ) {
         let Some(family) = (match direction {
             Direction::Down => Some(&self.down),
-            Direction::Right | Direction::Left => self.diagonal.as_ref(),
+            Direction::Right | Direction::Residuals => self.diagonal.as_ref(),
         }) else {
             return;
         };
@@ -99,29 +99,29 @@ impl ThreadSweep {
             of: self.numbers.len(),
             numbers: &self.numbers,
             scratch: &mut self.rows[0],
-            pulled: &mut self.again.pulled[0],
+            pulled: &mut self.second_pass.pulled[0],
         };
         solve_rows(&mut rows, &self.across, kernels);
     }
 
     /// What solves again what is left in rows and columns, after all threads were solved in this many bands.
-    pub(crate) fn again(&mut self, bands: usize) -> (&mut Again, Solved<'_>) {
+    pub(crate) fn second_pass(&mut self, bands: usize) -> (&mut SecondPass, GridSprings<'_>) {
         let strip = self.layout.strip as usize;
-        if let Some(pulled) = self.again.pulled[1].get_mut(strip..) {
+        if let Some(pulled) = self.second_pass.pulled[1].get_mut(strip..) {
             self.scratch.multipliers(strip, bands, pulled);
         }
-        let grid = Solved {
+        let grid = GridSprings {
             across: &self.across,
             down: &self.down,
             rows: &mut self.rows[0],
             columns: &mut self.scratch,
         };
-        (&mut self.again, grid)
+        (&mut self.second_pass, grid)
     }
 
     fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) {
-        let (again, mut grid) = self.again(bands);
-        again.solve(blocks, &mut grid, motion, bands);
+        let (second_pass, mut grid) = self.second_pass(bands);
+        second_pass.solve(blocks, &mut grid, motion, bands);
     }
 
     /// The lengths of the springs that begin in these rows.
@@ -144,7 +144,7 @@ impl ThreadSweep {
     }
 
     fn stretch(&self, longest: &Longest) -> Stretch {
-        let ratio = |lanes: &Lanes, springs: &Family| {
+        let ratio = |lanes: &Lanes, springs: &SpringBand| {
             lanes.iter().copied().fold(0.0, f32::max).sqrt() * springs.inverse_rest
         };
         let structural =
@@ -187,7 +187,7 @@ impl ThreadSweep {
     fn solve_in_bands(&mut self, blocks: &mut [Block], kernels: &Kernels, bands: usize) {
         let strip = self.layout.strip as usize;
         if let Some(family) = &self.diagonal {
-            for direction in [Direction::Right, Direction::Left] {
+            for direction in [Direction::Right, Direction::Residuals] {
                 let all = self.scratch.split(direction, (strip, bands), blocks);
                 in_bands(all, |mut band| solve(&mut band, family, kernels));
             }
@@ -199,11 +199,11 @@ impl ThreadSweep {
     }
 
     /// Ends a sub-step in this many bands.
-    fn end_in_bands(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
+    fn end_in_bands(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> SolvedSubstep {
         let (kernels, measures) = (motion.kernels, motion.measures);
         let (strip, rows) = (self.layout.strip as usize, self.layout.rows as usize);
         let border = |band| rows * band / bands;
-        let mut found = [Found::default(); MAX_BANDS];
+        let mut found = [PartitionResult::default(); MAX_BANDS];
         let mut rest = &mut *blocks;
         let parts = found
             .iter_mut()
@@ -234,7 +234,7 @@ impl ThreadSweep {
                 ..self.stretch(&longest)
             }
         });
-        Swept {
+        SolvedSubstep {
             moved: farthest(&found),
             stretch,
             ripple: self.ripple(blocks, &given),
@@ -244,7 +244,7 @@ impl ThreadSweep {
     /// The elongations of elastic springs across and down (m), if they are measured.
     fn given_if(&self, measures: bool, kernels: &Kernels) -> [Lanes; 2] {
         if measures {
-            self.again.given(&self.across, &self.down, kernels)
+            self.second_pass.given(&self.across, &self.down, kernels)
         } else {
             [[0.0; LANES]; 2]
         }
@@ -259,7 +259,7 @@ impl ThreadSweep {
         if self.rows.len() < bands {
             self.rows.resize(bands, RowScratch::new(strip));
         }
-        let (mut rest, mut pulled) = (blocks, &mut self.again.pulled[0][..]);
+        let (mut rest, mut pulled) = (blocks, &mut self.second_pass.pulled[0][..]);
         let is_elastic = !pulled.is_empty();
         let each = self.rows.iter_mut().take(bands).enumerate();
         let parts = each.map(|(band, scratch)| {
@@ -278,17 +278,17 @@ impl ThreadSweep {
     }
 }
 
-impl Sweep for ThreadSweep {
-    fn set_pace(&mut self, pace: Pace) {
-        if self.pace != pace {
-            self.pace = pace;
+impl SpringSolver for GridSolver {
+    fn set_step_scale(&mut self, step_scale: StepScale) {
+        if self.step_scale != step_scale {
+            self.step_scale = step_scale;
             for family in self
                 .across
                 .iter_mut()
                 .chain([&mut self.down])
                 .chain(&mut self.diagonal)
             {
-                family.soften(pace);
+                family.soften(step_scale);
             }
         }
     }
@@ -303,7 +303,7 @@ impl Sweep for ThreadSweep {
         wanted.min(most).clamp(1, MAX_BANDS)
     }
 
-    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept {
+    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> SolvedSubstep {
         let bands = self.bands(bands);
         let kernels = motion.kernels;
         if bands > 1 {
@@ -312,7 +312,7 @@ impl Sweep for ThreadSweep {
             return self.end_in_bands(blocks, motion, bands);
         }
         self.solve_down(blocks, Direction::Right, kernels);
-        self.solve_down(blocks, Direction::Left, kernels);
+        self.solve_down(blocks, Direction::Residuals, kernels);
         self.solve_across(blocks, kernels);
         self.solve_down(blocks, Direction::Down, kernels);
         self.solve_again(blocks, motion, 1);
@@ -324,7 +324,7 @@ impl Sweep for ThreadSweep {
             material: self.material(&given),
             ..self.measure(blocks, kernels)
         });
-        Swept {
+        SolvedSubstep {
             moved,
             stretch,
             ripple: self.ripple(blocks, &given),
@@ -336,13 +336,13 @@ impl Sweep for ThreadSweep {
         self.stretch(&self.measure_rows(blocks, rows, kernels))
     }
 
-    fn boxed(&self) -> Box<dyn Sweep> {
+    fn boxed(&self) -> Box<dyn SpringSolver> {
         Box::new(self.clone())
     }
 }
 
 /// Solves threads.
-fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels) {
+fn solve(threads: &mut Threads, family: &SpringBand, kernels: &Kernels) {
     if family.kept < 1.0 {
         (kernels.solve_damped_threads)(threads, family);
     } else {
@@ -351,7 +351,7 @@ fn solve(threads: &mut Threads, family: &Family, kernels: &Kernels) {
 }
 
 /// Solves threads within rows.
-fn solve_rows(rows: &mut RowThreads, families: &[Family; 2], kernels: &Kernels) {
+fn solve_rows(rows: &mut RowThreads, families: &[SpringBand; 2], kernels: &Kernels) {
     if families[0].kept < 1.0 {
         (kernels.solve_damped_rows)(rows, families);
     } else {
@@ -360,8 +360,8 @@ fn solve_rows(rows: &mut RowThreads, families: &[Family; 2], kernels: &Kernels) 
 }
 
 /// The largest squared displacements of all bands (m²), lane by lane.
-fn farthest(all: &[Found]) -> Lanes {
-    let larger = |mut farthest: Lanes, found: &Found| {
+fn farthest(all: &[PartitionResult]) -> Lanes {
+    let larger = |mut farthest: Lanes, found: &PartitionResult| {
         for (farthest, own) in farthest.iter_mut().zip(&found.moved) {
             *farthest = farthest.max(*own);
         }

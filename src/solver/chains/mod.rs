@@ -2,11 +2,11 @@
 //!
 //! The docs of the module [`solver`](crate::solver) describe the method, its cost and its limits.
 
-mod again;
 mod bundles;
 mod grid;
+mod second_pass;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use bundles::Bundles;
-pub(crate) use grid::ThreadSweep;
+pub(crate) use grid::GridSolver;

@@ -2,12 +2,12 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use super::grid::ThreadSweep;
+use super::grid::GridSolver;
 use crate::{
     cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Compliances, Surface},
     solver::{
-        kernels::{Direction, Pace, SimdLevel},
-        sweep::{Motion, Sweep},
+        kernels::{Direction, SimdLevel, StepScale},
+        spring_solver::{Motion, SpringSolver},
         tether::{Anchors, Tethers},
     },
 };
@@ -103,7 +103,7 @@ fn solve_thread(
     let place = |cell| particles.position_at(at(cell)).as_dvec3() + moved[at(cell)];
     let weight = |cell| f64::from(particles.inverse_mass(cell).expect("it exists"));
     let springs: Vec<_> = thread.windows(2).map(|ends| (ends[0], ends[1])).collect();
-    let ways: Vec<DVec3> = springs
+    let spans: Vec<DVec3> = springs
         .iter()
         .map(|(a, b)| (place(*b) - place(*a)) / rest)
         .collect();
@@ -114,20 +114,20 @@ fn solve_thread(
     let mut matrix = vec![vec![0.0; n]; n];
     let mut right = vec![0.0; n];
     for (i, (a, b)) in springs.iter().enumerate() {
-        let p = ways[i].length_squared();
+        let p = spans[i].length_squared();
         let sum = weight(*a) + weight(*b);
         let soft = compliance(*a) / f64::from(WEIGHT_DT2) * p;
         matrix[i][i] = sum * p + soft.max((1.0e-3 + 0.2 * (p - 1.0).abs()) * sum) + 1.0e-18;
         if i + 1 < n {
-            let off = -weight(*b) * ways[i].dot(ways[i + 1]);
+            let off = -weight(*b) * spans[i].dot(spans[i + 1]);
             (matrix[i][i + 1], matrix[i + 1][i]) = (off, off);
         }
         right[i] = -rest * p * (p - 1.0) / (1.5 * p + 0.5);
     }
     let multipliers = solved(matrix, right);
     for (i, (a, b)) in springs.iter().enumerate() {
-        moved[at(*a)] -= weight(*a) * multipliers[i] * ways[i];
-        moved[at(*b)] += weight(*b) * multipliers[i] * ways[i];
+        moved[at(*a)] -= weight(*a) * multipliers[i] * spans[i];
+        moved[at(*b)] += weight(*b) * multipliers[i] * spans[i];
     }
 }
 
@@ -152,16 +152,16 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
                 shear: 2.0 * compliance,
             };
             for step in [(0, 1), (1, 0), (1, 1), (1, -1)] {
-                let mut sweep = ThreadSweep::new(&grid, &compliances);
-                sweep.set_pace(Pace::new(WEIGHT_DT2, 1.0, 0.0));
+                let mut spring_solver = GridSolver::new(&grid, &compliances);
+                spring_solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
                 let mut particles = start.clone();
                 let kernels = SimdLevel::Auto.kernels();
                 let blocks = particles.blocks_mut();
                 match step {
-                    (0, 1) => sweep.solve_across(blocks, &kernels),
-                    (1, 0) => sweep.solve_down(blocks, Direction::Down, &kernels),
-                    (1, 1) => sweep.solve_down(blocks, Direction::Right, &kernels),
-                    _ => sweep.solve_down(blocks, Direction::Left, &kernels),
+                    (0, 1) => spring_solver.solve_across(blocks, &kernels),
+                    (1, 0) => spring_solver.solve_down(blocks, Direction::Down, &kernels),
+                    (1, 1) => spring_solver.solve_down(blocks, Direction::Right, &kernels),
+                    _ => spring_solver.solve_down(blocks, Direction::Residuals, &kernels),
                 }
                 let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
                 for thread in threads(&grid, step) {
@@ -189,7 +189,7 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
     }
 }
 
-/// Solved again at once, elastic threads have nothing left but the curvature of their equations: a relative error of the
+/// GridSprings again at once, elastic threads have nothing left but the curvature of their equations: a relative error of the
 /// order of the noise in lengths, 1 %, which each solve leaves of what it finds. A spring whose first pull was forgotten
 /// would pull as far once more. (Rigid threads have no such pull, and between two pins they have no solution.)
 #[test]
@@ -202,20 +202,20 @@ fn what_is_solved_again_goes_on_from_its_pull() {
                     structural: compliance,
                     shear: compliance,
                 };
-                let mut sweep = ThreadSweep::new(&grid, &compliances);
-                sweep.set_pace(Pace::new(WEIGHT_DT2, 1.0, 0.0));
+                let mut spring_solver = GridSolver::new(&grid, &compliances);
+                spring_solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
                 let kernels = SimdLevel::Auto.kernels();
                 let displaced = |particles: &ClothParticles| -> Vec<Vec3> {
                     particles.displacements().collect()
                 };
                 let start = displaced(&particles);
-                sweep.solve_across(particles.blocks_mut(), &kernels);
+                spring_solver.solve_across(particles.blocks_mut(), &kernels);
                 if down {
-                    sweep.solve_down(particles.blocks_mut(), Direction::Down, &kernels);
+                    spring_solver.solve_down(particles.blocks_mut(), Direction::Down, &kernels);
                 }
                 let once = displaced(&particles);
-                let (again, mut springs) = sweep.again(1);
-                again.solve_all(particles.blocks_mut(), &mut springs, down);
+                let (second_pass, mut springs) = spring_solver.second_pass(1);
+                second_pass.solve_all(particles.blocks_mut(), &mut springs, down);
                 let twice = displaced(&particles);
                 let farthest = |a: &[Vec3], b: &[Vec3]| {
                     let moves = a.iter().zip(b).map(|(a, b)| a.distance(*b));
@@ -249,8 +249,8 @@ fn a_quiet_cloth_is_solved_once() {
                 structural: compliance,
                 shear: f32::INFINITY,
             };
-            let mut sweep = ThreadSweep::new(&grid, &compliances);
-            sweep.set_pace(Pace::new(WEIGHT_DT2, 1.0, 0.0));
+            let mut spring_solver = GridSolver::new(&grid, &compliances);
+            spring_solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
             let kernels = SimdLevel::Auto.kernels();
             let motion = Motion {
                 kernels: &kernels,
@@ -260,9 +260,9 @@ fn a_quiet_cloth_is_solved_once() {
                 measures: true,
             };
             let (mut once, mut all) = (start.clone(), start.clone());
-            sweep.solve_across(once.blocks_mut(), &kernels);
-            sweep.solve_down(once.blocks_mut(), Direction::Down, &kernels);
-            sweep.substep(all.blocks_mut(), &motion, 1);
+            spring_solver.solve_across(once.blocks_mut(), &kernels);
+            spring_solver.solve_down(once.blocks_mut(), Direction::Down, &kernels);
+            spring_solver.substep(all.blocks_mut(), &motion, 1);
             let moves = once.displacements().zip(all.displacements());
             let farthest = moves.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
             assert_eq!(farthest < 1.0e-12, is_quiet, "{compliance}: {farthest}");

@@ -36,8 +36,8 @@ use std::array;
 use super::{
     bands::{MAX_BANDS, in_bands, take},
     bending::Bending,
-    drift::Drift,
-    kernels::{ElasticGrid, Felt, Force, Kernels, Kick},
+    damping_reference::DampingReference,
+    kernels::{ElasticGrid, Force, Kernels, Kick, LinearizedDrag},
     step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, existing},
 };
 use crate::cloth::{Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, W, X, Y, Z};
@@ -137,10 +137,10 @@ impl Forces {
         particles: &mut ClothParticles,
         step: &TickStep,
         index: u32,
-        drift: &mut Drift,
+        damping_reference: &mut DampingReference,
         pins: &[PinMotion],
         bending: Option<&mut Bending>,
-        felt: Option<&[Felt]>,
+        linearized: Option<&[LinearizedDrag]>,
         kernels: &Kernels,
     ) -> Option<SubStep> {
         let count = step.substeps.max(1);
@@ -152,12 +152,12 @@ impl Forces {
             false => (1.0, kept),
         };
         let weight = part * dt * dt;
-        let [way, _] = drift.follow(particles.blocks());
-        drift.gain(part);
+        let [displacement, _] = damping_reference.follow(particles.blocks());
+        damping_reference.gain(part);
         let kick = Kick {
             kept,
             weight,
-            pull: (step.acceleration * weight + (1.0 - kept) * way).to_array(),
+            pull: (step.acceleration * weight + (1.0 - kept) * displacement).to_array(),
             moves: index < count,
         };
         let mut substep = SubStep {
@@ -176,8 +176,8 @@ impl Forces {
             // Before the kick, which keeps a part of it.
             bending.push(blocks, weight / kept, kernels);
         }
-        if let Some(felt) = felt {
-            (kernels.air_push)(blocks, felt, weight / kept, 1.0 / dt);
+        if let Some(linearized) = linearized {
+            (kernels.air_push)(blocks, linearized, weight / kept, 1.0 / dt);
         }
         let moved = self.kick(blocks, &kick, kernels);
         substep.farthest_move = moved.into_iter().fold(0.0, f32::max).sqrt();

@@ -77,9 +77,9 @@ impl Twin {
         let mut forces = vec![DVec3::ZERO; self.places.len()];
         for spring in &self.springs {
             let [a, b] = spring.ends.map(|end| end as usize);
-            let way = self.places[b] - self.places[a];
-            let over = 1.0 - f64::from(spring.rest_length) / way.length();
-            let force = way * (over / f64::from(spring.compliance));
+            let span = self.places[b] - self.places[a];
+            let over = 1.0 - f64::from(spring.rest_length) / span.length();
+            let force = span * (over / f64::from(spring.compliance));
             forces[a] += force;
             forces[b] -= force;
         }

@@ -4,21 +4,21 @@
 //! A pass over eight particles needs three roots and two divisions, which take a core with AVX2 some 45 cycles. It also
 //! needs some 80 additions and multiplications, two per cycle. A sub-step adds 14 of these and six loads.
 
-use super::{barrier::one_block_at_a_time, pentadiagonal::Trio};
+use super::{barrier::one_block_at_a_time, pentadiagonal::Vec3Lanes};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
 
 /// The air's action on eight particles until its next evaluation: an acceleration of `push − drag (drag · v)` at the
 /// velocity v.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
-pub(crate) struct Felt {
+pub(crate) struct LinearizedDrag {
     /// x, y and z (m/s²).
-    pub push: Trio,
+    pub push: Vec3Lanes,
     /// Along the normal, the root of the damping rate (1/√s).
-    pub drag: Trio,
+    pub drag: Vec3Lanes,
 }
 
-impl Felt {
+impl LinearizedDrag {
     pub const NONE: Self = Self {
         push: [[0.0; LANES]; 3],
         drag: [[0.0; LANES]; 3],
@@ -27,7 +27,7 @@ impl Felt {
 
 /// Values that are the same for all particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Law {
+pub(crate) struct AeroCoefficients {
     /// `ρ C_d` (kg/m³).
     pub drag: f32,
     /// `ρ C_l ⁄ 2` (kg/m³).
@@ -45,11 +45,18 @@ const NO_AREA: f32 = f32::MIN_POSITIVE;
 /// The air's action on eight particles with these areas (normals as long as the area, m²) in these winds (m/s), and the
 /// position of each along its drag, for [`given`].
 #[inline(always)]
-fn feel(view: &View, area: &Trio, wind: &Trio, law: &Law, felt: &mut Felt, way: &mut Lanes) {
+fn linearize(
+    view: &View,
+    area: &Vec3Lanes,
+    wind: &Vec3Lanes,
+    coefficients: &AeroCoefficients,
+    linearized: &mut LinearizedDrag,
+    place: &mut Lanes,
+) {
     for l in 0..LANES {
         let normal = [area[0][l], area[1][l], area[2][l]];
         let moved = [view[DX + l], view[DY + l], view[DZ + l]];
-        let v = moved.map(|moved| moved * law.inverse_substep);
+        let v = moved.map(|moved| moved * coefficients.inverse_substep);
         let u = [wind[0][l] - v[0], wind[1][l] - v[1], wind[2][l] - v[2]];
         let square = dot(normal, normal);
         let square = if square > NO_AREA { square } else { NO_AREA };
@@ -60,30 +67,33 @@ fn feel(view: &View, area: &Trio, wind: &Trio, law: &Law, felt: &mut Felt, way: 
         let across = if across > 0.0 { across.sqrt() } else { 0.0 };
         // Of the area over the mass; 0 for a pin, and for a lane that holds no particle.
         let light = square * inverse * view[W + l];
-        let (lift, drag) = (law.lift * across * light, law.drag * along.abs() * light);
+        let (lift, drag) = (
+            coefficients.lift * across * light,
+            coefficients.drag * along.abs() * light,
+        );
         // The slope of the force over the speed, at most what one sub-step takes away.
         let rate = lift + drag;
-        let most = rate * law.substep;
+        let most = rate * coefficients.substep;
         let allowed = 1.0 / if most > 1.0 { most } else { 1.0 };
         let rate = rate * allowed;
         let force = (lift + 0.5 * drag) * allowed * along + rate * dot(v, n);
         let root = rate.sqrt();
-        let pressed = law.pressure * view[W + l];
+        let pressed = coefficients.pressure * view[W + l];
         let is_free = view[W + l] > 0.0;
         for axis in 0..3 {
             let push = n[axis] * force + pressed * normal[axis];
-            felt.push[axis][l] = if is_free { push } else { 0.0 };
-            felt.drag[axis][l] = if is_free { n[axis] * root } else { 0.0 };
+            linearized.push[axis][l] = if is_free { push } else { 0.0 };
+            linearized.drag[axis][l] = if is_free { n[axis] * root } else { 0.0 };
         }
-        way[l] = way_of(view, felt, l);
+        place[l] = place_along(view, linearized, l);
     }
 }
 
 /// Position of a particle along its drag, at the start of its last displacement. The difference of two is the sum of
 /// the displacements at the start of sub-steps.
 #[inline(always)]
-fn way_of(view: &View, felt: &Felt, l: usize) -> f32 {
-    let drag = [0, 1, 2].map(|axis| felt.drag[axis][l]);
+fn place_along(view: &View, linearized: &LinearizedDrag, l: usize) -> f32 {
+    let drag = [0, 1, 2].map(|axis| linearized.drag[axis][l]);
     let was = [X, Y, Z].map(|axis| view[axis + l] - view[DX + axis + l]);
     dot(drag, was)
 }
@@ -95,39 +105,39 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
 
 /// The air's action on the particles of some blocks.
 #[inline(always)]
-pub(crate) fn air_feel(
+pub(crate) fn air_linearize(
     blocks: &[Block],
-    areas: &[Trio],
-    winds: &[Trio],
-    law: &Law,
-    felt: &mut [Felt],
-    ways: &mut [Lanes],
+    areas: &[Vec3Lanes],
+    winds: &[Vec3Lanes],
+    coefficients: &AeroCoefficients,
+    linearized: &mut [LinearizedDrag],
+    places: &mut [Lanes],
 ) {
     let of = blocks.iter().zip(areas).zip(winds);
-    for (((block, area), wind), (felt, way)) in of.zip(felt.iter_mut().zip(ways)) {
-        feel(block.view(), area, wind, law, felt, way);
+    for (((block, area), wind), (linearized, place)) in of.zip(linearized.iter_mut().zip(places)) {
+        linearize(block.view(), area, wind, coefficients, linearized, place);
         one_block_at_a_time();
     }
 }
 
 /// Adds to `sum` the impulse (N s) that the air has given the particles of some blocks since they were looked at, `seconds` ago.
 #[inline(always)]
-pub(crate) fn air_given(
+pub(crate) fn air_impulse(
     blocks: &[Block],
-    felt: &[Felt],
-    ways: &[Lanes],
+    linearized: &[LinearizedDrag],
+    places: &[Lanes],
     seconds: f32,
-    sum: &mut Trio,
+    sum: &mut Vec3Lanes,
 ) {
-    for ((block, felt), way) in blocks.iter().zip(felt).zip(ways) {
+    for ((block, linearized), place) in blocks.iter().zip(linearized).zip(places) {
         let view = block.view();
         for l in 0..LANES {
-            let drag = [0, 1, 2].map(|axis| felt.drag[axis][l]);
-            let moved = way_of(view, felt, l) - way[l];
+            let drag = [0, 1, 2].map(|axis| linearized.drag[axis][l]);
+            let moved = place_along(view, linearized, l) - place[l];
             let is_free = view[W + l] > 0.0;
             let mass = 1.0 / if is_free { view[W + l] } else { 1.0 };
             for axis in 0..3 {
-                let given = mass * (felt.push[axis][l] * seconds - drag[axis] * moved);
+                let given = mass * (linearized.push[axis][l] * seconds - drag[axis] * moved);
                 sum[axis][l] += if is_free { given } else { 0.0 };
             }
         }
@@ -138,24 +148,29 @@ pub(crate) fn air_given(
 /// The acceleration (m/s²) of one lane that moved by this in a sub-step (m).
 #[inline(always)]
 pub(crate) fn acceleration(
-    felt: &Felt,
+    linearized: &LinearizedDrag,
     moved: [f32; 3],
     inverse_substep: f32,
     l: usize,
 ) -> [f32; 3] {
-    let drag = [0, 1, 2].map(|axis| felt.drag[axis][l]);
+    let drag = [0, 1, 2].map(|axis| linearized.drag[axis][l]);
     let slowed = dot(drag, moved) * inverse_substep;
-    [0, 1, 2].map(|axis| felt.push[axis][l] - drag[axis] * slowed)
+    [0, 1, 2].map(|axis| linearized.push[axis][l] - drag[axis] * slowed)
 }
 
 /// Adds the air's share to displacements, with this weight (s²).
 #[inline(always)]
-pub(crate) fn air_push(row: &mut [Block], felt: &[Felt], weight: f32, inverse_substep: f32) {
-    for (block, felt) in row.iter_mut().zip(felt) {
+pub(crate) fn air_push(
+    row: &mut [Block],
+    linearized: &[LinearizedDrag],
+    weight: f32,
+    inverse_substep: f32,
+) {
+    for (block, linearized) in row.iter_mut().zip(linearized) {
         let view = block.view_mut();
         for l in 0..LANES {
             let moved = [view[DX + l], view[DY + l], view[DZ + l]];
-            let [x, y, z] = acceleration(felt, moved, inverse_substep, l);
+            let [x, y, z] = acceleration(linearized, moved, inverse_substep, l);
             view[DX + l] += weight * x;
             view[DY + l] += weight * y;
             view[DZ + l] += weight * z;

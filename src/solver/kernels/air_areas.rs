@@ -2,7 +2,7 @@
 
 use bevy::math::{Vec3, Vec3A};
 
-use super::{barrier::one_block_at_a_time, pentadiagonal::Trio};
+use super::{barrier::one_block_at_a_time, pentadiagonal::Vec3Lanes};
 use crate::cloth::{Block, ClothParticles, LANES, Lanes, Slot, Surface, View, X};
 
 /// A row of a grid, and the rows above and below it, itself where there is none.
@@ -17,7 +17,7 @@ pub(crate) struct Rows<'a> {
 /// The areas of a row's particles: `(below − above) × (right − left) ⁄ 4` (m²), the particle itself where it has no neighbour. That
 /// is half of the diamond of its neighbours, and on a flat grid what each particle stands for, at borders and corners too.
 #[inline(always)]
-pub(crate) fn air_areas(rows: &Rows, areas: &mut [Trio]) {
+pub(crate) fn air_areas(rows: &Rows, areas: &mut [Vec3Lanes]) {
     let strip = rows.own.len();
     for (j, area) in areas.iter_mut().enumerate().take(strip) {
         let own = rows.own[j].view();
@@ -47,7 +47,7 @@ pub(crate) fn air_areas(rows: &Rows, areas: &mut [Trio]) {
 }
 
 #[inline(always)]
-fn places(view: &View) -> Trio {
+fn places(view: &View) -> Vec3Lanes {
     let mut places = [[0.0; LANES]; 3];
     for (axis, places) in places.iter_mut().enumerate() {
         places.copy_from_slice(&view[X + axis * LANES..][..LANES]);
@@ -57,7 +57,7 @@ fn places(view: &View) -> Trio {
 
 /// Without a neighbour in one lane.
 #[inline(always)]
-fn ending(mut right: Trio, own: &View, lane: usize) -> Trio {
+fn ending(mut right: Vec3Lanes, own: &View, lane: usize) -> Vec3Lanes {
     for (axis, right) in right.iter_mut().enumerate() {
         right[lane] = own[X + axis * LANES + lane];
     }
@@ -66,7 +66,7 @@ fn ending(mut right: Trio, own: &View, lane: usize) -> Trio {
 
 /// The lanes before those of a strip's last block; the first has none.
 #[inline(always)]
-fn behind(last: &Trio, own: &View) -> Trio {
+fn behind(last: &Vec3Lanes, own: &View) -> Vec3Lanes {
     let mut left = [[0.0; LANES]; 3];
     for (axis, (left, last)) in left.iter_mut().zip(last).enumerate() {
         left[0] = own[X + axis * LANES];
@@ -117,7 +117,7 @@ impl Triangles {
     }
 
     /// The areas of all particles: a third of each of their triangles (m²). Returns what these enclose, if they enclose anything.
-    pub fn areas(&mut self, particles: &ClothParticles, areas: &mut [Trio]) -> Enclosed {
+    pub fn areas(&mut self, particles: &ClothParticles, areas: &mut [Vec3Lanes]) -> Enclosed {
         self.place(particles.positions());
         let enclosed = self.enclose();
         for (area, slot) in self.areas.iter().zip(particles.layout().slots()) {

@@ -10,11 +10,11 @@ mod barrier;
 mod chains;
 mod commit;
 mod elastic;
-mod pace;
 mod packet;
 mod pentadiagonal;
 mod plate;
 mod predict;
+mod step_scale;
 mod twist;
 
 use bevy::math::Vec4;
@@ -22,12 +22,12 @@ use multiversion::{inherit_target, multiversion};
 
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, X, Y, Z};
 
-pub(crate) use air::{Felt, Law, air_feel, air_given, air_push};
+pub(crate) use air::{AeroCoefficients, LinearizedDrag, air_impulse, air_linearize, air_push};
 pub(crate) use air_areas::{Enclosed, Rows, Triangles, air_areas, between};
 use barrier::one_block_at_a_time;
 pub(crate) use chains::{
-    Columns, Direction, Family, GROUP, Left, RowScratch, RowSprings, RowThreads, Scratch, Solved,
-    Step, Threads, bundle_backward, bundle_forward, largest, measure_elastic_left,
+    Columns, Direction, GROUP, Residuals, RowScratch, RowSprings, RowThreads, Scratch, Solved,
+    SpringBand, Step, Threads, bundle_backward, bundle_forward, largest, measure_elastic_left,
     measure_elastic_left_at, measure_given, measure_left, measure_left_at, note_places,
     solve_columns, solve_columns_again, solve_damped_rows, solve_damped_threads, solve_rows,
     solve_rows_again, solve_threads,
@@ -36,19 +36,19 @@ pub(crate) use chains::{
 pub(crate) use commit::MIN_MOVE;
 pub(crate) use commit::commit;
 pub(crate) use elastic::{ElasticGrid, Force, Kick, kick};
-pub(crate) use pace::Pace;
 pub(crate) use packet::{
     Packet, Row, SPRINGS, relax_packets, relax_packets_back, relax_packets_there,
 };
 pub(crate) use pentadiagonal::{
-    Factor, Trio, thread_backward, thread_columns, thread_finish, thread_forward, thread_links,
-    thread_moments, thread_rows,
+    Factor, Vec3Lanes, thread_backward, thread_columns, thread_finish, thread_forward,
+    thread_links, thread_moments, thread_rows,
 };
 pub(crate) use plate::{EDGE, Moments, Stiffness, plate_moments, plate_places, plate_push};
 pub(crate) use predict::{
-    Breath, Prediction, begin_past, predict, predict_first, predict_first_in_air, predict_in_air,
+    AirStep, Prediction, begin_past, predict, predict_first, predict_first_in_air, predict_in_air,
     weight,
 };
+pub(crate) use step_scale::StepScale;
 pub(crate) use twist::{twist_backward, twist_forward, twist_links};
 
 /// Pulls each particle back that is farther from its anchor than its tether is long: a unilateral constraint
@@ -131,7 +131,7 @@ fn measure(a: &View, b: &View, hold: &Lanes, largest: &mut Lanes) {
 
 /// Measures a row's horizontal springs.
 #[inline(always)]
-fn measure_within(row: &[Block], springs: &Family, longest: &mut Longest) {
+fn measure_within(row: &[Block], springs: &SpringBand, longest: &mut Longest) {
     for (pair, hold) in row.windows(2).zip(&springs.hold) {
         measure(pair[0].view(), pair[1].view(), hold, &mut longest.across);
     }
@@ -142,7 +142,7 @@ fn measure_within(row: &[Block], springs: &Family, longest: &mut Longest) {
 
 /// Measures the vertical springs between two rows.
 #[inline(always)]
-fn measure_down(upper: &[Block], lower: &[Block], springs: &Family, longest: &mut Longest) {
+fn measure_down(upper: &[Block], lower: &[Block], springs: &SpringBand, longest: &mut Longest) {
     for ((a, b), hold) in upper.iter().zip(lower).zip(&springs.hold) {
         measure(a.view(), b.view(), hold, &mut longest.down);
     }
@@ -150,7 +150,7 @@ fn measure_down(upper: &[Block], lower: &[Block], springs: &Family, longest: &mu
 
 /// Measures the springs from each column of one row to the next column of the other.
 #[inline(always)]
-fn measure_diagonal(left: &[Block], right: &[Block], springs: &Family, longest: &mut Longest) {
+fn measure_diagonal(left: &[Block], right: &[Block], springs: &SpringBand, longest: &mut Longest) {
     for ((a, b), hold) in left.iter().zip(&right[1..]).zip(&springs.hold) {
         measure(a.view(), b.view(), hold, &mut longest.diagonal);
     }
@@ -209,48 +209,48 @@ macro_rules! kernels {
 kernels! {
     predict_first(row: &mut [Block], prediction: &Prediction),
     predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction),
-    predict_first_in_air(row: &mut [Block], felt: &[Felt], prediction: &Prediction, breath: &Breath),
-    predict_in_air(row: &mut [Block], past: &mut [Earlier], felt: &[Felt], prediction: &Prediction, breath: &Breath),
+    predict_first_in_air(row: &mut [Block], linearized: &[LinearizedDrag], prediction: &Prediction, air_step: &AirStep),
+    predict_in_air(row: &mut [Block], past: &mut [Earlier], linearized: &[LinearizedDrag], prediction: &Prediction, air_step: &AirStep),
     begin_past(row: &[Block], past: &mut [Earlier]),
-    air_areas(rows: &Rows, areas: &mut [Trio]),
-    air_feel(blocks: &[Block], areas: &[Trio], winds: &[Trio], law: &Law, felt: &mut [Felt], ways: &mut [Lanes]),
-    air_given(blocks: &[Block], felt: &[Felt], ways: &[Lanes], seconds: f32, sum: &mut Trio),
-    air_push(row: &mut [Block], felt: &[Felt], weight: f32, inverse_substep: f32),
-    solve_threads(threads: &mut Threads, family: &Family),
-    solve_damped_threads(threads: &mut Threads, family: &Family),
-    solve_rows(rows: &mut RowThreads, families: &[Family; 2]),
-    solve_damped_rows(rows: &mut RowThreads, families: &[Family; 2]),
-    solve_rows_again(rows: &mut RowThreads, families: &[Family; 2]),
-    solve_columns(columns: &mut Columns, family: &Family),
-    solve_columns_again(columns: &mut Columns, family: &Family),
-    note_places(row: &[Block], left: &mut Left),
-    measure_left(row: &[Block], springs: &RowSprings, left: &mut Left),
-    measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Left),
-    measure_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Left),
-    measure_elastic_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Left),
+    air_areas(rows: &Rows, areas: &mut [Vec3Lanes]),
+    air_linearize(blocks: &[Block], areas: &[Vec3Lanes], winds: &[Vec3Lanes], coefficients: &AeroCoefficients, linearized: &mut [LinearizedDrag], places: &mut [Lanes]),
+    air_impulse(blocks: &[Block], linearized: &[LinearizedDrag], places: &[Lanes], seconds: f32, sum: &mut Vec3Lanes),
+    air_push(row: &mut [Block], linearized: &[LinearizedDrag], weight: f32, inverse_substep: f32),
+    solve_threads(threads: &mut Threads, family: &SpringBand),
+    solve_damped_threads(threads: &mut Threads, family: &SpringBand),
+    solve_rows(rows: &mut RowThreads, families: &[SpringBand; 2]),
+    solve_damped_rows(rows: &mut RowThreads, families: &[SpringBand; 2]),
+    solve_rows_again(rows: &mut RowThreads, families: &[SpringBand; 2]),
+    solve_columns(columns: &mut Columns, family: &SpringBand),
+    solve_columns_again(columns: &mut Columns, family: &SpringBand),
+    note_places(row: &[Block], left: &mut Residuals),
+    measure_left(row: &[Block], springs: &RowSprings, left: &mut Residuals),
+    measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Residuals),
+    measure_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Residuals),
+    measure_elastic_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Residuals),
     measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut Lanes),
-    bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], pace: &Pace),
+    bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], step_scale: &StepScale),
     bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),
     commit(row: &mut [Block], farthest: &mut Lanes),
     kick(blocks: &mut [Block], around: [&[Block]; 2], springs: &ElasticGrid, kick: &Kick, forces: &mut [Vec<Force>; 2], moved: &mut Lanes),
-    relax_packets(rows: &mut [Row], packets: &[Packet], pace: &Pace),
-    relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], pace: &Pace),
-    relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &[Vec4], pace: &Pace),
-    plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Trio]),
-    plate_moments(places: [&[Trio]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
+    relax_packets(rows: &mut [Row], packets: &[Packet], step_scale: &StepScale),
+    relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale),
+    relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &[Vec4], step_scale: &StepScale),
+    plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Vec3Lanes]),
+    plate_moments(places: [&[Vec3Lanes]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
     plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),
-    thread_links(from: &[Block], to: &[Block], links: &mut [Trio]),
-    thread_moments(links: [&[Trio]; 2], stiffness: &[Lanes], moments: &mut [Trio]),
-    thread_forward(moments: [&[Trio]; 3], solved: [&[Trio]; 2], factors: &[Factor], out: &mut [Trio]),
-    thread_backward(blocks: &mut [Block], own: &[Factor], solved: [&[Trio]; 2], factors: [&[Factor]; 2], out: &mut [Trio]),
-    thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio]),
-    thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Factor]),
-    thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]),
-    twist_links(row: &[Block], is_odd: bool, links: &mut [Trio]),
-    twist_forward(links: [&[Trio]; 2], stiffness: &[Lanes], moments: &mut [Trio], before: &[Trio], factors: &[Factor], out: &mut [Trio]),
-    twist_backward(row: &mut [Block], is_odd: bool, factors: [&[Factor]; 2], next: &[Trio], out: &mut [Trio]),
+    thread_links(from: &[Block], to: &[Block], links: &mut [Vec3Lanes]),
+    thread_moments(links: [&[Vec3Lanes]; 2], stiffness: &[Lanes], moments: &mut [Vec3Lanes]),
+    thread_forward(moments: [&[Vec3Lanes]; 3], solved: [&[Vec3Lanes]; 2], factors: &[Factor], out: &mut [Vec3Lanes]),
+    thread_backward(blocks: &mut [Block], own: &[Factor], solved: [&[Vec3Lanes]; 2], factors: [&[Factor]; 2], out: &mut [Vec3Lanes]),
+    thread_columns(rows: &[Block], strip: usize, columns: &mut [Vec3Lanes]),
+    thread_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: &[Factor]),
+    thread_finish(columns: &[Vec3Lanes], strip: usize, rows: &mut [Block]),
+    twist_links(row: &[Block], is_odd: bool, links: &mut [Vec3Lanes]),
+    twist_forward(links: [&[Vec3Lanes]; 2], stiffness: &[Lanes], moments: &mut [Vec3Lanes], before: &[Vec3Lanes], factors: &[Factor], out: &mut [Vec3Lanes]),
+    twist_backward(row: &mut [Block], is_odd: bool, factors: [&[Factor]; 2], next: &[Vec3Lanes], out: &mut [Vec3Lanes]),
     tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_square: &[Lanes]),
-    measure_within(row: &[Block], springs: &Family, longest: &mut Longest),
-    measure_down(upper: &[Block], lower: &[Block], springs: &Family, longest: &mut Longest),
-    measure_diagonal(left: &[Block], right: &[Block], springs: &Family, longest: &mut Longest),
+    measure_within(row: &[Block], springs: &SpringBand, longest: &mut Longest),
+    measure_down(upper: &[Block], lower: &[Block], springs: &SpringBand, longest: &mut Longest),
+    measure_diagonal(left: &[Block], right: &[Block], springs: &SpringBand, longest: &mut Longest),
 }

@@ -11,7 +11,7 @@
 
 use bevy::math::{Mat4, Vec4};
 
-use super::pace::Pace;
+use super::step_scale::StepScale;
 
 /// Added to `w_a + w_b` (1/kg): negligible, but it keeps a spring between two pins from dividing by zero.
 const MIN_SOFTNESS: f32 = 1.0e-18;
@@ -43,9 +43,9 @@ pub(crate) struct Packet {
 
 /// Moves the ends of all springs, one packet after the other: what [`kernel`](super::kernel) does to the springs of a grid.
 #[inline(always)]
-pub(crate) fn relax_packets(rows: &mut [Row], packets: &[Packet], pace: &Pace) {
+pub(crate) fn relax_packets(rows: &mut [Row], packets: &[Packet], step_scale: &StepScale) {
     for packet in packets {
-        relax(rows, packet, pace, None);
+        relax(rows, packet, step_scale, None);
     }
 }
 
@@ -55,10 +55,10 @@ pub(crate) fn relax_packets_there(
     rows: &mut [Row],
     packets: &[Packet],
     pulls: &mut [Vec4],
-    pace: &Pace,
+    step_scale: &StepScale,
 ) {
     for (packet, pull) in packets.iter().zip(pulls) {
-        *pull = relax(rows, packet, pace, None);
+        *pull = relax(rows, packet, step_scale, None);
     }
 }
 
@@ -68,16 +68,16 @@ pub(crate) fn relax_packets_back(
     rows: &mut [Row],
     packets: &[Packet],
     pulls: &[Vec4],
-    pace: &Pace,
+    step_scale: &StepScale,
 ) {
     for (packet, pull) in packets.iter().zip(pulls).rev() {
-        relax(rows, packet, pace, Some(*pull));
+        relax(rows, packet, step_scale, Some(*pull));
     }
 }
 
 /// Moves the ends of a packet's springs. Returns what they pull with: what moves their ends over inverse mass and length (kg).
 #[inline(always)]
-fn relax(rows: &mut [Row], packet: &Packet, pace: &Pace, pulled: Option<Vec4>) -> Vec4 {
+fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Option<Vec4>) -> Vec4 {
     let a = packet.from.map(|end| rows[end as usize]);
     let b = packet.to.map(|end| rows[end as usize]);
     let offsets: [Vec4; SPRINGS] =
@@ -86,13 +86,13 @@ fn relax(rows: &mut [Row], packet: &Packet, pace: &Pace, pulled: Option<Vec4>) -
     let (weight_a, weight_b) = (weights(&a), weights(&b));
     let q = x * x + y * y + z * z;
     let r2 = packet.rest_square;
-    let (mut softness, mut beyond) = (packet.compliance * pace.inverse_weight, q - r2);
-    if pace.kept < 1.0 {
+    let (mut softness, mut beyond) = (packet.compliance * step_scale.inverse_weight, q - r2);
+    if step_scale.kept < 1.0 {
         // As of a grid's springs; what a way opens by changes its square by twice its length times that.
         let moved: [Vec4; SPRINGS] = std::array::from_fn(|at| b[at].moved - a[at].moved);
         let [dx, dy, dz] = coordinates(moved);
         let is_soft = packet.compliance.cmpgt(Vec4::ZERO);
-        let kept = Vec4::select(is_soft, Vec4::splat(pace.kept), Vec4::ONE);
+        let kept = Vec4::select(is_soft, Vec4::splat(step_scale.kept), Vec4::ONE);
         softness *= kept;
         beyond = kept * beyond + (1.0 - kept) * 2.0 * (x * dx + y * dy + z * dz);
     }

@@ -7,12 +7,12 @@
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, X, Y, Z};
 
 /// x, y and z of eight particles.
-pub(crate) type Trio = [Lanes; 3];
+pub(crate) type Vec3Lanes = [Lanes; 3];
 
 /// A particle's row of L, and of the inverse of D: to the particle before it, to the one before that, 1/D.
 pub(crate) type Factor = [Lanes; 3];
 
-/// Where each quantity of a [`Trio`] is in a block.
+/// Where each quantity of a [`Vec3Lanes`] is in a block.
 pub(crate) const PLACES: [usize; 3] = [X, Y, Z];
 pub(crate) const MOVES: [usize; 3] = [DX, DY, DZ];
 
@@ -28,7 +28,7 @@ pub(crate) fn flush(number: f32, least: f32) -> f32 {
 
 /// From each particle of `a` to that of `b` in the same lane.
 #[inline(always)]
-pub(crate) fn link(a: &View, b: &View, out: &mut Trio) {
+pub(crate) fn link(a: &View, b: &View, out: &mut Vec3Lanes) {
     for axis in 0..3 {
         let (place, moved) = (PLACES[axis], MOVES[axis]);
         for l in 0..LANES {
@@ -39,7 +39,7 @@ pub(crate) fn link(a: &View, b: &View, out: &mut Trio) {
 
 /// From each particle of a row to the one below it.
 #[inline(always)]
-pub(crate) fn thread_links(from: &[Block], to: &[Block], links: &mut [Trio]) {
+pub(crate) fn thread_links(from: &[Block], to: &[Block], links: &mut [Vec3Lanes]) {
     for ((a, b), out) in from.iter().zip(to).zip(links) {
         link(a.view(), b.view(), out);
     }
@@ -96,9 +96,9 @@ fn backward(
 /// Moments of a row (kg m), from the links that lead to it and away from it.
 #[inline(always)]
 pub(crate) fn thread_moments(
-    [before, after]: [&[Trio]; 2],
+    [before, after]: [&[Vec3Lanes]; 2],
     stiffness: &[Lanes],
-    moments: &mut [Trio],
+    moments: &mut [Vec3Lanes],
 ) {
     for (((before, after), stiffness), out) in before.iter().zip(after).zip(stiffness).zip(moments)
     {
@@ -112,10 +112,10 @@ pub(crate) fn thread_moments(
 /// one before that.
 #[inline(always)]
 pub(crate) fn thread_forward(
-    moments: [&[Trio]; 3],
-    solved: [&[Trio]; 2],
+    moments: [&[Vec3Lanes]; 3],
+    solved: [&[Vec3Lanes]; 2],
     factors: &[Factor],
-    out: &mut [Trio],
+    out: &mut [Vec3Lanes],
 ) {
     let strip = out.len();
     let [before, own, next] = moments.map(|of| &of[..strip]);
@@ -135,9 +135,9 @@ pub(crate) fn thread_forward(
 pub(crate) fn thread_backward(
     blocks: &mut [Block],
     own: &[Factor],
-    solved: [&[Trio]; 2],
+    solved: [&[Vec3Lanes]; 2],
     factors: [&[Factor]; 2],
-    out: &mut [Trio],
+    out: &mut [Vec3Lanes],
 ) {
     let strip = blocks.len();
     let (own, out) = (&own[..strip], &mut out[..strip]);
@@ -177,7 +177,7 @@ fn transpose(from: &[Lanes; LANES]) -> [Lanes; LANES] {
 
 /// The links along up to eight rows, column by column: the lanes of a column are the rows.
 #[inline(always)]
-pub(crate) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio]) {
+pub(crate) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Vec3Lanes]) {
     for j in 0..strip {
         let mut links = [[[0.0; LANES]; LANES]; 3];
         for (row, blocks) in rows.chunks_exact(strip).enumerate() {
@@ -202,10 +202,10 @@ pub(crate) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Trio])
 
 /// Solves eight rows, each from its first column to its last and back, in place of their links.
 #[inline(always)]
-pub(crate) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Factor]) {
+pub(crate) fn thread_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: &[Factor]) {
     let none = [[0.0; LANES]; 3];
     let count = columns.len();
-    let moment = |before: &Trio, after: &Trio| {
+    let moment = |before: &Vec3Lanes, after: &Vec3Lanes| {
         let mut moment = none;
         for axis in 0..3 {
             moment[axis] = scaled_difference(stiffness, &after[axis], &before[axis]);
@@ -251,7 +251,7 @@ pub(crate) fn thread_rows(columns: &mut [Trio], stiffness: &Lanes, factors: &[Fa
 
 /// Moves the particles of up to eight rows by their solutions, column by column.
 #[inline(always)]
-pub(crate) fn thread_finish(columns: &[Trio], strip: usize, rows: &mut [Block]) {
+pub(crate) fn thread_finish(columns: &[Vec3Lanes], strip: usize, rows: &mut [Block]) {
     for j in 0..strip {
         for axis in 0..3 {
             let of_columns = std::array::from_fn(|lane| columns[lane * strip + j][axis]);

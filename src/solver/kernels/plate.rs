@@ -6,7 +6,7 @@
 //! corners by it, with these signs reversed. Three stages follow each other down the rows: positions, moments, forces.
 //! Data between the stages stays in the caches next to the core.
 
-use super::pentadiagonal::{MIN_MOVE, MOVES, PLACES, Trio, flush};
+use super::pentadiagonal::{MIN_MOVE, MOVES, PLACES, Vec3Lanes, flush};
 use crate::cloth::{Block, LANES, Lanes, W};
 
 /// Blocks on either side of a row that repeat its other end, so that each block has its neighbours beside it.
@@ -39,7 +39,7 @@ fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
 /// Where a row's particles will be after this part of their displacements, seen from `origin`: next to the cloth, so that no digit
 /// of a displacement is lost to its distance from the world's origin.
 #[inline(always)]
-pub(crate) fn plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Trio]) {
+pub(crate) fn plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Vec3Lanes]) {
     for (block, out) in row.iter().zip(&mut places[EDGE..]) {
         let view = block.view();
         for axis in 0..3 {
@@ -77,7 +77,7 @@ fn twist(stiffness: &Lanes, [a, b]: [&Lanes; 2], [c, d]: [&Lanes; 2]) -> Lanes {
 /// Moments of a row, from the places of the row above, of itself and of the row below.
 #[inline(always)]
 pub(crate) fn plate_moments(
-    [above, own, below]: [&[Trio]; 3],
+    [above, own, below]: [&[Vec3Lanes]; 3],
     stiffness: &[Stiffness],
     moments: &mut [Moments],
 ) {

@@ -15,7 +15,7 @@
 use bevy::math::Vec3;
 
 use super::{
-    air::{Felt, acceleration},
+    air::{LinearizedDrag, acceleration},
     barrier::one_block_at_a_time,
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
@@ -31,9 +31,9 @@ pub(crate) struct Prediction {
 }
 
 impl Prediction {
-    /// With velocities kept to the part `kept`, and c a Δt² (m). They are relative to what has moved by `way` in the sub-step
+    /// With velocities kept to the part `kept`, and c a Δt² (m). They are relative to what has moved by `displacement` in the sub-step
     /// before, and gains `gain` in each (m).
-    pub fn new(kind: StepKind, kept: f32, pull: Vec3, [way, gain]: [Vec3; 2]) -> Self {
+    pub fn new(kind: StepKind, kept: f32, pull: Vec3, [displacement, gain]: [Vec3; 2]) -> Self {
         let k = f64::from(kept);
         let [own, one, two] = match kind {
             StepKind::First => [k, 0.0, 0.0],
@@ -55,7 +55,7 @@ impl Prediction {
             own: own as f32,
             one: one as f32,
             two: two as f32,
-            pull: (pull + lost * way + lost_gain * gain).to_array(),
+            pull: (pull + lost * displacement + lost_gain * gain).to_array(),
         }
     }
 }
@@ -121,7 +121,7 @@ pub(crate) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
 
 /// Parameters of the air in a sub-step: its weight (s²), and one over its length (1/s).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Breath {
+pub(crate) struct AirStep {
     pub weight: f32,
     pub inverse_substep: f32,
 }
@@ -130,18 +130,18 @@ pub(crate) struct Breath {
 #[inline(always)]
 pub(crate) fn predict_first_in_air(
     row: &mut [Block],
-    felt: &[Felt],
+    linearized: &[LinearizedDrag],
     prediction: &Prediction,
-    breath: &Breath,
+    air_step: &AirStep,
 ) {
-    for (block, felt) in row.iter_mut().zip(felt) {
+    for (block, linearized) in row.iter_mut().zip(linearized) {
         let view = block.view_mut();
         for l in 0..LANES {
             let now = [view[DX + l], view[DY + l], view[DZ + l]];
-            let air = acceleration(felt, now, breath.inverse_substep, l);
+            let air = acceleration(linearized, now, air_step.inverse_substep, l);
             for axis in 0..3 {
                 let at = DX + axis * LANES + l;
-                let pull = prediction.pull[axis] + breath.weight * air[axis];
+                let pull = prediction.pull[axis] + air_step.weight * air[axis];
                 let moved = now[axis] * prediction.own + pull;
                 view[at] = if view[W + l] > 0.0 { moved } else { now[axis] };
             }
@@ -155,9 +155,9 @@ pub(crate) fn predict_first_in_air(
 pub(crate) fn predict_in_air(
     row: &mut [Block],
     past: &mut [Earlier],
-    felt: &[Felt],
+    linearized: &[LinearizedDrag],
     prediction: &Prediction,
-    breath: &Breath,
+    air_step: &AirStep,
 ) {
     let Prediction {
         own,
@@ -165,17 +165,17 @@ pub(crate) fn predict_in_air(
         two,
         pull,
     } = *prediction;
-    let Breath {
+    let AirStep {
         weight,
         inverse_substep,
-    } = *breath;
-    for ((block, Earlier(earlier)), felt) in row.iter_mut().zip(past).zip(felt) {
+    } = *air_step;
+    for ((block, Earlier(earlier)), linearized) in row.iter_mut().zip(past).zip(linearized) {
         let view = block.view_mut();
         let (mut free, mut air) = ([0; LANES], [[0.0; LANES]; 3]);
         for l in 0..LANES {
             free[l] = if view[W + l] > 0.0 { u32::MAX } else { 0 };
             let now = [view[DX + l], view[DY + l], view[DZ + l]];
-            let [x, y, z] = acceleration(felt, now, inverse_substep, l);
+            let [x, y, z] = acceleration(linearized, now, inverse_substep, l);
             (air[0][l], air[1][l], air[2][l]) = (x, y, z);
         }
         for axis in 0..3 {

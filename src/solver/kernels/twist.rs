@@ -6,12 +6,12 @@
 //! resists it. Strips that begin in an even column share no particle, nor do the odd ones: eight of them are solved
 //! side by side.
 
-use super::pentadiagonal::{Factor, MIN_MOMENT, MIN_MOVE, MOVES, Trio, flush, link};
+use super::pentadiagonal::{Factor, MIN_MOMENT, MIN_MOVE, MOVES, Vec3Lanes, flush, link};
 use crate::cloth::{Block, LANES, Lanes, View, W};
 
 /// Each pair's difference, from left to right, of a row's even or odd pairs.
 #[inline(always)]
-pub(crate) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Trio]) {
+pub(crate) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Vec3Lanes]) {
     let pairs = row[usize::from(is_odd)..].chunks_exact(2);
     for (pair, out) in pairs.zip(&mut *links) {
         if let [a, b] = pair {
@@ -44,12 +44,12 @@ fn forward(
 /// the cells below; `before` is the row before, solved.
 #[inline(always)]
 pub(crate) fn twist_forward(
-    [own, next]: [&[Trio]; 2],
+    [own, next]: [&[Vec3Lanes]; 2],
     stiffness: &[Lanes],
-    moments: &mut [Trio],
-    before: &[Trio],
+    moments: &mut [Vec3Lanes],
+    before: &[Vec3Lanes],
     factors: &[Factor],
-    out: &mut [Trio],
+    out: &mut [Vec3Lanes],
 ) {
     let pairs = out.len();
     let (own, next, stiffness) = (&own[..pairs], &next[..pairs], &stiffness[..pairs]);
@@ -81,7 +81,7 @@ fn backward(solved: &Lanes, inverse: &Lanes, lower: &Lanes, next: &Lanes) -> Lan
 
 /// Moves both of a pair by their parts of the change, in inverse proportion to their masses.
 #[inline(always)]
-fn part(a: &mut View, b: &mut View, mass: &Lanes, changes: &Trio) {
+fn part(a: &mut View, b: &mut View, mass: &Lanes, changes: &Vec3Lanes) {
     for axis in 0..3 {
         let (at, changes) = (MOVES[axis], &changes[axis]);
         for l in 0..LANES {
@@ -98,8 +98,8 @@ pub(crate) fn twist_backward(
     row: &mut [Block],
     is_odd: bool,
     [own, below]: [&[Factor]; 2],
-    next: &[Trio],
-    out: &mut [Trio],
+    next: &[Vec3Lanes],
+    out: &mut [Vec3Lanes],
 ) {
     let pairs = out.len();
     let (own, below, next) = (&own[..pairs], &below[..pairs], &next[..pairs]);

@@ -11,13 +11,13 @@ use super::{
     air::{Air, AirMemory, Airflow},
     bands::with_threads_awake,
     bending::Bending,
-    chains::ThreadSweep,
+    chains::GridSolver,
     forces::Forces,
     kernels::SimdLevel,
-    list::ListSweep,
+    list::ListSolver,
+    spring_solver::SpringSolver,
     step::{PinMotion, SubStep, TickStep},
     stretch::Stretch,
-    sweep::Sweep,
     tether::{Anchors, Tethers},
 };
 use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
@@ -43,7 +43,7 @@ const RESOLVED: f32 = 2.2;
 pub struct Solver {
     /// Of the particles.
     layout: Layout,
-    sweep: Box<dyn Sweep>,
+    spring_solver: Box<dyn SpringSolver>,
     /// Of a grid without rigid springs.
     forces: Option<Box<Forces>>,
     bending: Option<Bending>,
@@ -59,7 +59,7 @@ pub struct Solver {
 impl Default for Solver {
     /// A solver without springs.
     fn default() -> Self {
-        Self::of(Layout::default(), Box::<ListSweep>::default())
+        Self::of(Layout::default(), Box::<ListSolver>::default())
     }
 }
 
@@ -81,17 +81,17 @@ impl Solver {
     }
 
     fn of_layout(springs: &Springs, layout: Layout) -> Self {
-        let sweep: Box<dyn Sweep> = match springs.storage() {
+        let spring_solver: Box<dyn SpringSolver> = match springs.storage() {
             SpringStorage::Grid(grid, compliances) => {
                 let of_grid = Layout::new(grid.columns(), grid.rows());
                 assert!(layout == of_grid, "springs and particles of one grid");
-                Box::new(ThreadSweep::new(grid, compliances))
+                Box::new(GridSolver::new(grid, compliances))
             }
             SpringStorage::List(list) => {
                 let mut ends = list.springs.iter().flat_map(|spring| spring.ends);
                 let exists = |end: u32| (end as usize) < layout.len();
                 assert!(ends.all(exists), "springs between particles that exist");
-                Box::new(ListSweep::new(list, layout))
+                Box::new(ListSolver::new(list, layout))
             }
         };
         let forces = match springs.storage() {
@@ -100,14 +100,14 @@ impl Solver {
         };
         Self {
             forces,
-            ..Self::of(layout, sweep)
+            ..Self::of(layout, spring_solver)
         }
     }
 
-    fn of(layout: Layout, sweep: Box<dyn Sweep>) -> Self {
+    fn of(layout: Layout, spring_solver: Box<dyn SpringSolver>) -> Self {
         Self {
             layout,
-            sweep,
+            spring_solver,
             forces: None,
             bending: None,
             air: None,
@@ -200,7 +200,7 @@ impl Solver {
 
     /// Number of bands: fewer than wanted if there is too little to do.
     pub(super) fn bands(&self) -> usize {
-        self.sweep.bands(self.bands)
+        self.spring_solver.bands(self.bands)
     }
 
     /// Bands in a tick of forces.
@@ -242,6 +242,6 @@ impl Solver {
     /// Measures the stretch of `particles`.
     pub fn measure(&self, particles: &ClothParticles) -> Stretch {
         let kernels = self.simd_level.kernels();
-        self.sweep.measure(particles.blocks(), &kernels)
+        self.spring_solver.measure(particles.blocks(), &kernels)
     }
 }

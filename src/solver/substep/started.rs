@@ -5,13 +5,13 @@ use crate::{
     cloth::{Block, ClothParticles, Earlier, StepKind},
     solver::{
         bands::in_bands,
-        drift::Drift,
+        damping_reference::DampingReference,
         energy::Energy,
-        kernels::{Breath, Pace, Prediction, weight},
+        kernels::{AirStep, Prediction, StepScale, weight},
         spin::Spin,
+        spring_solver::Motion,
         step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, TimeOrder, existing, put_pins},
         stretch::Stretch,
-        sweep::Motion,
     },
 };
 
@@ -26,7 +26,7 @@ pub(crate) struct StartedTick {
     /// The cloth's energy as the tick began, if it is watched.
     watched: Option<Energy>,
     spin: Option<Spin>,
-    drift: Drift,
+    damping_reference: DampingReference,
     is_pushed: bool,
     /// The stretch, where it was measured on the way.
     measured: Option<Stretch>,
@@ -52,7 +52,7 @@ impl StartedTick {
     pub(crate) fn note_push(&mut self, particles: &mut ClothParticles) {
         self.is_pushed = true;
         self.measured = None;
-        self.drift.note_push();
+        self.damping_reference.note_push();
         if !self.is_explicit {
             particles.forget_past(AFTER_CONTACT);
         }
@@ -81,7 +81,7 @@ impl Solver {
             is_explicit: false,
             watched: None,
             spin: None,
-            drift: Drift::of(&step),
+            damping_reference: DampingReference::of(&step),
             is_pushed: false,
             measured: None,
             material: 0.0,
@@ -113,15 +113,15 @@ impl Solver {
         }
         // Other causes that turn the cloth are not known here.
         if self.air.is_none() {
-            let [drift, _] = tick.drift.follow(particles.blocks());
-            tick.spin = Spin::of(particles, &step, pins, drift);
+            let [damping_reference, _] = tick.damping_reference.follow(particles.blocks());
+            tick.spin = Spin::of(particles, &step, pins, damping_reference);
         }
         tick
     }
 
     /// A step of the order that is safe with what solves the springs.
     fn allowed(&self, step: TickStep) -> TickStep {
-        let order = if self.sweep.is_exact() {
+        let order = if self.spring_solver.is_exact() {
             step.order
         } else {
             TimeOrder::First
@@ -176,31 +176,31 @@ impl Solver {
         let pull = step.acceleration * weight_dt2;
         if let Some(air) = &mut self.air {
             air.before_substep(tick.next, particles, &kernels);
-            tick.drift.blow(air.memory().force);
+            tick.damping_reference.blow(air.memory().force);
         }
-        let drift = tick.drift.follow(particles.blocks());
-        let prediction = Prediction::new(kind, kept, pull, drift);
+        let damping_reference = tick.damping_reference.follow(particles.blocks());
+        let prediction = Prediction::new(kind, kept, pull, damping_reference);
         // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
-        tick.drift
+        tick.damping_reference
             .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });
-        let breath = Breath {
+        let air_step = AirStep {
             weight: weight_dt2,
             inverse_substep: 1.0 / dt,
         };
-        let felt = self.air.as_ref().map(|air| air.felt());
+        let linearized = self.air.as_ref().map(|air| air.linearized());
         let (blocks, past) = particles.blocks_and_past();
-        match (step.order, felt) {
+        match (step.order, linearized) {
             (TimeOrder::First, None) => (kernels.predict_first)(blocks, &prediction),
-            (TimeOrder::First, Some(felt)) => {
-                (kernels.predict_first_in_air)(blocks, felt, &prediction, &breath);
+            (TimeOrder::First, Some(linearized)) => {
+                (kernels.predict_first_in_air)(blocks, linearized, &prediction, &air_step);
             }
-            (TimeOrder::Second, felt) => {
+            (TimeOrder::Second, linearized) => {
                 let predict = |first: usize, blocks: &mut [Block], past: &mut [Earlier]| {
-                    let Some(felt) = felt else {
+                    let Some(linearized) = linearized else {
                         return (kernels.predict)(blocks, past, &prediction);
                     };
-                    let felt = &felt[first..first + blocks.len()];
-                    (kernels.predict_in_air)(blocks, past, felt, &prediction, &breath);
+                    let linearized = &linearized[first..first + blocks.len()];
+                    (kernels.predict_in_air)(blocks, past, linearized, &prediction, &air_step);
                 };
                 if bands > 1 {
                     let size = blocks.len().div_ceil(bands);
@@ -221,8 +221,8 @@ impl Solver {
             bending.solve(blocks, &kernels);
         }
         particles.put_loads_on(pull);
-        self.sweep
-            .set_pace(Pace::new(weight_dt2, dt, self.retardation));
+        self.spring_solver
+            .set_step_scale(StepScale::new(weight_dt2, dt, self.retardation));
         let begins = tick.next == 0;
         tick.next += 1;
         let motion = Motion {
@@ -233,7 +233,7 @@ impl Solver {
             measures: tick.next == tick.substeps(),
         };
         let blocks = particles.blocks_mut();
-        let swept = self.sweep.substep(blocks, &motion, self.bands);
+        let swept = self.spring_solver.substep(blocks, &motion, self.bands);
         particles.take_loads_off();
         let (blocks, past) = particles.blocks_and_past();
         if kind == StepKind::Start {
@@ -257,14 +257,21 @@ impl Solver {
             && tick.next < tick.substeps()
         {
             air.before_substep(tick.next, particles, &kernels);
-            tick.drift.blow(air.memory().force);
+            tick.damping_reference.blow(air.memory().force);
         }
         let forces = self.forces.as_mut().expect("forces");
         let bending = self.bending.as_mut();
-        let felt = self.air.as_ref().map(|air| air.felt());
-        let drift = &mut tick.drift;
+        let linearized = self.air.as_ref().map(|air| air.linearized());
+        let damping_reference = &mut tick.damping_reference;
         let substep = forces.substep(
-            particles, &tick.step, tick.next, drift, pins, bending, felt, &kernels,
+            particles,
+            &tick.step,
+            tick.next,
+            damping_reference,
+            pins,
+            bending,
+            linearized,
+            &kernels,
         );
         tick.next = if substep.is_some() {
             tick.next + 1

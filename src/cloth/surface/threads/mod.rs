@@ -104,8 +104,8 @@ fn continuations(
         directions.clear();
         directions.extend(around.iter().map(|&(_, edge, end)| {
             let other = edges[edge as usize][1 - end];
-            let way = rest[other as usize] - rest[particle as usize];
-            Vec2::new(way.dot(u), way.dot(v)).normalize_or_zero()
+            let span = rest[other as usize] - rest[particle as usize];
+            Vec2::new(span.dot(u), span.dot(v)).normalize_or_zero()
         }));
         pairs.clear();
         for (i, a) in directions.iter().enumerate() {

@@ -90,7 +90,7 @@ fn threads_of_a_grid_are_its_rows_columns_and_diagonals() {
     let rest = surface.rest_positions();
     for thread in surface.threads().iter() {
         let edges = edges(&surface);
-        let way = |edge: &u32| {
+        let span = |edge: &u32| {
             let [a, b] = edges[*edge as usize].map(|end| rest[end as usize]);
             (b - a)
                 * if a.y + 0.1 * a.x > b.y + 0.1 * b.x {
@@ -99,12 +99,12 @@ fn threads_of_a_grid_are_its_rows_columns_and_diagonals() {
                     -1.0
                 }
         };
-        let first = way(&thread.edges[0]);
+        let first = span(&thread.edges[0]);
         assert!(
             thread
                 .edges
                 .iter()
-                .all(|edge| way(edge).distance(first) < 1.0e-5)
+                .all(|edge| span(edge).distance(first) < 1.0e-5)
         );
     }
 }

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::{Scene, Sheeted, floor, participants, settings};
 use crate::contact::layers::{
-    hold::{Hold, LATEST},
+    mean_pushes::{LATEST, MeanPushes},
     origin::Origin,
 };
 
@@ -25,7 +25,7 @@ fn what_is_held_gets_no_faster_and_is_not_turned_back() {
     let mut cloths = vec![Sheeted::new(7, 0.6, |at| at)];
     let count = cloths[0].particles.len();
     let layout = cloths[0].particles.layout();
-    let (mut passed, mut hold) = (Origin::default(), Hold::default());
+    let (mut passed, mut hold) = (Origin::default(), MeanPushes::default());
     {
         let participants = participants(&mut cloths, settings(0.01));
         passed.set(&participants);
@@ -82,7 +82,7 @@ fn what_is_held_gets_no_faster_and_is_not_turned_back() {
 fn each_cloth_that_is_held_is_marked() {
     for marked in [[true, false], [false, true], [true, true], [false, false]] {
         let mut cloths = vec![Sheeted::new(3, 0.2, |at| at), Sheeted::new(3, 0.2, |at| at)];
-        let (mut passed, mut hold) = (Origin::default(), Hold::default());
+        let (mut passed, mut hold) = (Origin::default(), MeanPushes::default());
         let slot = cloths[0].particles.layout().slot_of(4);
         {
             let participants = participants(&mut cloths, settings(0.01));

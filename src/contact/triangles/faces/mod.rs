@@ -6,7 +6,7 @@ use bevy::math::Vec3;
 
 use super::{
     corners::CoreMotion,
-    friction::{Axle, hold_all},
+    friction::{CapsuleCore, hold_all},
     grid::{Place, Stop, push_cells, slots_of},
     lanes::Cells,
 };
@@ -15,8 +15,8 @@ use crate::{
     contact::{
         candidates::{Candidate, ContactBlock},
         colliders::ColliderShape,
-        friction::Held,
-        particles::{Found, LaneMotion, Sums},
+        friction::FrictionBudget,
+        particles::{ContactResult, LaneMotion, Sums},
     },
 };
 
@@ -37,34 +37,34 @@ pub(crate) struct ResumePoint {
 }
 
 /// Context for pushing a collider's triangles.
-pub(crate) struct Pushed<'a> {
+pub(crate) struct TrianglePush<'a> {
     pub candidates: &'a [Candidate],
     /// Blocks of the collider; `first` is the index of the first among all.
     pub contacts: &'a mut [ContactBlock],
     pub first: usize,
-    pub helds: &'a mut [Held],
+    pub helds: &'a mut [FrictionBudget],
     pub fans: &'a Fans,
     /// Number of triangles that may push each particle.
     max_faces: f32,
     /// Largest push before candidates may be missing (m).
-    pub room: f32,
+    pub clearance: f32,
     /// Largest displacement in the sub-step (m).
     pub moved: f32,
     /// Whether areas are wanted.
     pub is_measured: bool,
     /// Result of the sub-step.
-    pub found: Found,
+    pub found: ContactResult,
     /// Largest push by one triangle in this pass (m).
     passed: f32,
 }
 
-impl<'a> Pushed<'a> {
+impl<'a> TrianglePush<'a> {
     pub fn new(
         candidates: &'a [Candidate],
         (contacts, first): (&'a mut [ContactBlock], usize),
-        helds: &'a mut [Held],
+        helds: &'a mut [FrictionBudget],
         (fans, max_faces): (&'a Fans, f32),
-        [room, moved]: [f32; 2],
+        [clearance, moved]: [f32; 2],
         is_measured: bool,
     ) -> Self {
         Self {
@@ -74,10 +74,10 @@ impl<'a> Pushed<'a> {
             helds,
             fans,
             max_faces,
-            room,
+            clearance,
             moved,
             is_measured,
-            found: Found::default(),
+            found: ContactResult::default(),
             passed: 0.0,
         }
     }
@@ -85,7 +85,7 @@ impl<'a> Pushed<'a> {
     /// Pushes triangles out of a collider that they touch or passed through in this sub-step. Each push moves the
     /// corners by their weights in the nearest point and their inverse masses. Friction then acts on their particles.
     ///
-    /// Continues `from` a triangle. Once the pushes exceed the room, candidates may be missing: it stops, and returns
+    /// Continues `from` a triangle. Once the pushes exceed the clearance, candidates may be missing: it stops, and returns
     /// the triangle to continue with.
     pub fn push(
         &mut self,
@@ -184,9 +184,9 @@ impl<'a> Pushed<'a> {
         self.found.farthest_push + self.passed * self.max_faces
     }
 
-    /// Whether that exceeds the room.
+    /// Whether that exceeds the clearance.
     fn is_full(&self) -> bool {
-        self.pushed() > self.room
+        self.pushed() > self.clearance
     }
 
     /// Marks everything for another test.
@@ -214,7 +214,7 @@ impl<'a> Pushed<'a> {
                 reach: motion.reach,
                 fastest: self.moved + motion.of.slide.length() + motion.of.swing,
                 pushed: self.found.farthest_push,
-                room: self.room,
+                clearance: self.clearance,
                 max_faces: self.max_faces,
                 is_measured: self.is_measured && resume.pass == 0,
             };
@@ -262,7 +262,7 @@ impl<'a> Pushed<'a> {
     ) {
         let [start, end] = motion.at_end;
         let along = end - start;
-        let axle = Axle {
+        let core = CapsuleCore {
             axis: along.normalize_or_zero().to_array(),
             half_length: along.length() / 2.0,
             radius: motion.reach - motion.settings.particle_radius,
@@ -274,7 +274,7 @@ impl<'a> Pushed<'a> {
             blocks,
             self.contacts,
             self.helds,
-            &axle,
+            &core,
             lanes,
             seconds,
             &mut sums,

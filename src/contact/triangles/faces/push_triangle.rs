@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use super::{Pushed, ResumePoint};
+use super::{ResumePoint, TrianglePush};
 use crate::{
     cloth::{ClothParticles, Slot},
     contact::{
@@ -15,7 +15,7 @@ use crate::{
     },
 };
 
-impl Pushed<'_> {
+impl TrianglePush<'_> {
     /// Pushes one triangle of a particle of a contact block.
     pub(super) fn push_one(
         &mut self,
@@ -132,11 +132,11 @@ impl Pushed<'_> {
         particles: &mut ClothParticles,
         corners: &Corners,
         corner: usize,
-        [way, momentum]: [Vec3; 2],
+        [displacement, momentum]: [Vec3; 2],
         motion: &CoreMotion,
     ) -> f32 {
         let slot = corners.slots[corner];
-        let pushed = corners.push(corner, particles, [way, momentum]);
+        let pushed = corners.push(corner, particles, [displacement, momentum]);
         let weight = corners.inverse_masses[corner];
         self.found
             .given
@@ -148,6 +148,6 @@ impl Pushed<'_> {
         {
             self.helds[at].add_one(slot.lane, momentum.to_array());
         }
-        way.length()
+        displacement.length()
     }
 }

@@ -118,10 +118,10 @@ impl ClothSnapshot {
                 expected: Self::VERSION,
             });
         }
-        let is_sound = self.particles.is_sound()
-            && self.state.is_sound(&self.particles)
-            && self.contacts.is_sound(self.particles.len());
-        if !is_sound {
+        let is_valid = self.particles.is_valid()
+            && self.state.is_valid_for(&self.particles)
+            && self.contacts.is_valid_for(self.particles.len());
+        if !is_valid {
             return Err(SnapshotError::Damaged { entity: cloth });
         }
         let is_known =
@@ -183,7 +183,7 @@ impl ClothSnapshot {
             scratch.mutual.clone_from(&self.mutual);
         }
         if !weighs_the_same && let Some(mut built) = entity.get_mut::<ClothBuilt>() {
-            built.weigh(&self.particles);
+            built.refresh_masses(&self.particles);
         }
         Ok(())
     }

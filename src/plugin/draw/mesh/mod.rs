@@ -37,7 +37,7 @@ use crate::{
         frame::{ClothFrame, rigid},
         prepare::Skins,
         sets::ClothSystems,
-        state::{ClothBuilt, ClothScratch, ClothState, Notices, Turn},
+        state::{ClothBuilt, ClothScratch, ClothState, LodAction, Notices},
     },
 };
 use adding::{add_meshes, remove_mesh};
@@ -133,10 +133,10 @@ fn remember_positions(
 ) {
     for (particles, frame, state, scratch, mut mesh) in &mut cloths {
         match state.lod.turn {
-            Turn::Move => {}
-            Turn::Wait => continue,
-            Turn::Stand => {
-                mesh.carriers.stand(*frame);
+            LodAction::Move => {}
+            LodAction::Wait => continue,
+            LodAction::Stand => {
+                mesh.carriers.freeze(*frame);
                 continue;
             }
         }
@@ -160,7 +160,7 @@ fn remember_positions(
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-struct Drawing {
+struct DrawQuery {
     entity: Entity,
     built: &'static ClothBuilt,
     particles: Ref<'static, ClothParticles>,
@@ -180,7 +180,7 @@ struct Surroundings<'w, 's> {
 }
 
 fn update_meshes(
-    mut cloths: Query<Drawing>,
+    mut cloths: Query<DrawQuery>,
     around: Surroundings,
     (fixed, time): (Res<Time<Fixed>>, Res<Time>),
     mut meshes: ResMut<Assets<Mesh>>,
@@ -197,7 +197,7 @@ fn update_meshes(
     }
 }
 
-impl DrawingItem<'_, '_> {
+impl DrawQueryItem<'_, '_> {
     fn update(
         &mut self,
         around: &Surroundings,

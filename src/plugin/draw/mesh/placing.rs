@@ -63,7 +63,7 @@ impl Carriers {
     }
 
     /// Takes over the place of a cloth in a tick in which it is not moved: the next move begins there.
-    pub fn stand(&mut self, frame: ClothFrame) {
+    pub fn freeze(&mut self, frame: ClothFrame) {
         self.now.frame = frame;
         self.now.targets.clear();
     }

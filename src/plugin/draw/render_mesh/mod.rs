@@ -161,7 +161,7 @@ struct Binding {
 /// The cloth that a mesh is bound to, and the binding.
 #[derive(QueryData)]
 #[query_data(mutable)]
-struct Driving {
+struct DriveQuery {
     built: &'static ClothBuilt,
     place: Option<&'static GlobalTransform>,
     drawing: &'static mut MeshDrawing,
@@ -171,7 +171,7 @@ struct Driving {
 fn bind(
     mut wanted: Query<Binding, Without<Cloth>>,
     cloths: Query<(), With<Cloth>>,
-    mut driving: Query<Driving>,
+    mut driving: Query<DriveQuery>,
     mut meshes: ResMut<Assets<Mesh>>,
     server: Option<Res<AssetServer>>,
     mut events: MessageReader<AssetEvent<Mesh>>,
@@ -233,7 +233,7 @@ fn bind(
 impl BindingItem<'_, '_> {
     fn bind(
         &self,
-        driving: &DrivingItem,
+        driving: &DriveQueryItem,
         surface: Arc<Surface>,
         changed: &[AssetId<Mesh>],
         meshes: &mut Assets<Mesh>,

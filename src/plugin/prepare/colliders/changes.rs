@@ -43,12 +43,12 @@ pub(crate) struct Changes<'w, 's> {
     changed_parents: Query<'w, 's, Entity, ParentChange>,
     parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
     children: Query<'w, 's, &'static Children, Allow<Disabled>>,
-    deprived: ResMut<'w, Deprived>,
+    deprived: ResMut<'w, ChangedColliders>,
 }
 
 /// Colliders, and entities above colliders, that have lost a component since the last tick.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Deprived(Vec<Entity>);
+pub(crate) struct ChangedColliders(Vec<Entity>);
 
 /// Removed components.
 #[derive(SystemParam)]
@@ -61,7 +61,7 @@ pub(crate) struct Removals<'w, 's> {
 
 /// Notes the components that colliders have lost. It runs in each frame as well as in each tick, because Bevy forgets
 /// removals after two frames, in which there may be no tick.
-pub(crate) fn note_removals(mut removals: Removals, mut deprived: ResMut<Deprived>) {
+pub(crate) fn note_removals(mut removals: Removals, mut deprived: ResMut<ChangedColliders>) {
     let Removals {
         bodies,
         parents,
@@ -78,7 +78,7 @@ pub(crate) fn note_removals(mut removals: Removals, mut deprived: ResMut<Deprive
 pub(crate) fn note_enabled(
     enabled: On<Remove, Disabled>,
     mut motions: Query<&mut ColliderMotion, Allow<Disabled>>,
-    mut deprived: ResMut<Deprived>,
+    mut deprived: ResMut<ChangedColliders>,
 ) {
     if let Ok(mut motion) = motions.get_mut(enabled.entity) {
         motion.stop();

@@ -7,7 +7,7 @@ mod follow;
 mod motion;
 mod tree;
 
-pub(crate) use changes::{Deprived, note_enabled, note_removals};
+pub(crate) use changes::{ChangedColliders, note_enabled, note_removals};
 pub(crate) use follow::{forget_collider, prepare_colliders};
 pub(crate) use motion::{ColliderMemory, ColliderMotion};
 pub(crate) use tree::ColliderTree;

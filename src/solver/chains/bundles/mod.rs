@@ -7,7 +7,7 @@ use std::{ops::Range, sync::Arc};
 
 use crate::{
     cloth::{LANES, Lanes, SpringList},
-    solver::kernels::{Kernels, Pace, Row, Solved, Step},
+    solver::kernels::{Kernels, Row, Solved, Step, StepScale},
 };
 
 /// Up to eight threads that share no particle.
@@ -71,27 +71,27 @@ impl Bundles {
     }
 
     /// Solves thread after thread.
-    pub fn solve_there(&mut self, rows: &mut [Row], pace: &Pace, kernels: &Kernels) {
+    pub fn solve_there(&mut self, rows: &mut [Row], step_scale: &StepScale, kernels: &Kernels) {
         self.pulled.fill([0.0; LANES]);
         for index in 0..self.bundles.len() {
-            self.solve(index, rows, pace, kernels);
+            self.solve(index, rows, step_scale, kernels);
         }
     }
 
     /// The same from the last to the first, after [`solve_there`](Self::solve_there): springs that give go on from what they
     /// have pulled with.
-    pub fn solve_back(&mut self, rows: &mut [Row], pace: &Pace, kernels: &Kernels) {
+    pub fn solve_back(&mut self, rows: &mut [Row], step_scale: &StepScale, kernels: &Kernels) {
         for index in (0..self.bundles.len()).rev() {
-            self.solve(index, rows, pace, kernels);
+            self.solve(index, rows, step_scale, kernels);
         }
     }
 
-    fn solve(&mut self, index: usize, rows: &mut [Row], pace: &Pace, kernels: &Kernels) {
+    fn solve(&mut self, index: usize, rows: &mut [Row], step_scale: &StepScale, kernels: &Kernels) {
         let Bundle { heads, steps } = &self.bundles[index];
         let pulled = &mut self.pulled[steps.clone()];
         let steps = &self.steps[steps.clone()];
         let solved = &mut self.solved;
-        (kernels.bundle_forward)(rows, heads, steps, pulled, solved, pace);
+        (kernels.bundle_forward)(rows, heads, steps, pulled, solved, step_scale);
         (kernels.bundle_backward)(rows, heads, steps, pulled, solved);
     }
 }

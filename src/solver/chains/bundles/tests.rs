@@ -8,7 +8,7 @@ use crate::{
     meshes,
     solver::{
         chains::tests::{random, solved},
-        kernels::{Pace, Row, SimdLevel},
+        kernels::{Row, SimdLevel, StepScale},
         step::TickStep,
         substep::Solver,
     },
@@ -16,7 +16,7 @@ use crate::{
 
 const INVERSE_WEIGHT: f32 = 1200.0 * 1200.0;
 
-const PACE: Pace = Pace {
+const PACE: StepScale = StepScale {
     inverse_weight: INVERSE_WEIGHT,
     kept: 1.0,
 };
@@ -84,18 +84,18 @@ fn solve_thread(
     }
     let (mut matrix, mut right) = (vec![vec![0.0; n]; n], vec![0.0; n]);
     let spring = |i: usize| &list.springs[edges[i] as usize];
-    let way = |i: usize| {
+    let span = |i: usize| {
         let [a, b] = [particles[i], particles[i + 1]].map(|at| place(at, moved));
         (b - a) / f64::from(spring(i).rest_length)
     };
-    let ways: Vec<DVec3> = (0..n).map(way).collect();
+    let spans: Vec<DVec3> = (0..n).map(span).collect();
     for i in 0..n {
-        let p = ways[i].length_squared();
+        let p = spans[i].length_squared();
         let sum = weight(particles[i]) + weight(particles[i + 1]);
         let soft = f64::from(spring(i).compliance) * f64::from(INVERSE_WEIGHT) * p;
         matrix[i][i] = sum * p + soft.max((1.0e-3 + 0.2 * (p - 1.0).abs()) * sum) + 1.0e-18;
         if i + 1 < n {
-            let off = -weight(particles[i + 1]) * ways[i].dot(ways[i + 1]);
+            let off = -weight(particles[i + 1]) * spans[i].dot(spans[i + 1]);
             (matrix[i][i + 1], matrix[i + 1][i]) = (off, off);
         }
         let rest = f64::from(spring(i).rest_length);
@@ -103,8 +103,8 @@ fn solve_thread(
     }
     for (i, multiplier) in solved(matrix, right).into_iter().enumerate() {
         let [a, b] = [particles[i], particles[i + 1]];
-        moved[a as usize] -= weight(a) * multiplier * ways[i];
-        moved[b as usize] += weight(b) * multiplier * ways[i];
+        moved[a as usize] -= weight(a) * multiplier * spans[i];
+        moved[b as usize] += weight(b) * multiplier * spans[i];
         pulled[edges[i] as usize] += multiplier;
     }
 }

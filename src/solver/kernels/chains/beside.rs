@@ -190,7 +190,7 @@ impl Scratch {
         let border = |band| strip * band / bands;
         let width = |band| border(band + 1) - border(band);
         let mut rows: Vec<_> = blocks.chunks_exact_mut(strip).collect();
-        if direction == Direction::Left {
+        if direction == Direction::Residuals {
             rows.reverse();
         }
         let mut pieces: Vec<_> = (0..bands).map(|_| Vec::with_capacity(count)).collect();

@@ -10,7 +10,7 @@ use bevy::math::{Mat4, Vec4};
 use super::link::{HOLD, clamped, terms};
 use crate::{
     cloth::{LANES, Lanes, Spring},
-    solver::kernels::{pace::Pace, packet::Row},
+    solver::kernels::{packet::Row, step_scale::StepScale},
 };
 
 /// The next spring of each thread of a bundle.
@@ -55,7 +55,7 @@ impl Step {
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Solved {
-    way: [Lanes; 3],
+    span: [Lanes; 3],
     /// Inverse mass of the second particle (1/kg).
     weight: Lanes,
     pivot: Lanes,
@@ -64,7 +64,7 @@ pub(crate) struct Solved {
 
 impl Solved {
     pub const NONE: Self = Self {
-        way: [[0.0; LANES]; 3],
+        span: [[0.0; LANES]; 3],
         weight: [0.0; LANES],
         pivot: [0.0; LANES],
         right: [0.0; LANES],
@@ -103,12 +103,12 @@ pub(crate) fn bundle_forward(
     steps: &[Step],
     pulled: &[Lanes],
     solved: &mut [Solved],
-    pace: &Pace,
+    step_scale: &StepScale,
 ) {
-    if pace.kept < 1.0 {
-        forward::<true>(rows, heads, steps, pulled, solved, pace);
+    if step_scale.kept < 1.0 {
+        forward::<true>(rows, heads, steps, pulled, solved, step_scale);
     } else {
-        forward::<false>(rows, heads, steps, pulled, solved, pace);
+        forward::<false>(rows, heads, steps, pulled, solved, step_scale);
     }
 }
 
@@ -119,7 +119,7 @@ fn forward<const DAMPED: bool>(
     steps: &[Step],
     pulled: &[Lanes],
     solved: &mut [Solved],
-    pace: &Pace,
+    step_scale: &StepScale,
 ) {
     let is_weight = Vec4::W.cmpgt(Vec4::ZERO);
     let mut from = heads;
@@ -140,16 +140,17 @@ fn forward<const DAMPED: bool>(
         };
         let [x, y, z, weight] = turned(&offsets);
         let mut link = Solved {
-            way: [x, y, z],
+            span: [x, y, z],
             weight,
             ..Solved::NONE
         };
         for l in 0..LANES {
-            let [x, y, z] = [0, 1, 2].map(|axis| clamped(link.way[axis][l] * step.inverse_rest[l]));
+            let [x, y, z] =
+                [0, 1, 2].map(|axis| clamped(link.span[axis][l] * step.inverse_rest[l]));
             let both = weight_a[l] + weight[l];
             let is_rigid = step.compliance[l] == 0.0;
-            let kept = if is_rigid { 1.0 } else { pace.kept };
-            let softness = step.compliance[l] * pace.inverse_weight;
+            let kept = if is_rigid { 1.0 } else { step_scale.kept };
+            let softness = step.compliance[l] * step_scale.inverse_weight;
             let softness = if DAMPED { kept * softness } else { softness };
             let [diagonal, right] = terms([x, y, z], both, softness, step.hold[l], step.rest[l]);
             let right = if DAMPED {
@@ -162,11 +163,11 @@ fn forward<const DAMPED: bool>(
             };
             // What gives has pulled already.
             let right = right - softness * (x * x + y * y + z * z) * pulled[l];
-            let before = &previous.way;
+            let before = &previous.span;
             let along = before[0][l] * x + before[1][l] * y + before[2][l] * z;
             let off = -weight_a[l] * along;
             let pivot = 1.0 / (diagonal - off * (off * previous.pivot[l]));
-            [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
+            [link.span[0][l], link.span[1][l], link.span[2][l]] = [x, y, z];
             link.pivot[l] = pivot;
             link.right[l] = (right - off * previous.right[l]) * pivot;
         }
@@ -190,7 +191,7 @@ pub(crate) fn bundle_backward(
     for ((step, pulled), link) in steps.iter().zip(pulled).zip(solved).rev() {
         let (mut own, mut change) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         for l in 0..LANES {
-            let [x, y, z] = [link.way[0][l], link.way[1][l], link.way[2][l]];
+            let [x, y, z] = [link.span[0][l], link.span[1][l], link.span[2][l]];
             let along = x * next[0][l] + y * next[1][l] + z * next[2][l];
             let multiplier = link.right[l] + link.pivot[l] * (link.weight[l] * along);
             pulled[l] += multiplier;

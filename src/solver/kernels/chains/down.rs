@@ -13,7 +13,7 @@
 
 use super::{
     beside::Threads,
-    link::{Before, Behind, Family, Link, after, damped, terms, way},
+    link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
@@ -24,31 +24,31 @@ const NONE: Lanes = [0.0; LANES];
 #[inline(always)]
 fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
-    family: &Family,
+    band: &SpringBand,
     block: usize,
     pulled: &Lanes,
     before: &mut Before,
     link: &mut Link,
 ) {
-    let (softness, hold) = (&family.softness[block], &family.hold[block]);
+    let (softness, hold) = (&band.softness[block], &band.hold[block]);
     let mut lane_before = [0.0; 6];
     for l in 0..LANES {
-        let [x, y, z] = way(a, b, family.inverse_rest, l);
+        let [x, y, z] = span(a, b, band.inverse_rest, l);
         let weight = a[W + l] + b[W + l];
         let softness = if DAMPED {
-            family.kept * softness[l]
+            band.kept * softness[l]
         } else {
             softness[l]
         };
-        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], family.rest);
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], band.rest);
         let right = if DAMPED {
-            damped(right, [a, b], [x, y, z], family.kept, l)
+            damped(right, [a, b], [x, y, z], band.kept, l)
         } else if AGAIN {
             after(right, [x, y, z], softness, pulled[l])
         } else {
             right
         };
-        let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
+        let along = before.span[0][l] * x + before.span[1][l] * y + before.span[2][l] * z;
         let off = -a[W + l] * along;
         let share = off * before.pivot[l];
         let pivot = 1.0 / (diagonal - off * share);
@@ -56,8 +56,8 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
         let own = [x, y, z, share, pivot, right];
         let [x, y, z, share, pivot, right] = if CROSSES { lane_before } else { own };
         lane_before = own;
-        [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
-        [before.way[0][l], before.way[1][l], before.way[2][l]] = [x, y, z];
+        [link.span[0][l], link.span[1][l], link.span[2][l]] = [x, y, z];
+        [before.span[0][l], before.span[1][l], before.span[2][l]] = [x, y, z];
         [link.share[l], before.pivot[l]] = [share, pivot];
         [link.right[l], before.right[l]] = [right, right];
     }
@@ -71,7 +71,7 @@ fn substitute<const CROSSES: bool>(b: &mut View, link: &mut Link, behind: &mut B
     for l in 0..LANES {
         let l = if CROSSES { LANES - 1 - l } else { l };
         let multiplier = link.right[l] - behind.given[l];
-        let [x, y, z] = [0, 1, 2].map(|axis| link.way[axis][l] * multiplier);
+        let [x, y, z] = [0, 1, 2].map(|axis| link.span[axis][l] * multiplier);
         b[DX + l] += b[W + l] * (x - behind.pull[0][l]);
         b[DY + l] += b[W + l] * (y - behind.pull[1][l]);
         b[DZ + l] += b[W + l] * (z - behind.pull[2][l]);
@@ -96,26 +96,26 @@ fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
 
 /// Solves threads that lead from row to row.
 #[inline(always)]
-pub(crate) fn solve_threads(threads: &mut Threads, family: &Family) {
+pub(crate) fn solve_threads(threads: &mut Threads, band: &SpringBand) {
     if threads.is_oblique() {
-        solve::<true, false>(threads, family);
+        solve::<true, false>(threads, band);
     } else {
-        solve::<false, false>(threads, family);
+        solve::<false, false>(threads, band);
     }
 }
 
 /// The same with damping along them.
 #[inline(always)]
-pub(crate) fn solve_damped_threads(threads: &mut Threads, family: &Family) {
+pub(crate) fn solve_damped_threads(threads: &mut Threads, band: &SpringBand) {
     if threads.is_oblique() {
-        solve::<true, true>(threads, family);
+        solve::<true, true>(threads, band);
     } else {
-        solve::<false, true>(threads, family);
+        solve::<false, true>(threads, band);
     }
 }
 
 #[inline(always)]
-fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, family: &Family) {
+fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, band: &SpringBand) {
     let Threads {
         rows,
         width,
@@ -133,10 +133,10 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, family:
             let (a, b) = (upper.block(thread).view(), lower.block(thread));
             if OBLIQUE && block == last {
                 let b = b.shifted();
-                eliminate::<true, DAMPED, false>([a, b], family, block, &NONE, before, link);
+                eliminate::<true, DAMPED, false>([a, b], band, block, &NONE, before, link);
             } else {
                 let b = b.view();
-                eliminate::<false, DAMPED, false>([a, b], family, block, &NONE, before, link);
+                eliminate::<false, DAMPED, false>([a, b], band, block, &NONE, before, link);
             }
             block = if block == last { 0 } else { block + 1 };
         }
@@ -179,18 +179,18 @@ pub(crate) struct Columns<'a> {
 
 /// Solves the chosen columns, of rigid springs.
 #[inline(always)]
-pub(crate) fn solve_columns(columns: &mut Columns, family: &Family) {
-    solve_chosen::<false>(columns, family);
+pub(crate) fn solve_columns(columns: &mut Columns, band: &SpringBand) {
+    solve_chosen::<false>(columns, band);
 }
 
 /// The same of elastic springs, which go on from what they have pulled with.
 #[inline(always)]
-pub(crate) fn solve_columns_again(columns: &mut Columns, family: &Family) {
-    solve_chosen::<true>(columns, family);
+pub(crate) fn solve_columns_again(columns: &mut Columns, band: &SpringBand) {
+    solve_chosen::<true>(columns, band);
 }
 
 #[inline(always)]
-fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, family: &Family) {
+fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, band: &SpringBand) {
     let Columns {
         blocks,
         strip,
@@ -214,7 +214,7 @@ fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, family: &Family) {
             } else {
                 &NONE
             };
-            eliminate::<false, false, AGAIN>(ends, family, block, pulled, before, link);
+            eliminate::<false, false, AGAIN>(ends, band, block, pulled, before, link);
         }
     }
     behind.fill(Behind::NONE);

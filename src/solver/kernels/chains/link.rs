@@ -2,7 +2,7 @@
 
 use crate::{
     cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
-    solver::kernels::pace::Pace,
+    solver::kernels::step_scale::StepScale,
 };
 
 /// Keeps a spring between two pins from dividing by zero (1/kg).
@@ -20,7 +20,7 @@ const STRAINED: f32 = 0.2;
 #[repr(C, align(32))]
 pub(crate) struct Link {
     /// From its first to its second particle, in rest lengths.
-    pub way: [Lanes; 3],
+    pub span: [Lanes; 3],
     /// The fraction of its multiplier that is passed to the spring before it.
     pub share: Lanes,
     /// Right side, eliminated; after the backward pass the multiplier (m kg).
@@ -30,7 +30,7 @@ pub(crate) struct Link {
 impl Link {
     /// No spring.
     pub const NONE: Self = Self {
-        way: [[0.0; LANES]; 3],
+        span: [[0.0; LANES]; 3],
         share: [0.0; LANES],
         right: [0.0; LANES],
     };
@@ -41,7 +41,7 @@ impl Link {
 #[repr(C, align(32))]
 pub(crate) struct Before {
     /// In rest lengths.
-    pub way: [Lanes; 3],
+    pub span: [Lanes; 3],
     /// One over the pivot of its row of the system (kg).
     pub pivot: Lanes,
     /// Right side, eliminated (m kg).
@@ -51,7 +51,7 @@ pub(crate) struct Before {
 impl Before {
     /// No spring.
     pub const NONE: Self = Self {
-        way: [[0.0; LANES]; 3],
+        span: [[0.0; LANES]; 3],
         pivot: [0.0; LANES],
         right: [0.0; LANES],
     };
@@ -77,7 +77,7 @@ impl Behind {
 
 /// Springs that lie alike: those that begin in the blocks of a row.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Family {
+pub(crate) struct SpringBand {
     /// Length at rest (m).
     pub rest: f32,
     /// One over it.
@@ -94,7 +94,7 @@ pub(crate) struct Family {
     pub kept: f32,
 }
 
-impl Family {
+impl SpringBand {
     /// The springs of this step that begin in `row` of `grid`; one row stands for all like it.
     pub fn new(
         grid: &ClothGrid,
@@ -136,11 +136,15 @@ impl Family {
     }
 
     /// Takes over the parameters of a sub-step.
-    pub fn soften(&mut self, pace: Pace) {
+    pub fn soften(&mut self, step_scale: StepScale) {
         for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
-            *softness = compliance.map(|compliance| compliance * pace.inverse_weight);
+            *softness = compliance.map(|compliance| compliance * step_scale.inverse_weight);
         }
-        self.kept = if self.is_elastic() { pace.kept } else { 1.0 };
+        self.kept = if self.is_elastic() {
+            step_scale.kept
+        } else {
+            1.0
+        };
     }
 
     /// Whether a spring of it gives.
@@ -153,9 +157,9 @@ impl Family {
 const FARTHEST: f32 = 1.0e4;
 
 #[inline(always)]
-pub(crate) fn clamped(way: f32) -> f32 {
-    let way = if way > FARTHEST { FARTHEST } else { way };
-    if way < -FARTHEST { -FARTHEST } else { way }
+pub(crate) fn clamped(span: f32) -> f32 {
+    let span = if span > FARTHEST { FARTHEST } else { span };
+    if span < -FARTHEST { -FARTHEST } else { span }
 }
 
 /// Diagonal (1/kg) and right side (m) of a spring with this way, between particles of these inverse masses together (1/kg).
@@ -201,7 +205,7 @@ pub(crate) fn damped(
 
 /// The way of one lane's spring from the first to the second particle, in rest lengths.
 #[inline(always)]
-pub(crate) fn way(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
+pub(crate) fn span(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
     [(X, DX), (Y, DY), (Z, DZ)].map(|(at, moved)| {
         clamped(((b[at + l] - a[at + l]) + (b[moved + l] - a[moved + l])) * inverse_rest)
     })

@@ -6,8 +6,8 @@ mod direction;
 mod down;
 mod ends;
 mod link;
+mod residuals;
 mod rows;
-mod unsolved;
 
 pub(crate) use beside::{Scratch, Threads};
 pub(crate) use bundle::{Solved, Step, bundle_backward, bundle_forward};
@@ -16,9 +16,9 @@ pub(crate) use down::{
     Columns, solve_columns, solve_columns_again, solve_damped_threads, solve_threads,
 };
 pub(crate) use ends::GROUP;
-pub(crate) use link::{Family, measure_given};
-pub(crate) use rows::{RowScratch, RowThreads, solve_damped_rows, solve_rows, solve_rows_again};
-pub(crate) use unsolved::{
-    Left, RowSprings, largest, measure_elastic_left, measure_elastic_left_at, measure_left,
+pub(crate) use link::{SpringBand, measure_given};
+pub(crate) use residuals::{
+    Residuals, RowSprings, largest, measure_elastic_left, measure_elastic_left_at, measure_left,
     measure_left_at, note_places,
 };
+pub(crate) use rows::{RowScratch, RowThreads, solve_damped_rows, solve_rows, solve_rows_again};

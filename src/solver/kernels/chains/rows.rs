@@ -12,7 +12,7 @@
 
 use super::{
     ends::{BESIDE, Ends, GROUP, Reduced, Wide},
-    link::{Before, Behind, Family, Link, after, damped, terms, way},
+    link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
 
@@ -66,32 +66,32 @@ impl Strip {
 #[inline(always)]
 fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
-    family: &Family,
+    band: &SpringBand,
     block: usize,
     pulled: &[Lanes],
     strip: &mut Strip,
     link: &mut Link,
     spike: &mut Lanes,
 ) {
-    let (softness, hold) = (&family.softness[block], &family.hold[block]);
+    let (softness, hold) = (&band.softness[block], &band.hold[block]);
     for l in 0..LANES {
-        let [x, y, z] = way(a, b, family.inverse_rest, l);
+        let [x, y, z] = span(a, b, band.inverse_rest, l);
         let weight = a[W + l] + b[W + l];
         let softness = if DAMPED {
-            family.kept * softness[l]
+            band.kept * softness[l]
         } else {
             softness[l]
         };
-        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], family.rest);
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], band.rest);
         let right = if DAMPED {
-            damped(right, [a, b], [x, y, z], family.kept, l)
+            damped(right, [a, b], [x, y, z], band.kept, l)
         } else if AGAIN {
             after(right, [x, y, z], softness, pulled[block][l])
         } else {
             right
         };
         let before = &mut strip.before;
-        let along = before.way[0][l] * x + before.way[1][l] * y + before.way[2][l] * z;
+        let along = before.span[0][l] * x + before.span[1][l] * y + before.span[2][l] * z;
         let off = -a[W + l] * along;
         let share = if FIRST { 0.0 } else { off * before.pivot[l] };
         let to_strip = if FIRST { 1.0 } else { -share * strip.off[l] };
@@ -107,8 +107,8 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAI
         };
         let pivot = if LAST { diagonal } else { 1.0 / diagonal };
         let right = if LAST { right } else { right * pivot };
-        [link.way[0][l], link.way[1][l], link.way[2][l]] = [x, y, z];
-        [before.way[0][l], before.way[1][l], before.way[2][l]] = [x, y, z];
+        [link.span[0][l], link.span[1][l], link.span[2][l]] = [x, y, z];
+        [before.span[0][l], before.span[1][l], before.span[2][l]] = [x, y, z];
         [link.share[l], before.pivot[l]] = [share, pivot];
         [link.right[l], before.right[l]] = [right, right];
         strip.off[l] = to_strip;
@@ -125,7 +125,7 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAI
 #[inline(always)]
 fn reduce<const DAMPED: bool, const AGAIN: bool>(
     row: &[Block],
-    family: &Family,
+    band: &SpringBand,
     pulled: &[Lanes],
     links: &mut [Link],
     spikes: &mut [Lanes],
@@ -144,7 +144,7 @@ fn reduce<const DAMPED: bool, const AGAIN: bool>(
         macro_rules! eliminate {
             ($first:literal, $last:literal) => {
                 eliminate::<$first, $last, DAMPED, AGAIN>(
-                    between, family, j, pulled, strip, link, spike,
+                    between, band, j, pulled, strip, link, spike,
                 )
             };
         }
@@ -165,12 +165,12 @@ fn reduce<const DAMPED: bool, const AGAIN: bool>(
         (&mut ends.to_diagonal, &strip.to_diagonal),
         (&mut ends.to_right, &strip.to_right),
         (&mut ends.weight, weight),
-        (first_x, &links[0].way[0]),
-        (first_y, &links[0].way[1]),
-        (first_z, &links[0].way[2]),
-        (last_x, &strip.before.way[0]),
-        (last_y, &strip.before.way[1]),
-        (last_z, &strip.before.way[2]),
+        (first_x, &links[0].span[0]),
+        (first_y, &links[0].span[1]),
+        (first_z, &links[0].span[2]),
+        (last_x, &strip.before.span[0]),
+        (last_y, &strip.before.span[1]),
+        (last_z, &strip.before.span[2]),
     ] {
         to[at..at + LANES].copy_from_slice(from);
     }
@@ -184,7 +184,7 @@ fn substitute(b: &mut View, link: &mut Link, spike: &Lanes, to_first: &Lanes, be
         let multiplier = link.right[l] - spike[l] * to_first[l] - behind.given[l];
         link.right[l] = multiplier;
         behind.given[l] = link.share[l] * multiplier;
-        let [x, y, z] = [0, 1, 2].map(|axis| link.way[axis][l] * multiplier);
+        let [x, y, z] = [0, 1, 2].map(|axis| link.span[axis][l] * multiplier);
         b[DX + l] += b[W + l] * (x - behind.pull[0][l]);
         b[DY + l] += b[W + l] * (y - behind.pull[1][l]);
         b[DZ + l] += b[W + l] * (z - behind.pull[2][l]);
@@ -246,26 +246,26 @@ pub(crate) struct RowThreads<'a> {
 
 /// Solves the threads within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
-pub(crate) fn solve_rows(rows: &mut RowThreads, families: &[Family; 2]) {
-    solve::<false, false>(rows, families);
+pub(crate) fn solve_rows(rows: &mut RowThreads, bands: &[SpringBand; 2]) {
+    solve::<false, false>(rows, bands);
 }
 
 /// The same with damping along them.
 #[inline(always)]
-pub(crate) fn solve_damped_rows(rows: &mut RowThreads, families: &[Family; 2]) {
-    solve::<true, false>(rows, families);
+pub(crate) fn solve_damped_rows(rows: &mut RowThreads, bands: &[SpringBand; 2]) {
+    solve::<true, false>(rows, bands);
 }
 
 /// The same of elastic springs, which go on from what they have pulled with.
 #[inline(always)]
-pub(crate) fn solve_rows_again(rows: &mut RowThreads, families: &[Family; 2]) {
-    solve::<false, true>(rows, families);
+pub(crate) fn solve_rows_again(rows: &mut RowThreads, bands: &[SpringBand; 2]) {
+    solve::<false, true>(rows, bands);
 }
 
 #[inline(always)]
 fn solve<const DAMPED: bool, const AGAIN: bool>(
     rows: &mut RowThreads,
-    [border, inner]: &[Family; 2],
+    [border, inner]: &[SpringBand; 2],
 ) {
     let strip = border.hold.len();
     let RowThreads {
@@ -277,7 +277,7 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
         pulled,
     } = rows;
     let (first, last) = (*first, *of - 1);
-    let family = |row: usize| {
+    let band = |row: usize| {
         if row == 0 || row == last {
             border
         } else {
@@ -307,7 +307,7 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
             let state = &mut *state;
             reduce::<DAMPED, AGAIN>(
                 &blocks[own],
-                family(row),
+                band(row),
                 pulled,
                 links,
                 spikes,

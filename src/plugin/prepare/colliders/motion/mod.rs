@@ -25,7 +25,7 @@ const ROUNDING: f32 = 1.0e-5;
 #[derive(Component, Debug, Default)]
 pub(crate) struct ColliderMotion {
     /// Its path; `None` before the first tick.
-    way: Option<MovingCollider>,
+    moving: Option<MovingCollider>,
     /// Place of its entity after the last tick in which time passed. The frame of the shape may be another.
     last: Option<Isometry3d>,
     /// Middle of its path (m), and the largest distance from there to any of the collider's points on it.
@@ -151,7 +151,7 @@ impl ColliderMotion {
         let turned = pose.rotation * from.rotation.inverse();
         // Of the two quaternions of a rotation, the one of the shorter way round.
         let turned = if turned.w < 0.0 { -turned } else { turned };
-        let way = MovingCollider {
+        let moving = MovingCollider {
             shape: shape.clone(),
             from,
             to: translation,
@@ -170,29 +170,29 @@ impl ColliderMotion {
             },
         };
         self.middle = translation.midpoint(from.translation.into());
-        self.reach = way.travel() / 2.0 + shape.extent();
+        self.reach = moving.travel() / 2.0 + shape.extent();
         self.normal = None;
-        if *shape == ColliderShape::HalfSpace && way.turn == Vec3::ZERO {
-            self.reach = way.travel() / 2.0;
+        if *shape == ColliderShape::HalfSpace && moving.turn == Vec3::ZERO {
+            self.reach = moving.travel() / 2.0;
             self.normal = Some(pose.rotation * Vec3::Y);
         }
-        self.bounds = self.bounds(&way);
-        self.way = Some(way);
+        self.bounds = self.bounds(&moving);
+        self.moving = Some(moving);
         // If it is moved while no time passes, the motion counts in the next tick with time.
         self.last = Some(if time_passes { place } else { last });
         Ok(())
     }
 
     /// Its bounds along the whole path: two boxes if it does not rotate, else its bounding ball.
-    fn bounds(&self, way: &MovingCollider) -> Bounds {
+    fn bounds(&self, moving: &MovingCollider) -> Bounds {
         if self.normal.is_some() || self.reach.is_infinite() {
             return Bounds::Unbounded;
         }
-        if way.turn != Vec3::ZERO {
+        if moving.turn != Vec3::ZERO {
             return around([self.middle; 2], self.reach);
         }
         let [from, to] = [0.0, 1.0].map(|part| {
-            let (core, radius) = way.shape.core(way.pose_at(part));
+            let (core, radius) = moving.shape.core(moving.pose_at(part));
             bounds_of(&core, radius)
         });
         from.union(to)
@@ -200,14 +200,16 @@ impl ColliderMotion {
 
     /// Whether the next tick has another path, even if nothing moves the collider.
     pub fn is_moving(&self) -> bool {
-        self.way
+        self.moving
             .as_ref()
-            .is_some_and(|way| way.turn != Vec3::ZERO || way.travel() > 0.0)
+            .is_some_and(|moving| moving.turn != Vec3::ZERO || moving.travel() > 0.0)
     }
 
     /// Whether cloth pushes it.
     pub fn is_body(&self) -> bool {
-        self.way.as_ref().is_some_and(|way| way.body.is_some())
+        self.moving
+            .as_ref()
+            .is_some_and(|moving| moving.body.is_some())
     }
 
     /// Number of cloths that are expected to push it: each has a part of its mass.
@@ -291,31 +293,31 @@ impl ColliderMotion {
         frame: &ClothFrame,
         carried: Option<&Carried>,
     ) -> Option<MovingCollider> {
-        let way = self.way.as_ref()?;
+        let moving = self.moving.as_ref()?;
         let inverse = frame.isometry().inverse();
         Some(MovingCollider {
-            shape: way.shape.clone(),
-            from: inverse * way.from,
-            to: inverse * way.to,
-            turn: inverse.rotation * way.turn,
-            body: way.body.map(|body| body.turned(inverse.rotation)),
+            shape: moving.shape.clone(),
+            from: inverse * moving.from,
+            to: inverse * moving.to,
+            turn: inverse.rotation * moving.turn,
+            body: moving.body.map(|body| body.turned(inverse.rotation)),
         })
         .map(|seen| match carried {
-            Some(carried) => carried_along(seen, carried.seen_from(frame, way.from)),
+            Some(carried) => carried_along(seen, carried.seen_from(frame, moving.from)),
             None => seen,
         })
     }
 }
 
 /// A path that begins elsewhere: to a cloth that is carried along, a collider moves the opposite way.
-fn carried_along(way: MovingCollider, from: Isometry3d) -> MovingCollider {
-    let end = Quat::from_scaled_axis(way.turn) * way.from.rotation;
+fn carried_along(moving: MovingCollider, from: Isometry3d) -> MovingCollider {
+    let end = Quat::from_scaled_axis(moving.turn) * moving.from.rotation;
     let turned = end * from.rotation.inverse();
     let turned = if turned.w < 0.0 { -turned } else { turned };
     MovingCollider {
         from,
         turn: turned.to_scaled_axis(),
-        ..way
+        ..moving
     }
 }
 

@@ -21,14 +21,14 @@ fn app_with(collider: ClothCollider, body: ClothBody, place: Transform) -> (App,
     (app, entity)
 }
 
-fn way(app: &App, entity: Entity) -> MovingCollider {
+fn moving(app: &App, entity: Entity) -> MovingCollider {
     let motion = app.world().get::<ColliderMotion>(entity);
-    let way = motion.and_then(|motion| motion.seen_from(&ClothFrame::default(), None));
-    way.expect("it is followed")
+    let moving = motion.and_then(|motion| motion.seen_from(&ClothFrame::default(), None));
+    moving.expect("it is followed")
 }
 
 fn mass(app: &App, entity: Entity) -> BodyMass {
-    way(app, entity).body.expect("it is a body")
+    moving(app, entity).body.expect("it is a body")
 }
 
 /// A capsule whose shape is neither where its entity is nor turned as that.
@@ -96,7 +96,7 @@ fn what_is_pushed_stays_there() {
         (aside(), mirrored),
     ] {
         let (mut app, entity) = app_with(collider, body, place);
-        let before = way(&app, entity).pose_at(1.0);
+        let before = moving(&app, entity).pose_at(1.0);
         let change = BodyChange {
             translation: Vec3::new(0.02, -0.01, 0.03),
             rotation: Vec3::new(0.1, -0.2, 0.05),
@@ -111,10 +111,10 @@ fn what_is_pushed_stays_there() {
         transform.translation += gone;
         transform.rotation = (turned * transform.rotation).normalize();
         app.update();
-        let way = way(&app, entity);
-        assert!(way.travel() < ROUNDING, "{}", way.travel());
-        assert!(way.turn.length() < ROUNDING, "{}", way.turn);
-        let after = way.pose_at(1.0);
+        let moving = moving(&app, entity);
+        assert!(moving.travel() < ROUNDING, "{}", moving.travel());
+        assert!(moving.turn.length() < ROUNDING, "{}", moving.turn);
+        let after = moving.pose_at(1.0);
         let gone = Vec3::from(after.translation - before.translation);
         assert!(gone.distance(change.translation) < ROUNDING, "{gone}");
         let turned = (after.rotation * before.rotation.inverse()).to_scaled_axis();

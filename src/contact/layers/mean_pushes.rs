@@ -21,7 +21,7 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X};
 /// The mean of the last pushes of each particle of some cloths, each in its own frame, block by block (m per sub-step).
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Hold {
+pub(super) struct MeanPushes {
     cloths: Vec<Vec<[Lanes; 3]>>,
 }
 
@@ -35,10 +35,10 @@ const MOST: f32 = 4.0;
 #[derive(Debug, Default, Clone, Copy)]
 struct Farthest {
     push: Lanes,
-    way: Lanes,
+    travel: Lanes,
 }
 
-impl Hold {
+impl MeanPushes {
     /// Clears the holds of these cloths.
     pub fn clear(&mut self, cloths: &[Participant]) {
         self.cloths.resize_with(cloths.len(), Vec::new);
@@ -71,7 +71,7 @@ impl Hold {
     ) -> (f32, f32) {
         let drift = passed.drift(cloths);
         let longest = |squares: Lanes| squares.into_iter().fold(0.0, f32::max).sqrt();
-        let (mut pushed, mut way) = (0.0_f32, 0.0_f32);
+        let (mut pushed, mut travel) = (0.0_f32, 0.0_f32);
         for (index, cloth) in cloths.iter_mut().enumerate() {
             let mut farthest = Farthest::default();
             let drift = cloth.own_vector(drift).to_array();
@@ -80,9 +80,9 @@ impl Hold {
             hold(blocks, &self.cloths[index], places, drift, &mut farthest);
             is_pushed[index] |= farthest.push != [0.0; LANES];
             pushed = pushed.max(longest(farthest.push));
-            way = way.max(longest(farthest.way));
+            travel = travel.max(longest(farthest.travel));
         }
-        (pushed, 2.0 * way)
+        (pushed, 2.0 * travel)
     }
 }
 
@@ -107,28 +107,28 @@ fn hold(
             part[l] = if s < MOST { s } else { MOST };
             squares[l] = part[l] * part[l] * square;
         }
-        let mut way = [0.0; LANES];
+        let mut travel = [0.0; LANES];
         for axis in 0..3 {
             for l in 0..LANES {
                 let by = part[l] * push[axis][l];
                 view[X + axis * LANES + l] += by;
                 view[DX + axis * LANES + l] += by;
                 let came = view[X + axis * LANES + l] - place[axis][l] - drift[axis];
-                way[l] += came * came;
+                travel[l] += came * came;
             }
         }
         for l in 0..LANES {
-            let (pushed, way) = (squares[l], way[l]);
+            let (pushed, travel) = (squares[l], travel[l]);
             farthest.push[l] = if pushed > farthest.push[l] {
                 pushed
             } else {
                 farthest.push[l]
             };
             // NaN is never the farthest.
-            farthest.way[l] = if way > farthest.way[l] {
-                way
+            farthest.travel[l] = if travel > farthest.travel[l] {
+                travel
             } else {
-                farthest.way[l]
+                farthest.travel[l]
             };
         }
     }

@@ -4,7 +4,7 @@ use bevy::reflect::Reflect;
 
 /// Results of searches, and memory for the next one.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
-pub(crate) struct Found {
+pub(crate) struct SearchBuffers {
     /// Nodes in the order of the tests, and whether they touched.
     pub visits: Vec<(u32, bool)>,
     /// Children of touching nodes on the current level, and on the next: their ranges of rows and of columns. For

@@ -4,24 +4,24 @@
 //! Two springs for each particle: 3 additions for its position, and 10 operations for each of them, of elastic ones 16 and a
 //! division. That is a fifteenth of a sub-step.
 
-use super::link::Family;
+use super::link::SpringBand;
 use crate::{
     cloth::{Block, DX, LANES, Lanes, View, X},
-    solver::kernels::pentadiagonal::Trio,
+    solver::kernels::pentadiagonal::Vec3Lanes,
 };
 
 /// What is left: squared lengths of springs over those that they should have.
 #[derive(Debug, Clone)]
-pub(crate) struct Left {
+pub(crate) struct Residuals {
     /// Positions of the row above (m).
-    above: Vec<Trio>,
+    above: Vec<Vec3Lanes>,
     /// The largest in the row that was measured last.
     pub across: f32,
     /// The largest in the columns of each block, lane by lane.
     pub down: Vec<Lanes>,
 }
 
-impl Left {
+impl Residuals {
     pub fn new(strip: usize) -> Self {
         Self {
             above: vec![[[0.0; LANES]; 3]; strip],
@@ -33,14 +33,14 @@ impl Left {
 
 /// The springs within a row, and those that lead to it from the row above.
 pub(crate) struct RowSprings<'a> {
-    pub families: [&'a Family; 2],
+    pub bands: [&'a SpringBand; 2],
     /// Their multipliers (m kg), if they are elastic.
     pub pulled: [&'a [Lanes]; 2],
 }
 
 /// The positions of eight particles in a sub-step.
 #[inline(always)]
-fn places(view: &View) -> Trio {
+fn places(view: &View) -> Vec3Lanes {
     let mut places = [[0.0; LANES]; 3];
     for axis in 0..3 {
         for l in 0..LANES {
@@ -52,7 +52,7 @@ fn places(view: &View) -> Trio {
 
 /// Notes where the particles of a row are.
 #[inline(always)]
-pub(crate) fn note_places(row: &[Block], left: &mut Left) {
+pub(crate) fn note_places(row: &[Block], left: &mut Residuals) {
     for (above, block) in left.above.iter_mut().zip(row) {
         *above = places(block.view());
     }
@@ -61,19 +61,19 @@ pub(crate) fn note_places(row: &[Block], left: &mut Left) {
 /// Raises `left` to the squared lengths of eight springs over those that they should have.
 #[inline(always)]
 fn raise<const ELASTIC: bool>(
-    [a, b]: [&Trio; 2],
-    (family, block): (&Family, usize),
+    [a, b]: [&Vec3Lanes; 2],
+    (band, block): (&SpringBand, usize),
     pulled: &[Lanes],
     left: &mut Lanes,
 ) {
-    let scale = &family.inverse_square[block];
+    let scale = &band.inverse_square[block];
     let mut most = *left;
     for l in 0..LANES {
         let (x, y, z) = (b[0][l] - a[0][l], b[1][l] - a[1][l], b[2][l] - a[2][l]);
         let p = (x * x + y * y + z * z) * scale[l];
         let found = if ELASTIC {
             // 1 and twice C + α̃ λ over the length, with Halley's step for C as in the equations.
-            let pull = family.softness[block][l] * pulled[block][l] * family.inverse_rest;
+            let pull = band.softness[block][l] * pulled[block][l] * band.inverse_rest;
             1.0 + 2.0 * ((p - 1.0) / (1.5 * p + 0.5) + pull)
         } else {
             p
@@ -85,19 +85,19 @@ fn raise<const ELASTIC: bool>(
 
 /// Measures the springs of a row, and those that lead to it from the row that was noted or measured before.
 #[inline(always)]
-pub(crate) fn measure_left(row: &[Block], springs: &RowSprings, left: &mut Left) {
+pub(crate) fn measure_left(row: &[Block], springs: &RowSprings, left: &mut Residuals) {
     measure::<false>(row, springs, left);
 }
 
 /// The same where springs are elastic.
 #[inline(always)]
-pub(crate) fn measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Left) {
+pub(crate) fn measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Residuals) {
     measure::<true>(row, springs, left);
 }
 
 #[inline(always)]
-fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut Left) {
-    let [across, down] = springs.families;
+fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut Residuals) {
+    let [across, down] = springs.bands;
     let [in_row, from_above] = springs.pulled;
     let count = row.len();
     let (all_above, columns) = (&mut left.above[..count], &mut left.down[..count]);
@@ -124,7 +124,7 @@ pub(crate) fn measure_left_at(
     row: &[Block],
     blocks: &[u32],
     springs: &RowSprings,
-    left: &mut Left,
+    left: &mut Residuals,
 ) {
     measure_at::<false>(row, blocks, springs, left);
 }
@@ -135,7 +135,7 @@ pub(crate) fn measure_elastic_left_at(
     row: &[Block],
     blocks: &[u32],
     springs: &RowSprings,
-    left: &mut Left,
+    left: &mut Residuals,
 ) {
     measure_at::<true>(row, blocks, springs, left);
 }
@@ -145,9 +145,9 @@ fn measure_at<const ELASTIC: bool>(
     row: &[Block],
     blocks: &[u32],
     springs: &RowSprings,
-    left: &mut Left,
+    left: &mut Residuals,
 ) {
-    let [across, down] = springs.families;
+    let [across, down] = springs.bands;
     let [in_row, from_above] = springs.pulled;
     let mut most = [0.0; LANES];
     let last = row.len() - 1;

@@ -4,17 +4,17 @@ use super::{
     blocks::Candidates,
     touch::{ContactPoint, Touch},
 };
-use crate::contact::friction::Held;
+use crate::contact::friction::FrictionBudget;
 
 /// State of the candidates, by the IDs of their colliders.
 #[derive(Debug, Default, Clone)]
-pub(crate) struct Kept {
+pub(crate) struct SavedCandidates {
     points: Vec<(usize, ContactPoint)>,
     /// Also by the cloth's blocks.
-    helds: Vec<(usize, u32, Held)>,
+    helds: Vec<(usize, u32, FrictionBudget)>,
 }
 
-impl Kept {
+impl SavedCandidates {
     /// Saves the results so far.
     pub fn take(&mut self, touches: &[Touch], candidates: &Candidates) {
         self.points.clear();

@@ -11,9 +11,10 @@ use crate::{
     solver::{
         bands::{in_bands, take},
         kernels::{
-            Columns, Family, Kernels, Left, RowScratch, RowSprings, RowThreads, Scratch, largest,
+            Columns, Kernels, Residuals, RowScratch, RowSprings, RowThreads, Scratch, SpringBand,
+            largest,
         },
-        sweep::Motion,
+        spring_solver::Motion,
     },
 };
 
@@ -63,23 +64,23 @@ impl Threads {
 }
 
 /// The springs of a grid's rows and columns, and memory to solve them in.
-pub(crate) struct Solved<'a> {
+pub(crate) struct GridSprings<'a> {
     /// Within a row: one on a border, one that is not.
-    pub across: &'a [Family; 2],
-    pub down: &'a Family,
+    pub across: &'a [SpringBand; 2],
+    pub down: &'a SpringBand,
     pub rows: &'a mut RowScratch,
     pub columns: &'a mut Scratch,
 }
 
 /// Finds what is left, and solves it.
 #[derive(Debug, Clone)]
-pub(crate) struct Again {
+pub(crate) struct SecondPass {
     strip: usize,
     rows: Threads,
     /// Of each block of a row: its columns.
     columns: Threads,
     /// One for each band.
-    found: Vec<Left>,
+    found: Vec<Residuals>,
     /// Multipliers of the springs within each row, and of those that lead to it from the row above (m kg). Empty where all
     /// are rigid.
     pub pulled: [Vec<Lanes>; 2],
@@ -89,7 +90,7 @@ pub(crate) struct Again {
     is_busy: bool,
 }
 
-impl Again {
+impl SecondPass {
     pub fn new(layout: Layout, is_elastic: bool) -> Self {
         let (strip, rows) = (layout.strip as usize, layout.rows as usize);
         let multipliers = if is_elastic { layout.blocks() } else { 0 };
@@ -97,7 +98,7 @@ impl Again {
             strip,
             rows: Threads::new(rows),
             columns: Threads::new(strip),
-            found: vec![Left::new(strip)],
+            found: vec![Residuals::new(strip)],
             pulled: [(); 2].map(|()| vec![[0.0; LANES]; multipliers]),
             calm: 0,
             is_busy: false,
@@ -108,7 +109,7 @@ impl Again {
     pub fn solve(
         &mut self,
         blocks: &mut [Block],
-        grid: &mut Solved,
+        grid: &mut GridSprings,
         motion: &Motion,
         bands: usize,
     ) {
@@ -146,7 +147,12 @@ impl Again {
 
     /// Elongations at their tension (m) of the springs across and down that give, as parts of lengths without it, lane by
     /// lane.
-    pub fn given(&self, across: &[Family; 2], down: &Family, kernels: &Kernels) -> [Lanes; 2] {
+    pub fn given(
+        &self,
+        across: &[SpringBand; 2],
+        down: &SpringBand,
+        kernels: &Kernels,
+    ) -> [Lanes; 2] {
         let mut given = [[0.0; LANES]; 2];
         let [border, inner] = across;
         let [in_rows, from_above] = &self.pulled;
@@ -170,7 +176,7 @@ impl Again {
 
     /// Solves all rows or all columns again.
     #[cfg(test)]
-    pub fn solve_all(&mut self, blocks: &mut [Block], grid: &mut Solved, down: bool) {
+    pub fn solve_all(&mut self, blocks: &mut [Block], grid: &mut GridSprings, down: bool) {
         let kernels = crate::solver::kernels::SimdLevel::Auto.kernels();
         let threads = if down {
             &mut self.columns
@@ -187,10 +193,10 @@ impl Again {
     }
 
     /// Measures all rows and columns.
-    fn measure(&mut self, blocks: &[Block], grid: &Solved, kernels: &Kernels, bands: usize) {
+    fn measure(&mut self, blocks: &[Block], grid: &GridSprings, kernels: &Kernels, bands: usize) {
         let (strip, count) = (self.strip, self.rows.left.len());
         if self.found.len() < bands {
-            self.found.resize(bands, Left::new(strip));
+            self.found.resize(bands, Residuals::new(strip));
         }
         let border = |band: usize| count * band / bands;
         let mut all = &mut self.rows.left[..];
@@ -200,7 +206,7 @@ impl Again {
             let left = take(&mut all, border(band + 1) - border(band));
             (border(band), left, found)
         });
-        let work = |(first, left, found): (usize, &mut [f32], &mut Left)| {
+        let work = |(first, left, found): (usize, &mut [f32], &mut Residuals)| {
             found.down.fill([0.0; LANES]);
             let above = first.saturating_sub(1);
             (kernels.note_places)(&blocks[above * strip..][..strip], found);
@@ -223,7 +229,7 @@ impl Again {
     }
 
     /// Solves the chosen rows again, and measures what crosses them.
-    fn solve_rows(&mut self, blocks: &mut [Block], grid: &mut Solved, kernels: &Kernels) {
+    fn solve_rows(&mut self, blocks: &mut [Block], grid: &mut GridSprings, kernels: &Kernels) {
         let (strip, count) = (self.strip, self.rows.left.len());
         let [in_rows, _] = &mut self.pulled;
         let mut rows = RowThreads {
@@ -256,7 +262,7 @@ impl Again {
     }
 
     /// Solves the columns of the chosen blocks again.
-    fn solve_columns(&mut self, blocks: &mut [Block], grid: &mut Solved, kernels: &Kernels) {
+    fn solve_columns(&mut self, blocks: &mut [Block], grid: &mut GridSprings, kernels: &Kernels) {
         let [_, from_above] = &mut self.pulled;
         let (links, before, behind) = grid.columns.memory();
         let mut columns = Columns {
@@ -294,9 +300,9 @@ fn measure_row(
     blocks: &[Block],
     row: usize,
     at: Option<&[u32]>,
-    grid: &Solved,
+    grid: &GridSprings,
     pulled: &[Vec<Lanes>; 2],
-    found: &mut Left,
+    found: &mut Residuals,
     kernels: &Kernels,
 ) {
     let [border, inner] = grid.across;
@@ -314,7 +320,7 @@ fn measure_row(
         }
     };
     let springs = RowSprings {
-        families: [across, grid.down],
+        bands: [across, grid.down],
         pulled: [
             &pulled[0][of_row(&pulled[0])],
             &pulled[1][of_row(&pulled[1])],

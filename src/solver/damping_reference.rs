@@ -10,9 +10,9 @@ const SUMMED: usize = 64;
 
 /// Displacement of the damping frame in a sub-step.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(super) struct Drift {
+pub(super) struct DampingReference {
     /// In the sub-step before the one to come (m).
-    way: Vec3,
+    displacement: Vec3,
     /// Its gain in a sub-step by an acceleration of all particles (m).
     pull: Vec3,
     /// The force of the air (N), and the gain by one newton on a kilogram (m).
@@ -25,7 +25,7 @@ pub(super) struct Drift {
     is_stale: bool,
 }
 
-impl Drift {
+impl DampingReference {
     /// The drift as a tick begins. Without damping it is not measured.
     pub fn of(step: &TickStep) -> Self {
         let dt = step.seconds / step.substeps.max(1) as f32;
@@ -33,7 +33,7 @@ impl Drift {
             _ if step.damping == 0.0 => Self::default(),
             DampingFrame::Still => Self::default(),
             DampingFrame::Moving(velocity) => Self {
-                way: velocity * dt,
+                displacement: velocity * dt,
                 ..Self::default()
             },
             DampingFrame::CentreOfMass => Self {
@@ -52,10 +52,10 @@ impl Drift {
     /// A centre of mass is measured once a tick, and after each push from outside: forces within a cloth do not move it.
     pub fn follow(&mut self, blocks: &[Block]) -> [Vec3; 2] {
         if self.is_stale {
-            (self.way, self.mass) = mean_displacement(blocks);
+            (self.displacement, self.mass) = mean_displacement(blocks);
             self.is_stale = false;
         }
-        [self.way, self.gained()]
+        [self.displacement, self.gained()]
     }
 
     /// The air pushes the cloth by this force (N) from now on.
@@ -65,7 +65,7 @@ impl Drift {
 
     /// Ends a sub-step in which the common acceleration counted with this weight.
     pub fn gain(&mut self, weight: f32) {
-        self.way += self.gained() * weight;
+        self.displacement += self.gained() * weight;
     }
 
     /// Something from outside has pushed the cloth.

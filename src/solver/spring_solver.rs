@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{
-    kernels::{Kernels, Pace},
+    kernels::{Kernels, StepScale},
     stretch::Stretch,
     tether::{Anchors, Tethers},
 };
@@ -23,7 +23,7 @@ pub(super) struct Motion<'a> {
 
 /// The results of a sub-step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Swept {
+pub(super) struct SolvedSubstep {
     /// The largest squared displacements (m²), lane by lane.
     pub moved: Lanes,
     /// The stretch, if it was to be measured.
@@ -35,9 +35,9 @@ pub(super) struct Swept {
 
 /// A solver of springs and tethers, which corrects predicted particles. It is made once for its springs, and kept as
 /// long as they are.
-pub(super) trait Sweep: fmt::Debug + Send + Sync {
+pub(super) trait SpringSolver: fmt::Debug + Send + Sync {
     /// Takes over the parameters of the coming sub-step.
-    fn set_pace(&mut self, pace: Pace);
+    fn set_step_scale(&mut self, step_scale: StepScale);
 
     /// Whether it leaves so little unsolved that a motion of second order may go on from it.
     fn is_exact(&self) -> bool;
@@ -46,16 +46,16 @@ pub(super) trait Sweep: fmt::Debug + Send + Sync {
     fn bands(&self, wanted: usize) -> usize;
 
     /// Corrects the displacements of the particles in `blocks` and moves them by them, in this many bands.
-    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> Swept;
+    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> SolvedSubstep;
 
     /// Measures the stretch.
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch;
 
     /// A copy of it.
-    fn boxed(&self) -> Box<dyn Sweep>;
+    fn boxed(&self) -> Box<dyn SpringSolver>;
 }
 
-impl Clone for Box<dyn Sweep> {
+impl Clone for Box<dyn SpringSolver> {
     fn clone(&self) -> Self {
         self.boxed()
     }
