@@ -76,9 +76,9 @@ fn ticks(criterion: &mut Criterion) {
     for side in [16, 32, 64, 128, 256, 512] {
         let scene = in_motion(side);
         let mut solver = scene.solver(true);
-        for bands in [1, 2] {
-            solver.set_bands(bands);
-            let id = BenchmarkId::new(format!("{bands} bands"), side);
+        for partitions in [1, 2] {
+            solver.set_partitions(partitions);
+            let id = BenchmarkId::new(format!("{partitions} partitions"), side);
             time(&mut group, id, &scene, &mut solver);
         }
     }

@@ -84,12 +84,14 @@ fn main() {
         }
     }
 
-    println!("\ntwo bands of rows, each on its core, against one: {SUBSTEPS} sub-steps, tethers\n");
+    println!(
+        "\ntwo partitions of rows, each on its core, against one: {SUBSTEPS} sub-steps, tethers\n"
+    );
     for side in [64, 128, 256, 512] {
         let scene = in_motion(side);
-        let mut solvers: [Solver; 2] = [1, 2].map(|bands| {
+        let mut solvers: [Solver; 2] = [1, 2].map(|partitions| {
             let mut solver = scene.solver(true);
-            solver.set_bands(bands);
+            solver.set_partitions(partitions);
             solver
         });
         let mut particles = scene.particles.clone();

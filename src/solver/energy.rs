@@ -1,6 +1,6 @@
 //! Keeps a change of the sub-step from adding energy.
 //!
-//! In a sub-step of Δt, springs pull back their stretch, or a part of it where threads carry others. So unsolved
+//! In a sub-step of Δt, springs pull back their stretch, or a part of it where chains carry others. So unsolved
 //! stretch acts like springs of the stiffness 1/Δt², and shorter sub-steps find the stretch of longer ones in stiffer
 //! springs. A sheet of 64² that five points stop in its fall gained 12 % of the energy that its weight can give. The
 //! stretch is as long as the sheet, so neither a hundred sweeps nor sub-steps of first order remove it. So the energy

@@ -40,7 +40,7 @@ pub enum ClothLimit {
 
 /// Largest length / rest length − 1 beyond what the material gives.
 const MAX_STRETCH: f32 = 0.15;
-/// Of the masses of free particles: of a mesh, and of what threads of a grid or tethers hold. Those of a rectangle's corners and
+/// Of the masses of free particles: of a mesh, and of what chains of a grid or tethers hold. Those of a rectangle's corners and
 /// middle differ by 4.
 const MAX_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
 /// In metres, at this length of a sub-step (s): rounding weighs the more the less a particle moves in one. And in
@@ -157,7 +157,7 @@ pub(crate) struct LimitInputs {
     pub material_stretch: f32,
     /// The paper's D.
     pub damping: f32,
-    /// Whether tethers or the threads of a grid hold it: heavy particles hardly stretch these.
+    /// Whether tethers or the chains of a grid hold it: heavy particles hardly stretch these.
     pub holds_weight: bool,
     /// Masses of the lightest and of the heaviest particle that is free (kg).
     pub masses: [f32; 2],
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_and_tethers_hold_heavier_particles() {
+    fn chains_and_tethers_hold_heavier_particles() {
         let ratio = |ratio: f32| LimitInputs {
             holds_weight: true,
             masses: [1.0e-4, 1.0e-4 * ratio],

@@ -1,8 +1,8 @@
 //! One sub-step over springs that lie anywhere, as those of a mesh.
 //!
-//! A list without threads is swept once, colour by colour. A list with threads is solved forward and back. Forward:
-//! thread after thread, then the springs on no thread one by one. Back: these springs from last to first, then the
-//! threads from last to first. The remaining errors of the springs after such a pass are symmetric: no part of them
+//! A list without chains is swept once, colour by colour. A list with chains is solved forward and back. Forward:
+//! chain after chain, then the springs on no chain one by one. Back: these springs from last to first, then the
+//! chains from last to first. The remaining errors of the springs after such a pass are symmetric: no part of them
 //! oscillates or changes its sign (the symmetric Gauss-Seidel iteration; Saad 2003, section 4.1). A motion of second
 //! order, which continues from these errors, needs that. Forward and back, it gained no energy in any mesh tried; in
 //! one direction alone, it gained ten times the initial energy.
@@ -23,11 +23,11 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringL
 #[derive(Debug, Default, Clone)]
 pub(super) struct ListSolver {
     springs: Arc<SpringList>,
-    /// Those on no thread.
+    /// Those on no chain.
     packets: Arc<[Packet]>,
     /// What those have pulled with on the way there (kg).
     pulls: Vec<Vec4>,
-    threads: Bundles,
+    chains: Bundles,
     layout: Layout,
     step_scale: StepScale,
     /// The particles of one sub-step, strip by strip: in the order of their indices, with what is no particle at the end of
@@ -59,7 +59,7 @@ impl ListSolver {
             }
         };
         let mut is_solved = vec![false; springs.springs.len()];
-        for edge in springs.threads.iter().flat_map(|thread| &thread.edges) {
+        for edge in springs.chains.iter().flat_map(|chain| &chain.edges) {
             is_solved[*edge as usize] = true;
         }
         let mut packets = Vec::new();
@@ -72,7 +72,7 @@ impl ListSolver {
             springs: springs.clone(),
             pulls: vec![Vec4::ZERO; packets.len()],
             packets: packets.into(),
-            threads: Bundles::new(springs, row_of, none),
+            chains: Bundles::new(springs, row_of, none),
             layout,
             step_scale: StepScale::default(),
             rows: vec![Row::default(); layout.blocks() * LANES + 1],
@@ -140,10 +140,10 @@ impl SpringSolver for ListSolver {
     }
 
     fn is_exact(&self) -> bool {
-        !self.threads.is_empty()
+        !self.chains.is_empty()
     }
 
-    fn bands(&self, _: usize) -> usize {
+    fn partitions(&self, _: usize) -> usize {
         1
     }
 
@@ -151,13 +151,13 @@ impl SpringSolver for ListSolver {
         let kernels = motion.kernels;
         self.load(blocks);
         let (rows, packets, step_scale) = (&mut self.rows, &self.packets, &self.step_scale);
-        if self.threads.is_empty() {
+        if self.chains.is_empty() {
             (kernels.relax_packets)(rows, packets, step_scale);
         } else {
-            self.threads.solve_there(rows, step_scale, kernels);
+            self.chains.solve_there(rows, step_scale, kernels);
             (kernels.relax_packets_there)(rows, packets, &mut self.pulls, step_scale);
             (kernels.relax_packets_back)(rows, packets, &self.pulls, step_scale);
-            self.threads.solve_back(rows, step_scale, kernels);
+            self.chains.solve_back(rows, step_scale, kernels);
         }
         self.store(blocks);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);

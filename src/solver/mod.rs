@@ -1,4 +1,4 @@
-//! Floor 1, the dynamics of cloth: threads are solved exactly, and motion is of second order in time, in small
+//! Floor 1, the dynamics of cloth: chains are solved exactly, and motion is of second order in time, in small
 //! sub-steps.
 //!
 //! A tick is cut into sub-steps of Δt: small steps instead of many sweeps (Macklin et al. 2019). Each sub-step has
@@ -7,13 +7,13 @@
 //! 1. Predict the free motion of every particle, by backward differences of second order or by the paper's equation
 //!    (2).
 //! 2. Resist bending, like a plate.
-//! 3. Hold the rest lengths of the springs. These are XPBD constraints (Macklin et al. 2016), solved thread by thread,
-//!    each thread as one system of equations.
+//! 3. Hold the rest lengths of the springs. These are XPBD constraints (Macklin et al. 2016), solved chain by chain,
+//!    each chain as one system of equations.
 //!
-//! # Threads solved exactly
-//! A thread is a chain of springs: a row, a column or a diagonal of a grid, or a straight path of edges in a mesh. One
+//! # Chains solved exactly
+//! A chain is a path of springs: a row, a column or a diagonal of a grid, or a straight path of edges in a mesh. One
 //! sweep over its springs carries a correction by one spring only, which leaves an error of (n − 1)² g Δt² in each
-//! sub-step, for a thread of n particles. But the multipliers λ of all its springs together are the solution of a
+//! sub-step, for a chain of n particles. But the multipliers λ of all its springs together are the solution of a
 //! tridiagonal system:
 //!
 //! ```text
@@ -24,25 +24,25 @@
 //! ```
 //!
 //! Elimination solves it in one forward and one backward pass (Thomas). Pins are particles with the inverse mass w = 0,
-//! anywhere in the thread. Equations are divided by rest lengths and multiplied by lengths, so that no square root is
+//! anywhere in the chain. Equations are divided by rest lengths and multiplied by lengths, so that no square root is
 //! needed: two divisions per spring.
 //!
-//! **ε.** A rigid, straight thread between two pins has one equation too many, and its system has no solution. So the
+//! **ε.** A rigid, straight chain between two pins has one equation too many, and its system has no solution. So the
 //! softness of a spring, on the diagonal, is at least the fraction ε = 10⁻³ of w, plus 0.2 of the relative error of the
-//! squared length. Without the second part, a thread between pins that are too far apart would pull with C/ε, and throw
+//! squared length. Without the second part, a chain between pins that are too far apart would pull with C/ε, and throw
 //! particles beside its line far beyond it. A material that is softer than that is not changed.
 //!
-//! **Order.** Diagonals first, then rows, then columns; the last ones are held best. On a mesh all threads are solved
+//! **Order.** Diagonals first, then rows, then columns; the last ones are held best. On a mesh all chains are solved
 //! forward and back, because a motion of second order gains energy from one direction alone.
 //!
-//! **Again.** The threads solved after a row or column move its particles again. Where it carries many others, that adds
+//! **Second pass.** The chains solved after a row or column move its particles again. Where it carries many others, that adds
 //! up from sub-step to sub-step. So the rows and columns of a grid are measured after the pass. Those in which more than
 //! 0.5 % of a spring's length is left are solved again, in up to four rounds. Of elastic springs, what is left is
 //! C + α/(c Δt²) λ, with the multipliers of all rounds. Where little is left, the next three sub-steps are not measured.
-//! Threads with damping along them, and those of meshes, are solved once.
+//! Chains with damping along them, and those of meshes, are solved once.
 //!
 //! **Cost** (64², one thread, AVX2): a spring of a diagonal costs 1.1 times a spring of a column, a spring of a row 1.3
-//! times. The lanes of a row are strips of one thread, and the coupling between them is a system of its own.
+//! times. The lanes of a row are strips of one chain, and the coupling between them is a system of its own.
 //!
 //! **Soft cloth** needs no solver where its sub-steps are shorter than 1.9/ω̂, with `ω̂² = 2 max_i w_i Σ_j k_ij`. Its
 //! springs act by explicit forces then, in steps of velocity Verlet, in a third of the time
@@ -53,9 +53,9 @@
 //! equations, at the end of the sub-step: with κ = 1/(1 + τ/Δt), C becomes `κ C + (1 − κ)(C − C₀)` and α becomes κ α,
 //! where C₀ is C as the sub-step began.
 //!
-//! **Limits.** Each thread is solved exactly, but the coupling from one thread to the next is not. A load that hangs by
-//! one corner passes from thread to thread, by one thread in each round: with too few sub-steps, four rounds don't
-//! suffice, and the spring beside the pin stretches ([`needed`]). The effect of tension across a thread is explicit.
+//! **Limits.** Each chain is solved exactly, but the coupling from one chain to the next is not. A load that hangs by
+//! one corner passes from chain to chain, by one chain in each round: with too few sub-steps, four rounds don't
+//! suffice, and the spring beside the pin stretches ([`needed`]). The effect of tension across a chain is explicit.
 //! The shortest ripple of a membrane of tension N and spacing h has ω = 2 √(2 N ⁄ ρ) ⁄ h, and needs a sub-step below
 //! 2.2 ⁄ ω; otherwise slow modes ring too low. For 65² of cotton under 1 % of stretch these are 36 sub-steps in 1/64 s.
 //! [`Substepping::Automatic`] takes them on grids.
@@ -63,7 +63,6 @@
 //! [`needed`]: Substepping::needed
 
 mod air;
-mod bands;
 mod bending;
 mod chains;
 mod damping_reference;
@@ -73,6 +72,7 @@ mod forces;
 mod kernels;
 mod list;
 mod motion;
+mod partitions;
 mod rest;
 mod settings;
 mod spin;

@@ -27,7 +27,7 @@ pub struct ClothSettings {
     /// sink into a ball.
     pub particle_radius: f32,
     /// Whether tethers limit the distance of each particle from the pins to the length of cloth between them, with room
-    /// for the stretch of the material and 1 % more. Solved threads don't need them. They reduce the stretch of a fine
+    /// for the stretch of the material and 1 % more. Solved chains don't need them. They reduce the stretch of a fine
     /// cloth that hangs by single points and runs with fewer sub-steps than it needs: see [`Tethers`](crate::solver::Tethers).
     pub tethers: bool,
     /// Order of the motion in time: the error falls with the square of a sub-step's length, or, as in the paper, in

@@ -28,7 +28,7 @@ pub(super) struct SolvedSubstep {
     pub moved: Lanes,
     /// The stretch, if it was to be measured.
     pub stretch: Option<Stretch>,
-    /// Angular frequency of the fastest ripples across threads, by the tension in half of the cloth's width (rad/s). 0
+    /// Angular frequency of the fastest ripples across chains, by the tension in half of the cloth's width (rad/s). 0
     /// if it was not measured or is not known.
     pub ripple: f32,
 }
@@ -43,10 +43,15 @@ pub(super) trait SpringSolver: fmt::Debug + Send + Sync {
     fn is_exact(&self) -> bool;
 
     /// How many tasks it is split into at most where some are wanted.
-    fn bands(&self, wanted: usize) -> usize;
+    fn partitions(&self, wanted: usize) -> usize;
 
-    /// Corrects the displacements of the particles in `blocks` and moves them by them, in this many bands.
-    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> SolvedSubstep;
+    /// Corrects the displacements of the particles in `blocks` and moves them by them, in this many partitions.
+    fn substep(
+        &mut self,
+        blocks: &mut [Block],
+        motion: &Motion,
+        partitions: usize,
+    ) -> SolvedSubstep;
 
     /// Measures the stretch.
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch;

@@ -15,16 +15,16 @@ pub struct Stretch {
     /// this.
     pub bound: f32,
     /// The stretch of the material at the largest tension of its structural springs, including damping along them. A
-    /// stretch beyond it is what the sub-steps left unsolved. It is known where threads were solved; it equals
+    /// stretch beyond it is what the sub-steps left unsolved. It is known where chains were solved; it equals
     /// `structural` where springs act by explicit forces, and is 0 otherwise.
     pub material: f32,
-    /// Number of sub-steps in a tick as long as the last that resolves ripples across the threads. It is that of a taut
-    /// membrane in a frame, at the tension in half of the cloth's width. 0 except for grids with elastic threads.
+    /// Number of sub-steps in a tick as long as the last that resolves ripples across the chains. It is that of a taut
+    /// membrane in a frame, at the tension in half of the cloth's width. 0 except for grids with elastic chains.
     pub ripple_substeps: f32,
     /// Number of sub-steps in a tick as long as the last that holds the bodies on the cloth, by their weight on the
-    /// threads that carry them. 0 if the cloth carries none.
+    /// chains that carry them. 0 if the cloth carries none.
     pub load_substeps: f32,
-    /// Number of sub-steps in a tick as long as the last that holds the threads together where something that moves forces
+    /// Number of sub-steps in a tick as long as the last that holds the chains together where something that moves forces
     /// them over a collider's edges. 0 if nothing does.
     pub contact_substeps: f32,
 }

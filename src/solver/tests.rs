@@ -140,7 +140,7 @@ fn a_sub_step_is_that_of_a_plain_solver_in_f64() {
     }
 }
 
-/// To the last bit, whatever does the work: bands of rows on several threads, and the machine's widest
+/// To the last bit, whatever does the work: partitions of rows on several threads, and the machine's widest
 /// instructions against those that every machine has.
 #[test]
 fn threads_and_simd_levels_change_no_bit() {
@@ -154,7 +154,7 @@ fn threads_and_simd_levels_change_no_bit() {
             from: start.position(0).expect("it exists"),
             to: Vec3::splat(0.1),
         };
-        let mut run = |simd_level: SimdLevel, bands: usize| {
+        let mut run = |simd_level: SimdLevel, partitions: usize| {
             let mut particles = start.clone();
             let mut solver = Solver::new(&springs, &particles);
             solver.set_tethers(Tethers::new(
@@ -164,8 +164,8 @@ fn threads_and_simd_levels_change_no_bit() {
                 9.81,
             ));
             solver.set_simd_level(simd_level);
-            solver.set_bands(bands);
-            most = most.max(solver.bands());
+            solver.set_partitions(partitions);
+            most = most.max(solver.partitions());
             let mut stretch = Stretch::default();
             for _ in 0..20 {
                 stretch = solver.advance(&mut particles, STEP, &[pin], |_, _| false);
@@ -174,9 +174,17 @@ fn threads_and_simd_levels_change_no_bit() {
         };
         let truth = run(SimdLevel::Auto, 1);
         assert_eq!(run(SimdLevel::Baseline, 1), truth);
-        for bands in [2, 3, 4] {
-            assert_eq!(run(SimdLevel::Auto, bands), truth, "{bands} bands");
-            assert_eq!(run(SimdLevel::Baseline, bands), truth, "{bands} bands");
+        for partitions in [2, 3, 4] {
+            assert_eq!(
+                run(SimdLevel::Auto, partitions),
+                truth,
+                "{partitions} partitions"
+            );
+            assert_eq!(
+                run(SimdLevel::Baseline, partitions),
+                truth,
+                "{partitions} partitions"
+            );
         }
     }
     assert_eq!(most, 4);
@@ -308,7 +316,7 @@ fn no_particle_is_beyond_its_tether() {
                 largest.max(tethers.largest_excess(particles))
             })
         };
-        // What one sweep leaves to do is more than threads do.
+        // What one sweep leaves to do is more than chains do.
         let list = Springs::of_list(&springs.to_vec(), particles.len()).expect("valid springs");
         let mut swept = Solver::new(&list, &particles);
         let without = largest(&mut swept, &mut particles.clone());

@@ -18,7 +18,7 @@ const FEW_PINS: usize = 4;
 /// stretch to the springs, since swings and colliders pull harder than weight.
 const MARGIN: f32 = 4.0;
 
-/// They also allow this fraction of their length: solved threads do not get that long, so tethers don't disturb a
+/// They also allow this fraction of their length: solved chains do not get that long, so tethers don't disturb a
 /// correct motion.
 const SLACK: f32 = 0.01;
 
@@ -89,14 +89,14 @@ impl Lengths<'_> {
         let straight = square.sqrt();
         let stretch = 1.0 + SLACK + self.material.stretch_compliance * self.tension;
         let bias = 2.0 * across * down / square;
-        // Along a thread there is nothing to shear, and infinite × 0 is NaN; nor where springs run in all directions.
-        if !flat.has_threads || bias == 0.0 {
+        // Along a chain there is nothing to shear, and infinite × 0 is NaN; nor where springs run in all directions.
+        if !flat.has_chains || bias == 0.0 {
             return straight * stretch;
         }
         let sheared =
             straight * (stretch + self.material.shear_compliance * self.tension * bias * bias);
-        let threads = (across + down) * stretch;
-        sheared.min(threads)
+        let chains = (across + down) * stretch;
+        sheared.min(chains)
     }
 
     /// Along edges, anywhere else.
@@ -154,8 +154,8 @@ impl Tethers {
     ///
     /// The length of a tether is that of the shortest path between both particles at rest, lengthened by the stretch of
     /// the material. That is its stretch under four times the weight of the whole cloth hung by its pins, with an
-    /// `acceleration` (m/s²) of at least 9.81. If threads can shear, the tether may be as long as the path along the
-    /// threads.
+    /// `acceleration` (m/s²) of at least 9.81. If chains can shear, the tether may be as long as the path along the
+    /// chains.
     ///
     /// On a flat and convex surface the path is a straight line. On any other it follows the edges of the triangles,
     /// which is a little longer than the shortest path across them.

@@ -15,13 +15,13 @@ const SPACING: f32 = 0.02;
 const FRICTION: f32 = 0.4;
 /// Spacings that hang down at either side.
 const HANGING: f32 = 8.0;
-/// Mass at the light end, in those of a particle of the band.
+/// Mass at the light end, in those of a particle of the partition.
 const LIGHT: f32 = 100.0;
 /// How long it may settle (s), and how far it may move in the second that follows, in spacings.
 const SETTLING: f32 = 2.0;
 const CREEP: f32 = 0.05;
 
-/// A band of two rows over the upper half of a cylinder, with a weight at either end.
+/// A partition of two rows over the upper half of a cylinder, with a weight at either end.
 struct Capstan {
     particles: ClothParticles,
     solver: Solver,
@@ -134,7 +134,7 @@ impl Capstan {
     }
 }
 
-/// What the heavier weight may be of the lighter one, which has the band's own weight beside it, before all of it slips:
+/// What the heavier weight may be of the lighter one, which has the partition's own weight beside it, before all of it slips:
 /// dT = (μ T + ρ g R (μ cos φ + sin φ)) dφ from one side to the other, φ from the top.
 fn truth(radius: f32) -> f64 {
     let (friction, radius) = (f64::from(FRICTION), f64::from(radius));
@@ -150,8 +150,8 @@ fn truth(radius: f32) -> f64 {
     (pull - hanging) / f64::from(LIGHT)
 }
 
-/// A weight that is e^{μ π} = 3.51 times the other one holds, to 5 % of where the band's own weight puts that, from 20 sub-steps on.
-/// Fewer can't follow the ripples of a band that is pulled by a hundred times its particles' weight: at 10 it is 20 % less.
+/// A weight that is e^{μ π} = 3.51 times the other one holds, to 5 % of where the partition's own weight puts that, from 20 sub-steps on.
+/// Fewer can't follow the ripples of a partition that is pulled by a hundred times its particles' weight: at 10 it is 20 % less.
 #[test]
 fn half_a_turn_holds_as_the_capstan_does() {
     for radius in [5.0, 10.0] {

@@ -13,7 +13,7 @@ use super::{
     lanes::Layout,
     material::ClothMaterial,
     spring::{Spring, SpringKind},
-    surface::{Link, Surface, Threads},
+    surface::{Chains, Link, Surface},
 };
 
 /// A cloth's springs, sorted by colour. No two springs of one colour share a particle, so that they can be solved in
@@ -48,7 +48,7 @@ pub(crate) struct SpringList {
     pub springs: Vec<Spring>,
     pub colours: Vec<Range<usize>>,
     /// Springs that are solved together, after the sweep over the others.
-    pub threads: Threads,
+    pub chains: Chains,
 }
 
 impl SpringList {
@@ -213,9 +213,9 @@ impl Springs {
             list.add(&springs, surface.len())
         });
         let is_edge = |link: &&Link| link.kind == SpringKind::Structural;
-        // Without stretch springs there are no threads.
+        // Without stretch springs there are no chains.
         if places.len() == surface.links().iter().filter(is_edge).count() {
-            list.threads = surface.threads().renamed(|edge| places[edge as usize]);
+            list.chains = surface.chains().renamed(|edge| places[edge as usize]);
         }
         Self {
             storage: SpringStorage::List(Arc::new(list)),

@@ -10,8 +10,8 @@ const FLAT: f64 = 1.0e-5;
 pub(crate) struct Flat {
     /// Position of each particle in the plane (m).
     pub places: Vec<DVec2>,
-    /// Whether stretch springs run along the plane's axes only, as threads.
-    pub has_threads: bool,
+    /// Whether stretch springs run along the plane's axes only, as chains.
+    pub has_chains: bool,
 }
 
 impl Flat {
@@ -64,7 +64,7 @@ impl Flat {
             .all(|(place, _)| is_on_hull(*place))
             .then_some(Self {
                 places,
-                has_threads: false,
+                has_chains: false,
             })
     }
 }

@@ -46,7 +46,7 @@ impl Surface {
             faces: OnceLock::new(),
             fans: OnceLock::new(),
             graph: OnceLock::new(),
-            threads: OnceLock::new(),
+            chains: OnceLock::new(),
             flat: OnceLock::new(),
         }
     }

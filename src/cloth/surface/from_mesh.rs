@@ -277,7 +277,7 @@ impl Welded {
             faces: OnceLock::from(faces),
             fans: OnceLock::new(),
             graph: OnceLock::new(),
-            threads: OnceLock::new(),
+            chains: OnceLock::new(),
             flat: OnceLock::new(),
         }
     }

@@ -45,6 +45,6 @@ pub(super) fn flat(grid: &ClothGrid) -> Flat {
     let place = |(row, column): (u32, u32)| DVec2::new(f64::from(column), f64::from(row)) * spacing;
     Flat {
         places: grid.cells().map(place).collect(),
-        has_threads: true,
+        has_chains: true,
     }
 }

@@ -8,6 +8,7 @@ mod asset;
 mod binding;
 mod bound;
 mod calibration;
+mod chains;
 mod faces;
 mod fans;
 mod flat;
@@ -21,7 +22,6 @@ mod paths;
 mod springs;
 #[cfg(test)]
 mod tests;
-mod threads;
 mod triangles;
 mod weld;
 
@@ -37,13 +37,13 @@ pub use triangles::{TriangleMesh, VertexAttribute};
 
 #[cfg(feature = "mesh")]
 pub(crate) use asset::skin_of_asset;
+pub(crate) use chains::Chains;
 pub(crate) use faces::Faces;
 pub(crate) use fans::{Fan, Fans};
 pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
-pub(crate) use threads::Threads;
 pub(crate) use triangles::JointWeights;
 
 /// A cloth's surface at rest: its particles, the triangles between them, their areas and neighbours. It is in the
@@ -72,7 +72,7 @@ pub struct Surface {
     faces: OnceLock<Faces>,
     fans: OnceLock<Fans>,
     graph: OnceLock<Graph>,
-    threads: OnceLock<Threads>,
+    chains: OnceLock<Chains>,
     flat: OnceLock<Option<Flat>>,
 }
 
@@ -273,13 +273,13 @@ impl Surface {
         })
     }
 
-    /// The threads of a mesh along its structural links. Their indices count from the first structural link.
-    pub(crate) fn threads(&self) -> &Threads {
-        self.threads.get_or_init(|| {
+    /// The chains of a mesh along its structural links. Their indices count from the first structural link.
+    pub(crate) fn chains(&self) -> &Chains {
+        self.chains.get_or_init(|| {
             let links = self.links.iter();
             let links = links.filter(|link| link.kind == SpringKind::Structural);
             let edges: Vec<[u32; 2]> = links.map(|link| link.ends).collect();
-            Threads::trace(&edges, &self.rest, |particle| {
+            Chains::trace(&edges, &self.rest, |particle| {
                 self.normal_of(particle as usize)
             })
         })
@@ -320,7 +320,7 @@ impl Default for Surface {
             faces: OnceLock::new(),
             fans: OnceLock::new(),
             graph: OnceLock::new(),
-            threads: OnceLock::new(),
+            chains: OnceLock::new(),
             flat: OnceLock::new(),
         }
     }

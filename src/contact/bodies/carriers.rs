@@ -25,7 +25,7 @@ use crate::{
 /// Number of sub-steps that a particle carries after its last push.
 const REMEMBERED: u8 = 3;
 
-/// Largest ratio of a particle's load to its own mass: threads hold larger ones badly.
+/// Largest ratio of a particle's load to its own mass: chains hold larger ones badly.
 const MAX_LOAD: f32 = 3.0e3;
 
 /// A particle that carries a body.
@@ -65,7 +65,7 @@ impl Carriers {
         self.ratio = 0.0;
     }
 
-    /// Ratio of the body's mass to that of the threads that hold it, times the fraction of its weight that the cloth
+    /// Ratio of the body's mass to that of the chains that hold it, times the fraction of its weight that the cloth
     /// holds. `held` is the change of its velocity by the cloth (m/s) in a tick; `fall` is that by gravity (m/s).
     pub fn load_ratio(&self, held: f32, fall: f32) -> f32 {
         // Without a fall there is no weight to hold.
@@ -150,7 +150,7 @@ impl Carriers {
             let arm = block.position(carrier.slot.lane).as_dvec3() - centre;
             largest = largest.max(turning(mass, arm.as_vec3()));
         }
-        // The load hangs by as many threads as there are in both directions.
+        // The load hangs by as many chains as there are in both directions.
         let count = self.all.len() as f32;
         self.ratio = if count > 0.0 {
             count.sqrt() / (2.0 * sum * mass.inverse_mass)

@@ -17,7 +17,7 @@ impl Detection {
         body.map_or(&[], |body| body.carriers.as_slice())
     }
 
-    /// Largest ratio of a carried body's mass to that of the threads that hold it, times the fraction of its weight
+    /// Largest ratio of a carried body's mass to that of the chains that hold it, times the fraction of its weight
     /// that they hold. `fall` is the velocity that gravity adds in a tick (m/s). 0 if nothing is carried.
     pub(crate) fn load_ratio(&self, fall: f32) -> f32 {
         let ratio = |body: &Body| {

@@ -47,7 +47,7 @@ use crate::plugin::{
 /// A heavy body takes more sub-steps, growing with the cube root of the ratio of the masses, up to eight times those of
 /// the cloth alone. With [`Substepping::Automatic`](crate::solver::Substepping::Automatic), the default, the cloth
 /// takes them automatically as long as it holds the body. With too few, a heavy body stretches the cloth far, and may
-/// fall through. Very soft cloth, otherwise moved by the forces of its springs, is solved by threads as long as it
+/// fall through. Very soft cloth, otherwise moved by the forces of its springs, is solved by chains as long as it
 /// carries a body. A body on cloth rolls, but hardly slides: the particles hold it as if by friction without a limit.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
 #[reflect(Component, Default, Debug, Clone)]

@@ -183,7 +183,7 @@ fn resampled(
             attachment.pin.for_each(surface, |index| new.pin(index));
         }
     }
-    // Sub-steps in which nothing pulls and no velocity is kept: threads get the lengths that they have, without a jolt.
+    // Sub-steps in which nothing pulls and no velocity is kept: chains get the lengths that they have, without a jolt.
     let step = TickStep {
         seconds: 1.0 / 16.0,
         substeps: 80,

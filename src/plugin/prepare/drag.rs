@@ -4,7 +4,7 @@ use crate::solver::PinMotion;
 
 /// A pin that goes farther than this in a tick (m) may have jumped: the default of
 /// [`ClothInertia::teleport_distance`](crate::plugin::ClothInertia). At 64 Hz a runner at 10 m/s goes 0.16 m, a car at 60 m/s 0.94 m; 2 m is
-/// 128 m/s. A length and no part of the cloth's size: honest motion is no slower for small cloth, and what a jump does to the threads
+/// 128 m/s. A length and no part of the cloth's size: honest motion is no slower for small cloth, and what a jump does to the chains
 /// next to the pins is no less for large cloth.
 pub(crate) const FAR: f32 = 2.0;
 

@@ -19,7 +19,7 @@ pub(crate) fn is_same_rectangle(a: &ClothGrid, b: &ClothGrid) -> bool {
 }
 
 /// Puts the particles of a grid, `new`, where the surface of the particles `old` of another is, and has them move as it does: bilinear
-/// in rows and columns. Between, `relax` may move them: where a surface is twisted, the mean of its threads is shorter than they are.
+/// in rows and columns. Between, `relax` may move them: where a surface is twisted, the mean of its chains is shorter than they are.
 ///
 /// # Errors
 /// [`ClothError::NoSuchParticle`] if particles and grids are not each other's.

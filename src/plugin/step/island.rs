@@ -133,7 +133,7 @@ fn advance(
             };
             cloth.recall_carriers(substeps);
             let solver = &mut cloth.built.solver;
-            solver.set_bands(1);
+            solver.set_partitions(1);
             Some(solver.begin(&mut cloth.particles, step, &cloth.scratch.pins))
         })
         .collect();

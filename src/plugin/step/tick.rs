@@ -146,12 +146,12 @@ impl IntegrateQueryItem<'_, '_> {
     /// Simulates the tick, and repeats it with more sub-steps while the tolerance needs them.
     fn solve(&mut self, mut step: TickStep, colliders: &Colliders) {
         let substepping = self.scratch.substepping;
-        let bands = if self.particles.len() < MIN_TO_SPLIT {
+        let partitions = if self.particles.len() < MIN_TO_SPLIT {
             1
         } else {
             threads()
         };
-        self.built.solver.set_bands(bands);
+        self.built.solver.set_partitions(partitions);
         let may_repeat = match substepping {
             Substepping::Fixed(_) => false,
             Substepping::Automatic => {

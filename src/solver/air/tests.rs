@@ -124,10 +124,10 @@ fn every_instruction_set_and_thread_count_gives_the_same_bits() {
         };
         let (surface, start) = crumpled(33, 80);
         let springs = Springs::of_surface(&surface, &material);
-        let run = |level: SimdLevel, bands: usize| {
+        let run = |level: SimdLevel, partitions: usize| {
             let mut solver = Solver::of_surface(&surface, &springs);
             solver.set_simd_level(level);
-            solver.set_bands(bands);
+            solver.set_partitions(partitions);
             solver.set_air(&surface, Some(AIR));
             let mut particles = start.clone();
             for _ in 0..6 {
@@ -138,14 +138,14 @@ fn every_instruction_set_and_thread_count_gives_the_same_bits() {
             (particles, impulse)
         };
         let truth = run(SimdLevel::Baseline, 1);
-        for (level, bands) in [
+        for (level, partitions) in [
             (SimdLevel::Auto, 1),
             (SimdLevel::Auto, 2),
             (SimdLevel::Baseline, 2),
         ] {
             assert!(
-                run(level, bands) == truth,
-                "{compliance} m/N, {level:?}, {bands} bands"
+                run(level, partitions) == truth,
+                "{compliance} m/N, {level:?}, {partitions} partitions"
             );
         }
     }

@@ -1,6 +1,6 @@
-//! The bending of a stiff grid: its cells and threads solved, one family after the other.
+//! The bending of a stiff grid: its cells and chains solved, one family after the other.
 //!
-//! The matrix of a thread is constant and pentadiagonal; that of the cells between two columns is constant and
+//! The matrix of a chain is constant and pentadiagonal; that of the cells between two columns is constant and
 //! tridiagonal. Factored once into L D Lᵀ, they are solved exactly, eight at a time. The families are solved one after
 //! the other, which is exact if the sub-step is small beside the period of a bend. Each of them takes energy away,
 //! however stiff it is. Where only one of them resists, as in a strip that bends along its rows, nothing is lost.
@@ -8,7 +8,7 @@
 //! 10, and by 27 % where it is 100.
 
 use super::{
-    factor::{factor_strip, factor_thread, set},
+    factor::{factor_chain, factor_strip, set},
     plate::Plate,
 };
 use crate::{
@@ -27,7 +27,7 @@ enum Direction {
     Across,
 }
 
-/// Threads, or strips of cells, that have no particle in common.
+/// Chains, or strips of cells, that have no particle in common.
 #[derive(Debug, Clone)]
 struct Family {
     direction: Direction,
@@ -52,9 +52,9 @@ impl Factors {
     }
 }
 
-/// All threads and cells of a grid.
+/// All chains and cells of a grid.
 #[derive(Debug, Clone)]
-pub(super) struct ThreadBending {
+pub(super) struct ChainBending {
     layout: Layout,
     families: Vec<Family>,
     /// Inverse masses that the factors are of (1/kg).
@@ -73,7 +73,7 @@ const WEIGHTS: usize = 3;
 
 const NOTHING: [Lanes; 3] = [[0.0; LANES]; 3];
 
-impl ThreadBending {
+impl ChainBending {
     pub fn new(plate: &Plate) -> Self {
         let layout = plate.layout;
         let (rows, columns) = (layout.rows, layout.columns);
@@ -210,7 +210,7 @@ impl ThreadBending {
             Direction::Down => {
                 for column in 0..columns {
                     let slot = self.layout.slot(0, column);
-                    factor_thread(
+                    factor_chain(
                         rows,
                         |row| inverse_mass(row, column),
                         f64::from(stiffness[slot.block][slot.lane]),
@@ -226,7 +226,7 @@ impl ThreadBending {
                 for row in 0..rows {
                     let (group, lane) = (row as usize / LANES, row as usize % LANES);
                     let own = &mut factors[group * width..][..width];
-                    factor_thread(
+                    factor_chain(
                         columns,
                         |column| inverse_mass(row, column),
                         f64::from(stiffness[group][lane]),
@@ -297,11 +297,11 @@ impl ThreadBending {
         let groups = blocks.chunks_mut(LANES * strip);
         let count = self.layout.columns as usize;
         for ((rows, stiffness), factors) in groups.zip(stiffness).zip(factors) {
-            (kernels.thread_columns)(rows, strip, &mut self.columns);
-            (kernels.thread_rows)(&mut self.columns[..count], stiffness, factors);
+            (kernels.chain_columns)(rows, strip, &mut self.columns);
+            (kernels.chain_rows)(&mut self.columns[..count], stiffness, factors);
             // Beyond the last column are links to what is no particle.
             self.columns[count..].fill(NOTHING);
-            (kernels.thread_finish)(&self.columns, strip, rows);
+            (kernels.chain_finish)(&self.columns, strip, rows);
         }
     }
 
@@ -316,10 +316,10 @@ impl ThreadBending {
         for next in 0..=rows {
             if next + 1 < rows {
                 let links = &mut self.links[next % 2];
-                (kernels.thread_links)(&blocks[of(next)], &blocks[of(next + 1)], links);
+                (kernels.chain_links)(&blocks[of(next)], &blocks[of(next + 1)], links);
                 if next > 0 {
                     let links = [&*self.links[(next + 1) % 2], &*self.links[next % 2]];
-                    (kernels.thread_moments)(links, stiffness, &mut self.moments[next % 3]);
+                    (kernels.chain_moments)(links, stiffness, &mut self.moments[next % 3]);
                 }
             } else {
                 self.moments[next % 3].fill(NOTHING);
@@ -334,12 +334,12 @@ impl ThreadBending {
                 None => &self.none.0,
             };
             let solved = [solved(1), solved(2)];
-            (kernels.thread_forward)(moments, solved, factors_of(row), &mut rest[..strip]);
+            (kernels.chain_forward)(moments, solved, factors_of(row), &mut rest[..strip]);
         }
         for row in (0..rows).rev() {
             let (own, rest) = self.solved[row * strip..].split_at_mut(strip);
             let solved = [0, 1].map(|on| rest.get(of(on)).unwrap_or(&self.none.0));
-            (kernels.thread_backward)(
+            (kernels.chain_backward)(
                 &mut blocks[of(row)],
                 factors_of(row),
                 solved,

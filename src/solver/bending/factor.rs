@@ -1,17 +1,17 @@
-//! A thread's pentadiagonal system and a strip's tridiagonal one, factored.
+//! A chain's pentadiagonal system and a strip's tridiagonal one, factored.
 
 use crate::solver::kernels::Factor;
 
-/// Puts a thread's numbers into its lane.
+/// Puts a chain's numbers into its lane.
 pub(super) fn set(factors: &mut Factor, lane: usize, factor: [f32; 3]) {
     for (lanes, number) in factors.iter_mut().zip(factor) {
         lanes[lane] = number;
     }
 }
 
-/// Factors M + s K of a thread of `count` particles into L D Lᵀ, in f64: given inverse masses (1/kg) and s k (kg), which each
+/// Factors M + s K of a chain of `count` particles into L D Lᵀ, in f64: given inverse masses (1/kg) and s k (kg), which each
 /// particle has that has two neighbours. A pinned particle is coupled to none, and keeps its place: its 1/D is 0.
-pub(super) fn factor_thread(
+pub(super) fn factor_chain(
     count: u32,
     inverse_mass: impl Fn(u32) -> f64,
     stiffness: f64,

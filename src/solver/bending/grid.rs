@@ -1,7 +1,7 @@
 //! The bending of a grid: pushed by its forces where it is soft, solved where it is stiff.
 
 use super::{
-    chains::ThreadBending,
+    chains::ChainBending,
     plate::Plate,
     push::{LIMIT, Push},
 };
@@ -19,7 +19,7 @@ pub(super) struct GridBending {
     plate: Plate,
     push: Push,
     /// From when it first may be needed.
-    threads: Option<ThreadBending>,
+    chains: Option<ChainBending>,
     weight: f32,
     is_soft: bool,
 }
@@ -31,7 +31,7 @@ impl GridBending {
         Self {
             push: Push::new(&plate),
             plate,
-            threads: None,
+            chains: None,
             weight: 0.0,
             is_soft: true,
         }
@@ -44,17 +44,17 @@ impl GridBending {
         if bound * SPREAD < LIMIT {
             return;
         }
-        let threads = self
-            .threads
-            .get_or_insert_with(|| ThreadBending::new(&self.plate));
+        let chains = self
+            .chains
+            .get_or_insert_with(|| ChainBending::new(&self.plate));
         if !self.is_soft {
-            threads.prepare(blocks, weight);
+            chains.prepare(blocks, weight);
         }
     }
 
     pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
-        match &mut self.threads {
-            Some(threads) if !self.is_soft => threads.solve(blocks, kernels),
+        match &mut self.chains {
+            Some(chains) if !self.is_soft => chains.solve(blocks, kernels),
             _ => self.push.apply(blocks, 1.0, self.weight, kernels),
         }
     }
@@ -78,6 +78,6 @@ impl GridBending {
     /// Whether it has room for factors.
     #[cfg(test)]
     pub fn has_factors(&self) -> bool {
-        self.threads.is_some()
+        self.chains.is_some()
     }
 }

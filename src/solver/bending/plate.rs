@@ -1,4 +1,4 @@
-//! How stiff a grid is: threads along its rows and columns, and its cells against twist.
+//! How stiff a grid is: chains along its rows and columns, and its cells against twist.
 //!
 //! A strip of cloth is to bend as a beam of the rigidity D times its width, whatever its width and however its free edges curl.
 //! That is a plate whose Poisson's ratio is 0, of the energy `½ D (κ_xx² + κ_yy² + 2 κ_xy²)` an area, as meshes have it too. It is
@@ -7,20 +7,20 @@
 //!
 //! ```text
 //!  o ― o ― o    κ_xx along three particles of a row, k = D × width ⁄ spacing³ of ½ k |x₋ − 2 x + x₊|²,
-//!  |   |   |    κ_yy likewise down a column; a thread of a border is half a spacing wide.
+//!  |   |   |    κ_yy likewise down a column; a chain of a border is half a spacing wide.
 //!  o ― o ― o    κ_xy in a cell, k = 2 D ⁄ area of ½ k |x₀₀ − x₀₁ − x₁₀ + x₁₁|².
 //! ```
 //! Each of the three is exact where the curvature is the same everywhere, in rectangular cells as in square ones. Together they
-//! are the plate's difference equation of 13 points, whose error is of second order in the spacing. Threads of four directions
+//! are the plate's difference equation of 13 points, whose error is of second order in the spacing. Chains of four directions
 //! would have a Poisson's ratio of a third whatever their rigidities: strips of them are too soft, as their free edges curl.
 
 use crate::cloth::{ClothGrid, Lanes, Layout};
 
-/// k (N/m) of a grid's threads and cells.
+/// k (N/m) of a grid's chains and cells.
 #[derive(Debug, Clone)]
 pub(super) struct Plate {
     pub layout: Layout,
-    /// Of threads inside; those in a border have half of it.
+    /// Of chains inside; those in a border have half of it.
     across: f32,
     down: f32,
     twist: f32,
@@ -42,13 +42,13 @@ impl Plate {
     /// Of what bends along a row.
     pub fn across(&self, row: u32, column: u32) -> f32 {
         let Layout { rows, columns, .. } = self.layout;
-        thread(self.across, (column, columns), (row, rows))
+        chain(self.across, (column, columns), (row, rows))
     }
 
     /// Of what bends down a column.
     pub fn down(&self, row: u32, column: u32) -> f32 {
         let Layout { rows, columns, .. } = self.layout;
-        thread(self.down, (row, rows), (column, columns))
+        chain(self.down, (row, rows), (column, columns))
     }
 
     /// Of the cell whose upper left corner is this particle.
@@ -69,8 +69,8 @@ impl Plate {
     }
 }
 
-/// `inside`, half of it in a border or 0 at a thread's end, by the place along the thread and that beside other threads.
-fn thread(inside: f32, along: (u32, u32), beside: (u32, u32)) -> f32 {
+/// `inside`, half of it in a border or 0 at a chain's end, by the place along the chain and that beside other chains.
+fn chain(inside: f32, along: (u32, u32), beside: (u32, u32)) -> f32 {
     let is_inside = |(at, count): (u32, u32)| at > 0 && at + 1 < count;
     match (is_inside(along), is_inside(beside)) {
         (false, _) => 0.0,

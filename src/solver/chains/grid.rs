@@ -1,5 +1,5 @@
-//! The springs of a grid, thread by thread, in one band or several. A band consists of blocks side by side for threads
-//! from row to row, and of rows for threads within rows.
+//! The springs of a grid, chain by chain, in one partition or several. A partition consists of blocks side by side for chains
+//! from row to row, and of rows for chains within rows.
 
 use std::ops::Range;
 
@@ -7,21 +7,21 @@ use super::second_pass::{GridSprings, SecondPass};
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
     solver::{
-        bands::{MAX_BANDS, in_bands, take},
         kernels::{
-            Direction, GROUP, Kernels, Longest, RowScratch, RowThreads, Scratch, SpringBand,
-            StepScale, Threads, largest,
+            Chains, Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, SpringBand,
+            StepScale, largest,
         },
+        partitions::{MAX_PARTITIONS, in_partitions, take},
         spring_solver::{Motion, SolvedSubstep, SpringSolver},
         stretch::Stretch,
     },
 };
 
-/// Fewer rows a band than this, or fewer blocks of a row, and waiting for the others would take longer than the work.
+/// Fewer rows a partition than this, or fewer blocks of a row, and waiting for the others would take longer than the work.
 const MIN_ROWS: usize = 32;
 const MIN_BLOCKS: usize = 2;
 
-/// The springs of a grid, thread by thread.
+/// The springs of a grid, chain by chain.
 #[derive(Debug, Clone)]
 pub(crate) struct GridSolver {
     layout: Layout,
@@ -31,7 +31,7 @@ pub(crate) struct GridSolver {
     /// If there are any.
     diagonal: Option<SpringBand>,
     scratch: Scratch,
-    /// One for each band.
+    /// One for each partition.
     rows: Vec<RowScratch>,
     /// The numbers of all rows.
     numbers: Vec<u32>,
@@ -42,7 +42,7 @@ pub(crate) struct GridSolver {
     ripple_stiffness: [f32; 2],
 }
 
-/// Results of a band.
+/// Results of a partition.
 #[derive(Default, Clone, Copy)]
 struct PartitionResult {
     moved: Lanes,
@@ -53,11 +53,11 @@ impl GridSolver {
     pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
         let layout = Layout::new(grid.columns(), grid.rows());
         let strip = layout.strip as usize;
-        let family = |step, row| SpringBand::new(grid, layout, compliances, step, row);
-        let across = [family((0, 1), 0), family((0, 1), 1)];
-        let down = family((1, 0), 0);
+        let springs = |step, row| SpringBand::new(grid, layout, compliances, step, row);
+        let across = [springs((0, 1), 0), springs((0, 1), 1)];
+        let down = springs((1, 0), 0);
         let ripple_stiffness =
-            [&across[1], &down].map(|family| family.stiffness() * family.inverse_rest);
+            [&across[1], &down].map(|springs| springs.stiffness() * springs.inverse_rest);
         let is_elastic = across.iter().chain([&down]).any(SpringBand::is_elastic);
         Self {
             layout,
@@ -66,34 +66,34 @@ impl GridSolver {
             across,
             down,
             ripple_stiffness,
-            diagonal: compliances.shear.is_finite().then(|| family((1, 1), 0)),
+            diagonal: compliances.shear.is_finite().then(|| springs((1, 1), 0)),
             scratch: Scratch::new(layout),
             rows: vec![RowScratch::new(strip)],
             step_scale: StepScale::default(),
         }
     }
 
-    /// Solves all threads that lead from row to row in one direction.
+    /// Solves all chains that lead from row to row in one direction.
     pub(crate) fn solve_down(
         &mut self,
         blocks: &mut [Block],
         direction: Direction,
         kernels: &Kernels,
     ) {
-        let Some(family) = (match direction {
+        let Some(springs) = (match direction {
             Direction::Down => Some(&self.down),
             Direction::Right | Direction::Residuals => self.diagonal.as_ref(),
         }) else {
             return;
         };
         let strip = self.layout.strip as usize;
-        let mut threads = self.scratch.all(direction, strip, blocks);
-        solve(&mut threads, family, kernels);
+        let mut chains = self.scratch.all(direction, strip, blocks);
+        solve(&mut chains, springs, kernels);
     }
 
-    /// Solves all threads within rows.
+    /// Solves all chains within rows.
     pub(crate) fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels) {
-        let mut rows = RowThreads {
+        let mut rows = RowChains {
             blocks,
             first: 0,
             of: self.numbers.len(),
@@ -104,11 +104,11 @@ impl GridSolver {
         solve_rows(&mut rows, &self.across, kernels);
     }
 
-    /// What solves again what is left in rows and columns, after all threads were solved in this many bands.
-    pub(crate) fn second_pass(&mut self, bands: usize) -> (&mut SecondPass, GridSprings<'_>) {
+    /// What solves again what is left in rows and columns, after all chains were solved in this many partitions.
+    pub(crate) fn second_pass(&mut self, partitions: usize) -> (&mut SecondPass, GridSprings<'_>) {
         let strip = self.layout.strip as usize;
         if let Some(pulled) = self.second_pass.pulled[1].get_mut(strip..) {
-            self.scratch.multipliers(strip, bands, pulled);
+            self.scratch.multipliers(strip, partitions, pulled);
         }
         let grid = GridSprings {
             across: &self.across,
@@ -119,9 +119,9 @@ impl GridSolver {
         (&mut self.second_pass, grid)
     }
 
-    fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) {
-        let (second_pass, mut grid) = self.second_pass(bands);
-        second_pass.solve(blocks, &mut grid, motion, bands);
+    fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, partitions: usize) {
+        let (second_pass, mut grid) = self.second_pass(partitions);
+        second_pass.solve(blocks, &mut grid, motion, partitions);
     }
 
     /// The lengths of the springs that begin in these rows.
@@ -161,7 +161,7 @@ impl GridSolver {
     }
 
     /// The angular frequency of the fastest ripples (rad/s), in which neighbours swing against each other: ω² = 4 Σ F/(m l) over
-    /// a thread across and one down, with tensions F in springs of length l. That of the fourth of the eight strips of columns: a
+    /// a chain across and one down, with tensions F in springs of length l. That of the fourth of the eight strips of columns: a
     /// membrane has it everywhere, and what hangs by a corner is not a membrane.
     fn ripple(&self, blocks: &[Block], given: &[Lanes; 2]) -> f32 {
         let mut strips = [0.0; LANES];
@@ -183,37 +183,44 @@ impl GridSolver {
         2.0 * (pull * heaviest).sqrt()
     }
 
-    /// Solves all threads in this many bands, more than one.
-    fn solve_in_bands(&mut self, blocks: &mut [Block], kernels: &Kernels, bands: usize) {
+    /// Solves all chains in this many partitions, more than one.
+    fn solve_in_partitions(&mut self, blocks: &mut [Block], kernels: &Kernels, partitions: usize) {
         let strip = self.layout.strip as usize;
-        if let Some(family) = &self.diagonal {
+        if let Some(springs) = &self.diagonal {
             for direction in [Direction::Right, Direction::Residuals] {
-                let all = self.scratch.split(direction, (strip, bands), blocks);
-                in_bands(all, |mut band| solve(&mut band, family, kernels));
+                let all = self.scratch.split(direction, (strip, partitions), blocks);
+                in_partitions(all, |mut partition| solve(&mut partition, springs, kernels));
             }
         }
-        self.across_in_bands(blocks, kernels, bands);
+        self.across_in_partitions(blocks, kernels, partitions);
         let down = &self.down;
-        let all = self.scratch.split(Direction::Down, (strip, bands), blocks);
-        in_bands(all, |mut band| solve(&mut band, down, kernels));
+        let all = self
+            .scratch
+            .split(Direction::Down, (strip, partitions), blocks);
+        in_partitions(all, |mut partition| solve(&mut partition, down, kernels));
     }
 
-    /// Ends a sub-step in this many bands.
-    fn end_in_bands(&self, blocks: &mut [Block], motion: &Motion, bands: usize) -> SolvedSubstep {
+    /// Ends a sub-step in this many partitions.
+    fn end_in_partitions(
+        &self,
+        blocks: &mut [Block],
+        motion: &Motion,
+        partitions: usize,
+    ) -> SolvedSubstep {
         let (kernels, measures) = (motion.kernels, motion.measures);
         let (strip, rows) = (self.layout.strip as usize, self.layout.rows as usize);
-        let border = |band| rows * band / bands;
-        let mut found = [PartitionResult::default(); MAX_BANDS];
+        let border = |partition| rows * partition / partitions;
+        let mut found = [PartitionResult::default(); MAX_PARTITIONS];
         let mut rest = &mut *blocks;
         let parts = found
             .iter_mut()
-            .take(bands)
+            .take(partitions)
             .enumerate()
-            .map(|(band, found)| {
-                let size = (border(band + 1) - border(band)) * strip;
-                (border(band) * strip, take(&mut rest, size), found)
+            .map(|(partition, found)| {
+                let size = (border(partition + 1) - border(partition)) * strip;
+                (border(partition) * strip, take(&mut rest, size), found)
             });
-        in_bands(parts, |(first, blocks, found)| {
+        in_partitions(parts, |(first, blocks, found)| {
             let (tethers, anchors) = (motion.tethers, motion.anchors);
             tethers.pull(anchors, blocks, first, kernels);
             (kernels.commit)(blocks, &mut found.moved);
@@ -221,12 +228,12 @@ impl GridSolver {
         let given = self.given_if(measures, kernels);
         let stretch = measures.then(|| {
             let blocks = &*blocks;
-            in_bands((0..bands).zip(&mut found), |(band, found)| {
-                let rows = border(band)..border(band + 1);
+            in_partitions((0..partitions).zip(&mut found), |(partition, found)| {
+                let rows = border(partition)..border(partition + 1);
                 found.longest = self.measure_rows(blocks, rows, kernels);
             });
             let mut longest = Longest::default();
-            for found in &found[..bands] {
+            for found in &found[..partitions] {
                 longest.merge(&found.longest);
             }
             Stretch {
@@ -250,31 +257,31 @@ impl GridSolver {
         }
     }
 
-    /// Solves the threads within rows.
-    fn across_in_bands(&mut self, blocks: &mut [Block], kernels: &Kernels, bands: usize) {
+    /// Solves the chains within rows.
+    fn across_in_partitions(&mut self, blocks: &mut [Block], kernels: &Kernels, partitions: usize) {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
         let groups = rows.div_ceil(GROUP);
-        let border = |band: usize| (groups * band / bands * GROUP).min(rows);
-        if self.rows.len() < bands {
-            self.rows.resize(bands, RowScratch::new(strip));
+        let border = |partition: usize| (groups * partition / partitions * GROUP).min(rows);
+        if self.rows.len() < partitions {
+            self.rows.resize(partitions, RowScratch::new(strip));
         }
         let (mut rest, mut pulled) = (blocks, &mut self.second_pass.pulled[0][..]);
         let is_elastic = !pulled.is_empty();
-        let each = self.rows.iter_mut().take(bands).enumerate();
-        let parts = each.map(|(band, scratch)| {
-            let size = (border(band + 1) - border(band)) * strip;
-            RowThreads {
+        let each = self.rows.iter_mut().take(partitions).enumerate();
+        let parts = each.map(|(partition, scratch)| {
+            let size = (border(partition + 1) - border(partition)) * strip;
+            RowChains {
                 blocks: take(&mut rest, size),
-                first: border(band),
+                first: border(partition),
                 of: rows,
-                numbers: &self.numbers[border(band)..border(band + 1)],
+                numbers: &self.numbers[border(partition)..border(partition + 1)],
                 scratch,
                 pulled: take(&mut pulled, if is_elastic { size } else { 0 }),
             }
         });
-        let families = &self.across;
-        in_bands(parts, |mut part| solve_rows(&mut part, families, kernels));
+        let springs = &self.across;
+        in_partitions(parts, |mut part| solve_rows(&mut part, springs, kernels));
     }
 }
 
@@ -282,13 +289,13 @@ impl SpringSolver for GridSolver {
     fn set_step_scale(&mut self, step_scale: StepScale) {
         if self.step_scale != step_scale {
             self.step_scale = step_scale;
-            for family in self
+            for springs in self
                 .across
                 .iter_mut()
                 .chain([&mut self.down])
                 .chain(&mut self.diagonal)
             {
-                family.soften(step_scale);
+                springs.soften(step_scale);
             }
         }
     }
@@ -297,19 +304,24 @@ impl SpringSolver for GridSolver {
         true
     }
 
-    fn bands(&self, wanted: usize) -> usize {
+    fn partitions(&self, wanted: usize) -> usize {
         let (strip, rows) = (self.layout.strip as usize, self.layout.rows as usize);
         let most = (rows / MIN_ROWS).min(strip / MIN_BLOCKS);
-        wanted.min(most).clamp(1, MAX_BANDS)
+        wanted.min(most).clamp(1, MAX_PARTITIONS)
     }
 
-    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, bands: usize) -> SolvedSubstep {
-        let bands = self.bands(bands);
+    fn substep(
+        &mut self,
+        blocks: &mut [Block],
+        motion: &Motion,
+        partitions: usize,
+    ) -> SolvedSubstep {
+        let partitions = self.partitions(partitions);
         let kernels = motion.kernels;
-        if bands > 1 {
-            self.solve_in_bands(blocks, kernels, bands);
-            self.solve_again(blocks, motion, bands);
-            return self.end_in_bands(blocks, motion, bands);
+        if partitions > 1 {
+            self.solve_in_partitions(blocks, kernels, partitions);
+            self.solve_again(blocks, motion, partitions);
+            return self.end_in_partitions(blocks, motion, partitions);
         }
         self.solve_down(blocks, Direction::Right, kernels);
         self.solve_down(blocks, Direction::Residuals, kernels);
@@ -341,25 +353,25 @@ impl SpringSolver for GridSolver {
     }
 }
 
-/// Solves threads.
-fn solve(threads: &mut Threads, family: &SpringBand, kernels: &Kernels) {
-    if family.kept < 1.0 {
-        (kernels.solve_damped_threads)(threads, family);
+/// Solves chains.
+fn solve(chains: &mut Chains, springs: &SpringBand, kernels: &Kernels) {
+    if springs.kept < 1.0 {
+        (kernels.solve_damped_chains)(chains, springs);
     } else {
-        (kernels.solve_threads)(threads, family);
+        (kernels.solve_chains)(chains, springs);
     }
 }
 
-/// Solves threads within rows.
-fn solve_rows(rows: &mut RowThreads, families: &[SpringBand; 2], kernels: &Kernels) {
-    if families[0].kept < 1.0 {
-        (kernels.solve_damped_rows)(rows, families);
+/// Solves chains within rows.
+fn solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2], kernels: &Kernels) {
+    if springs[0].kept < 1.0 {
+        (kernels.solve_damped_rows)(rows, springs);
     } else {
-        (kernels.solve_rows)(rows, families);
+        (kernels.solve_rows)(rows, springs);
     }
 }
 
-/// The largest squared displacements of all bands (m²), lane by lane.
+/// The largest squared displacements of all partitions (m²), lane by lane.
 fn farthest(all: &[PartitionResult]) -> Lanes {
     let larger = |mut farthest: Lanes, found: &PartitionResult| {
         for (farthest, own) in farthest.iter_mut().zip(&found.moved) {

@@ -1,19 +1,19 @@
 //! Rows and columns that are solved again, where those solved after them have left something.
 //!
-//! Each thread is solved exactly, but the next ones move its particles again. That is little, except where one thread carries
+//! Each chain is solved exactly, but the next ones move its particles again. That is little, except where one chain carries
 //! many others, as beside a pin that a cloth hangs by: there it adds up from sub-step to sub-step. So after the pass, what is
-//! left in each row and column is measured, and those in which it is too much are solved again. Their crossing threads are
-//! measured then, and so on, for a few rounds. It is the iteration of Gauss and Seidel by threads (Saad 2003, section 4.1),
+//! left in each row and column is measured, and those in which it is too much are solved again. Their crossing chains are
+//! measured then, and so on, for a few rounds. It is the iteration of Gauss and Seidel by chains (Saad 2003, section 4.1),
 //! for those equations alone that need it.
 
 use crate::{
     cloth::{Block, LANES, Lanes, Layout},
     solver::{
-        bands::{in_bands, take},
         kernels::{
-            Columns, Kernels, Residuals, RowScratch, RowSprings, RowThreads, Scratch, SpringBand,
+            Columns, Kernels, Residuals, RowChains, RowScratch, RowSprings, Scratch, SpringBand,
             largest,
         },
+        partitions::{in_partitions, take},
         spring_solver::Motion,
     },
 };
@@ -27,21 +27,21 @@ const LIMIT: f32 = 1.005 * 1.005;
 const CALM: f32 = 1.00125 * 1.00125;
 const CALM_SUBSTEPS: u32 = 3;
 
-/// Rounds at most. More are hardly ever needed, except by a thread between pins too far apart, which none would help.
+/// Rounds at most. More are hardly ever needed, except by a chain between pins too far apart, which none would help.
 const ROUNDS: usize = 4;
 
 /// The part of a spring's length that its pull has given, at most.
 const MOST_GIVEN: f32 = 0.9;
 
-/// What is left in threads side by side.
+/// What is left in chains side by side.
 #[derive(Debug, Clone)]
-struct Threads {
+struct Chains {
     left: Vec<f32>,
     /// Those that are solved again.
     chosen: Vec<u32>,
 }
 
-impl Threads {
+impl Chains {
     fn new(count: usize) -> Self {
         Self {
             left: vec![0.0; count],
@@ -76,10 +76,10 @@ pub(crate) struct GridSprings<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct SecondPass {
     strip: usize,
-    rows: Threads,
+    rows: Chains,
     /// Of each block of a row: its columns.
-    columns: Threads,
-    /// One for each band.
+    columns: Chains,
+    /// One for each partition.
     found: Vec<Residuals>,
     /// Multipliers of the springs within each row, and of those that lead to it from the row above (m kg). Empty where all
     /// are rigid.
@@ -96,8 +96,8 @@ impl SecondPass {
         let multipliers = if is_elastic { layout.blocks() } else { 0 };
         Self {
             strip,
-            rows: Threads::new(rows),
-            columns: Threads::new(strip),
+            rows: Chains::new(rows),
+            columns: Chains::new(strip),
             found: vec![Residuals::new(strip)],
             pulled: [(); 2].map(|()| vec![[0.0; LANES]; multipliers]),
             calm: 0,
@@ -105,13 +105,13 @@ impl SecondPass {
         }
     }
 
-    /// Solves again what is left after a pass over all threads.
+    /// Solves again what is left after a pass over all chains.
     pub fn solve(
         &mut self,
         blocks: &mut [Block],
         grid: &mut GridSprings,
         motion: &Motion,
-        bands: usize,
+        partitions: usize,
     ) {
         // Damping holds against a stretch that it has not let in: that is not left over.
         if grid.down.kept < 1.0 {
@@ -124,7 +124,7 @@ impl SecondPass {
             return;
         }
         let kernels = motion.kernels;
-        self.measure(blocks, grid, kernels, bands);
+        self.measure(blocks, grid, kernels, partitions);
         let most = self.rows.largest().max(self.columns.largest());
         let is_calm = most < CALM && !self.is_busy;
         self.calm = if is_calm { CALM_SUBSTEPS } else { 0 };
@@ -159,15 +159,15 @@ impl SecondPass {
         let last = self.rows.left.len() - 1;
         for (row, pulled) in in_rows.chunks_exact(self.strip).enumerate() {
             let is_border = row == 0 || row == last;
-            let family = if is_border { border } else { inner };
-            (kernels.measure_given)(pulled, &family.softness, &mut given[0]);
+            let springs = if is_border { border } else { inner };
+            (kernels.measure_given)(pulled, &springs.softness, &mut given[0]);
         }
         (kernels.measure_given)(from_above, &down.softness, &mut given[1]);
         let families = [inner, down];
-        for (given, family) in given.iter_mut().zip(families) {
+        for (given, springs) in given.iter_mut().zip(families) {
             // At a length l of which the part g/r is given, the pull has given g l/r.
             *given = given.map(|given| {
-                let part = (given * family.inverse_rest).min(MOST_GIVEN);
+                let part = (given * springs.inverse_rest).min(MOST_GIVEN);
                 given / (1.0 - part)
             });
         }
@@ -178,13 +178,13 @@ impl SecondPass {
     #[cfg(test)]
     pub fn solve_all(&mut self, blocks: &mut [Block], grid: &mut GridSprings, down: bool) {
         let kernels = crate::solver::kernels::SimdLevel::Auto.kernels();
-        let threads = if down {
+        let chains = if down {
             &mut self.columns
         } else {
             &mut self.rows
         };
-        threads.left.fill(f32::INFINITY);
-        threads.choose();
+        chains.left.fill(f32::INFINITY);
+        chains.choose();
         if down {
             self.solve_columns(blocks, grid, &kernels);
         } else {
@@ -193,18 +193,24 @@ impl SecondPass {
     }
 
     /// Measures all rows and columns.
-    fn measure(&mut self, blocks: &[Block], grid: &GridSprings, kernels: &Kernels, bands: usize) {
+    fn measure(
+        &mut self,
+        blocks: &[Block],
+        grid: &GridSprings,
+        kernels: &Kernels,
+        partitions: usize,
+    ) {
         let (strip, count) = (self.strip, self.rows.left.len());
-        if self.found.len() < bands {
-            self.found.resize(bands, Residuals::new(strip));
+        if self.found.len() < partitions {
+            self.found.resize(partitions, Residuals::new(strip));
         }
-        let border = |band: usize| count * band / bands;
+        let border = |partition: usize| count * partition / partitions;
         let mut all = &mut self.rows.left[..];
         let pulled = &self.pulled;
-        let parts = self.found.iter_mut().take(bands).enumerate();
-        let parts = parts.map(|(band, found)| {
-            let left = take(&mut all, border(band + 1) - border(band));
-            (border(band), left, found)
+        let parts = self.found.iter_mut().take(partitions).enumerate();
+        let parts = parts.map(|(partition, found)| {
+            let left = take(&mut all, border(partition + 1) - border(partition));
+            (border(partition), left, found)
         });
         let work = |(first, left, found): (usize, &mut [f32], &mut Residuals)| {
             found.down.fill([0.0; LANES]);
@@ -215,13 +221,13 @@ impl SecondPass {
                 *left = found.across;
             }
         };
-        if bands > 1 {
-            in_bands(parts, work);
+        if partitions > 1 {
+            in_partitions(parts, work);
         } else {
             parts.for_each(work);
         }
         self.columns.left.fill(0.0);
-        for found in &self.found[..bands] {
+        for found in &self.found[..partitions] {
             for (left, found) in self.columns.left.iter_mut().zip(&found.down) {
                 *left = left.max(largest(*found));
             }
@@ -232,7 +238,7 @@ impl SecondPass {
     fn solve_rows(&mut self, blocks: &mut [Block], grid: &mut GridSprings, kernels: &Kernels) {
         let (strip, count) = (self.strip, self.rows.left.len());
         let [in_rows, _] = &mut self.pulled;
-        let mut rows = RowThreads {
+        let mut rows = RowChains {
             blocks,
             first: 0,
             of: count,
@@ -320,7 +326,7 @@ fn measure_row(
         }
     };
     let springs = RowSprings {
-        bands: [across, grid.down],
+        kinds: [across, grid.down],
         pulled: [
             &pulled[0][of_row(&pulled[0])],
             &pulled[1][of_row(&pulled[1])],

@@ -1,4 +1,4 @@
-//! Threads solved side by side against one after the other in f64.
+//! Chains solved side by side against one after the other in f64.
 
 use bevy::math::{DVec3, Vec3};
 
@@ -48,8 +48,8 @@ fn crumpled(columns: u32, rows: u32, noise: f32) -> (ClothGrid, ClothParticles) 
     (grid, particles)
 }
 
-/// The threads of one direction, as particles.
-fn threads(grid: &ClothGrid, (down, across): (u32, i32)) -> Vec<Vec<(u32, u32)>> {
+/// The chains of one direction, as particles.
+fn chains(grid: &ClothGrid, (down, across): (u32, i32)) -> Vec<Vec<(u32, u32)>> {
     let next = |(row, column): (u32, u32)| {
         let (row, column) = (row + down, column.checked_add_signed(across)?);
         (row < grid.rows() && column < grid.columns()).then_some((row, column))
@@ -60,8 +60,8 @@ fn threads(grid: &ClothGrid, (down, across): (u32, i32)) -> Vec<Vec<(u32, u32)>>
             .zip(column.checked_add_signed(-across));
         before.is_none_or(|(_, column)| column >= grid.columns())
     };
-    let thread = |first| std::iter::successors(Some(first), |&cell| next(cell)).collect();
-    grid.cells().filter(is_first).map(thread).collect()
+    let chain = |first| std::iter::successors(Some(first), |&cell| next(cell)).collect();
+    grid.cells().filter(is_first).map(chain).collect()
 }
 
 /// Solves a system by elimination with pivots.
@@ -91,9 +91,9 @@ pub(crate) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64>
     right
 }
 
-/// What one thread's springs do to displacements, in f64, by the equations of [`super`].
-fn solve_thread(
-    thread: &[(u32, u32)],
+/// What one chain's springs do to displacements, in f64, by the equations of [`super`].
+fn solve_chain(
+    chain: &[(u32, u32)],
     particles: &ClothParticles,
     rest: f64,
     compliance: impl Fn((u32, u32)) -> f64,
@@ -102,7 +102,7 @@ fn solve_thread(
     let at = |cell: (u32, u32)| particles.index(cell).expect("it exists");
     let place = |cell| particles.position_at(at(cell)).as_dvec3() + moved[at(cell)];
     let weight = |cell| f64::from(particles.inverse_mass(cell).expect("it exists"));
-    let springs: Vec<_> = thread.windows(2).map(|ends| (ends[0], ends[1])).collect();
+    let springs: Vec<_> = chain.windows(2).map(|ends| (ends[0], ends[1])).collect();
     let spans: Vec<DVec3> = springs
         .iter()
         .map(|(a, b)| (place(*b) - place(*a)) / rest)
@@ -131,7 +131,7 @@ fn solve_thread(
     }
 }
 
-/// In grids that fill their lanes and that do not, with pins in threads, crumpled a little and a lot, rigid and soft.
+/// In grids that fill their lanes and that do not, with pins in chains, crumpled a little and a lot, rigid and soft.
 #[test]
 fn each_family_is_solved_as_by_elimination_in_f64() {
     for (columns, rows) in [
@@ -164,7 +164,7 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
                     _ => spring_solver.solve_down(blocks, Direction::Residuals, &kernels),
                 }
                 let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
-                for thread in threads(&grid, step) {
+                for chain in chains(&grid, step) {
                     let soft = |cell| {
                         let cell = if step == (1, -1) { (0, 0) } else { cell };
                         let kind = if step == (1, -1) { (1, 1) } else { step };
@@ -173,7 +173,7 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
                             .map_or(0.0, f64::from)
                     };
                     let rest = f64::from(grid.step_length(step));
-                    solve_thread(&thread, &start, rest, soft, &mut moved);
+                    solve_chain(&chain, &start, rest, soft, &mut moved);
                 }
                 for (index, (found, expected)) in particles.displacements().zip(&moved).enumerate()
                 {
@@ -189,9 +189,9 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
     }
 }
 
-/// GridSprings again at once, elastic threads have nothing left but the curvature of their equations: a relative error of the
+/// GridSprings again at once, elastic chains have nothing left but the curvature of their equations: a relative error of the
 /// order of the noise in lengths, 1 %, which each solve leaves of what it finds. A spring whose first pull was forgotten
-/// would pull as far once more. (Rigid threads have no such pull, and between two pins they have no solution.)
+/// would pull as far once more. (Rigid chains have no such pull, and between two pins they have no solution.)
 #[test]
 fn what_is_solved_again_goes_on_from_its_pull() {
     for (columns, rows) in [(9, 17), (33, 20), (70, 11)] {

@@ -20,13 +20,13 @@
 //! A cloth must not be too far from the origin of its frame either. At a distance of r m, each step rounds positions by
 //! u = 2⁻²³ r ⁄ √12 in the mean, and forces from positions alone take each rounding for a stretch. With 4 springs per
 //! particle, these gain ½ k u² twice in a step, which is `ω² m u²/(4 Δt)` a second. It is limited to 2 % of the work of
-//! the weight over a spacing h: u² < 0.08 g h Δt/ω². That is 6 m for 64² of 1 mm/N, 2 m wide. (Threads use
+//! the weight over a spacing h: u² < 0.08 g h Δt/ω². That is 6 m for 64² of 1 mm/N, 2 m wide. (Chains use
 //! displacements as well, and may be 150 times as far away.)
 //!
 //! # Cost
-//! 9 µs for a sub-step of 64² (16,000 springs), where solving threads takes 24. So if it needs at most twice the
+//! 9 µs for a sub-step of 64² (16,000 springs), where solving chains takes 24. So if it needs at most twice the
 //! sub-steps, it is as cheap, and far more exact. An example is a 64² of 1 mm/N that falls, hung by its upper row.
-//! After half a second it is off by 0.01 mm with 92 sub-steps in 1/60 s; threads with 80 are off by 0.05 mm.
+//! After half a second it is off by 0.01 mm with 92 sub-steps in 1/60 s; chains with 80 are off by 0.05 mm.
 
 #[cfg(test)]
 mod tests;
@@ -34,10 +34,10 @@ mod tests;
 use std::array;
 
 use super::{
-    bands::{MAX_BANDS, in_bands, take},
     bending::Bending,
     damping_reference::DampingReference,
     kernels::{ElasticGrid, Force, Kernels, Kick, LinearizedDrag},
+    partitions::{MAX_PARTITIONS, in_partitions, take},
     step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, existing},
 };
 use crate::cloth::{Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, W, X, Y, Z};
@@ -54,7 +54,7 @@ const NOISE: f32 = 0.08;
 /// Gravity of this estimate (m/s²), whatever the cloth's own.
 const GRAVITY: f32 = 9.81;
 
-/// Fewer rows a band than this, and waiting for the others would take longer than the work.
+/// Fewer rows a partition than this, and waiting for the others would take longer than the work.
 const MIN_ROWS: usize = 32;
 
 /// The springs of a grid, none of them rigid.
@@ -63,11 +63,11 @@ pub(super) struct Forces {
     springs: ElasticGrid,
     /// Of all springs of a particle together (N/m), in a row at an end and in others.
     sums: [Vec<Lanes>; 2],
-    /// Of two rows, for each band.
+    /// Of two rows, for each partition.
     scratch: Vec<[Vec<Force>; 2]>,
-    /// The rows on either side of each border between bands.
+    /// The rows on either side of each border between partitions.
     borders: Vec<Block>,
-    bands: usize,
+    partitions: usize,
 }
 
 impl Forces {
@@ -80,19 +80,19 @@ impl Forces {
             springs,
             scratch: vec![array::from_fn(|_| vec![Force::default(); strip])],
             borders: Vec::new(),
-            bands: 1,
+            partitions: 1,
         })
     }
 
-    /// With this many bands of rows from now on, or fewer where there is too little to do.
-    pub fn set_bands(&mut self, wanted: usize) {
+    /// With this many partitions of rows from now on, or fewer where there is too little to do.
+    pub fn set_partitions(&mut self, wanted: usize) {
         let most = self.springs.layout.rows as usize / MIN_ROWS;
-        self.bands = wanted.min(most).clamp(1, MAX_BANDS);
+        self.partitions = wanted.min(most).clamp(1, MAX_PARTITIONS);
     }
 
-    /// How many bands there are.
-    pub fn bands(&self) -> usize {
-        self.bands
+    /// How many partitions there are.
+    pub fn partitions(&self) -> usize {
+        self.partitions
     }
 
     /// The longest sub-step that is safe for particles of these masses, there (s); 0 if they are too far away for any.
@@ -203,16 +203,16 @@ impl Forces {
 
     /// Has forces act, and moves the particles. Returns their squared displacements (m²), the largest of each lane.
     fn kick(&mut self, blocks: &mut [Block], kick: &Kick, kernels: &Kernels) -> Lanes {
-        let mut moved = [[0.0; LANES]; MAX_BANDS];
+        let mut moved = [[0.0; LANES]; MAX_PARTITIONS];
         let Self {
             springs,
             scratch,
             borders,
-            bands,
+            partitions,
             ..
         } = self;
-        let bands = *bands;
-        if bands == 1 {
+        let partitions = *partitions;
+        if partitions == 1 {
             let around: [&[Block]; 2] = [&[], &[]];
             (kernels.kick)(
                 blocks,
@@ -225,27 +225,36 @@ impl Forces {
             return moved[0];
         }
         let (rows, strip) = (springs.layout.rows as usize, springs.layout.strip as usize);
-        if scratch.len() < bands {
-            scratch.resize(bands, scratch[0].clone());
+        if scratch.len() < partitions {
+            scratch.resize(partitions, scratch[0].clone());
         }
-        // What another band moves in the meantime is read from a copy.
+        // What another partition moves in the meantime is read from a copy.
         borders.clear();
-        let first_row = |band: usize| rows * band / bands;
-        for band in 1..bands {
-            let at = first_row(band) * strip;
+        let first_row = |partition: usize| rows * partition / partitions;
+        for partition in 1..partitions {
+            let at = first_row(partition) * strip;
             borders.extend_from_slice(&blocks[at - strip..at + strip]);
         }
         let borders = &*borders;
         let mut rest = blocks;
-        let each = scratch.iter_mut().zip(&mut moved).take(bands).enumerate();
-        let parts = each.map(|(band, (scratch, moved))| {
-            let own = take(&mut rest, (first_row(band + 1) - first_row(band)) * strip);
+        let each = scratch
+            .iter_mut()
+            .zip(&mut moved)
+            .take(partitions)
+            .enumerate();
+        let parts = each.map(|(partition, (scratch, moved))| {
+            let own = take(
+                &mut rest,
+                (first_row(partition + 1) - first_row(partition)) * strip,
+            );
             // Of each border, the row above it and the row below it.
             let row = |at: usize| borders.get(at * strip..(at + 1) * strip).unwrap_or(&[]);
-            let above: &[Block] = band.checked_sub(1).map_or(&[], |border| row(2 * border));
-            (own, [above, row(2 * band + 1)], scratch, moved)
+            let above: &[Block] = partition
+                .checked_sub(1)
+                .map_or(&[], |border| row(2 * border));
+            (own, [above, row(2 * partition + 1)], scratch, moved)
         });
-        in_bands(parts, |(own, around, scratch, moved)| {
+        in_partitions(parts, |(own, around, scratch, moved)| {
             (kernels.kick)(own, around, springs, kick, scratch, moved);
         });
         array::from_fn(|l| moved.iter().fold(0.0, |most, own| own[l].max(most)))

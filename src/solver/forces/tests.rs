@@ -1,4 +1,4 @@
-//! Forces against the same springs in f64, bands against one band, and when they are chosen.
+//! Forces against the same springs in f64, partitions against one partition, and when they are chosen.
 
 use bevy::math::{DVec3, Isometry3d, Vec3};
 
@@ -151,18 +151,18 @@ fn a_tick_is_that_of_a_plain_solver_in_f64() {
     }
 }
 
-/// However many bands and whatever instructions: the same bits.
+/// However many partitions and whatever instructions: the same bits.
 #[test]
 fn bands_and_simd_levels_change_no_bit() {
-    let bits = |bands: usize, simd_level: SimdLevel| -> Vec<u32> {
+    let bits = |partitions: usize, simd_level: SimdLevel| -> Vec<u32> {
         let material = ClothMaterial {
             bend_rigidity: 1.0e-6,
             ..SOFT
         };
         let (mut particles, mut solver) = crumpled(&grid(37, 130), &material);
-        solver.set_bands(bands);
+        solver.set_partitions(partitions);
         solver.set_simd_level(simd_level);
-        assert_eq!(solver.forces_bands(), bands.min(4));
+        assert_eq!(solver.forces_partitions(), partitions.min(4));
         assert!(solver.is_explicit(&particles, &step(60)));
         for _ in 0..3 {
             solver.advance(&mut particles, step(60), &[], |_, _| false);
@@ -173,8 +173,11 @@ fn bands_and_simd_levels_change_no_bit() {
             .collect()
     };
     let plain = bits(1, SimdLevel::Baseline);
-    for bands in [1, 2, 3, 4, 9] {
-        assert!(bits(bands, SimdLevel::Auto) == plain, "{bands} bands");
+    for partitions in [1, 2, 3, 4, 9] {
+        assert!(
+            bits(partitions, SimdLevel::Auto) == plain,
+            "{partitions} partitions"
+        );
     }
 }
 
@@ -209,7 +212,7 @@ fn the_limit_is_that_of_the_stiffest_particle() {
     assert_eq!(at(1.02 * farthest - 1.5), 0.0, "{farthest}");
 }
 
-/// Rigid springs have no forces, and nor do those for which threads are cheaper.
+/// Rigid springs have no forces, and nor do those for which chains are cheaper.
 #[test]
 fn forces_are_for_soft_springs() {
     let seconds = 1.0 / 64.0;
@@ -222,8 +225,8 @@ fn forces_are_for_soft_springs() {
         solver.set_bending(Bending::new(&surface, material));
         let needed = |order| solver.needed(&particles, side as usize, seconds, order);
         let substeps = needed(TimeOrder::Second);
-        let by_threads = Substepping::needed(side as usize, seconds);
-        assert_eq!(needed(TimeOrder::First), by_threads);
+        let by_chains = Substepping::needed(side as usize, seconds);
+        assert_eq!(needed(TimeOrder::First), by_chains);
         let is_explicit = |substeps: u32, order: TimeOrder| {
             let step = TickStep {
                 order,
@@ -235,11 +238,11 @@ fn forces_are_for_soft_springs() {
         (substeps, is_explicit(substeps, TimeOrder::Second))
     };
     for side in [8, 16, 32, 64, 128] {
-        let by_threads = Substepping::needed(side as usize, seconds);
-        assert_eq!(needed(side, &ClothMaterial::COTTON), (by_threads, false));
+        let by_chains = Substepping::needed(side as usize, seconds);
+        assert_eq!(needed(side, &ClothMaterial::COTTON), (by_chains, false));
         let (substeps, is_explicit) = needed(side, &ClothMaterial::RUBBER);
         assert!(
-            is_explicit && substeps <= 2 * by_threads,
+            is_explicit && substeps <= 2 * by_chains,
             "{side}: {substeps}"
         );
         // Too stiff to bend by forces.
@@ -247,7 +250,7 @@ fn forces_are_for_soft_springs() {
             bend_rigidity: 1.0e3,
             ..ClothMaterial::RUBBER
         };
-        assert_eq!(needed(side, &board), (by_threads, false));
+        assert_eq!(needed(side, &board), (by_chains, false));
     }
 }
 

@@ -26,11 +26,11 @@ pub(crate) use air::{AeroCoefficients, LinearizedDrag, air_impulse, air_lineariz
 pub(crate) use air_areas::{Enclosed, Rows, Triangles, air_areas, between};
 use barrier::one_block_at_a_time;
 pub(crate) use chains::{
-    Columns, Direction, GROUP, Residuals, RowScratch, RowSprings, RowThreads, Scratch, Solved,
-    SpringBand, Step, Threads, bundle_backward, bundle_forward, largest, measure_elastic_left,
+    Chains, Columns, Direction, GROUP, Residuals, RowChains, RowScratch, RowSprings, Scratch,
+    Solved, SpringBand, Step, bundle_backward, bundle_forward, largest, measure_elastic_left,
     measure_elastic_left_at, measure_given, measure_left, measure_left_at, note_places,
-    solve_columns, solve_columns_again, solve_damped_rows, solve_damped_threads, solve_rows,
-    solve_rows_again, solve_threads,
+    solve_chains, solve_columns, solve_columns_again, solve_damped_chains, solve_damped_rows,
+    solve_rows, solve_rows_again,
 };
 #[cfg(test)]
 pub(crate) use commit::MIN_MOVE;
@@ -40,8 +40,8 @@ pub(crate) use packet::{
     Packet, Row, SPRINGS, relax_packets, relax_packets_back, relax_packets_there,
 };
 pub(crate) use pentadiagonal::{
-    Factor, Vec3Lanes, thread_backward, thread_columns, thread_finish, thread_forward,
-    thread_links, thread_moments, thread_rows,
+    Factor, Vec3Lanes, chain_backward, chain_columns, chain_finish, chain_forward, chain_links,
+    chain_moments, chain_rows,
 };
 pub(crate) use plate::{EDGE, Moments, Stiffness, plate_moments, plate_places, plate_push};
 pub(crate) use predict::{
@@ -216,13 +216,13 @@ kernels! {
     air_linearize(blocks: &[Block], areas: &[Vec3Lanes], winds: &[Vec3Lanes], coefficients: &AeroCoefficients, linearized: &mut [LinearizedDrag], places: &mut [Lanes]),
     air_impulse(blocks: &[Block], linearized: &[LinearizedDrag], places: &[Lanes], seconds: f32, sum: &mut Vec3Lanes),
     air_push(row: &mut [Block], linearized: &[LinearizedDrag], weight: f32, inverse_substep: f32),
-    solve_threads(threads: &mut Threads, family: &SpringBand),
-    solve_damped_threads(threads: &mut Threads, family: &SpringBand),
-    solve_rows(rows: &mut RowThreads, families: &[SpringBand; 2]),
-    solve_damped_rows(rows: &mut RowThreads, families: &[SpringBand; 2]),
-    solve_rows_again(rows: &mut RowThreads, families: &[SpringBand; 2]),
-    solve_columns(columns: &mut Columns, family: &SpringBand),
-    solve_columns_again(columns: &mut Columns, family: &SpringBand),
+    solve_chains(chains: &mut Chains, springs: &SpringBand),
+    solve_damped_chains(chains: &mut Chains, springs: &SpringBand),
+    solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2]),
+    solve_damped_rows(rows: &mut RowChains, springs: &[SpringBand; 2]),
+    solve_rows_again(rows: &mut RowChains, springs: &[SpringBand; 2]),
+    solve_columns(columns: &mut Columns, springs: &SpringBand),
+    solve_columns_again(columns: &mut Columns, springs: &SpringBand),
     note_places(row: &[Block], left: &mut Residuals),
     measure_left(row: &[Block], springs: &RowSprings, left: &mut Residuals),
     measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Residuals),
@@ -239,13 +239,13 @@ kernels! {
     plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Vec3Lanes]),
     plate_moments(places: [&[Vec3Lanes]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
     plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),
-    thread_links(from: &[Block], to: &[Block], links: &mut [Vec3Lanes]),
-    thread_moments(links: [&[Vec3Lanes]; 2], stiffness: &[Lanes], moments: &mut [Vec3Lanes]),
-    thread_forward(moments: [&[Vec3Lanes]; 3], solved: [&[Vec3Lanes]; 2], factors: &[Factor], out: &mut [Vec3Lanes]),
-    thread_backward(blocks: &mut [Block], own: &[Factor], solved: [&[Vec3Lanes]; 2], factors: [&[Factor]; 2], out: &mut [Vec3Lanes]),
-    thread_columns(rows: &[Block], strip: usize, columns: &mut [Vec3Lanes]),
-    thread_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: &[Factor]),
-    thread_finish(columns: &[Vec3Lanes], strip: usize, rows: &mut [Block]),
+    chain_links(from: &[Block], to: &[Block], links: &mut [Vec3Lanes]),
+    chain_moments(links: [&[Vec3Lanes]; 2], stiffness: &[Lanes], moments: &mut [Vec3Lanes]),
+    chain_forward(moments: [&[Vec3Lanes]; 3], solved: [&[Vec3Lanes]; 2], factors: &[Factor], out: &mut [Vec3Lanes]),
+    chain_backward(blocks: &mut [Block], own: &[Factor], solved: [&[Vec3Lanes]; 2], factors: [&[Factor]; 2], out: &mut [Vec3Lanes]),
+    chain_columns(rows: &[Block], strip: usize, columns: &mut [Vec3Lanes]),
+    chain_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: &[Factor]),
+    chain_finish(columns: &[Vec3Lanes], strip: usize, rows: &mut [Block]),
     twist_links(row: &[Block], is_odd: bool, links: &mut [Vec3Lanes]),
     twist_forward(links: [&[Vec3Lanes]; 2], stiffness: &[Lanes], moments: &mut [Vec3Lanes], before: &[Vec3Lanes], factors: &[Factor], out: &mut [Vec3Lanes]),
     twist_backward(row: &mut [Block], is_odd: bool, factors: [&[Factor]; 2], next: &[Vec3Lanes], out: &mut [Vec3Lanes]),

@@ -1,6 +1,6 @@
-//! The arithmetic of bent threads, eight of them side by side, as [`kernel`](super::kernel) does that of springs.
+//! The arithmetic of bent chains, eight of them side by side, as [`kernel`](super::kernel) does that of springs.
 //!
-//! A thread's moments follow from the differences between neighbours, first of positions, then of displacements, so that no
+//! A chain's moments follow from the differences between neighbours, first of positions, then of displacements, so that no
 //! digit of a displacement is lost to the position. They are the right side of a pentadiagonal system `(M + s K) e = −s K p`,
 //! which is solved for what is added to the displacements, e: forwards with L, backwards with D and Lᵀ.
 
@@ -39,7 +39,7 @@ pub(crate) fn link(a: &View, b: &View, out: &mut Vec3Lanes) {
 
 /// From each particle of a row to the one below it.
 #[inline(always)]
-pub(crate) fn thread_links(from: &[Block], to: &[Block], links: &mut [Vec3Lanes]) {
+pub(crate) fn chain_links(from: &[Block], to: &[Block], links: &mut [Vec3Lanes]) {
     for ((a, b), out) in from.iter().zip(to).zip(links) {
         link(a.view(), b.view(), out);
     }
@@ -95,7 +95,7 @@ fn backward(
 
 /// Moments of a row (kg m), from the links that lead to it and away from it.
 #[inline(always)]
-pub(crate) fn thread_moments(
+pub(crate) fn chain_moments(
     [before, after]: [&[Vec3Lanes]; 2],
     stiffness: &[Lanes],
     moments: &mut [Vec3Lanes],
@@ -111,7 +111,7 @@ pub(crate) fn thread_moments(
 /// Solves a row forwards: `moments` are those of the row before, of this and of the next one, `solved` the row before and the
 /// one before that.
 #[inline(always)]
-pub(crate) fn thread_forward(
+pub(crate) fn chain_forward(
     moments: [&[Vec3Lanes]; 3],
     solved: [&[Vec3Lanes]; 2],
     factors: &[Factor],
@@ -132,7 +132,7 @@ pub(crate) fn thread_forward(
 
 /// Solves a row backwards and moves its particles: `solved` and `factors` are those of the next row and of the one after that.
 #[inline(always)]
-pub(crate) fn thread_backward(
+pub(crate) fn chain_backward(
     blocks: &mut [Block],
     own: &[Factor],
     solved: [&[Vec3Lanes]; 2],
@@ -177,7 +177,7 @@ fn transpose(from: &[Lanes; LANES]) -> [Lanes; LANES] {
 
 /// The links along up to eight rows, column by column: the lanes of a column are the rows.
 #[inline(always)]
-pub(crate) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Vec3Lanes]) {
+pub(crate) fn chain_columns(rows: &[Block], strip: usize, columns: &mut [Vec3Lanes]) {
     for j in 0..strip {
         let mut links = [[[0.0; LANES]; LANES]; 3];
         for (row, blocks) in rows.chunks_exact(strip).enumerate() {
@@ -202,7 +202,7 @@ pub(crate) fn thread_columns(rows: &[Block], strip: usize, columns: &mut [Vec3La
 
 /// Solves eight rows, each from its first column to its last and back, in place of their links.
 #[inline(always)]
-pub(crate) fn thread_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: &[Factor]) {
+pub(crate) fn chain_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: &[Factor]) {
     let none = [[0.0; LANES]; 3];
     let count = columns.len();
     let moment = |before: &Vec3Lanes, after: &Vec3Lanes| {
@@ -251,7 +251,7 @@ pub(crate) fn thread_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors:
 
 /// Moves the particles of up to eight rows by their solutions, column by column.
 #[inline(always)]
-pub(crate) fn thread_finish(columns: &[Vec3Lanes], strip: usize, rows: &mut [Block]) {
+pub(crate) fn chain_finish(columns: &[Vec3Lanes], strip: usize, rows: &mut [Block]) {
     for j in 0..strip {
         for axis in 0..3 {
             let of_columns = std::array::from_fn(|lane| columns[lane * strip + j][axis]);

@@ -1,4 +1,4 @@
-//! The arithmetic of twisted cells, as [`pentadiagonal`](super::pentadiagonal) does that of bent threads.
+//! The arithmetic of twisted cells, as [`pentadiagonal`](super::pentadiagonal) does that of bent chains.
 //!
 //! The cells between two columns are a strip. The twist of a cell is the change of the difference u between both
 //! columns, from its upper row to its lower one. The resistance to twist changes only u, by a tridiagonal system:

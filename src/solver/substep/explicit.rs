@@ -9,7 +9,7 @@ use crate::{
     },
 };
 
-/// Number of sub-steps of forces that cost as much as one in which threads are solved.
+/// Number of sub-steps of forces that cost as much as one in which chains are solved.
 const CHEAPER: u32 = 2;
 
 /// Possible rounding of a quotient.
@@ -77,7 +77,7 @@ impl Solver {
         }
     }
 
-    /// Turns explicit forces off: threads are solved, however soft they are.
+    /// Turns explicit forces off: chains are solved, however soft they are.
     #[doc(hidden)]
     pub fn forget_forces(&mut self) {
         self.forces = None;

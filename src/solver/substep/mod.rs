@@ -9,12 +9,12 @@ use bevy::math::Vec3;
 
 use super::{
     air::{Air, AirMemory, Airflow},
-    bands::with_threads_awake,
     bending::Bending,
     chains::GridSolver,
     forces::Forces,
     kernels::SimdLevel,
     list::ListSolver,
+    partitions::with_threads_awake,
     spring_solver::SpringSolver,
     step::{PinMotion, SubStep, TickStep},
     stretch::Stretch,
@@ -34,7 +34,7 @@ const UNSOLVED: f32 = 0.5;
 const WARY_TICKS: u32 = 15;
 
 /// ω Δt up to which ripples of tension have the right speed. Springs pull along the predicted direction of their
-/// threads. Beyond 2.3, on grids of 17² to 65² alike, the prediction overshoots, and a taut membrane rings lower, by 30
+/// chains. Beyond 2.3, on grids of 17² to 65² alike, the prediction overshoots, and a taut membrane rings lower, by 30
 /// % at 3.9.
 const RESOLVED: f32 = 2.2;
 
@@ -52,7 +52,7 @@ pub struct Solver {
     anchors: Anchors,
     /// Decay time of damping along springs (s).
     retardation: f32,
-    bands: usize,
+    partitions: usize,
     simd_level: SimdLevel,
 }
 
@@ -114,7 +114,7 @@ impl Solver {
             tethers: Tethers::default(),
             anchors: Anchors::default(),
             retardation: 0.0,
-            bands: 1,
+            partitions: 1,
             simd_level: SimdLevel::default(),
         }
     }
@@ -189,24 +189,24 @@ impl Solver {
         &self.tethers
     }
 
-    /// Sets the number of bands of rows, each a task of Bevy's compute pool. The result is the same to the last bit.
-    /// Springs that don't belong to a grid are always one band.
-    pub fn set_bands(&mut self, bands: usize) {
-        self.bands = bands;
+    /// Sets the number of partitions of rows, each a task of Bevy's compute pool. The result is the same to the last bit.
+    /// Springs that don't belong to a grid are always one partition.
+    pub fn set_partitions(&mut self, partitions: usize) {
+        self.partitions = partitions;
         if let Some(forces) = &mut self.forces {
-            forces.set_bands(bands);
+            forces.set_partitions(partitions);
         }
     }
 
-    /// Number of bands: fewer than wanted if there is too little to do.
-    pub(super) fn bands(&self) -> usize {
-        self.spring_solver.bands(self.bands)
+    /// Number of partitions: fewer than wanted if there is too little to do.
+    pub(super) fn partitions(&self) -> usize {
+        self.spring_solver.partitions(self.partitions)
     }
 
-    /// Bands in a tick of forces.
+    /// Partitions in a tick of forces.
     #[cfg(test)]
-    pub(super) fn forces_bands(&self) -> usize {
-        self.forces.as_ref().map_or(1, |forces| forces.bands())
+    pub(super) fn forces_partitions(&self) -> usize {
+        self.forces.as_ref().map_or(1, |forces| forces.partitions())
     }
 
     /// Sets the SIMD level.
@@ -229,7 +229,7 @@ impl Solver {
         mut respond: impl FnMut(&mut ClothParticles, SubStep) -> bool,
     ) -> Stretch {
         let mut tick = self.begin(particles, step, pins);
-        with_threads_awake(self.bands_of(&tick), || {
+        with_threads_awake(self.partitions_of(&tick), || {
             while let Some(substep) = self.substep(particles, pins, &mut tick) {
                 if respond(particles, substep) {
                     tick.note_push(particles);

@@ -4,10 +4,10 @@ use super::{AFTER_CONTACT, RESOLVED, Solver, UNSOLVED, WARY_TICKS};
 use crate::{
     cloth::{Block, ClothParticles, Earlier, StepKind},
     solver::{
-        bands::in_bands,
         damping_reference::DampingReference,
         energy::Energy,
         kernels::{AirStep, Prediction, StepScale, weight},
+        partitions::in_partitions,
         spin::Spin,
         spring_solver::Motion,
         step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, TimeOrder, existing, put_pins},
@@ -129,11 +129,11 @@ impl Solver {
         TickStep { order, ..step }
     }
 
-    /// How many bands a tick's sub-steps are cut into.
-    pub(super) fn bands_of(&self, tick: &StartedTick) -> usize {
+    /// How many partitions a tick's sub-steps are cut into.
+    pub(super) fn partitions_of(&self, tick: &StartedTick) -> usize {
         match &self.forces {
-            Some(forces) if tick.is_explicit => forces.bands(),
-            _ => self.bands(),
+            Some(forces) if tick.is_explicit => forces.partitions(),
+            _ => self.partitions(),
         }
     }
 
@@ -158,7 +158,7 @@ impl Solver {
         let dt = tick.substep();
         let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
         let kernels = self.simd_level.kernels();
-        let bands = self.bands();
+        let partitions = self.partitions();
         let mut substep = SubStep {
             index: tick.next,
             count: tick.substeps(),
@@ -202,11 +202,11 @@ impl Solver {
                     let linearized = &linearized[first..first + blocks.len()];
                     (kernels.predict_in_air)(blocks, past, linearized, &prediction, &air_step);
                 };
-                if bands > 1 {
-                    let size = blocks.len().div_ceil(bands);
+                if partitions > 1 {
+                    let size = blocks.len().div_ceil(partitions);
                     let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
-                    in_bands(parts.enumerate(), |(band, (blocks, past))| {
-                        predict(band * size, blocks, past);
+                    in_partitions(parts.enumerate(), |(partition, (blocks, past))| {
+                        predict(partition * size, blocks, past);
                     });
                 } else {
                     predict(0, blocks, past);
@@ -233,7 +233,7 @@ impl Solver {
             measures: tick.next == tick.substeps(),
         };
         let blocks = particles.blocks_mut();
-        let swept = self.spring_solver.substep(blocks, &motion, self.bands);
+        let swept = self.spring_solver.substep(blocks, &motion, self.partitions);
         particles.take_loads_off();
         let (blocks, past) = particles.blocks_and_past();
         if kind == StepKind::Start {

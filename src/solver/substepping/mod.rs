@@ -26,14 +26,14 @@ const MOST_FOR_TAUT: u32 = 4;
 const MOST_FOR_LOAD: u32 = 8;
 const MOST_FOR_CONTACT: u32 = 8;
 
-/// A collider that leaves more stretch unsolved than this asks for more sub-steps. Threads that give way so far let through what
+/// A collider that leaves more stretch unsolved than this asks for more sub-steps. Chains that give way so far let through what
 /// is narrower than they are apart.
 const STRETCHED: f32 = 0.1;
 
 /// Fewer than this, and what moves within a tick is missed.
 const FEWEST: u32 = 4;
 
-/// Sub-steps in 1/60 s for each particle along a cloth's longer side: with fewer, threads that carry others stretch by more than
+/// Sub-steps in 1/60 s for each particle along a cloth's longer side: with fewer, chains that carry others stretch by more than
 /// a few per cent (the lab's chart `hung`).
 const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 
@@ -42,7 +42,7 @@ const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 const FOR_LOAD: f32 = 12.0;
 
 /// The number of sub-steps in a tick. Cost grows in proportion to the sub-steps, and the error of the motion falls with
-/// their square. Stretch that passes from thread to thread falls faster still, once there are enough.
+/// their square. Stretch that passes from chain to chain falls faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum Substepping {
@@ -50,7 +50,7 @@ pub enum Substepping {
     ///
     /// - By its number of particles, [`Substepping::needed`]; or, for a soft cloth, as many as explicit forces need,
     ///   [`Solver::needed`](crate::solver::Solver::needed).
-    /// - More where it is taut as a membrane, until ripples across its threads are resolved,
+    /// - More where it is taut as a membrane, until ripples across its chains are resolved,
     ///   [`Stretch::ripple_substeps`].
     /// - More where a body lies on it, until it holds that body, [`Stretch::load_substeps`].
     /// - More where something that moves forces it over a collider's edges, and so stretches it by far more than its
@@ -80,17 +80,17 @@ impl Substepping {
     }
 
     /// Number of sub-steps in a tick of `seconds` that holds a body under `gravity` (m/s²). The body is `ratio` times
-    /// as heavy as the particles, `spacing` apart (m), of the threads that carry it.
+    /// as heavy as the particles, `spacing` apart (m), of the chains that carry it.
     ///
-    /// The regularisation of a thread's equations gives way by 2 ε w T Δt² under its pull T, between particles of the
+    /// The regularisation of a chain's equations gives way by 2 ε w T Δt² under its pull T, between particles of the
     /// inverse mass w at the distance h. As a fraction of h, that is in proportion to `r g Δt²/h`, with the ratio r and
-    /// gravity g. It is also in proportion to one over the slope of the thread, which grows with the cube root of the
+    /// gravity g. It is also in proportion to one over the slope of the chain, which grows with the cube root of the
     /// weight.
     pub(crate) fn for_load(ratio: f32, gravity: f32, spacing: f32, seconds: f32) -> f32 {
         FOR_LOAD * (ratio * gravity * seconds * seconds / spacing).cbrt()
     }
 
-    /// Number of sub-steps in a tick that holds the threads together where a collider has left a stretch `unsolved` by
+    /// Number of sub-steps in a tick that holds the chains together where a collider has left a stretch `unsolved` by
     /// `substeps`: that falls about as their number to the power of −¾ (measured with sticks of 1 to 4 cm). 0 if that is
     /// little.
     pub(crate) fn for_contact(unsolved: f32, substeps: u32) -> f32 {
@@ -235,7 +235,7 @@ impl Control {
         };
         let max = max_substeps as f32;
         let found = stretch.structural;
-        // Solved threads stretch less with more than the square of the sub-steps: the cube is a cautious guess.
+        // Solved chains stretch less with more than the square of the sub-steps: the cube is a cautious guess.
         let substeps = self.substeps;
         let wanted = |stretch: f32| substeps * (stretch / (AIM * tolerance)).cbrt();
         // Sub-steps can't remove the stretch of the material at its tension.

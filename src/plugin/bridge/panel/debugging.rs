@@ -102,7 +102,7 @@ fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
         (
             "stretch",
             format!("{:.1} %", 100.0 * stats.stretch.structural),
-            "The largest stretch of a thread at the end of the last tick (% of its rest length)",
+            "The largest stretch of a spring at the end of the last tick (% of its rest length)",
         ),
         (
             "sub-steps",
@@ -158,7 +158,7 @@ fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands)
         std::iter::once(("none".to_string(), String::new(), None)).chain(levels),
     );
     ui.checkbox(&mut shown.springs, "draw springs")
-        .on_hover_text("Threads along rows and columns; diagonals fainter");
+        .on_hover_text("Springs along rows and columns; diagonals fainter");
     match &mut cloth.show {
         Some(show) => {
             show.set_if_neq(shown);
@@ -237,7 +237,7 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
             max_substeps,
         } => {
             let mut percent = 100.0 * *stretch;
-            let tip = "The largest stretch allowed (% of a thread's rest length), 0.1 to 20";
+            let tip = "The largest stretch allowed (% of its rest length), 0.1 to 20";
             if slide(ui, "stretch, %", tip, &mut percent, 0.1..=20.0, |slider| {
                 slider.logarithmic(true)
             }) {

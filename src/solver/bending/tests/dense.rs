@@ -1,4 +1,4 @@
-//! What dense matrices in f64 make of a grid's threads and cells.
+//! What dense matrices in f64 make of a grid's chains and cells.
 
 use bevy::math::DVec3;
 
@@ -47,16 +47,16 @@ pub(super) fn families(grid: &ClothGrid) -> [Vec<(Stencil, f64)>; 4] {
                 (1..columns - 1).contains(&column),
                 (1..rows - 1).contains(&row),
             );
-            let thread = |width: f64, spacing: f64, beside: usize| {
+            let chain = |width: f64, spacing: f64, beside: usize| {
                 let own = index(row, column);
                 let bent = vec![(own - beside, 1.0), (own, -2.0), (own + beside, 1.0)];
                 (bent, rigidity * width / spacing.powi(3))
             };
             if has_sides {
-                across.push(thread(if has_ends { high } else { high / 2.0 }, wide, 1));
+                across.push(chain(if has_ends { high } else { high / 2.0 }, wide, 1));
             }
             if has_ends {
-                down.push(thread(
+                down.push(chain(
                     if has_sides { wide } else { wide / 2.0 },
                     high,
                     columns,

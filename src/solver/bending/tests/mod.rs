@@ -85,7 +85,7 @@ fn solved(bending: &mut Bending, particles: &ClothParticles, level: SimdLevel) -
 
 /// At rounding: grids of all kinds of strips and borders, pins anywhere, soft and stiff.
 #[test]
-fn threads_are_solved_as_dense_matrices_are() {
+fn chains_are_solved_as_dense_matrices_are() {
     for (columns, rows) in [
         (2, 2),
         (3, 2),

@@ -1,4 +1,4 @@
-//! All threads of a list of springs, eight at a time.
+//! All chains of a list of springs, eight at a time.
 
 #[cfg(test)]
 mod tests;
@@ -10,7 +10,7 @@ use crate::{
     solver::kernels::{Kernels, Row, Solved, Step, StepScale},
 };
 
-/// Up to eight threads that share no particle.
+/// Up to eight chains that share no particle.
 #[derive(Debug)]
 struct Bundle {
     /// The rows of the particles that they begin at.
@@ -19,7 +19,7 @@ struct Bundle {
     steps: Range<usize>,
 }
 
-/// All threads of a list of springs, colour by colour.
+/// All chains of a list of springs, colour by colour.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Bundles {
     bundles: Arc<[Bundle]>,
@@ -31,20 +31,20 @@ pub(crate) struct Bundles {
 }
 
 impl Bundles {
-    /// Of the threads in `list`. `row_of` says in which row a particle is; in row `none` there is no particle.
+    /// Of the chains in `list`. `row_of` says in which row a particle is; in row `none` there is no particle.
     pub fn new(list: &SpringList, row_of: impl Fn(u32) -> u32, none: u32) -> Self {
         let (mut bundles, mut steps) = (Vec::new(), Vec::new());
-        let colours = list.threads.colours.iter();
-        for threads in colours.flat_map(|colour| colour.chunks(LANES)) {
+        let colours = list.chains.colours.iter();
+        for chains in colours.flat_map(|colour| colour.chunks(LANES)) {
             let begin = steps.len();
             let mut heads = [none; LANES];
-            for (lane, thread) in threads.iter().enumerate() {
-                let mut at = thread.first;
+            for (lane, chain) in chains.iter().enumerate() {
+                let mut at = chain.first;
                 heads[lane] = row_of(at);
                 // In a colour the longest are first, but that is not relied on.
-                let missing = (begin + thread.edges.len()).saturating_sub(steps.len());
+                let missing = (begin + chain.edges.len()).saturating_sub(steps.len());
                 steps.extend(std::iter::repeat_n(Step::none(none), missing));
-                for (edge, step) in thread.edges.iter().zip(&mut steps[begin..]) {
+                for (edge, step) in chain.edges.iter().zip(&mut steps[begin..]) {
                     let spring = &list.springs[*edge as usize];
                     let [a, b] = spring.ends;
                     at = if a == at { b } else { a };
@@ -65,12 +65,12 @@ impl Bundles {
         }
     }
 
-    /// Whether there is no thread.
+    /// Whether there is no chain.
     pub fn is_empty(&self) -> bool {
         self.bundles.is_empty()
     }
 
-    /// Solves thread after thread.
+    /// Solves chain after chain.
     pub fn solve_there(&mut self, rows: &mut [Row], step_scale: &StepScale, kernels: &Kernels) {
         self.pulled.fill([0.0; LANES]);
         for index in 0..self.bundles.len() {

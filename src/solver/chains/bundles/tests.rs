@@ -1,4 +1,4 @@
-//! Threads of a mesh side by side against one after the other in f64, and what no system has a solution for.
+//! Chains of a mesh side by side against one after the other in f64, and what no system has a solution for.
 
 use bevy::math::{DVec3, Vec3, Vec4};
 
@@ -35,7 +35,7 @@ fn list(surface: &Surface, compliance: f32) -> Springs {
     Springs::of_surface(surface, &material)
 }
 
-fn threads_of(springs: &Springs) -> &SpringList {
+fn chains_of(springs: &Springs) -> &SpringList {
     match springs.storage() {
         SpringStorage::List(list) => list,
         SpringStorage::Grid(..) => panic!("no mesh"),
@@ -63,8 +63,8 @@ fn crumpled(surface: &Surface, noise: f32) -> Vec<Row> {
     rows
 }
 
-/// What one thread's springs do to displacements, in f64, by the equations of [`super`], after they have pulled with `pulled`.
-fn solve_thread(
+/// What one chain's springs do to displacements, in f64, by the equations of [`super`], after they have pulled with `pulled`.
+fn solve_chain(
     (first, edges): (u32, &[u32]),
     list: &SpringList,
     rows: &[Row],
@@ -111,23 +111,23 @@ fn solve_thread(
 
 /// There and back, crumpled a little and a lot, rigid and soft, by both instruction sets.
 #[test]
-fn threads_are_solved_as_by_elimination_in_f64() {
+fn chains_are_solved_as_by_elimination_in_f64() {
     let surface = surface();
     for (noise, compliance) in [(0.001, 0.0), (0.005, 1.0e-3), (0.02, 1.0e-4), (0.01, 0.0)] {
         let springs = list(&surface, compliance);
-        let list = threads_of(&springs);
+        let list = chains_of(&springs);
         let start = crumpled(&surface, noise);
         let mut moved: Vec<DVec3> = start
             .iter()
             .map(|row| row.moved.truncate().as_dvec3())
             .collect();
         let mut pulled = vec![0.0; list.springs.len()];
-        let threads = list.threads.iter();
-        let all: Vec<(u32, &[u32])> = threads
-            .map(|thread| (thread.first, thread.edges.as_slice()))
+        let chains = list.chains.iter();
+        let all: Vec<(u32, &[u32])> = chains
+            .map(|chain| (chain.first, chain.edges.as_slice()))
             .collect();
-        for thread in all.iter().chain(all.iter().rev()) {
-            solve_thread(*thread, list, &start, &mut moved, &mut pulled);
+        for chain in all.iter().chain(all.iter().rev()) {
+            solve_chain(*chain, list, &start, &mut moved, &mut pulled);
         }
         let results = [SimdLevel::Auto, SimdLevel::Baseline].map(|level| {
             let kernels = level.kernels();
@@ -154,10 +154,10 @@ fn threads_are_solved_as_by_elimination_in_f64() {
 
 /// Straight between pins, all pinned, all in one point, in the origin, where rows without a particle are, too.
 #[test]
-fn threads_without_a_solution_are_no_nan() {
+fn chains_without_a_solution_are_no_nan() {
     let surface = surface();
     let springs = list(&surface, 0.0);
-    let list = threads_of(&springs);
+    let list = chains_of(&springs);
     let kernels = SimdLevel::Auto.kernels();
     type Case = fn(usize, Vec3) -> Vec4;
     let cases: [Case; 6] = [

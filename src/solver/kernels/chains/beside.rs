@@ -1,8 +1,8 @@
-//! Threads that lead from row to row, all of them, or some of them in a band beside others that are solved at the same time.
+//! Chains that lead from row to row, all of them, or some of them in a partition beside others that are solved at the same time.
 //!
-//! A diagonal is a block farther in each row; at the last block it goes on in the first, a lane on. So a band is a range of blocks
-//! that moves along from row to row, in two pieces where it is at the border. Its links are in the order of its threads. Each
-//! thread's numbers are those that it would have in one band, to the last bit.
+//! A diagonal is a block farther in each row; at the last block it goes on in the first, a lane on. So a partition is a range of blocks
+//! that moves along from row to row, in two pieces where it is at the border. Its links are in the order of its chains. Each
+//! chain's numbers are those that it would have in one partition, to the last bit.
 
 use super::{
     direction::Direction,
@@ -10,11 +10,11 @@ use super::{
 };
 use crate::{
     cloth::{Block, Lanes, Layout},
-    solver::bands::take,
+    solver::partitions::take,
 };
 
-/// Threads of one direction, beside each other.
-pub(crate) struct Threads<'a> {
+/// Chains of one direction, beside each other.
+pub(crate) struct Chains<'a> {
     pub(crate) rows: Rows<'a>,
     /// Blocks in a row.
     pub(crate) width: usize,
@@ -29,7 +29,7 @@ pub(crate) struct Rows<'a> {
     direction: Direction,
     strip: usize,
     count: usize,
-    /// The block in which the first thread is in the first row.
+    /// The block in which the first chain is in the first row.
     from: usize,
     blocks: Blocks<'a>,
 }
@@ -41,7 +41,7 @@ enum Blocks<'a> {
     Some(Vec<[&'a mut [Block]; 2]>),
 }
 
-/// A row's blocks in the order of the threads, in two pieces.
+/// A row's blocks in the order of the chains, in two pieces.
 pub(crate) struct Row<T> {
     /// The number of the first.
     pub first: usize,
@@ -51,20 +51,20 @@ pub(crate) struct Row<T> {
 
 impl Row<&[Block]> {
     #[inline(always)]
-    pub fn block(&self, thread: usize) -> &Block {
-        match thread.checked_sub(self.high.len()) {
-            Some(thread) => &self.low[thread],
-            None => &self.high[thread],
+    pub fn block(&self, chain: usize) -> &Block {
+        match chain.checked_sub(self.high.len()) {
+            Some(chain) => &self.low[chain],
+            None => &self.high[chain],
         }
     }
 }
 
 impl Row<&mut [Block]> {
     #[inline(always)]
-    pub fn block(&mut self, thread: usize) -> &mut Block {
-        match thread.checked_sub(self.high.len()) {
-            Some(thread) => &mut self.low[thread],
-            None => &mut self.high[thread],
+    pub fn block(&mut self, chain: usize) -> &mut Block {
+        match chain.checked_sub(self.high.len()) {
+            Some(chain) => &mut self.low[chain],
+            None => &mut self.high[chain],
         }
     }
 }
@@ -75,7 +75,7 @@ impl Rows<'_> {
         self.strip
     }
 
-    /// The row of this number on the threads' way.
+    /// The row of this number on the chains' way.
     #[inline(always)]
     pub fn at(&self, number: usize) -> Row<&[Block]> {
         let shift = self.direction.shift(number, self.strip);
@@ -118,7 +118,7 @@ impl Rows<'_> {
     }
 }
 
-/// Memory in which threads from row to row are solved.
+/// Memory in which chains from row to row are solved.
 #[derive(Debug, Clone)]
 pub(crate) struct Scratch {
     links: Vec<Link>,
@@ -136,14 +136,14 @@ impl Scratch {
         }
     }
 
-    /// All threads of a direction.
+    /// All chains of a direction.
     pub fn all<'a>(
         &'a mut self,
         direction: Direction,
         strip: usize,
         blocks: &'a mut [Block],
-    ) -> Threads<'a> {
-        Threads {
+    ) -> Chains<'a> {
+        Chains {
             rows: Rows {
                 direction,
                 strip,
@@ -163,13 +163,13 @@ impl Scratch {
         (&mut self.links, &mut self.before, &mut self.behind)
     }
 
-    /// The multipliers of all springs, after threads were solved in this many bands: of those from each row to the next (m kg).
-    pub fn multipliers(&self, strip: usize, bands: usize, out: &mut [Lanes]) {
+    /// The multipliers of all springs, after chains were solved in this many partitions: of those from each row to the next (m kg).
+    pub fn multipliers(&self, strip: usize, partitions: usize, out: &mut [Lanes]) {
         let count = out.len() / strip;
-        let border = |band| strip * band / bands;
+        let border = |partition| strip * partition / partitions;
         let mut links = &self.links[..];
-        for band in 0..bands {
-            let blocks = border(band)..border(band + 1);
+        for partition in 0..partitions {
+            let blocks = border(partition)..border(partition + 1);
             for row in 0..count {
                 let own = links.split_off(..blocks.len()).unwrap_or_default();
                 for (out, link) in out[row * strip..][blocks.clone()].iter_mut().zip(own) {
@@ -179,49 +179,49 @@ impl Scratch {
         }
     }
 
-    /// Splits all threads of a direction.
+    /// Splits all chains of a direction.
     pub fn split<'a>(
         &'a mut self,
         direction: Direction,
-        (strip, bands): (usize, usize),
+        (strip, partitions): (usize, usize),
         blocks: &'a mut [Block],
-    ) -> Vec<Threads<'a>> {
+    ) -> Vec<Chains<'a>> {
         let count = blocks.len() / strip;
-        let border = |band| strip * band / bands;
-        let width = |band| border(band + 1) - border(band);
+        let border = |partition| strip * partition / partitions;
+        let width = |partition| border(partition + 1) - border(partition);
         let mut rows: Vec<_> = blocks.chunks_exact_mut(strip).collect();
         if direction == Direction::Residuals {
             rows.reverse();
         }
-        let mut pieces: Vec<_> = (0..bands).map(|_| Vec::with_capacity(count)).collect();
+        let mut pieces: Vec<_> = (0..partitions).map(|_| Vec::with_capacity(count)).collect();
         for (number, row) in rows.into_iter().enumerate() {
             let (mut low, mut high) = row.split_at_mut(direction.shift(number, strip));
-            for (band, pieces) in pieces.iter_mut().enumerate() {
-                let up_to_last = width(band).min(high.len());
-                let low = take(&mut low, width(band) - up_to_last);
+            for (partition, pieces) in pieces.iter_mut().enumerate() {
+                let up_to_last = width(partition).min(high.len());
+                let low = take(&mut low, width(partition) - up_to_last);
                 pieces.push([take(&mut high, up_to_last), low]);
             }
         }
         let (mut links, mut before) = (&mut self.links[..], &mut self.before[..]);
         let mut behind = &mut self.behind[..];
-        let threads = |(band, pieces): (usize, Vec<_>)| Threads {
+        let chains = |(partition, pieces): (usize, Vec<_>)| Chains {
             rows: Rows {
                 direction,
                 strip,
                 count,
-                from: border(band),
+                from: border(partition),
                 blocks: Blocks::Some(pieces),
             },
-            width: width(band),
-            links: take(&mut links, width(band) * (count - 1)),
-            before: take(&mut before, width(band)),
-            behind: take(&mut behind, width(band)),
+            width: width(partition),
+            links: take(&mut links, width(partition) * (count - 1)),
+            before: take(&mut before, width(partition)),
+            behind: take(&mut behind, width(partition)),
         };
-        pieces.into_iter().enumerate().map(threads).collect()
+        pieces.into_iter().enumerate().map(chains).collect()
     }
 }
 
-impl Threads<'_> {
+impl Chains<'_> {
     /// Whether they lead from one block to another.
     #[inline(always)]
     pub fn is_oblique(&self) -> bool {

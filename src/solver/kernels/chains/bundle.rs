@@ -1,4 +1,4 @@
-//! Threads in any direction, such as those of a mesh: eight at a time, each in a lane.
+//! Chains in any direction, such as those of a mesh: eight at a time, each in a lane.
 //!
 //! # The floor
 //! A spring takes three loads and one store of a particle's four numbers. Four springs take two transpositions of four
@@ -13,7 +13,7 @@ use crate::{
     solver::kernels::{packet::Row, step_scale::StepScale},
 };
 
-/// The next spring of each thread of a bundle.
+/// The next spring of each chain of a bundle.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Step {

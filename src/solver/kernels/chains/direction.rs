@@ -1,6 +1,6 @@
-//! Directions of threads.
+//! Directions of chains.
 
-/// The direction of threads from row to row.
+/// The direction of chains from row to row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Direction {
     Down,
@@ -11,7 +11,7 @@ pub(crate) enum Direction {
 }
 
 impl Direction {
-    /// The blocks of a row by which a thread is further right in the row of this number on its way than in the first.
+    /// The blocks of a row by which a chain is further right in the row of this number on its way than in the first.
     #[inline(always)]
     pub fn shift(self, number: usize, strip: usize) -> usize {
         match self {

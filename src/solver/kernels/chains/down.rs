@@ -1,6 +1,6 @@
-//! Threads that lead from row to row: columns, and both diagonals. The lanes are side by side, each in a thread of its own.
+//! Chains that lead from row to row: columns, and both diagonals. The lanes are side by side, each in a chain of its own.
 //!
-//! A thread's system is solved by elimination: forward from its first spring to its last, and back. Where a diagonal
+//! A chain's system is solved by elimination: forward from its first spring to its last, and back. Where a diagonal
 //! reaches the last block of a row, it continues in the first block, one lane on. Then all data of a spring is in the
 //! lanes of its second particle, and on the way back its pull is moved to those of its first.
 //!
@@ -12,7 +12,7 @@
 //! would cost as much again. So it is moved in registers, by loops that carry a lane's number into the next.
 
 use super::{
-    beside::Threads,
+    beside::Chains,
     link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
@@ -24,25 +24,25 @@ const NONE: Lanes = [0.0; LANES];
 #[inline(always)]
 fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
-    band: &SpringBand,
+    springs: &SpringBand,
     block: usize,
     pulled: &Lanes,
     before: &mut Before,
     link: &mut Link,
 ) {
-    let (softness, hold) = (&band.softness[block], &band.hold[block]);
+    let (softness, hold) = (&springs.softness[block], &springs.hold[block]);
     let mut lane_before = [0.0; 6];
     for l in 0..LANES {
-        let [x, y, z] = span(a, b, band.inverse_rest, l);
+        let [x, y, z] = span(a, b, springs.inverse_rest, l);
         let weight = a[W + l] + b[W + l];
         let softness = if DAMPED {
-            band.kept * softness[l]
+            springs.kept * softness[l]
         } else {
             softness[l]
         };
-        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], band.rest);
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], springs.rest);
         let right = if DAMPED {
-            damped(right, [a, b], [x, y, z], band.kept, l)
+            damped(right, [a, b], [x, y, z], springs.kept, l)
         } else if AGAIN {
             after(right, [x, y, z], softness, pulled[l])
         } else {
@@ -84,7 +84,7 @@ fn substitute<const CROSSES: bool>(b: &mut View, link: &mut Link, behind: &mut B
     }
 }
 
-/// Moves particles at the head of their threads.
+/// Moves particles at the head of their chains.
 #[inline(always)]
 fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
     for l in 0..LANES {
@@ -94,49 +94,49 @@ fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
     }
 }
 
-/// Solves threads that lead from row to row.
+/// Solves chains that lead from row to row.
 #[inline(always)]
-pub(crate) fn solve_threads(threads: &mut Threads, band: &SpringBand) {
-    if threads.is_oblique() {
-        solve::<true, false>(threads, band);
+pub(crate) fn solve_chains(chains: &mut Chains, springs: &SpringBand) {
+    if chains.is_oblique() {
+        solve::<true, false>(chains, springs);
     } else {
-        solve::<false, false>(threads, band);
+        solve::<false, false>(chains, springs);
     }
 }
 
 /// The same with damping along them.
 #[inline(always)]
-pub(crate) fn solve_damped_threads(threads: &mut Threads, band: &SpringBand) {
-    if threads.is_oblique() {
-        solve::<true, true>(threads, band);
+pub(crate) fn solve_damped_chains(chains: &mut Chains, springs: &SpringBand) {
+    if chains.is_oblique() {
+        solve::<true, true>(chains, springs);
     } else {
-        solve::<false, true>(threads, band);
+        solve::<false, true>(chains, springs);
     }
 }
 
 #[inline(always)]
-fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, band: &SpringBand) {
-    let Threads {
+fn solve<const OBLIQUE: bool, const DAMPED: bool>(chains: &mut Chains, springs: &SpringBand) {
+    let Chains {
         rows,
         width,
         links,
         before,
         behind,
-    } = threads;
+    } = chains;
     let last = rows.strip() - 1;
     before.fill(Before::NONE);
     let mut upper = rows.at(0);
     for (number, links) in links.chunks_exact_mut(*width).enumerate() {
         let lower = rows.at(number + 1);
         let mut block = upper.first;
-        for (thread, (link, before)) in links.iter_mut().zip(&mut **before).enumerate() {
-            let (a, b) = (upper.block(thread).view(), lower.block(thread));
+        for (chain, (link, before)) in links.iter_mut().zip(&mut **before).enumerate() {
+            let (a, b) = (upper.block(chain).view(), lower.block(chain));
             if OBLIQUE && block == last {
                 let b = b.shifted();
-                eliminate::<true, DAMPED, false>([a, b], band, block, &NONE, before, link);
+                eliminate::<true, DAMPED, false>([a, b], springs, block, &NONE, before, link);
             } else {
                 let b = b.view();
-                eliminate::<false, DAMPED, false>([a, b], band, block, &NONE, before, link);
+                eliminate::<false, DAMPED, false>([a, b], springs, block, &NONE, before, link);
             }
             block = if block == last { 0 } else { block + 1 };
         }
@@ -146,8 +146,8 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, band: &
     for (number, links) in links.chunks_exact_mut(*width).enumerate().rev() {
         let mut lower = rows.at_mut(number + 1);
         let mut block = lower.first;
-        for (thread, (link, behind)) in links.iter_mut().zip(&mut **behind).enumerate() {
-            let b = lower.block(thread).view_mut();
+        for (chain, (link, behind)) in links.iter_mut().zip(&mut **behind).enumerate() {
+            let b = lower.block(chain).view_mut();
             if OBLIQUE && block == 0 {
                 substitute::<true>(b, link, behind);
             } else {
@@ -157,8 +157,8 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(threads: &mut Threads, band: &
         }
     }
     let mut heads = rows.at_mut(0);
-    for (thread, behind) in behind.iter().enumerate() {
-        pull_head(heads.block(thread).view_mut(), &behind.pull);
+    for (chain, behind) in behind.iter().enumerate() {
+        pull_head(heads.block(chain).view_mut(), &behind.pull);
     }
 }
 
@@ -179,18 +179,18 @@ pub(crate) struct Columns<'a> {
 
 /// Solves the chosen columns, of rigid springs.
 #[inline(always)]
-pub(crate) fn solve_columns(columns: &mut Columns, band: &SpringBand) {
-    solve_chosen::<false>(columns, band);
+pub(crate) fn solve_columns(columns: &mut Columns, springs: &SpringBand) {
+    solve_chosen::<false>(columns, springs);
 }
 
 /// The same of elastic springs, which go on from what they have pulled with.
 #[inline(always)]
-pub(crate) fn solve_columns_again(columns: &mut Columns, band: &SpringBand) {
-    solve_chosen::<true>(columns, band);
+pub(crate) fn solve_columns_again(columns: &mut Columns, springs: &SpringBand) {
+    solve_chosen::<true>(columns, springs);
 }
 
 #[inline(always)]
-fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, band: &SpringBand) {
+fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, springs: &SpringBand) {
     let Columns {
         blocks,
         strip,
@@ -202,9 +202,9 @@ fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, band: &SpringBand) {
     } = columns;
     let (strip, width) = (*strip, chosen.len());
     let (before, behind) = (&mut before[..width], &mut behind[..width]);
-    let springs = blocks.len() / strip - 1;
+    let count = blocks.len() / strip - 1;
     before.fill(Before::NONE);
-    for (row, links) in links.chunks_exact_mut(width).take(springs).enumerate() {
+    for (row, links) in links.chunks_exact_mut(width).take(count).enumerate() {
         let (upper, lower) = blocks[row * strip..].split_at(strip);
         for (&block, (link, before)) in chosen.iter().zip(links.iter_mut().zip(&mut *before)) {
             let block = block as usize;
@@ -214,11 +214,11 @@ fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, band: &SpringBand) {
             } else {
                 &NONE
             };
-            eliminate::<false, false, AGAIN>(ends, band, block, pulled, before, link);
+            eliminate::<false, false, AGAIN>(ends, springs, block, pulled, before, link);
         }
     }
     behind.fill(Behind::NONE);
-    let links = links[..width * springs].chunks_exact_mut(width);
+    let links = links[..width * count].chunks_exact_mut(width);
     for (row, links) in links.enumerate().rev() {
         let lower = &mut blocks[(row + 1) * strip..][..strip];
         for (&block, (link, behind)) in chosen.iter().zip(links.iter_mut().zip(&mut *behind)) {

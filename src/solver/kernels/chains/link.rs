@@ -1,4 +1,4 @@
-//! One spring of a thread, in the system of equations of all springs of that thread.
+//! One spring of a chain, in the system of equations of all springs of that chain.
 
 use crate::{
     cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
@@ -8,14 +8,14 @@ use crate::{
 /// Keeps a spring between two pins from dividing by zero (1/kg).
 pub(crate) const HOLD: f32 = 1.0e-18;
 
-/// ε: added to a rigid thread, as a fraction of its diagonal. Straight between two pins it would have no solution.
+/// ε: added to a rigid chain, as a fraction of its diagonal. Straight between two pins it would have no solution.
 const REGULARISATION: f32 = 1.0e-3;
 
-/// Added for the relative error of a squared length: a thread between pins too far apart pulls with C/ε, and a particle
+/// Added for the relative error of a squared length: a chain between pins too far apart pulls with C/ε, and a particle
 /// beside its line by y would be thrown beyond it, by C/ε × y.
 const STRAINED: f32 = 0.2;
 
-/// Eight springs, each of a thread of its own, between the forward and the backward pass.
+/// Eight springs, each of a chain of its own, between the forward and the backward pass.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Link {
@@ -36,7 +36,7 @@ impl Link {
     };
 }
 
-/// The data that a spring needs of the one before it in its thread.
+/// The data that a spring needs of the one before it in its chain.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Before {
@@ -57,7 +57,7 @@ impl Before {
     };
 }
 
-/// The data that a spring needs of the one behind it in its thread.
+/// The data that a spring needs of the one behind it in its chain.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Behind {

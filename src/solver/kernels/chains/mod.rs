@@ -9,11 +9,11 @@ mod link;
 mod residuals;
 mod rows;
 
-pub(crate) use beside::{Scratch, Threads};
+pub(crate) use beside::{Chains, Scratch};
 pub(crate) use bundle::{Solved, Step, bundle_backward, bundle_forward};
 pub(crate) use direction::Direction;
 pub(crate) use down::{
-    Columns, solve_columns, solve_columns_again, solve_damped_threads, solve_threads,
+    Columns, solve_chains, solve_columns, solve_columns_again, solve_damped_chains,
 };
 pub(crate) use ends::GROUP;
 pub(crate) use link::{SpringBand, measure_given};
@@ -21,4 +21,4 @@ pub(crate) use residuals::{
     Residuals, RowSprings, largest, measure_elastic_left, measure_elastic_left_at, measure_left,
     measure_left_at, note_places,
 };
-pub(crate) use rows::{RowScratch, RowThreads, solve_damped_rows, solve_rows, solve_rows_again};
+pub(crate) use rows::{RowChains, RowScratch, solve_damped_rows, solve_rows, solve_rows_again};

@@ -1,4 +1,4 @@
-//! The stretch that a pass over the threads of a grid leaves in the springs of its rows and columns.
+//! The stretch that a pass over the chains of a grid leaves in the springs of its rows and columns.
 //!
 //! # The floor
 //! Two springs for each particle: 3 additions for its position, and 10 operations for each of them, of elastic ones 16 and a
@@ -33,7 +33,7 @@ impl Residuals {
 
 /// The springs within a row, and those that lead to it from the row above.
 pub(crate) struct RowSprings<'a> {
-    pub bands: [&'a SpringBand; 2],
+    pub kinds: [&'a SpringBand; 2],
     /// Their multipliers (m kg), if they are elastic.
     pub pulled: [&'a [Lanes]; 2],
 }
@@ -62,18 +62,18 @@ pub(crate) fn note_places(row: &[Block], left: &mut Residuals) {
 #[inline(always)]
 fn raise<const ELASTIC: bool>(
     [a, b]: [&Vec3Lanes; 2],
-    (band, block): (&SpringBand, usize),
+    (springs, block): (&SpringBand, usize),
     pulled: &[Lanes],
     left: &mut Lanes,
 ) {
-    let scale = &band.inverse_square[block];
+    let scale = &springs.inverse_square[block];
     let mut most = *left;
     for l in 0..LANES {
         let (x, y, z) = (b[0][l] - a[0][l], b[1][l] - a[1][l], b[2][l] - a[2][l]);
         let p = (x * x + y * y + z * z) * scale[l];
         let found = if ELASTIC {
             // 1 and twice C + α̃ λ over the length, with Halley's step for C as in the equations.
-            let pull = band.softness[block][l] * pulled[block][l] * band.inverse_rest;
+            let pull = springs.softness[block][l] * pulled[block][l] * springs.inverse_rest;
             1.0 + 2.0 * ((p - 1.0) / (1.5 * p + 0.5) + pull)
         } else {
             p
@@ -97,7 +97,7 @@ pub(crate) fn measure_elastic_left(row: &[Block], springs: &RowSprings, left: &m
 
 #[inline(always)]
 fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut Residuals) {
-    let [across, down] = springs.bands;
+    let [across, down] = springs.kinds;
     let [in_row, from_above] = springs.pulled;
     let count = row.len();
     let (all_above, columns) = (&mut left.above[..count], &mut left.down[..count]);
@@ -147,7 +147,7 @@ fn measure_at<const ELASTIC: bool>(
     springs: &RowSprings,
     left: &mut Residuals,
 ) {
-    let [across, down] = springs.bands;
+    let [across, down] = springs.kinds;
     let [in_row, from_above] = springs.pulled;
     let mut most = [0.0; LANES];
     let last = row.len() - 1;

@@ -1,4 +1,4 @@
-//! Threads within rows.
+//! Chains within rows.
 //!
 //! Each lane has a strip of a row of its own: springs in a line, whose last leads to the strip of the next lane. So
 //! each lane eliminates its strip alone, all but the last spring (the partition method, H. H. Wang 1981). The remaining
@@ -6,7 +6,7 @@
 //! solves it in three steps, which make each multiplier independent of those one, two and four lanes away.
 //!
 //! # The floor
-//! That of threads from row to row, and the coupling of a strip to the one before it: ten operations for eight springs.
+//! That of chains from row to row, and the coupling of a strip to the one before it: ten operations for eight springs.
 //! The eight multipliers of a row cost five divisions and some 70 operations. That is little beside the eight blocks of
 //! 64 columns, and as much as one of the two blocks of 16.
 
@@ -66,25 +66,25 @@ impl Strip {
 #[inline(always)]
 fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
-    band: &SpringBand,
+    springs: &SpringBand,
     block: usize,
     pulled: &[Lanes],
     strip: &mut Strip,
     link: &mut Link,
     spike: &mut Lanes,
 ) {
-    let (softness, hold) = (&band.softness[block], &band.hold[block]);
+    let (softness, hold) = (&springs.softness[block], &springs.hold[block]);
     for l in 0..LANES {
-        let [x, y, z] = span(a, b, band.inverse_rest, l);
+        let [x, y, z] = span(a, b, springs.inverse_rest, l);
         let weight = a[W + l] + b[W + l];
         let softness = if DAMPED {
-            band.kept * softness[l]
+            springs.kept * softness[l]
         } else {
             softness[l]
         };
-        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], band.rest);
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], springs.rest);
         let right = if DAMPED {
-            damped(right, [a, b], [x, y, z], band.kept, l)
+            damped(right, [a, b], [x, y, z], springs.kept, l)
         } else if AGAIN {
             after(right, [x, y, z], softness, pulled[block][l])
         } else {
@@ -125,7 +125,7 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAI
 #[inline(always)]
 fn reduce<const DAMPED: bool, const AGAIN: bool>(
     row: &[Block],
-    band: &SpringBand,
+    springs: &SpringBand,
     pulled: &[Lanes],
     links: &mut [Link],
     spikes: &mut [Lanes],
@@ -144,7 +144,7 @@ fn reduce<const DAMPED: bool, const AGAIN: bool>(
         macro_rules! eliminate {
             ($first:literal, $last:literal) => {
                 eliminate::<$first, $last, DAMPED, AGAIN>(
-                    between, band, j, pulled, strip, link, spike,
+                    between, springs, j, pulled, strip, link, spike,
                 )
             };
         }
@@ -231,7 +231,7 @@ fn pull_row(
 }
 
 /// Rows of a grid, of which some are solved.
-pub(crate) struct RowThreads<'a> {
+pub(crate) struct RowChains<'a> {
     /// Rows that lie one below the other.
     pub blocks: &'a mut [Block],
     /// The number of the first of them, and of all of the grid's.
@@ -244,31 +244,31 @@ pub(crate) struct RowThreads<'a> {
     pub pulled: &'a mut [Lanes],
 }
 
-/// Solves the threads within rows, with the springs of a row on the grid's border, and of one that is not.
+/// Solves the chains within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
-pub(crate) fn solve_rows(rows: &mut RowThreads, bands: &[SpringBand; 2]) {
-    solve::<false, false>(rows, bands);
+pub(crate) fn solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2]) {
+    solve::<false, false>(rows, springs);
 }
 
 /// The same with damping along them.
 #[inline(always)]
-pub(crate) fn solve_damped_rows(rows: &mut RowThreads, bands: &[SpringBand; 2]) {
-    solve::<true, false>(rows, bands);
+pub(crate) fn solve_damped_rows(rows: &mut RowChains, springs: &[SpringBand; 2]) {
+    solve::<true, false>(rows, springs);
 }
 
 /// The same of elastic springs, which go on from what they have pulled with.
 #[inline(always)]
-pub(crate) fn solve_rows_again(rows: &mut RowThreads, bands: &[SpringBand; 2]) {
-    solve::<false, true>(rows, bands);
+pub(crate) fn solve_rows_again(rows: &mut RowChains, springs: &[SpringBand; 2]) {
+    solve::<false, true>(rows, springs);
 }
 
 #[inline(always)]
 fn solve<const DAMPED: bool, const AGAIN: bool>(
-    rows: &mut RowThreads,
+    rows: &mut RowChains,
     [border, inner]: &[SpringBand; 2],
 ) {
     let strip = border.hold.len();
-    let RowThreads {
+    let RowChains {
         blocks,
         first,
         of,
@@ -277,7 +277,7 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
         pulled,
     } = rows;
     let (first, last) = (*first, *of - 1);
-    let band = |row: usize| {
+    let springs_of = |row: usize| {
         if row == 0 || row == last {
             border
         } else {
@@ -296,10 +296,10 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
         if numbers.len() < GROUP {
             (*ends, systems[0]) = (Ends::NONE, Reduced::NONE);
         }
-        let springs = links
+        let parts = links
             .chunks_exact_mut(strip)
             .zip(spikes.chunks_exact_mut(strip));
-        for (at, (&row, (links, spikes))) in numbers.iter().zip(springs).enumerate() {
+        for (at, (&row, (links, spikes))) in numbers.iter().zip(parts).enumerate() {
             let (row, system) = (row as usize, (&mut *ends, &mut systems[0]));
             let own = blocks_of(row);
             let at = BESIDE + at * LANES;
@@ -307,7 +307,7 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
             let state = &mut *state;
             reduce::<DAMPED, AGAIN>(
                 &blocks[own],
-                band(row),
+                springs_of(row),
                 pulled,
                 links,
                 spikes,
@@ -317,10 +317,10 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
             );
         }
         ends.solve(systems);
-        let springs = links
+        let parts = links
             .chunks_exact_mut(strip)
             .zip(spikes.chunks_exact(strip));
-        for (at, (&row, (links, spikes))) in numbers.iter().zip(springs).enumerate() {
+        for (at, (&row, (links, spikes))) in numbers.iter().zip(parts).enumerate() {
             let own = blocks_of(row as usize);
             let reduced = (&*ends, &systems[0]);
             pull_row(

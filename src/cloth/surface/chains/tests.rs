@@ -1,4 +1,4 @@
-//! Threads of grids, of irregular meshes, of what is closed, and of what is too small.
+//! Chains of grids, of irregular meshes, of what is closed, and of what is too small.
 
 use std::collections::HashSet;
 
@@ -42,19 +42,19 @@ fn edges(surface: &Surface) -> Vec<[u32; 2]> {
     links.map(|link| link.ends).collect()
 }
 
-/// Fails unless each thread is a path of two or more edges that meets no particle twice, no edge is on two, and no two threads
-/// of one colour share a particle. Returns how many edges are on threads.
+/// Fails unless each chain is a path of two or more edges that meets no particle twice, no edge is on two, and no two chains
+/// of one colour share a particle. Returns how many edges are on chains.
 fn check(surface: &Surface) -> usize {
     let edges = edges(surface);
     let mut seen = HashSet::new();
-    for colour in &surface.threads().colours {
+    for colour in &surface.chains().colours {
         let mut particles = HashSet::new();
-        assert!(colour.is_sorted_by_key(|thread| std::cmp::Reverse(thread.edges.len())));
-        for thread in colour {
-            assert!(thread.edges.len() > 1);
-            let mut at = thread.first;
+        assert!(colour.is_sorted_by_key(|chain| std::cmp::Reverse(chain.edges.len())));
+        for chain in colour {
+            assert!(chain.edges.len() > 1);
+            let mut at = chain.first;
             assert!(particles.insert(at), "{at} twice");
-            for &edge in &thread.edges {
+            for &edge in &chain.edges {
                 assert!(seen.insert(edge), "{edge} twice");
                 let [a, b] = edges[edge as usize];
                 assert!(at == a || at == b, "{edge} does not go on from {at}");
@@ -66,17 +66,17 @@ fn check(surface: &Surface) -> usize {
     seen.len()
 }
 
-/// Twelve columns and nine rows: threads are the rows, the columns and the diagonals, each family a colour of its own; alone are
+/// Twelve columns and nine rows: chains are the rows, the columns and the diagonals, each family a colour of its own; alone are
 /// only the edges that cut off two corners.
 #[test]
-fn threads_of_a_grid_are_its_rows_columns_and_diagonals() {
+fn chains_of_a_grid_are_its_rows_columns_and_diagonals() {
     let surface = grid(12, 9, false, jittered(0.0));
     let alone = edges(&surface).len() - check(&surface);
     assert_eq!(alone, 2);
-    let colours = &surface.threads().colours;
+    let colours = &surface.chains().colours;
     let lengths: Vec<Vec<usize>> = colours
         .iter()
-        .map(|colour| colour.iter().map(|thread| thread.edges.len()).collect())
+        .map(|colour| colour.iter().map(|chain| chain.edges.len()).collect())
         .collect();
     let mut diagonals = vec![8; 4];
     diagonals.extend((2..8).rev().flat_map(|length| [length; 2]));
@@ -88,7 +88,7 @@ fn threads_of_a_grid_are_its_rows_columns_and_diagonals() {
     expected.sort_unstable_by(|a, b| b.cmp(a));
     assert_eq!(others, expected);
     let rest = surface.rest_positions();
-    for thread in surface.threads().iter() {
+    for chain in surface.chains().iter() {
         let edges = edges(&surface);
         let span = |edge: &u32| {
             let [a, b] = edges[*edge as usize].map(|end| rest[end as usize]);
@@ -99,9 +99,9 @@ fn threads_of_a_grid_are_its_rows_columns_and_diagonals() {
                     -1.0
                 }
         };
-        let first = span(&thread.edges[0]);
+        let first = span(&chain.edges[0]);
         assert!(
-            thread
+            chain
                 .edges
                 .iter()
                 .all(|edge| span(edge).distance(first) < 1.0e-5)
@@ -111,20 +111,20 @@ fn threads_of_a_grid_are_its_rows_columns_and_diagonals() {
 
 /// Some edges are alone, on an irregular mesh, but few; the same each time.
 #[test]
-fn nearly_all_edges_of_an_irregular_mesh_are_on_threads() {
-    for (part, part_on_threads) in [(0.05, 98), (0.1, 95), (0.2, 88), (0.3, 75)] {
+fn nearly_all_edges_of_an_irregular_mesh_are_on_chains() {
+    for (part, part_on_chains) in [(0.05, 98), (0.1, 95), (0.2, 88), (0.3, 75)] {
         let surface = grid(23, 17, false, jittered(part));
-        let (all, on_threads) = (edges(&surface).len(), check(&surface));
+        let (all, on_chains) = (edges(&surface).len(), check(&surface));
         assert!(
-            on_threads * 100 > all * part_on_threads,
-            "{on_threads} of {all} at {part}"
+            on_chains * 100 > all * part_on_chains,
+            "{on_chains} of {all} at {part}"
         );
         let again = grid(23, 17, false, jittered(part));
-        assert_eq!(surface.threads(), again.threads());
+        assert_eq!(surface.chains(), again.chains());
     }
 }
 
-/// Around a cylinder of ten columns, which are ten edges from one to the next of which nine are one thread; down it, and
+/// Around a cylinder of ten columns, which are ten edges from one to the next of which nine are one chain; down it, and
 /// helically, straight on the surface though not in space.
 #[test]
 fn what_goes_around_a_cylinder_is_cut_open() {
@@ -133,12 +133,12 @@ fn what_goes_around_a_cylinder_is_cut_open() {
         Vec3::new(c, -0.6 * row as f32, s)
     };
     let surface = grid(10, 6, true, around);
-    let on_threads = check(&surface);
-    let rings = surface.threads().iter();
-    let rings = rings.filter(|thread| thread.edges.len() == 9).count();
+    let on_chains = check(&surface);
+    let rings = surface.chains().iter();
+    let rings = rings.filter(|chain| chain.edges.len() == 9).count();
     assert_eq!(rings, 6);
     // Of each ring one edge is alone; five down each column, and along each helix.
-    assert_eq!(on_threads, 6 * 9 + 10 * 5 + 10 * 5);
+    assert_eq!(on_chains, 6 * 9 + 10 * 5 + 10 * 5);
 }
 
 #[test]
@@ -149,13 +149,13 @@ fn a_single_triangle_has_none() {
         ..TriangleMesh::default()
     };
     let surface = Surface::of_mesh(&mesh, 0.0, Vec3::ONE).expect("a surface");
-    assert_eq!(surface.threads().iter().count(), 0);
-    assert_eq!(Surface::default().threads().iter().count(), 0);
+    assert_eq!(surface.chains().iter().count(), 0);
+    assert_eq!(Surface::default().chains().iter().count(), 0);
 }
 
-/// Edges of a fan of very many meet in one particle, more threads than there are colours: what is over is on none.
+/// Edges of a fan of very many meet in one particle, more chains than there are colours: what is over is on none.
 #[test]
-fn a_hub_has_no_more_threads_than_colours() {
+fn a_hub_has_no_more_chains_than_colours() {
     let spokes = 300_u32;
     let mut positions = vec![Vec3::ZERO];
     positions.extend((0..spokes).map(|at| {
@@ -171,5 +171,5 @@ fn a_hub_has_no_more_threads_than_colours() {
     };
     let surface = Surface::of_mesh(&mesh, 0.0, Vec3::ONE).expect("a surface");
     check(&surface);
-    assert!(surface.threads().colours.len() <= MAX_COLOURS as usize);
+    assert!(surface.chains().colours.len() <= MAX_COLOURS as usize);
 }

@@ -1,4 +1,4 @@
-//! Bands of rows on several threads.
+//! Partitions of rows on several threads.
 
 use std::{
     hint,
@@ -11,19 +11,19 @@ use bevy::{
     tasks::{ComputeTaskPool, TaskPool, futures_lite::future::yield_now},
 };
 
-/// The pool that bands are tasks of.
+/// The pool that partitions are tasks of.
 pub(super) fn pool() -> &'static TaskPool {
     ComputeTaskPool::get_or_init(TaskPool::default)
 }
 
-/// More bands than this find no work worth a task.
-pub(super) const MAX_BANDS: usize = 16;
+/// More partitions than this find no work worth a task.
+pub(super) const MAX_PARTITIONS: usize = 16;
 
-/// So long a band that is done looks out for the others before its thread may sleep, which would take as long to wake.
+/// So long a partition that is done looks out for the others before its thread may sleep, which would take as long to wake.
 const PATIENCE: Duration = Duration::from_micros(100);
 
 /// Does `work` on each part: the last on this thread, each of the others in a task of its own.
-pub(super) fn in_bands<T: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
+pub(super) fn in_partitions<T: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
     let work = &work;
     let left = &AtomicUsize::new(0);
     pool().scope(|scope| {
@@ -46,16 +46,16 @@ pub(super) fn in_bands<T: Send>(parts: impl IntoIterator<Item = T>, work: impl F
     });
 }
 
-/// Runs `work` with a thread of the pool awake for each band but the caller's own. A sub-step's bands are ready
+/// Runs `work` with a thread of the pool awake for each partition but the caller's own. A sub-step's partitions are ready
 /// within microseconds of each other; a thread that fell asleep in between would take a hundred to come back.
-pub(super) fn with_threads_awake<R>(bands: usize, work: impl FnOnce() -> R) -> R {
-    if bands <= 1 {
+pub(super) fn with_threads_awake<R>(partitions: usize, work: impl FnOnce() -> R) -> R {
+    if partitions <= 1 {
         return work();
     }
     let is_done = AtomicBool::new(false);
     let mut result = None;
     pool().scope(|scope| {
-        for _ in 1..bands {
+        for _ in 1..partitions {
             scope.spawn(async {
                 while !is_done.load(Ordering::Acquire) {
                     // Lets the thread do what else there is.

@@ -1,7 +1,7 @@
-//! Threads of a mesh: paths along its edges that go straight on, like the rows, columns and diagonals of a grid.
+//! Chains of a mesh: paths along its edges that go straight on, like the rows, columns and diagonals of a grid.
 //!
-//! The springs of a thread are solved together, so that the pull of one reaches the others at once. At each particle,
-//! the pairs of edges that best continue each other are joined first. Edges that remain are on no thread.
+//! The springs of a chain are solved together, so that the pull of one reaches the others at once. At each particle,
+//! the pairs of edges that best continue each other are joined first. Edges that remain are on no chain.
 //!
 //! "Straight on" is meant on the surface: edges are projected along the normal at their particle, so that a line around
 //! a cylinder is straight.
@@ -22,23 +22,23 @@ const NONE: u32 = u32::MAX;
 
 /// A path along edges that visits no particle twice.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Thread {
+pub(crate) struct Chain {
     /// Its first particle.
     pub first: u32,
     /// Two or more edges, or the springs along them.
     pub edges: Vec<u32>,
 }
 
-/// The threads of a surface, sorted by colour. No two of one colour share a particle, so that they are solved in
-/// parallel. Within a colour, longer threads come first.
+/// The chains of a surface, sorted by colour. No two of one colour share a particle, so that they are solved in
+/// parallel. Within a colour, longer chains come first.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
-pub(crate) struct Threads {
-    /// The threads of each colour.
-    pub colours: Vec<Vec<Thread>>,
+pub(crate) struct Chains {
+    /// The chains of each colour.
+    pub colours: Vec<Vec<Chain>>,
 }
 
-impl Threads {
-    /// Finds the threads along `edges`, between particles with these positions at rest (m) and normals of length 1. No
+impl Chains {
+    /// Finds the chains along `edges`, between particles with these positions at rest (m) and normals of length 1. No
     /// two edges have the same ends.
     pub fn trace(edges: &[[u32; 2]], rest: &[Vec3], normals: impl Fn(u32) -> Vec3) -> Self {
         let next = continuations(edges, rest, normals);
@@ -47,7 +47,7 @@ impl Threads {
             next: &next,
             is_passed: vec![false; edges.len()],
             seen: vec![NONE; rest.len()],
-            threads: Vec::new(),
+            chains: Vec::new(),
         };
         // First open paths, from their ends; the remaining paths are closed.
         for (edge, ends) in next.iter().enumerate() {
@@ -60,27 +60,27 @@ impl Threads {
         for edge in 0..edges.len() {
             walk.from(edge as u32, 0);
         }
-        let mut threads = walk.threads;
-        threads.retain(|thread| thread.edges.len() > 1);
+        let mut chains = walk.chains;
+        chains.retain(|chain| chain.edges.len() > 1);
         Self {
-            colours: colours(threads, edges, rest.len()),
+            colours: colours(chains, edges, rest.len()),
         }
     }
 
-    /// All threads.
-    pub fn iter(&self) -> impl Iterator<Item = &Thread> {
+    /// All chains.
+    pub fn iter(&self) -> impl Iterator<Item = &Chain> {
         self.colours.iter().flatten()
     }
 
-    /// The same threads with other edge indices.
+    /// The same chains with other edge indices.
     pub fn renamed(&self, name: impl Fn(u32) -> u32) -> Self {
-        let mut threads = self.clone();
-        for thread in threads.colours.iter_mut().flatten() {
-            for edge in &mut thread.edges {
+        let mut chains = self.clone();
+        for chain in chains.colours.iter_mut().flatten() {
+            for edge in &mut chain.edges {
                 *edge = name(*edge);
             }
         }
-        threads
+        chains
     }
 }
 
@@ -133,29 +133,29 @@ struct Walk<'a> {
     edges: &'a [[u32; 2]],
     next: &'a [[u32; 2]],
     is_passed: Vec<bool>,
-    /// The last thread that visited each particle.
+    /// The last chain that visited each particle.
     seen: Vec<u32>,
-    threads: Vec<Thread>,
+    chains: Vec<Chain>,
 }
 
 impl Walk<'_> {
     /// Walks from one end of an edge to the other, and on, until no unvisited edge follows. Where the path meets
-    /// itself, a new thread begins.
+    /// itself, a new chain begins.
     fn from(&mut self, mut edge: u32, mut end: usize) {
-        let mut thread = NONE;
+        let mut chain = NONE;
         while edge != NONE && !std::mem::replace(&mut self.is_passed[edge as usize], true) {
             let ends = self.edges[edge as usize];
             let [from, to] = [ends[end], ends[1 - end]];
-            if thread == NONE || self.seen[to as usize] == thread {
-                thread = self.threads.len() as u32;
-                self.threads.push(Thread {
+            if chain == NONE || self.seen[to as usize] == chain {
+                chain = self.chains.len() as u32;
+                self.chains.push(Chain {
                     first: from,
                     edges: Vec::new(),
                 });
-                self.seen[from as usize] = thread;
+                self.seen[from as usize] = chain;
             }
-            self.threads[thread as usize].edges.push(edge);
-            self.seen[to as usize] = thread;
+            self.chains[chain as usize].edges.push(edge);
+            self.seen[to as usize] = chain;
             let following = self.next[edge as usize][1 - end];
             if following != NONE {
                 end = usize::from(self.edges[following as usize][0] != to);
@@ -165,14 +165,14 @@ impl Walk<'_> {
     }
 }
 
-/// Gives each thread, longest first, the first colour that is free at all of its particles. Without a free colour, its
-/// edges are on no thread.
-fn colours(mut threads: Vec<Thread>, edges: &[[u32; 2]], particles: usize) -> Vec<Vec<Thread>> {
-    threads.sort_by_key(|thread| std::cmp::Reverse(thread.edges.len()));
+/// Gives each chain, longest first, the first colour that is free at all of its particles. Without a free colour, its
+/// edges are on no chain.
+fn colours(mut chains: Vec<Chain>, edges: &[[u32; 2]], particles: usize) -> Vec<Vec<Chain>> {
+    chains.sort_by_key(|chain| std::cmp::Reverse(chain.edges.len()));
     let mut taken: Vec<u64> = vec![0; particles];
-    let mut colours: Vec<Vec<Thread>> = Vec::new();
-    for thread in threads {
-        let ends = || thread.edges.iter().flat_map(|edge| edges[*edge as usize]);
+    let mut colours: Vec<Vec<Chain>> = Vec::new();
+    for chain in chains {
+        let ends = || chain.edges.iter().flat_map(|edge| edges[*edge as usize]);
         let all = ends().fold(0, |all, end| all | taken[end as usize]);
         let free = (!all).trailing_zeros();
         if free == MAX_COLOURS {
@@ -180,7 +180,7 @@ fn colours(mut threads: Vec<Thread>, edges: &[[u32; 2]], particles: usize) -> Ve
         }
         ends().for_each(|end| taken[end as usize] |= 1 << free);
         colours.resize_with(colours.len().max(free as usize + 1), Vec::new);
-        colours[free as usize].push(thread);
+        colours[free as usize].push(chain);
     }
     colours
 }
