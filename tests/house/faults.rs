@@ -10,19 +10,19 @@ use crate::{
 /// A file a line. `fabric` is handed on by the module that declares it, and of use only to its test.
 const CROOKED: &str = "\
 lib.rs: mod cloth; pub mod prelude { pub use crate::cloth::A; }
-cloth/mod.rs: mod a; mod fabric; pub use a::{A, Other as Renamed}; pub use fabric::fabric; use a::Trait; \
+cloth/mod.rs: mod a; mod fabric; pub use a::{A, Open, Other as Renamed}; pub use fabric::fabric; use a::Trait; \
     struct Own(A); #[cfg(test)] mod tests { use super::fabric; } // fabric
-cloth/a.rs: use super::{Own, fabric}; fn g(_: Own) { fabric() } pub trait Trait {} pub struct A; pub struct Other; \
-    impl A { #[cfg(test)] fn f() { crate::plugin::f(); } }
+cloth/a.rs: use super::{Own, fabric}; fn g(_: Own) { fabric() } pub trait Trait {} pub trait Open {} \
+    pub struct A; pub struct Other; impl A { #[cfg(test)] fn f() { crate::plugin::f(); } }
 cloth/fabric.rs: pub fn fabric() { crate::solver::S; }
 solver/mod.rs: mod deep; pub use deep::Deep; pub struct S(bevy::app::Start); #[derive(Resource)] pub enum E {}
 solver/deep/mod.rs: mod inner; pub use inner::{Deep, DeepItem};
 solver/deep/inner.rs: pub struct Deep; mod inline { use super::super::super::S; type T = S; }
 solver/deep/beside.rs: impl super::Deep {} impl super::DeepItem<'_> {} impl Clone for super::Deep {}
-solver/far.rs: use super::Deep as D; fn f(_: crate::cloth::A) {} impl D {}
+solver/far.rs: use super::Deep as D; use crate::cloth::a::{self}; fn f(_: a::Other) {} impl D {}
 hierarchy/mod.rs: use crate::prelude::A; fn f() { crate::solver::Deep }
-contact/mod.rs: macro_rules! m { ($name:ident) => { $crate::plugin::A::$name($crate::cloth::a::$name) } }
-plugin/mod.rs: pub use crate::cloth::{A, Renamed}; use bevy::{self, prelude::*}; struct P(World, Renamed);";
+contact/mod.rs: macro_rules! m { ($name:ident) => { $crate::plugin::A::$name($crate::cloth::a::$name) } } pub(crate) use m;
+plugin/mod.rs: pub use crate::cloth::{A, Renamed}; use bevy::{self, prelude::*}; use crate::contact::m; struct P(Renamed); m!();";
 
 fn crooked() -> House {
     House::of(CROOKED.lines().filter_map(|line| line.split_once(": ")))
@@ -41,9 +41,10 @@ fn imports_are_of_the_files_that_define_them() {
         r#"contact/mod.rs -> cloth/a.rs: {"$name", "A"}"#,
         r#"hierarchy/mod.rs -> solver/deep/inner.rs: {"Deep"}"#,
         r#"plugin/mod.rs -> cloth/a.rs: {"Other"}"#,
+        r#"plugin/mod.rs -> contact/mod.rs: {"m"}"#,
         r#"solver/deep/beside.rs -> solver/deep/inner.rs: {"Deep", "DeepItem"}"#,
         r#"solver/deep/inner.rs -> solver/mod.rs: {"S"}"#,
-        r#"solver/far.rs -> cloth/a.rs: {"A"}"#,
+        r#"solver/far.rs -> cloth/a.rs: {"Other"}"#,
         r#"solver/far.rs -> solver/deep/inner.rs: {"Deep"}"#,
     ];
     assert_eq!(told.collect::<Vec<_>>(), expected);

@@ -60,7 +60,7 @@ impl House {
 
     /// The module that defines what a path in module `at` names, and its name there. None for a module.
     ///
-    /// What is from another crate counts as the module's own that names it.
+    /// A name from another crate counts as that of the module that asks for it.
     pub fn definition(&self, at: &str, path: &[String]) -> Option<(&str, &Module, String)> {
         let (name, rest) = path.split_first()?;
         let (at, module) = match name.as_str() {
@@ -77,7 +77,7 @@ impl House {
             // A function may be called as its module is.
             (Some((_, path, _)), true) if rest.is_empty() => self.definition(at, path),
             (_, true) => self.definition(child, rest),
-            // `use png::png` is from another crate.
+            // `use png::png` is from another crate, and `use each` hands on a macro of this file.
             (Some((_, path, _)), _) if path[0] != *name => {
                 self.definition(at, &[path, rest].concat())
             }

@@ -183,11 +183,7 @@ impl<'a> Visit<'a> for Module {
     fn visit_item_use(&mut self, item: &'a ItemUse) {
         let is_public = !matches!(item.vis, Visibility::Inherited);
         for (name, path) in leaves(&item.tree, Vec::new()) {
-            let path = self.of_file(path);
-            // `use each;` hands a macro of the file itself on, and is from nowhere else.
-            if path != [name.as_str()] {
-                self.imports.push((name, path, is_public));
-            }
+            self.imports.push((name, self.of_file(path), is_public));
         }
     }
 
