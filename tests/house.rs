@@ -87,12 +87,14 @@ fn worldly(house: &House) -> Found {
         if floor(at).is_none_or(|floor| floor == 3) || at == "cloth::presence" {
             continue;
         }
-        let names = module.all_paths().flatten().chain(&module.words).cloned();
-        let names = names.filter(|name| ECS.split(' ').any(|each| each == name));
-        let mut paths: Vec<_> = module.all_paths().map(|path| path.join("::")).collect();
-        paths.retain(|path| path.starts_with("bevy::app") || path.contains("super::super"));
-        paths.extend(names);
-        worldly.extend(paths.iter().map(|name| format!("{}: {name}", module.file)));
+        for path in module.all_paths() {
+            let is_ecs = |name: &String| ECS.split(' ').any(|each| each == name);
+            let text = path.join("::");
+            let is_app = text.starts_with("bevy::app");
+            if is_app || path.iter().any(is_ecs) || text.contains("super::super") {
+                worldly.insert(format!("{}: {text}", module.file));
+            }
+        }
     }
     worldly
 }

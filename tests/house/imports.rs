@@ -9,7 +9,7 @@ use std::{
 
 use crate::{
     Found,
-    source::{Module, files},
+    source::{Module, Segments, files},
 };
 
 /// The names that one file imports from another, by both.
@@ -40,15 +40,14 @@ impl House {
     pub fn imports(&self) -> Imports {
         let mut imports = Imports::new();
         for (at, module) in &self.0 {
-            let mut paths: Vec<_> = module.paths.iter().collect();
-            for (name, path, is_public) in &module.imports {
-                // What is only handed on, the module's own code does not name. Traits are of use without that.
-                let is_named = name == "*" || module.words.contains(name);
+            // What is imported is of use if the code names it, and else is handed on. Traits need no name.
+            let is_used = |(name, path, is_public): &&(String, Segments, bool)| {
                 let found = self.definition(at, path).filter(|_| !is_public);
-                let is_trait = found.is_some_and(|(_, home, name)| home.traits.contains(&name));
-                paths.extend((is_named || is_trait).then_some(path));
-            }
-            for (home, other, name) in paths.iter().filter_map(|path| self.definition(at, path)) {
+                name == "*" || found.is_some_and(|(_, home, name)| home.traits.contains(&name))
+            };
+            let used = module.imports.iter().filter(is_used);
+            let paths = used.map(|(_, path, _)| path).chain(&module.paths);
+            for (home, other, name) in paths.filter_map(|path| self.definition(at, path)) {
                 if home != at {
                     let files = (module.file.clone(), other.file.clone());
                     imports.entry(files).or_default().insert(name);

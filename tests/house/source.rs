@@ -2,11 +2,10 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use proc_macro2::Ident;
 use quote::ToTokens;
 use syn::{
-    ImplItem, Item, ItemMod, ItemUse, Macro, MetaList, Signature, TraitItemFn, Type, UseTree,
-    Visibility,
+    ImplItem, Item, ItemMod, ItemUse, Macro, MetaList, PatIdent, Signature, TraitItemFn, Type,
+    UseTree, Visibility,
     spanned::Spanned,
     visit::{self, Visit},
 };
@@ -20,9 +19,8 @@ pub struct Module {
     pub file: String,
     /// The names that it imports, `*` for all of another module; their paths; whether for others, too.
     pub imports: Vec<(String, Segments, bool)>,
-    /// Like the words, without those of imports.
-    pub paths: Vec<Segments>,
-    pub words: BTreeSet<String>,
+    /// What its code names, other than in imports: a name alone is a path, too.
+    pub paths: BTreeSet<Segments>,
     pub traits: BTreeSet<String>,
     /// Types with blocks of inherent methods.
     pub implemented: Vec<Segments>,
@@ -123,9 +121,8 @@ impl Module {
         let is_of_path = |each: char| each.is_alphanumeric() || "_$:".contains(each);
         for path in text.split(|each| !is_of_path(each)) {
             let path = path.trim_end_matches(':').split("::");
-            let path: Segments = path.map(str::to_owned).collect();
-            self.words.extend(path.iter().cloned());
-            self.paths.push(self.of_file(path));
+            let path = path.map(str::to_owned).collect();
+            self.paths.insert(self.of_file(path));
         }
     }
 }
@@ -188,12 +185,14 @@ impl<'a> Visit<'a> for Module {
     }
 
     fn visit_path(&mut self, path: &'a syn::Path) {
-        self.paths.push(self.of_file(segments(path)));
+        self.paths.insert(self.of_file(segments(path)));
         visit::visit_path(self, path);
     }
 
-    fn visit_ident(&mut self, name: &'a Ident) {
-        self.words.insert(name.to_string());
+    /// It may be that of a constant.
+    fn visit_pat_ident(&mut self, pattern: &'a PatIdent) {
+        self.paths.insert(vec![pattern.ident.to_string()]);
+        visit::visit_pat_ident(self, pattern);
     }
 
     fn visit_macro(&mut self, each: &'a Macro) {
