@@ -11,7 +11,7 @@ use crate::{
 const CROOKED: &str = "\
 lib.rs: mod cloth; pub mod prelude { pub use crate::cloth::A; }
 cloth/mod.rs: mod a; mod fabric; pub use a::{A, Open, Other as Renamed}; pub use fabric::fabric; use a::Trait; \
-    struct Own(A); #[cfg(all(test, unix))] mod tests { use super::fabric; } // fabric
+    struct Own(A); #[cfg(all(test, unix))] mod tests { fn f() { super::fabric() } } // fabric
 cloth/a.rs: use super::{Own, fabric}; fn g(_: Own) { fabric() } pub trait Trait {} pub trait Open {} \
     pub struct A; pub struct Other; impl A { #[cfg(test)] fn f() { crate::plugin::f(); } }
 cloth/fabric.rs: pub fn fabric() { crate::solver::S; }
@@ -23,8 +23,8 @@ solver/far.rs: use super::Deep as D; use crate::cloth::a::{self}; fn f(_: a::Oth
 hierarchy/mod.rs: use crate::prelude::A; fn f() { crate::solver::Deep }
 contact/mod.rs: macro_rules! m { ($name:ident) => { $crate::plugin::A::$name($crate::cloth::a::$name) } } \
     pub(crate) use m; pub const M: u8 = 0;
-plugin/mod.rs: pub use crate::cloth::{A, Renamed}; use bevy::{self, prelude::*}; use crate::contact::{M, m}; struct P(Renamed); \
-    m!(); fn g(x: u8) { if let M = x {} }";
+plugin/mod.rs: pub use crate::cloth::{A, Renamed}; use bevy::{self, prelude::*}; use crate::contact::{M, m}; \
+    struct P(Renamed); m!(); fn g(x: u8) { if let M = x {} }";
 
 fn crooked() -> House {
     House::of(CROOKED.lines().filter_map(|line| line.split_once(": ")))
