@@ -1,18 +1,18 @@
-//! Holds the house's order: a file imports from floors below its own only, and the floors below the plugin's
-//! hold no systems, queries, resources or app. Within a floor, files import each other in no circle.
+//! Holds the house's order: files import from floors below their own only, and in no circle. Floors below the plugin's
+//! hold no systems, queries, resources or app. Functions, structs and files stay small enough to be read at once.
 
-use std::fs;
+use std::collections::BTreeSet;
 
-use source::{code, is_of_tests, source_folder, sources};
+use imports::{HOUSE, House, circles, circles_of_children, parent};
+use lists::{CIRCLES, LONG_FILES, LONG_FUNCTIONS, WIDE_STRUCTS};
+use source::Module;
 
-#[path = "house/circles.rs"]
-mod circles;
-#[path = "house/implementations.rs"]
-mod implementations;
+#[path = "house/faults.rs"]
+mod faults;
 #[path = "house/imports.rs"]
 mod imports;
-#[path = "house/modules.rs"]
-mod modules;
+#[path = "house/lists.rs"]
+mod lists;
 #[path = "house/source.rs"]
 mod source;
 
@@ -24,130 +24,179 @@ const FLOORS: [&[&str]; 4] = [
     &["plugin"],
 ];
 
-/// Modules of this crate that a text names, as `crate::name` or in `crate::{name, …}`.
-fn modules_named(code: &str) -> Vec<String> {
-    let name = |text: &str| -> String {
-        text.trim_start()
-            .chars()
-            .take_while(|each| each.is_alphanumeric() || *each == '_')
-            .collect()
-    };
-    let mut names = Vec::new();
-    for after in code.split("crate::").skip(1) {
-        let Some(group) = after.strip_prefix('{') else {
-            names.push(name(after));
-            continue;
-        };
-        let mut depth = 0;
-        names.push(name(group));
-        for (place, each) in group.char_indices() {
-            match each {
-                '{' => depth += 1,
-                '}' if depth == 0 => break,
-                '}' => depth -= 1,
-                ',' if depth == 0 => names.push(name(&group[place + 1..])),
-                _ => {}
+/// What no floor below the plugin's names.
+const ECS: &str = "App Commands DeferredWorld EntityCommands EntityMut EntityRef EntityWorldMut FromWorld \
+    MessageReader MessageWriter Query QueryState Res ResMut Resource Single SubApp SystemParam World";
+
+/// Faults. The first line of each says which, others tell more.
+type Found = BTreeSet<String>;
+
+fn names(found: &Found) -> Vec<&str> {
+    let first_lines = found.iter().map(|fault| fault.lines().next());
+    first_lines.map(Option::unwrap_or_default).collect()
+}
+
+/// Fails for what is not among the exceptions, and for exceptions that are none any more.
+fn held(exceptions: &[&str], found: &Found) {
+    let names = names(found);
+    let named = found.iter().zip(&names);
+    let new = named.filter(|(_, name)| !exceptions.contains(name));
+    let new: Vec<_> = new.map(|(fault, _)| fault.as_str()).collect();
+    assert!(new.is_empty(), "\n{}", new.join("\n"));
+    let gone: Vec<_> = exceptions
+        .iter()
+        .filter(|each| !names.contains(each))
+        .collect();
+    assert!(gone.is_empty(), "remove from the list: {gone:?}");
+}
+
+/// The floor of a module.
+fn floor(module: &str) -> Option<usize> {
+    FLOORS
+        .iter()
+        .position(|modules| modules.contains(&top(module)))
+}
+
+fn top(module: &str) -> &str {
+    module.split("::").next().unwrap_or_default()
+}
+
+/// Imports from where they are not allowed.
+fn climbing(house: &House) -> Found {
+    let mut climbing = Found::new();
+    for (at, module) in house.0.iter().filter(|(at, _)| floor(at).is_some()) {
+        for path in module.all_paths() {
+            // What is handed on there by another floor is no less an import from it.
+            let named = path.get(1).filter(|_| path[0].ends_with("crate"));
+            let defined = house.definition(at, path).map(|(home, ..)| top(home));
+            let others = named.map(String::as_str).into_iter().chain(defined);
+            let is_above = |other| floor(other).is_none() || floor(other) >= floor(at);
+            if others.filter(|other| *other != top(at)).any(is_above) {
+                climbing.insert(format!("{}: {}", module.file, path.join("::")));
             }
         }
     }
-    names.retain(|name| !name.is_empty());
-    names
+    climbing
+}
+
+/// What lower floors hold of Bevy's world.
+fn worldly(house: &House) -> Found {
+    let mut worldly = Found::new();
+    for (at, module) in &house.0 {
+        // Only a cloth that is spawned can say that no plugin is there.
+        if floor(at).is_none_or(|floor| floor == 3) || at == "cloth::presence" {
+            continue;
+        }
+        for path in module.all_paths() {
+            let is_ecs = |name: &String| ECS.split(' ').any(|each| each == name);
+            let text = path.join("::");
+            let is_app = text.starts_with("bevy::app");
+            if is_app || path.iter().any(is_ecs) || text.contains("super::super") {
+                worldly.insert(format!("{}: {text}", module.file));
+            }
+        }
+    }
+    worldly
+}
+
+/// Blocks of inherent methods where nobody would look for them. They may be in a type's own module, in children of
+/// it, or if it has none in its folder; but a floor's whole folder is too large for that.
+fn strayed(house: &House) -> Found {
+    let mut strayed = Found::new();
+    for (at, module) in &house.0 {
+        let types = module.implemented.iter();
+        for (home, other, name) in types.filter_map(|path| house.definition(at, path)) {
+            let is_within = |at: &str, folder: &str| at.starts_with(&format!("{folder}::"));
+            let has_children = house.0.keys().any(|at| is_within(at, home));
+            let is_family = has_children || parent(parent(home)).is_empty();
+            let family = if is_family { home } else { parent(home) };
+            // `QueryData` generates a query's item beside the query's struct.
+            let mut structs = other.structs.iter();
+            let is_generated = name.ends_with("Item") && structs.all(|(own, _)| *own != name);
+            if at != home && (is_generated || !is_within(at, family)) {
+                strayed.insert(format!("{}: {name} of {}", module.file, other.file));
+            }
+        }
+    }
+    strayed
+}
+
+/// What of the files is larger than `most`.
+fn larger(house: &House, most: usize, sizes: fn(&Module) -> &[(String, usize)]) -> Found {
+    let mut larger = Found::new();
+    for module in house.0.values() {
+        for (name, size) in sizes(module).iter().filter(|(_, size)| *size > most) {
+            larger.insert(format!(
+                "{}: {name}\n    {size} is over {most}",
+                module.file
+            ));
+        }
+    }
+    larger
+}
+
+/// Lines that ask for a pre-release, and for those after it. Cargo takes 1.0.0 for newer than 1.0.0-beta, and gives it
+/// to games that have no lock file yet.
+fn loose(manifest: &str) -> Found {
+    let is_loose = |version: &str| version.contains('-') && !version.starts_with('=');
+    let lines = manifest.lines().filter(|line| {
+        let mut asked = line.split("version = \"").skip(1);
+        asked.any(|rest| rest.split('"').next().is_some_and(is_loose))
+    });
+    lines.map(str::to_owned).collect()
 }
 
 #[test]
 fn floors_import_downwards_only() {
-    for (floor, modules) in FLOORS.iter().enumerate() {
-        for module in *modules {
-            let files = sources(&source_folder().join(module));
-            assert!(!files.is_empty(), "{module}");
-            for file in files.iter().filter(|file| !is_of_tests(file)) {
-                for name in modules_named(&code(file)) {
-                    let allowed = name == *module
-                        || FLOORS[..floor]
-                            .iter()
-                            .any(|below| below.contains(&name.as_str()));
-                    assert!(
-                        allowed,
-                        "{} of floor {floor} imports {name}",
-                        file.display()
-                    );
-                }
-            }
-        }
-    }
+    held(&[], &climbing(&HOUSE));
 }
 
 #[test]
 fn lower_floors_hold_no_ecs() {
-    for module in FLOORS[..3].iter().copied().flatten() {
-        for file in sources(&source_folder().join(module)) {
-            // Only a cloth that is spawned can say that no plugin is there.
-            if file.ends_with("cloth/presence.rs") {
-                continue;
-            }
-            // The error of a mesh that only its renderer has left is no world.
-            let code = code(&file).replace("ExtractedToRenderWorld", "");
-            for word in [
-                "Query<",
-                "Single<",
-                "MessageReader",
-                "MessageWriter",
-                "super::super",
-                "Res<",
-                "ResMut<",
-                "Commands",
-                "Resource",
-                "App",
-                "bevy::app",
-                "World",
-            ] {
-                assert!(!code.contains(word), "{} holds {word}", file.display());
-            }
-        }
-    }
+    held(&[], &worldly(&HOUSE));
 }
 
 #[test]
 fn every_folder_is_on_a_floor() {
-    let entries = fs::read_dir(source_folder())
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").path());
-    // A folder of texts is none of the house.
-    for path in entries.filter(|path| path.is_dir() && !sources(path).is_empty()) {
-        let name = path
-            .file_name()
-            .expect("a name")
-            .to_string_lossy()
-            .into_owned();
-        assert!(
-            FLOORS
-                .iter()
-                .any(|modules| modules.contains(&name.as_str())),
-            "{name} is on no floor"
-        );
-    }
+    let files = HOUSE.0.values().map(|module| module.file.split_once('/'));
+    let folders: BTreeSet<_> = files.flatten().map(|(folder, _)| folder).collect();
+    assert_eq!(folders, FLOORS.concat().into_iter().collect());
 }
 
 #[test]
-fn grouped_and_single_imports_are_read() {
-    let names = modules_named(
-        "use crate::cloth::Pin;\nuse crate::{\n  solver::{A, B},\n  plugin,\n};\nfn f() { crate::contact::g() }",
-    );
-    assert_eq!(names, ["cloth", "solver", "plugin", "contact"]);
+fn files_import_each_other_in_no_circle() {
+    held(&[], &circles(&HOUSE.imports(), Some));
 }
 
-/// Cargo takes 1.0.0 for newer than 1.0.0-beta, and gives it to games that have no lock file yet.
+#[test]
+fn children_of_a_folder_import_each_other_in_no_circle() {
+    held(CIRCLES, &circles_of_children(&HOUSE.imports()));
+}
+
+#[test]
+fn methods_are_beside_their_types() {
+    held(&[], &strayed(&HOUSE));
+}
+
+#[test]
+fn no_function_is_too_long() {
+    let found = larger(&HOUSE, 80, |module| &module.functions);
+    held(LONG_FUNCTIONS, &found);
+}
+
+#[test]
+fn no_struct_is_too_wide() {
+    let found = larger(&HOUSE, 16, |module| &module.structs);
+    held(WIDE_STRUCTS, &found);
+}
+
+#[test]
+fn no_file_is_too_long() {
+    held(LONG_FILES, &larger(&HOUSE, 400, |module| &module.lines));
+}
+
 #[test]
 fn pre_releases_are_asked_for_exactly() {
-    let manifests = [
-        include_str!("../Cargo.toml"),
-        include_str!("../lab/Cargo.toml"),
-    ];
-    for line in manifests.into_iter().flat_map(str::lines) {
-        let asked = line.split("version = \"").skip(1);
-        for version in asked.filter_map(|rest| rest.split('"').next()) {
-            let is_pre_release = version.contains('-');
-            assert!(!is_pre_release || version.starts_with('='), "{line}");
-        }
-    }
+    held(&[], &loose(include_str!("../Cargo.toml")));
+    held(&[], &loose(include_str!("../lab/Cargo.toml")));
 }
