@@ -7,7 +7,6 @@ mod limits;
 mod material;
 mod particle_id;
 mod particles;
-mod pin;
 mod pins;
 mod presence;
 mod recipe;
@@ -24,8 +23,7 @@ pub use limits::MAX_PARTICLES;
 pub use material::ClothMaterial;
 pub use particle_id::ParticleId;
 pub use particles::ClothParticles;
-pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
-pub use pins::Pins;
+pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
 pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
 #[doc(hidden)]

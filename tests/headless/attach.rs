@@ -102,7 +102,7 @@ fn a_target_that_is_gone_is_named() {
     tick(&mut app, 3);
     let fault = app.world().get::<ClothFault>(flag).expect("a fault");
     let expected = ClothError::NoTarget {
-        pin: Pin::Column(0),
+        pin: format!("{:?}", Pin::Column(0)),
         target: pole,
     };
     assert_eq!(fault.error, expected);

@@ -5,7 +5,7 @@ mod check;
 use bevy::{ecs::entity::Entity, math::Vec3, reflect::Reflect};
 use thiserror::Error;
 
-use super::{limits::MAX_PARTICLES, particle_id::ParticleId, pin::Pin, spring::Spring};
+use super::{limits::MAX_PARTICLES, particle_id::ParticleId, spring::Spring};
 
 /// The reason why a cloth or a collider is not simulated, with the value at fault.
 ///
@@ -62,34 +62,34 @@ pub enum ClothError {
     )]
     NotClosed,
     /// A pin names a particle outside the cloth.
-    #[error("{pin:?} is outside a cloth of {cloth}")]
+    #[error("{pin} is outside a cloth of {cloth}")]
     PinOutOfRange {
         /// The pin.
-        pin: Pin,
+        pin: String,
         /// The cloth's columns and rows, or its particles and vertices.
         cloth: String,
     },
     /// A pin names rows and columns, but the cloth is not a grid.
     #[error(
-        "{pin:?} names rows and columns, but the cloth is a mesh: pin it by vertex, position, colour or attribute"
+        "{pin} names rows and columns, but the cloth is a mesh: pin it by vertex, position, colour or attribute"
     )]
     PinNeedsGrid {
         /// The pin.
-        pin: Pin,
+        pin: String,
     },
     /// A pin names a vertex attribute that the mesh does not have, or that is not numeric.
-    #[error("{pin:?} needs an attribute that the mesh does not have; it has: {attributes}")]
+    #[error("{pin} needs an attribute that the mesh does not have; it has: {attributes}")]
     NoSuchAttribute {
         /// The pin.
-        pin: Pin,
+        pin: String,
         /// The names of the mesh's attributes.
         attributes: String,
     },
     /// A pin by position, colour or attribute matches no particle.
-    #[error("{pin:?} matches no particle of the cloth")]
+    #[error("{pin} matches no particle of the cloth")]
     PinFindsNothing {
         /// The pin.
-        pin: Pin,
+        pin: String,
     },
     /// A paint names a vertex attribute or a channel that does not exist.
     #[error(
@@ -350,18 +350,18 @@ pub enum ClothError {
         rule: &'static str,
     },
     /// The target of an attached pin does not exist or has no transform.
-    #[error("{pin:?} is attached to {target}, which does not exist or has no transform")]
+    #[error("{pin} is attached to {target}, which does not exist or has no transform")]
     NoTarget {
         /// The attached pin.
-        pin: Pin,
+        pin: String,
         /// The target.
         target: Entity,
     },
     /// No entity has the name of an attached pin's target.
-    #[error("{pin:?} is attached to \"{name}\", but no entity with a transform has that name")]
+    #[error("{pin} is attached to \"{name}\", but no entity with a transform has that name")]
     NoTargetNamed {
         /// The attached pin.
-        pin: Pin,
+        pin: String,
         /// The name of the target.
         name: String,
     },

@@ -1,13 +1,16 @@
 //! Pinned particles.
 
 mod names;
+mod pin;
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{error::ClothError, pin::Pin, surface::Surface};
+use super::{error::ClothError, surface::Surface};
+
+pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
 
 /// The pinned particles, which move only with the entity's transform. By default the top row of a grid, and nothing of
 /// a mesh. May change at any time.
@@ -130,7 +133,7 @@ mod tests {
             assert_eq!(
                 error,
                 Err(ClothError::PinOutOfRange {
-                    pin,
+                    pin: format!("{pin:?}"),
                     cloth: "4 columns × 3 rows".into()
                 })
             );

@@ -1,9 +1,9 @@
 //! The particles that each pin names on a surface.
 
+use super::{Corner, Pin};
 use crate::cloth::{
     error::ClothError,
     grid::ClothGrid,
-    pin::{Corner, Pin},
     surface::{Surface, VertexAttribute},
 };
 
@@ -15,7 +15,7 @@ impl Pin {
     /// [`NoSuchAttribute`](ClothError::NoSuchAttribute), or [`PinFindsNothing`](ClothError::PinFindsNothing) if no
     /// particle has the position, colour or attribute.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
-        let pin = || self.clone();
+        let pin = || format!("{self:?}");
         let is_inside = match (self, surface.as_grid()) {
             (Self::Index(index), _) => *index < surface.len(),
             (Self::Vertex(vertex), _) => surface.particle_of_vertex(*vertex).is_some(),
@@ -57,7 +57,9 @@ impl Pin {
         if found {
             return Ok(());
         }
-        Err(ClothError::PinFindsNothing { pin: self.clone() })
+        Err(ClothError::PinFindsNothing {
+            pin: format!("{self:?}"),
+        })
     }
 
     /// Calls `pinned` with the index of each particle of `surface` that the pin names. The pin must be valid for it.

@@ -59,7 +59,7 @@ impl Targets<'_, '_> {
             .filter(is_so_called)
             .or_else(find)
             .ok_or_else(|| ClothError::NoTargetNamed {
-                pin: attachment.pin.clone(),
+                pin: format!("{:?}", attachment.pin),
                 name: name.clone(),
             })
     }
@@ -90,7 +90,7 @@ impl Targets<'_, '_> {
             let affine = transform.map(|transform| transform.affine());
             let place = affine.filter(|affine| affine.inverse().is_finite());
             places.push(place.ok_or_else(|| ClothError::NoTarget {
-                pin: attachment.pin.clone(),
+                pin: format!("{:?}", attachment.pin),
                 target,
             })?);
             if index < entities.len() {

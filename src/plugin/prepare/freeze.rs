@@ -50,7 +50,7 @@ pub(crate) fn freeze(
                 if state.attachments == attachments =>
             {
                 Err(ClothError::NoTarget {
-                    pin: pin.clone(),
+                    pin: format!("{pin:?}"),
                     target,
                 })
             }
