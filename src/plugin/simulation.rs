@@ -83,105 +83,9 @@ impl ClothPlugin {
 
 impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<ClothMaterial>()
-            .register_type::<ClothParticles>()
-            .register_type::<ClothSettings>()
-            .register_type::<SearchMethod>()
-            .register_type::<NarrowPhase>()
-            .register_type::<ClothSelfCollision>()
-            .register_type::<ClothLayers>()
-            .register_type::<ClothBody>()
-            .register_type::<ClothPush>()
-            .register_type::<ClothContacts>()
-            .register_type::<ClothFrame>()
-            .register_type::<ClothStats>()
-            .register_type::<ClothTeleport>()
-            .register_type::<ClothInertia>()
-            .register_type::<ClothBuilt>()
-            .register_type::<ClothSearch>()
-            .register_type::<ClothFault>()
-            .register_type::<ClothGravity>()
-            .register_type::<ClothWind>()
-            .register_type::<ClothWindZone>()
-            .register_type::<ClothOrder>()
-            .register_type::<ClothAir>()
-            .register_type::<ClothPressure>();
-        register_lists(app);
-        add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
-        add_parts_to_earlier::<ClothCollider, ColliderParts>(app.world_mut());
-        add_parts_to_earlier::<ClothWindZone, ClothOrder>(app.world_mut());
-        app.init_resource::<ClothGravity>()
-            .add_message::<ClothTouchStarted>()
-            .add_message::<ClothTouchStopped>()
-            .add_message::<ClothLimitExceeded>()
-            .insert_resource(ClothPresence::Simulated)
-            .init_resource::<SharedParts>()
-            .init_resource::<Notices>()
-            .init_resource::<Islands>()
-            .init_resource::<ColliderTree>()
-            .init_resource::<WindField>()
-            .init_resource::<ChangedColliders>()
-            .init_resource::<Teleporting>()
-            .add_observer(add_parts::<Cloth, ClothParts>)
-            .add_observer(add_parts::<ClothCollider, ColliderParts>)
-            .add_observer(add_parts::<ClothWindZone, ClothOrder>)
-            .add_observer(send_stopped_messages)
-            .add_observer(clear_removed_cloth)
-            .add_observer(clear_removed_collider)
-            .add_observer(reset_motion)
-            .add_observer(remove_bone_colliders)
-            .add_observer(forget_collider)
-            .add_observer(note_enabled)
-            .add_systems(Last, note_removals)
-            .add_systems(Last, log_notices.run_if(Notices::are_there));
-        #[cfg(feature = "mesh")]
-        app.init_resource::<SharedMeshes>();
-        // In the schedule of transform propagation, cameras and visibility are of this frame or of the last.
-        let levels = choose_levels.ambiguous_with(TransformSystems::Propagate);
-        #[cfg(feature = "mesh")]
-        let levels = levels.ambiguous_with(VisibilitySystems::VisibilityPropagate);
-        app.configure_sets(
-            self.schedule,
-            (
-                ClothSystems::Prepare,
-                ClothSystems::Rebuild,
-                ClothSystems::Query,
-                ClothSystems::Integrate,
-                ClothSystems::WriteBack,
-            )
-                .chain(),
-        )
-        .add_systems(
-            self.schedule,
-            (
-                (
-                    give_order,
-                    note_removals,
-                    follow_roots,
-                    prepare_colliders,
-                    prepare_wind,
-                    levels,
-                    prepare_cloths,
-                    find_islands,
-                )
-                    .chain()
-                    .run_if(resource_exists::<Time>)
-                    .in_set(ClothSystems::Prepare),
-                rebuild_hierarchies.in_set(ClothSystems::Rebuild),
-                query_collisions.in_set(ClothSystems::Query),
-                // In the schedule of transform propagation, a pushed body may be drawn a frame late.
-                (
-                    integrate,
-                    push_bodies.ambiguous_with(TransformSystems::Propagate),
-                )
-                    .chain()
-                    .in_set(ClothSystems::Integrate),
-                make_bone_colliders.in_set(ClothSystems::WriteBack),
-                (report_lost, send_touch_messages, report_limits, log_faults)
-                    .chain()
-                    .in_set(ClothSystems::WriteBack),
-            ),
-        );
+        register_types(app);
+        add_resources_and_observers(app);
+        add_systems(app, self.schedule);
     }
 
     fn finish(&self, app: &mut App) {
@@ -199,6 +103,114 @@ impl Plugin for ClothPlugin {
             );
         }
     }
+}
+
+fn register_types(app: &mut App) {
+    app.register_type::<ClothMaterial>()
+        .register_type::<ClothParticles>()
+        .register_type::<ClothSettings>()
+        .register_type::<SearchMethod>()
+        .register_type::<NarrowPhase>()
+        .register_type::<ClothSelfCollision>()
+        .register_type::<ClothLayers>()
+        .register_type::<ClothBody>()
+        .register_type::<ClothPush>()
+        .register_type::<ClothContacts>()
+        .register_type::<ClothFrame>()
+        .register_type::<ClothStats>()
+        .register_type::<ClothTeleport>()
+        .register_type::<ClothInertia>()
+        .register_type::<ClothBuilt>()
+        .register_type::<ClothSearch>()
+        .register_type::<ClothFault>()
+        .register_type::<ClothGravity>()
+        .register_type::<ClothWind>()
+        .register_type::<ClothWindZone>()
+        .register_type::<ClothOrder>()
+        .register_type::<ClothAir>()
+        .register_type::<ClothPressure>();
+    register_lists(app);
+}
+
+fn add_resources_and_observers(app: &mut App) {
+    add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
+    add_parts_to_earlier::<ClothCollider, ColliderParts>(app.world_mut());
+    add_parts_to_earlier::<ClothWindZone, ClothOrder>(app.world_mut());
+    app.init_resource::<ClothGravity>()
+        .add_message::<ClothTouchStarted>()
+        .add_message::<ClothTouchStopped>()
+        .add_message::<ClothLimitExceeded>()
+        .insert_resource(ClothPresence::Simulated)
+        .init_resource::<SharedParts>()
+        .init_resource::<Notices>()
+        .init_resource::<Islands>()
+        .init_resource::<ColliderTree>()
+        .init_resource::<WindField>()
+        .init_resource::<ChangedColliders>()
+        .init_resource::<Teleporting>()
+        .add_observer(add_parts::<Cloth, ClothParts>)
+        .add_observer(add_parts::<ClothCollider, ColliderParts>)
+        .add_observer(add_parts::<ClothWindZone, ClothOrder>)
+        .add_observer(send_stopped_messages)
+        .add_observer(clear_removed_cloth)
+        .add_observer(clear_removed_collider)
+        .add_observer(reset_motion)
+        .add_observer(remove_bone_colliders)
+        .add_observer(forget_collider)
+        .add_observer(note_enabled)
+        .add_systems(Last, note_removals)
+        .add_systems(Last, log_notices.run_if(Notices::are_there));
+    #[cfg(feature = "mesh")]
+    app.init_resource::<SharedMeshes>();
+}
+
+fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
+    // In the schedule of transform propagation, cameras and visibility are of this frame or of the last.
+    let levels = choose_levels.ambiguous_with(TransformSystems::Propagate);
+    #[cfg(feature = "mesh")]
+    let levels = levels.ambiguous_with(VisibilitySystems::VisibilityPropagate);
+    app.configure_sets(
+        schedule,
+        (
+            ClothSystems::Prepare,
+            ClothSystems::Rebuild,
+            ClothSystems::Query,
+            ClothSystems::Integrate,
+            ClothSystems::WriteBack,
+        )
+            .chain(),
+    )
+    .add_systems(
+        schedule,
+        (
+            (
+                give_order,
+                note_removals,
+                follow_roots,
+                prepare_colliders,
+                prepare_wind,
+                levels,
+                prepare_cloths,
+                find_islands,
+            )
+                .chain()
+                .run_if(resource_exists::<Time>)
+                .in_set(ClothSystems::Prepare),
+            rebuild_hierarchies.in_set(ClothSystems::Rebuild),
+            query_collisions.in_set(ClothSystems::Query),
+            // In the schedule of transform propagation, a pushed body may be drawn a frame late.
+            (
+                integrate,
+                push_bodies.ambiguous_with(TransformSystems::Propagate),
+            )
+                .chain()
+                .in_set(ClothSystems::Integrate),
+            make_bone_colliders.in_set(ClothSystems::WriteBack),
+            (report_lost, send_touch_messages, report_limits, log_faults)
+                .chain()
+                .in_set(ClothSystems::WriteBack),
+        ),
+    );
 }
 
 /// The components that it adds to a collider.

@@ -93,6 +93,16 @@ impl Frame {
     }
 }
 
+/// Makes a vector of length 1, and returns the square of its length.
+#[inline(always)]
+fn normalize(vector: &mut [f32; 3]) -> f32 {
+    let [x, y, z] = *vector;
+    let square = x * x + y * y + z * z;
+    let inverse = 1.0 / square.sqrt();
+    *vector = vector.map(|of| of * inverse);
+    square
+}
+
 /// Writes the vertices' positions, normals and tangents (x, y and z), as far as there is room. `around` are the
 /// particles' positions and normals.
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
@@ -130,18 +140,12 @@ pub(super) fn write_eights(
                 t[x] = (b[x][l] - a[x][l]) * eight.along[0][l]
                     + (c[x][l] - a[x][l]) * eight.along[1][l];
             }
-            let square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-            squares[0][l] = square;
-            let inverse = 1.0 / square.sqrt();
-            n = n.map(|n| n * inverse);
+            squares[0][l] = normalize(&mut n);
             let along = n[0] * t[0] + n[1] * t[1] + n[2] * t[2];
             for x in 0..3 {
                 t[x] -= n[x] * along;
             }
-            let square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
-            squares[1][l] = square;
-            let inverse = 1.0 / square.sqrt();
-            t = t.map(|t| t * inverse);
+            squares[1][l] = normalize(&mut t);
             let s = [
                 n[1] * t[2] - n[2] * t[1],
                 n[2] * t[0] - n[0] * t[2],

@@ -79,11 +79,41 @@ impl PushOut {
         }
     }
 
+    /// As [`Contact::stopped_and_out`], for one of eight lanes: the stopped displacement, and the release beside it (m).
+    /// `apart` is the relative displacement along the normal (m).
+    #[inline(always)]
+    pub fn of_lane(&self, depth: f32, apart: f32) -> (f32, f32) {
+        let stopped = if depth < -apart { depth } else { -apart };
+        let stopped = if stopped > 0.0 { stopped } else { 0.0 };
+        let overlap = depth - stopped;
+        let released = overlap * self.rate;
+        let released = larger(released, self.slowest);
+        let released = if released < self.fastest {
+            released
+        } else {
+            self.fastest
+        };
+        (
+            stopped,
+            if released < overlap {
+                released
+            } else {
+                overlap
+            },
+        )
+    }
+
     /// The released part of an overlap (m).
     pub fn of(&self, overlap: f32) -> f32 {
         let let_out = (overlap * self.rate).max(self.slowest);
         let_out.min(self.fastest).min(overlap)
     }
+}
+
+/// The larger of two numbers, as a comparison that vectorises.
+#[inline(always)]
+pub(crate) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// The impulse on a collider as mass × displacement (kg m): momentum times the sub-step.

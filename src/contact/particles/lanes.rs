@@ -12,7 +12,10 @@ use multiversion::multiversion;
 
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
-    contact::{candidates::ContactBlock, friction::PushOut},
+    contact::{
+        candidates::ContactBlock,
+        friction::{PushOut, larger},
+    },
 };
 
 /// A ball, or a capsule.
@@ -72,6 +75,19 @@ pub(crate) struct LaneMotion {
     pub thickness: f32,
 }
 
+impl LaneMotion {
+    /// Displacement of the surface in the sub-step at an arm from the collider's origin (m).
+    #[inline(always)]
+    pub fn of_surface(&self, [ax, ay, az]: [f32; 3]) -> [f32; 3] {
+        let ([sx, sy, sz], [wx, wy, wz]) = (self.slide, self.spin);
+        [
+            sx + (wy * az - wz * ay),
+            sy + (wz * ax - wx * az),
+            sz + (wx * ay - wy * ax),
+        ]
+    }
+}
+
 /// Sums over all blocks, lane by lane.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Sums {
@@ -87,6 +103,19 @@ pub(crate) struct Sums {
     pub left: u32,
     /// Largest push of a corner by one triangle (m).
     pub passed: f32,
+}
+
+impl Sums {
+    /// Adds to a lane what its particle gave (kg m) at an arm from the collider's origin (m).
+    #[inline(always)]
+    pub fn give(&mut self, l: usize, [gx, gy, gz]: [f32; 3], [x, y, z]: [f32; 3]) {
+        self.linear[0][l] += gx;
+        self.linear[1][l] += gy;
+        self.linear[2][l] += gz;
+        self.angular[0][l] += y * gz - z * gy;
+        self.angular[1][l] += z * gx - x * gz;
+        self.angular[2][l] += x * gy - y * gx;
+    }
 }
 
 /// Eight particles relative to a shape.
@@ -287,9 +316,7 @@ pub(crate) fn push(
     motion: &LaneMotion,
     sums: &mut Sums,
 ) {
-    let ([ox, oy, oz], [sx, sy, sz]) = (motion.origin, motion.slide);
-    let [wx, wy, wz] = motion.spin;
-    let out = motion.push_out;
+    let [ox, oy, oz] = motion.origin;
     for l in 0..LANES {
         let (weight, depth) = (view[W + l], near.depth[l]);
         let is_pushed = weight > 0.0 && depth > 0.0;
@@ -300,26 +327,11 @@ pub(crate) fn push(
         let (px, py, pz) = (view[X + l], view[Y + l], view[Z + l]);
         let gap = depth - motion.particle_radius;
         let (ax, ay, az) = (px + nx * gap - ox, py + ny * gap - oy, pz + nz * gap - oz);
-        let rx = view[DX + l] - (sx + (wy * az - wz * ay));
-        let ry = view[DY + l] - (sy + (wz * ax - wx * az));
-        let rz = view[DZ + l] - (sz + (wx * ay - wy * ax));
+        let [mx, my, mz] = motion.of_surface([ax, ay, az]);
+        let (rx, ry, rz) = (view[DX + l] - mx, view[DY + l] - my, view[DZ + l] - mz);
         let apart = nx * rx + ny * ry + nz * rz;
         let (tx, ty, tz) = (rx - nx * apart, ry - ny * apart, rz - nz * apart);
-        let stopped = if depth < -apart { depth } else { -apart };
-        let stopped = if stopped > 0.0 { stopped } else { 0.0 };
-        let overlap = depth - stopped;
-        let let_out = overlap * out.rate;
-        let let_out = if let_out > out.slowest {
-            let_out
-        } else {
-            out.slowest
-        };
-        let let_out = if let_out < out.fastest {
-            let_out
-        } else {
-            out.fastest
-        };
-        let let_out = if let_out < overlap { let_out } else { overlap };
+        let (stopped, let_out) = motion.push_out.of_lane(depth, apart);
         let slip = (tx * tx + ty * ty + tz * tz).sqrt();
         let held = motion.friction * stopped;
         let grip = if slip > held { held / slip } else { 1.0 };
@@ -339,29 +351,15 @@ pub(crate) fn push(
         view[DY + l] += dy;
         view[DZ + l] += dz;
         let depth = if is_pushed { depth } else { 0.0 };
-        sums.deepest[l] = if depth > sums.deepest[l] {
-            depth
-        } else {
-            sums.deepest[l]
-        };
+        sums.deepest[l] = larger(depth, sums.deepest[l]);
         let pushed = mx * mx + my * my + mz * mz;
-        sums.farthest_push[l] = if pushed > sums.farthest_push[l] {
-            pushed
-        } else {
-            sums.farthest_push[l]
-        };
+        sums.farthest_push[l] = larger(pushed, sums.farthest_push[l]);
         let inside = if is_pushed { area[l] } else { 0.0 };
         sums.area[l] += inside;
         sums.volume[l] += inside * depth;
         let mass = if is_pushed { 1.0 / weight } else { 0.0 };
-        let (gx, gy, gz) = (-dx * mass, -dy * mass, -dz * mass);
-        let (ax, ay, az) = (px + mx - ox, py + my - oy, pz + mz - oz);
-        sums.linear[0][l] += gx;
-        sums.linear[1][l] += gy;
-        sums.linear[2][l] += gz;
-        sums.angular[0][l] += ay * gz - az * gy;
-        sums.angular[1][l] += az * gx - ax * gz;
-        sums.angular[2][l] += ax * gy - ay * gx;
+        let given = [-dx * mass, -dy * mass, -dz * mass];
+        sums.give(l, given, [px + mx - ox, py + my - oy, pz + mz - oz]);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{
     cloth::{Block, DX, DY, DZ, LANES, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
-        friction::FrictionBudget,
+        friction::{FrictionBudget, larger},
         particles::{LaneMotion, Sums},
     },
 };
@@ -36,29 +36,17 @@ fn hold(
     kept: f32,
     sums: &mut Sums,
 ) {
-    let ([ox, oy, oz], [sx, sy, sz]) = (motion.origin, motion.slide);
-    let ([wx, wy, wz], [ux, uy, uz]) = (motion.spin, core.axis);
+    let ([ox, oy, oz], [ux, uy, uz]) = (motion.origin, core.axis);
     let mut left = [0.0; LANES];
     for l in 0..LANES {
         let weight = view[W + l];
         let (px, py, pz) = (held.push[0][l], held.push[1][l], held.push[2][l]);
         let pushed = (px * px + py * py + pz * pz).sqrt();
         let is_new = pushed > 0.0;
-        let nx = if is_new {
-            px / pushed
-        } else {
-            held.normal[0][l]
-        };
-        let ny = if is_new {
-            py / pushed
-        } else {
-            held.normal[1][l]
-        };
-        let nz = if is_new {
-            pz / pushed
-        } else {
-            held.normal[2][l]
-        };
+        let [nx, ny, nz] = [0, 1, 2].map(|axis| {
+            let new = held.push[axis][l] / pushed;
+            if is_new { new } else { held.normal[axis][l] }
+        });
         let budget = held.budget[l] * kept + motion.friction * pushed;
         let (x, y, z) = (view[X + l] - ox, view[Y + l] - oy, view[Z + l] - oz);
         let along = x * ux + y * uy + z * uz;
@@ -76,9 +64,8 @@ fn hold(
         let ax = ux * along + nx * core.radius;
         let ay = uy * along + ny * core.radius;
         let az = uz * along + nz * core.radius;
-        let rx = view[DX + l] - (sx + (wy * az - wz * ay));
-        let ry = view[DY + l] - (sy + (wz * ax - wx * az));
-        let rz = view[DZ + l] - (sz + (wx * ay - wy * ax));
+        let [mx, my, mz] = motion.of_surface([ax, ay, az]);
+        let (rx, ry, rz) = (view[DX + l] - mx, view[DY + l] - my, view[DZ + l] - mz);
         let apart = nx * rx + ny * ry + nz * rz;
         let (tx, ty, tz) = (rx - nx * apart, ry - ny * apart, rz - nz * apart);
         let slip = (tx * tx + ty * ty + tz * tz).sqrt();
@@ -104,20 +91,10 @@ fn hold(
         held.normal[2][l] = nz;
         held.budget[l] = budget;
         let moved = fx * fx + fy * fy + fz * fz;
-        sums.farthest_push[l] = if moved > sums.farthest_push[l] {
-            moved
-        } else {
-            sums.farthest_push[l]
-        };
+        sums.farthest_push[l] = larger(moved, sums.farthest_push[l]);
         let mass = if is_held { 1.0 / weight } else { 0.0 };
-        let (gx, gy, gz) = (-fx * mass, -fy * mass, -fz * mass);
-        let (x, y, z) = (x + fx, y + fy, z + fz);
-        sums.linear[0][l] += gx;
-        sums.linear[1][l] += gy;
-        sums.linear[2][l] += gz;
-        sums.angular[0][l] += y * gz - z * gy;
-        sums.angular[1][l] += z * gx - x * gz;
-        sums.angular[2][l] += x * gy - y * gx;
+        let given = [-fx * mass, -fy * mass, -fz * mass];
+        sums.give(l, given, [x + fx, y + fy, z + fz]);
     }
     held.push = [[0.0; LANES]; 3];
     held.is_active = left.into_iter().any(|left| left > 0.0);

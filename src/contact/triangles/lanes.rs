@@ -7,7 +7,10 @@ use bevy::math::Vec3;
 use super::triangle::cap;
 use crate::{
     cloth::{DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
-    contact::particles::{LaneMotion, Sums},
+    contact::{
+        friction::larger,
+        particles::{LaneMotion, Sums},
+    },
 };
 
 /// Largest push of a corner, relative to that of the triangle's point. With free corners and the masses of a grid, up
@@ -49,30 +52,30 @@ pub(crate) struct Nearest {
     pub corner: Lanes,
 }
 
+impl Nearest {
+    const NONE: Self = Self {
+        parts: [[0.0; LANES]; 2],
+        offset: [[0.0; LANES]; 3],
+        distance: [0.0; LANES],
+        areas: [[0.0; LANES]; 3],
+        sum: [0.0; LANES],
+        edges: [[0.0; LANES]; 3],
+        corner: [0.0; LANES],
+    };
+}
+
+/// From one corner to another, in a lane (m).
+#[inline(always)]
+fn between(a: &View, b: &View, l: usize) -> [f32; 3] {
+    [X, Y, Z].map(|axis| b[axis + l] - a[axis + l])
+}
+
 /// The nearest points of eight triangles, by their Voronoi regions (Ericson 2005, chapter 5).
 #[inline(always)]
 pub(crate) fn nearest_of_each(a: &View, b: &View, c: &View, [px, py, pz]: [f32; 3]) -> Nearest {
-    let zero = [0.0; LANES];
-    let mut near = Nearest {
-        parts: [zero; 2],
-        offset: [zero; 3],
-        distance: zero,
-        areas: [zero; 3],
-        sum: zero,
-        edges: [zero; 3],
-        corner: zero,
-    };
+    let mut near = Nearest::NONE;
     for l in 0..LANES {
-        let (bx, by, bz) = (
-            b[X + l] - a[X + l],
-            b[Y + l] - a[Y + l],
-            b[Z + l] - a[Z + l],
-        );
-        let (cx, cy, cz) = (
-            c[X + l] - a[X + l],
-            c[Y + l] - a[Y + l],
-            c[Z + l] - a[Z + l],
-        );
+        let ([bx, by, bz], [cx, cy, cz]) = (between(a, b, l), between(a, c, l));
         let (x, y, z) = (px - a[X + l], py - a[Y + l], pz - a[Z + l]);
         let near_a = x * x + y * y + z * z;
         let d1 = bx * x + by * y + bz * z;
@@ -186,8 +189,6 @@ pub(crate) fn pushes(
         shares: [zero; 3],
     };
     let [a, b, c] = corners;
-    let ([sx, sy, sz], [wx, wy, wz]) = (motion.slide, motion.spin);
-    let out = motion.push_out;
     let radius = cells.reach - motion.particle_radius;
     let mut farthest = [0.0_f32; LANES];
     for l in 0..LANES {
@@ -195,11 +196,10 @@ pub(crate) fn pushes(
         let u = 1.0 - v - w;
         let (part_a, part_b, part_c) = (u * a[W + l], v * b[W + l], w * c[W + l]);
         let mobility = u * part_a + v * part_b + w * part_c;
-        let largest = if part_a > part_b { part_a } else { part_b };
-        let largest = if largest > part_c { largest } else { part_c };
+        let largest = larger(larger(part_a, part_b), part_c);
         // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
         let least = largest / MAX_SHARE;
-        let mobility = if mobility > least { mobility } else { least };
+        let mobility = larger(mobility, least);
         let is_pushed = is_pushed[l] & (mobility > 0.0);
         let distance = near.distance[l];
         let (nx, ny, nz) = (
@@ -208,26 +208,13 @@ pub(crate) fn pushes(
             near.offset[2][l] / distance,
         );
         let (ax, ay, az) = (nx * radius, ny * radius, nz * radius);
-        let rx = u * a[DX + l] + v * b[DX + l] + w * c[DX + l] - (sx + (wy * az - wz * ay));
-        let ry = u * a[DY + l] + v * b[DY + l] + w * c[DY + l] - (sy + (wz * ax - wx * az));
-        let rz = u * a[DZ + l] + v * b[DZ + l] + w * c[DZ + l] - (sz + (wx * ay - wy * ax));
+        let [mx, my, mz] = motion.of_surface([ax, ay, az]);
+        let rx = u * a[DX + l] + v * b[DX + l] + w * c[DX + l] - mx;
+        let ry = u * a[DY + l] + v * b[DY + l] + w * c[DY + l] - my;
+        let rz = u * a[DZ + l] + v * b[DZ + l] + w * c[DZ + l] - mz;
         let apart = nx * rx + ny * ry + nz * rz;
         let depth = cells.reach - distance;
-        let stopped = if depth < -apart { depth } else { -apart };
-        let stopped = if stopped > 0.0 { stopped } else { 0.0 };
-        let overlap = depth - stopped;
-        let let_out = overlap * out.rate;
-        let let_out = if let_out > out.slowest {
-            let_out
-        } else {
-            out.slowest
-        };
-        let let_out = if let_out < out.fastest {
-            let_out
-        } else {
-            out.fastest
-        };
-        let let_out = if let_out < overlap { let_out } else { overlap };
+        let (stopped, let_out) = motion.push_out.of_lane(depth, apart);
         let far = if is_pushed { stopped + let_out } else { 0.0 };
         let stopped = if is_pushed { stopped } else { 0.0 };
         let nx = if is_pushed { nx } else { 0.0 };
@@ -244,15 +231,10 @@ pub(crate) fn pushes(
         pushes.shares[0][l] = share_a;
         pushes.shares[1][l] = share_b;
         pushes.shares[2][l] = share_c;
-        let share = if share_a > share_b { share_a } else { share_b };
-        let share = if share > share_c { share } else { share_c };
+        let share = larger(larger(share_a, share_b), share_c);
         farthest[l] = far * share;
         let depth = if is_pushed { depth } else { 0.0 };
-        sums.deepest[l] = if depth > sums.deepest[l] {
-            depth
-        } else {
-            sums.deepest[l]
-        };
+        sums.deepest[l] = larger(depth, sums.deepest[l]);
     }
     sums.passed = farthest.into_iter().fold(sums.passed, f32::max);
     pushes

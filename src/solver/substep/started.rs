@@ -156,9 +156,7 @@ impl Solver {
         }
         let step = tick.step;
         let dt = tick.substep();
-        let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
         let kernels = self.simd_level.kernels();
-        let partitions = self.partitions();
         let mut substep = SubStep {
             index: tick.next,
             count: tick.substeps(),
@@ -174,45 +172,8 @@ impl Solver {
         };
         let weight_dt2 = weight(kind) * dt * dt;
         let pull = step.acceleration * weight_dt2;
-        if let Some(air) = &mut self.air {
-            air.before_substep(tick.next, particles, &kernels);
-            tick.damping_reference.blow(air.memory().force);
-        }
-        let damping_reference = tick.damping_reference.follow(particles.blocks());
-        let prediction = Prediction::new(kind, kept, pull, damping_reference);
-        // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
-        tick.damping_reference
-            .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });
-        let air_step = AirStep {
-            weight: weight_dt2,
-            inverse_substep: 1.0 / dt,
-        };
-        let linearized = self.air.as_ref().map(|air| air.linearized());
-        let (blocks, past) = particles.blocks_and_past();
-        match (step.order, linearized) {
-            (TimeOrder::First, None) => (kernels.predict_first)(blocks, &prediction),
-            (TimeOrder::First, Some(linearized)) => {
-                (kernels.predict_first_in_air)(blocks, linearized, &prediction, &air_step);
-            }
-            (TimeOrder::Second, linearized) => {
-                let predict = |first: usize, blocks: &mut [Block], past: &mut [Earlier]| {
-                    let Some(linearized) = linearized else {
-                        return (kernels.predict)(blocks, past, &prediction);
-                    };
-                    let linearized = &linearized[first..first + blocks.len()];
-                    (kernels.predict_in_air)(blocks, past, linearized, &prediction, &air_step);
-                };
-                if partitions > 1 {
-                    let size = blocks.len().div_ceil(partitions);
-                    let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
-                    in_partitions(parts.enumerate(), |(partition, (blocks, past))| {
-                        predict(partition * size, blocks, past);
-                    });
-                } else {
-                    predict(0, blocks, past);
-                }
-            }
-        }
+        self.predict(particles, tick, kind, weight_dt2);
+        let blocks = particles.blocks_mut();
         if let Some(air) = &mut self.air {
             air.press(blocks, weight_dt2);
         }
@@ -243,6 +204,61 @@ impl Solver {
         tick.material = swept.stretch.map_or(0.0, |stretch| stretch.material);
         substep.farthest_move = swept.moved.into_iter().fold(0.0, f32::max).sqrt();
         Some(substep)
+    }
+
+    /// Moves the particles by the next sub-step of the kind as far as nothing but gravity and air acts on them. `weight` is that
+    /// of a force in it (s²).
+    fn predict(
+        &mut self,
+        particles: &mut ClothParticles,
+        tick: &mut StartedTick,
+        kind: StepKind,
+        weight: f32,
+    ) {
+        let (step, dt) = (tick.step, tick.substep());
+        let kernels = self.simd_level.kernels();
+        let partitions = self.partitions();
+        let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
+        let pull = step.acceleration * weight;
+        if let Some(air) = &mut self.air {
+            air.before_substep(tick.next, particles, &kernels);
+            tick.damping_reference.blow(air.memory().force);
+        }
+        let damping_reference = tick.damping_reference.follow(particles.blocks());
+        let prediction = Prediction::new(kind, kept, pull, damping_reference);
+        // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
+        tick.damping_reference
+            .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });
+        let air_step = AirStep {
+            weight,
+            inverse_substep: 1.0 / dt,
+        };
+        let linearized = self.air.as_ref().map(|air| air.linearized());
+        let (blocks, past) = particles.blocks_and_past();
+        match (step.order, linearized) {
+            (TimeOrder::First, None) => (kernels.predict_first)(blocks, &prediction),
+            (TimeOrder::First, Some(linearized)) => {
+                (kernels.predict_first_in_air)(blocks, linearized, &prediction, &air_step);
+            }
+            (TimeOrder::Second, linearized) => {
+                let predict = |first: usize, blocks: &mut [Block], past: &mut [Earlier]| {
+                    let Some(linearized) = linearized else {
+                        return (kernels.predict)(blocks, past, &prediction);
+                    };
+                    let linearized = &linearized[first..first + blocks.len()];
+                    (kernels.predict_in_air)(blocks, past, linearized, &prediction, &air_step);
+                };
+                if partitions > 1 {
+                    let size = blocks.len().div_ceil(partitions);
+                    let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
+                    in_partitions(parts.enumerate(), |(partition, (blocks, past))| {
+                        predict(partition * size, blocks, past);
+                    });
+                } else {
+                    predict(0, blocks, past);
+                }
+            }
+        }
     }
 
     /// The next sub-step of a tick of forces. The call after the last one ends the tick.

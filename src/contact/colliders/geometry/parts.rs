@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy::math::{Quat, Vec3};
 use parry3d::{
     math::Pose,
-    shape::{SharedShape, TriMesh, TypedShape},
+    shape::{SharedShape, TriMesh, Triangle, TypedShape},
 };
 
 use super::{
@@ -225,12 +225,8 @@ impl Parts {
                 self.add_round(pose, shape, inner, round.border_radius)?;
             }
             TypedShape::RoundTriangle(round) => {
-                let corners = vec![
-                    round.inner_shape.a,
-                    round.inner_shape.b,
-                    round.inner_shape.c,
-                ];
-                let inner = (corners, vec![[0, 1, 2]]);
+                let Triangle { a, b, c } = round.inner_shape;
+                let inner = (vec![a, b, c], vec![[0, 1, 2]]);
                 self.add_round(pose, shape, inner, round.border_radius)?;
             }
             TypedShape::RoundCylinder(round) => {

@@ -95,21 +95,14 @@ fn around([low, high]: [Vec3; 2], reach: f32) -> Bounds {
 }
 
 impl ColliderMotion {
-    /// Reads the current place of its entity.
-    ///
-    /// # Errors
-    /// The error of the collider, or of its transform.
-    pub fn follow(
+    /// Builds the shape if it is new, or if it or its scale has changed.
+    fn build(
         &mut self,
         collider: &ClothCollider,
-        body: Option<&ClothBody>,
-        places: &Places,
         meshes: &ColliderMeshes,
         entity: Entity,
-        time_passes: bool,
+        scale: Vec3,
     ) -> Result<(), ClothError> {
-        let transform = places.of(entity)?;
-        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let known = self.built.as_ref().and_then(|built| built.source);
         let source = meshes.find(entity, collider, known)?;
         let is_built = self
@@ -127,6 +120,25 @@ impl ColliderMotion {
                 scale,
             });
         }
+        Ok(())
+    }
+
+    /// Reads the current place of its entity.
+    ///
+    /// # Errors
+    /// The error of the collider, or of its transform.
+    pub fn follow(
+        &mut self,
+        collider: &ClothCollider,
+        body: Option<&ClothBody>,
+        places: &Places,
+        meshes: &ColliderMeshes,
+        entity: Entity,
+        time_passes: bool,
+    ) -> Result<(), ClothError> {
+        let transform = places.of(entity)?;
+        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
+        self.build(collider, meshes, entity, scale)?;
         let Some(BuiltShape { shape, offset, .. }) = &self.built else {
             return Ok(());
         };
