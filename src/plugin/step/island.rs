@@ -39,32 +39,7 @@ pub(crate) fn integrate_together(
 ) {
     let start = Instant::now();
     let entities: EntityIndexSet = island.cloths.iter().map(|(_, cloth)| *cloth).collect();
-    let mut members = Vec::new();
-    let mut first = None;
-    for mut cloth in cloths.iter_many_unique_mut(&entities) {
-        let is_asleep = cloth.state.rest.is_asleep();
-        // One that sleeps stays prepared while nothing changes.
-        let step = match is_asleep {
-            true => cloth.scratch.step,
-            false => cloth.scratch.step.take(),
-        };
-        let Some(step) = step else {
-            continue;
-        };
-        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
-            continue;
-        }
-        let frame = cloth.frame.isometry();
-        let to_common = first.map(|first: Isometry3d| first.inverse() * frame);
-        first = first.or(Some(frame));
-        cloth.stats.is_asleep = is_asleep;
-        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
-        members.push(Member {
-            cloth,
-            step: (!is_asleep).then_some(step),
-            to_common,
-        });
-    }
+    let mut members = members(cloths, &entities);
     // All take the largest number of sub-steps that any of them needs.
     let mut substeps = members
         .iter()
@@ -114,6 +89,40 @@ pub(crate) fn integrate_together(
     }
 }
 
+/// The cloths of an island that are moved in the tick, and those that sleep in it.
+fn members<'w, 's>(
+    cloths: &'w mut Query<'_, 's, IntegrateQuery>,
+    entities: &EntityIndexSet,
+) -> Vec<Member<'w, 's>> {
+    let mut members = Vec::new();
+    let mut first = None;
+    for mut cloth in cloths.iter_many_unique_mut(entities) {
+        let is_asleep = cloth.state.rest.is_asleep();
+        // One that sleeps stays prepared while nothing changes.
+        let step = match is_asleep {
+            true => cloth.scratch.step,
+            false => cloth.scratch.step.take(),
+        };
+        let Some(step) = step else {
+            continue;
+        };
+        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
+            continue;
+        }
+        let frame = cloth.frame.isometry();
+        let to_common = first.map(|first: Isometry3d| first.inverse() * frame);
+        first = first.or(Some(frame));
+        cloth.stats.is_asleep = is_asleep;
+        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+        members.push(Member {
+            cloth,
+            step: (!is_asleep).then_some(step),
+            to_common,
+        });
+    }
+    members
+}
+
 /// A single run through the sub-steps of all. Returns the number that a tolerance needs, if these were too few.
 fn advance(
     members: &mut [Member],
@@ -124,19 +133,7 @@ fn advance(
 ) -> Option<u32> {
     let seconds = members.iter().find_map(|member| member.step)?.seconds;
     let dt = seconds / substeps as f32;
-    let mut ticks: Vec<Option<StartedTick>> = members
-        .iter_mut()
-        .map(|Member { cloth, step, .. }| {
-            let step = TickStep {
-                substeps,
-                ..(*step)?
-            };
-            cloth.recall_carriers(substeps);
-            let solver = &mut cloth.built.solver;
-            solver.set_partitions(1);
-            Some(solver.begin(&mut cloth.particles, step, &cloth.scratch.pins))
-        })
-        .collect();
+    let mut ticks = begin(members, substeps);
     let layers: Vec<ClothLayers> = members
         .iter()
         .map(|member| member.cloth.layers.copied().unwrap_or_default())
@@ -178,6 +175,28 @@ fn advance(
             }
         }
     }
+    end(members, ticks, substeps)
+}
+
+/// Begins the tick of each member that is moved.
+fn begin(members: &mut [Member], substeps: u32) -> Vec<Option<StartedTick>> {
+    members
+        .iter_mut()
+        .map(|Member { cloth, step, .. }| {
+            let step = TickStep {
+                substeps,
+                ..(*step)?
+            };
+            cloth.recall_carriers(substeps);
+            let solver = &mut cloth.built.solver;
+            solver.set_partitions(1);
+            Some(solver.begin(&mut cloth.particles, step, &cloth.scratch.pins))
+        })
+        .collect()
+}
+
+/// Ends the tick of each member. Returns the number of sub-steps that a tolerance needs, if these were too few.
+fn end(members: &mut [Member], ticks: Vec<Option<StartedTick>>, substeps: u32) -> Option<u32> {
     let mut wanted = None;
     for (Member { cloth, step, .. }, tick) in members.iter_mut().zip(ticks) {
         let (Some(mut tick), Some(step)) = (tick, step) else {

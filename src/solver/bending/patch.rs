@@ -111,30 +111,7 @@ impl Patch {
                 of_curvature[edge] += number * squares;
             }
         }
-        // The smallest curvature that fits: Bᵀ (B Bᵀ + ε)⁻¹.
-        let mut gram = [[0.0; 3]; 3];
-        for (row, one) in gram.iter_mut().zip(&of_curvature) {
-            for (number, other) in row.iter_mut().zip(&of_curvature) {
-                *number = one.dot(*other);
-            }
-        }
-        let trace = gram[0][0] + gram[1][1] + gram[2][2];
-        if trace.is_nan() || trace <= 0.0 {
-            return None;
-        }
-        for (at, row) in gram.iter_mut().enumerate() {
-            row[at] += REGULAR * trace / 3.0;
-        }
-        let inverse = DMat3::from_cols_array_2d(&gram).inverse();
-        let mut curvature = [[0.0; 6]; 3];
-        for particle in 0..6 {
-            let of_edges = inverse * DVec3::from_array(slopes.map(|slope| slope[particle]));
-            for (component, of) in curvature.iter_mut().enumerate() {
-                of[particle] = (0..3)
-                    .map(|edge| of_curvature[edge][component] * of_edges[edge])
-                    .sum();
-            }
-        }
+        let curvature = smallest_curvature(&slopes, &of_curvature)?;
         Some(Self {
             particles,
             curvature,
@@ -167,4 +144,33 @@ impl Patch {
             forces,
         })
     }
+}
+
+/// The smallest curvature that fits the slopes at the edges, as factors of the six particles: Bᵀ (B Bᵀ + ε)⁻¹ H. `None` where
+/// there is no slope.
+fn smallest_curvature(slopes: &[[f64; 6]; 3], of_curvature: &[DVec3; 3]) -> Option<[[f64; 6]; 3]> {
+    let mut gram = [[0.0; 3]; 3];
+    for (row, one) in gram.iter_mut().zip(of_curvature) {
+        for (number, other) in row.iter_mut().zip(of_curvature) {
+            *number = one.dot(*other);
+        }
+    }
+    let trace = gram[0][0] + gram[1][1] + gram[2][2];
+    if trace.is_nan() || trace <= 0.0 {
+        return None;
+    }
+    for (at, row) in gram.iter_mut().enumerate() {
+        row[at] += REGULAR * trace / 3.0;
+    }
+    let inverse = DMat3::from_cols_array_2d(&gram).inverse();
+    let mut curvature = [[0.0; 6]; 3];
+    for particle in 0..6 {
+        let of_edges = inverse * DVec3::from_array(slopes.map(|slope| slope[particle]));
+        for (component, of) in curvature.iter_mut().enumerate() {
+            of[particle] = (0..3)
+                .map(|edge| of_curvature[edge][component] * of_edges[edge])
+                .sum();
+        }
+    }
+    Some(curvature)
 }
