@@ -69,7 +69,7 @@ impl Detection {
                 continue;
             };
             has_carried = true;
-            self.deviation = self.deviation.max(body.deviation(&moving, substep.end()));
+            self.margin.deviate(body.deviation(&moving, substep.end()));
             if let Some(touch) = self.touches.iter_mut().find(|touch| touch.id == body.id) {
                 touch.travelled += gone;
                 let seconds = f64::from(particles.substep());

@@ -4,6 +4,7 @@
 mod carrying;
 mod caught;
 mod embedded;
+mod margin;
 mod pinned_faces;
 mod requery;
 
@@ -16,8 +17,8 @@ use super::{
     candidates::{Candidates, ContactPoint, ContactSettings, NarrowPhase, SavedCandidates, Touch},
     colliders::{ColliderShape, MovingCollider},
     edges::{ShapeCache, push_shape},
-    friction::PushOut,
-    particles::{ParticlesNearEdges, lane_motion, push_particles},
+    friction::{Impulse, PushOut},
+    particles::{ContactResult, ParticlesNearEdges, lane_motion, push_particles},
     triangles::{CoreMotion, ResumePoint, TrianglePush},
 };
 use crate::{
@@ -26,6 +27,7 @@ use crate::{
     solver::SubStep,
 };
 use embedded::Embedding;
+use margin::Margin;
 use pinned_faces::is_sewn_on;
 
 /// The penetrating area of triangles is measured in every fourth sub-step, in the last one, and until there is some. It
@@ -51,27 +53,14 @@ pub struct Detection {
     surface: Arc<Surface>,
     /// Radius of the particles at the beginning of a tick (m).
     particle_radius: f32,
-    /// Displacement of a particle after which the candidates are searched for again (m).
-    margin: f32,
-    /// Largest displacement of a particle since the search (m): the sum of the largest moves and pushes, or measured.
-    moved: f32,
-    /// The particles at the time of the search, if there was one.
-    origin: ClothParticles,
-    has_origin: bool,
-    /// Number of measurements in this sub-step.
-    measured: u32,
-    /// The part of that in this sub-step: a sweep reaches this far back (m).
-    moved_now: f32,
-    /// Sum of all displacements in the tick so far (m): nothing farther away can have arrived.
-    odometer: f32,
+    margin: Margin,
     requeries: u32,
     found: TopDownQuery,
     kept: SavedCandidates,
-    /// The dynamic colliders, and their largest deviation from the motion that was searched for (m).
+    /// The dynamic colliders.
     bodies: Vec<Body>,
     /// Memory of earlier ones.
     spare: Vec<Carriers>,
-    deviation: f32,
     before: Before,
     shapes: ShapeCache,
 }
@@ -90,10 +79,7 @@ impl Detection {
         self.shapes.clear();
         self.colliders.clear();
         (self.spare).extend(self.bodies.drain(..).map(|body| body.carriers));
-        self.deviation = 0.0;
-        self.margin = margin;
-        (self.moved, self.moved_now, self.odometer) = (0.0, 0.0, 0.0);
-        self.has_origin = false;
+        self.margin.begin(margin);
         self.requeries = 0;
     }
 
@@ -124,7 +110,7 @@ impl Detection {
         let farthest = Vec3::from(cloth.center).length() + cloth.radius();
         let rounding = (farthest + collider.farthest_distance(cloth)) * 1.0e-5;
         let probe = collider.probe(
-            self.margin + cover + rounding,
+            self.margin.size() + cover + rounding,
             settings.particle_radius,
             cloth,
         );
@@ -211,9 +197,9 @@ impl Detection {
         if self.bodies.iter().all(|body| body.id != id) {
             (self.bodies).extend(Body::of(id, collider, &mut self.spare));
         }
-        if !self.has_origin {
+        if !self.margin.has_origin() {
             // Pushes that balance springs add up in a tick without a displacement, so it is measured from here.
-            self.remember(particles);
+            self.margin.remember(particles);
         }
         let layout = particles.layout();
         let is_sewn =
@@ -276,119 +262,29 @@ impl Detection {
         substep: SubStep,
         mut others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
-        self.moved += substep.farthest_move;
-        self.moved_now = substep.farthest_move;
-        self.odometer += substep.farthest_move;
-        self.measured = 0;
+        self.margin.begin_substep(substep.farthest_move);
         for touch in &mut self.touches {
-            let moving = touch.collider.max_surface_travel(f32::INFINITY);
-            touch.travelled += moving / substep.count as f32;
+            let travel = touch.collider.max_surface_travel(f32::INFINITY);
+            touch.travelled += travel / substep.count as f32;
         }
         let mut is_pushed = false;
         let (mut next, mut from) = (0, ResumePoint::default());
         let (mut area, mut volume) = (0.0, 0.0);
         loop {
-            if self.is_outrun(particles) {
+            if self.margin.is_outrun(particles) {
                 others(&mut self.colliders);
                 self.search(particles, settings, substep.index + 1);
             }
             let at = self.touches.partition_point(|touch| touch.id < next);
-            let Some(touch) = self.touches.get_mut(at) else {
+            if at == self.touches.len() {
                 return is_pushed;
-            };
-            let count = self.candidates.all.len();
-            let Candidates {
-                all, blocks, helds, ..
-            } = &mut self.candidates;
-            let collider = &touch.collider;
-            let first = touch.of.blocks.start;
-            let contacts = &mut blocks[touch.of.blocks.clone()];
-            let body = self.bodies.iter_mut().find(|body| body.id == touch.id);
-            if body.is_some() {
-                let blocks = contacts.iter().map(|contact| contact.block as usize);
-                let embedded = self.embedding.blocks(touch.id);
-                self.before.save(blocks.chain(embedded), particles);
             }
-            let has_edges = collider.shape.has_edges();
-            // The guard measures the cloth.
-            let odometer = if has_edges { 0.0 } else { self.odometer } + touch.travelled;
-            let motion = collider.in_substep(substep);
-            let travel = motion.slide.length() + motion.swing;
-            let shares = match touch.narrow_phase {
-                NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
-                _ => 1.0,
-            };
-            let push_out = PushOut::new(particles.substep(), travel, shares);
-            let lanes = lane_motion(&motion, settings, push_out, odometer);
-            let is_measured = touch.area == 0.0
-                || (substep.index + 1).is_multiple_of(MEASURED_EACH)
-                || substep.index + 1 == substep.count;
-            self.embedding.hide(touch.id, particles);
-            let (found, stopped) = match touch.narrow_phase {
-                _ if has_edges => {
-                    self.shapes.reserve(count);
-                    let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
-                    let of = (touch.id, &collider.shape, self.surface.len());
-                    let of = (by_triangles || collider.shape.is_geometry()).then_some(of);
-                    let guard = &mut self.shapes.guard;
-                    let limit = collider.max_surface_travel(f32::INFINITY) + self.margin;
-                    guard.measure(particles, &self.origin, contacts, [touch.travelled, limit]);
-                    let known = self.shapes.of(touch.of.candidates.clone(), of);
-                    let edges = by_triangles.then_some(&*self.surface);
-                    let mut pushing = ParticlesNearEdges {
-                        candidates: &all[touch.of.candidates.clone()],
-                        contacts,
-                        first,
-                        motion,
-                        settings,
-                        lanes: &lanes,
-                    };
-                    (push_shape(particles, &mut pushing, known, edges), None)
-                }
-                NarrowPhase::Triangles => {
-                    let motion = CoreMotion::new(motion, settings);
-                    let mut pushed = TrianglePush::new(
-                        &all[touch.of.candidates.clone()],
-                        (contacts, first),
-                        &mut helds[touch.of.helds.clone()],
-                        (self.surface.fans(), self.surface.max_faces() as f32),
-                        [self.margin - self.moved - self.deviation, self.moved_now],
-                        is_measured,
-                    );
-                    let stopped = pushed.push(particles, (&motion, &lanes), from);
-                    (pushed.found, stopped)
-                }
-                NarrowPhase::Auto | NarrowPhase::Particles => {
-                    let at = (&motion, settings);
-                    (
-                        push_particles(particles, contacts, (&mut [], 0), at, &lanes),
-                        None,
-                    )
-                }
-            };
-            let embedded = (self.embedding).push(particles, blocks, (touch.id, &motion), settings);
-            let found = found.and(&embedded);
-            let mut given = found.given;
-            if let Some(body) = body
-                && found.farthest_push > 0.0
-            {
-                let mut moving = touch.collider.clone();
-                let [kept, gone] = body.share(&self.before, particles, &mut moving, substep);
-                given.scale(f64::from(kept));
-                touch.travelled += gone;
-                self.deviation = self.deviation.max(body.deviation(&moving, substep.end()));
-                send_on(
-                    std::slice::from_mut(touch),
-                    &mut self.colliders,
-                    body.id,
-                    &moving,
-                );
-            }
+            let (found, stopped) = self.push_out_of(at, from, particles, settings, substep);
+            let given = self.share(at, &found, particles, substep);
             // Several triangles may push one particle.
-            self.moved += found.farthest_push;
-            self.moved_now += found.farthest_push;
-            self.odometer += found.farthest_push;
+            self.margin.note(found.farthest_push);
             is_pushed |= found.farthest_push > 0.0;
+            let touch = &mut self.touches[at];
             touch.deepest = touch.deepest.max(found.deepest);
             let seconds = f64::from(particles.substep());
             touch.impulse += (given.linear / seconds).as_vec3();
@@ -408,6 +304,113 @@ impl Detection {
             };
             next = after;
         }
+    }
+
+    /// Pushes particles out of one collider. Returns what it did, and where to go on if candidates may be missing.
+    fn push_out_of(
+        &mut self,
+        at: usize,
+        from: ResumePoint,
+        particles: &mut ClothParticles,
+        settings: &ContactSettings,
+        substep: SubStep,
+    ) -> (ContactResult, Option<ResumePoint>) {
+        let (touch, margin) = (&self.touches[at], &self.margin);
+        let count = self.candidates.all.len();
+        let Candidates {
+            all, blocks, helds, ..
+        } = &mut self.candidates;
+        let collider = &touch.collider;
+        let first = touch.of.blocks.start;
+        let contacts = &mut blocks[touch.of.blocks.clone()];
+        if self.bodies.iter().any(|body| body.id == touch.id) {
+            let blocks = contacts.iter().map(|contact| contact.block as usize);
+            let embedded = self.embedding.blocks(touch.id);
+            self.before.save(blocks.chain(embedded), particles);
+        }
+        let has_edges = collider.shape.has_edges();
+        // The guard measures the cloth.
+        let odometer = if has_edges { 0.0 } else { margin.odometer() } + touch.travelled;
+        let motion = collider.in_substep(substep);
+        let travel = motion.slide.length() + motion.swing;
+        let shares = match touch.narrow_phase {
+            NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
+            _ => 1.0,
+        };
+        let push_out = PushOut::new(particles.substep(), travel, shares);
+        let lanes = lane_motion(&motion, settings, push_out, odometer);
+        self.embedding.hide(touch.id, particles);
+        let (found, stopped) = match touch.narrow_phase {
+            _ if has_edges => {
+                self.shapes.reserve(count);
+                let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
+                let of = (touch.id, &collider.shape, self.surface.len());
+                let of = (by_triangles || collider.shape.is_geometry()).then_some(of);
+                let limit = collider.max_surface_travel(f32::INFINITY) + margin.size();
+                let travelled = [touch.travelled, limit];
+                (self.shapes.guard).measure(particles, margin.origin(), contacts, travelled);
+                let known = self.shapes.of(touch.of.candidates.clone(), of);
+                let mut pushing = ParticlesNearEdges {
+                    candidates: &all[touch.of.candidates.clone()],
+                    contacts,
+                    first,
+                    motion,
+                    settings,
+                    lanes: &lanes,
+                };
+                let edges = by_triangles.then_some(&*self.surface);
+                (push_shape(particles, &mut pushing, known, edges), None)
+            }
+            NarrowPhase::Triangles => {
+                let is_measured = touch.area == 0.0
+                    || (substep.index + 1).is_multiple_of(MEASURED_EACH)
+                    || substep.index + 1 == substep.count;
+                let mut pushed = TrianglePush::new(
+                    &all[touch.of.candidates.clone()],
+                    (contacts, first),
+                    &mut helds[touch.of.helds.clone()],
+                    (self.surface.fans(), self.surface.max_faces() as f32),
+                    [margin.left(), margin.moved_now()],
+                    is_measured,
+                );
+                let core = CoreMotion::new(motion, settings);
+                let stopped = pushed.push(particles, (&core, &lanes), from);
+                (pushed.found, stopped)
+            }
+            NarrowPhase::Auto | NarrowPhase::Particles => {
+                let of = (&motion, settings);
+                let found = push_particles(particles, contacts, (&mut [], 0), of, &lanes);
+                (found, None)
+            }
+        };
+        let of = (touch.id, &motion);
+        let embedded = self.embedding.push(particles, blocks, of, settings);
+        (found.and(&embedded), stopped)
+    }
+
+    /// Gives a body its share of the pushes, if the collider is one. Returns the impulse on the collider.
+    fn share(
+        &mut self,
+        at: usize,
+        found: &ContactResult,
+        particles: &mut ClothParticles,
+        substep: SubStep,
+    ) -> Impulse {
+        let touch = &mut self.touches[at];
+        let mut given = found.given;
+        let body = self.bodies.iter_mut().find(|body| body.id == touch.id);
+        if let Some(body) = body
+            && found.farthest_push > 0.0
+        {
+            let mut moving = touch.collider.clone();
+            let [kept, gone] = body.share(&self.before, particles, &mut moving, substep);
+            given.scale(f64::from(kept));
+            touch.travelled += gone;
+            self.margin.deviate(body.deviation(&moving, substep.end()));
+            let touches = std::slice::from_mut(touch);
+            send_on(touches, &mut self.colliders, body.id, &moving);
+        }
+        given
     }
 
     /// The colliders that may touch.
