@@ -219,84 +219,90 @@ impl DrawQueryItem<'_, '_> {
         }
         // Over the ticks from the last move to the next.
         let fraction = lod.drawn_part(lod.since as f32 + fraction);
+        let cuts = lod.cuts;
         let own = GlobalTransform::from(self.frame.affine());
         let entity = self.transform.copied().unwrap_or(own);
-        let MeshDrawing {
-            previous,
-            carriers,
-            pose,
-            targets,
-            drawn,
-            normals,
-            tangents,
-            rested,
-            settled,
-            before,
-            blend,
-            frozen,
-            version,
-            ..
-        } = &mut *self.drawing;
-        // The targets of the tick; later attachments count from the next tick on.
-        let drawn_at = self.state.targets.iter();
-        let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
-        targets.clear();
-        targets.extend(drawn_at.map(GlobalTransform::affine));
-        let entity_at = entity.affine();
-        let stands = lod.frozen.map(|stands| match targets.first() {
-            None => *frozen.get_or_insert(self.frame.to_entity()),
-            Some(target) => {
-                let place = rigid(target) * stands.carrier.inverse() * stands.frame;
-                entity_at.inverse() * Affine3A::from(place)
-            }
-        });
-        if stands.is_none() {
-            *frozen = None;
-        }
+        let stands = self.find_targets(around, entity.affine());
         let place = |joint| around.transforms.get(joint).ok().copied();
-        let moves = pose.read(self.entity, &around.skins, place);
+        let drawing = &mut *self.drawing;
+        let moves = drawing.pose.read(self.entity, &around.skins, place);
         // A cloth that sleeps or is frozen is drawn once.
-        let is_asleep =
-            !moves && self.state.rest.is_asleep() && *rested && !carriers.differ_from(targets);
-        let still = stands.or(is_asleep.then_some(entity_at));
-        let still = still.filter(|_| blend.is_over(lod.cuts));
-        let state = still.map(|place| (self.particles.last_changed(), place, is_seen));
-        if state.is_some() && *settled == state {
+        let rests = self.state.rest.is_asleep() && drawing.rested;
+        let is_asleep = !moves && rests && !drawing.carriers.differ_from(&drawing.targets);
+        let still = stands.or(is_asleep.then_some(entity.affine()));
+        let still = still.filter(|_| drawing.blend.is_over(cuts));
+        let settled = still.map(|place| (self.particles.last_changed(), place, is_seen));
+        if settled.is_some() && drawing.settled == settled {
             return;
         }
-        let blends = !blend.is_over(lod.cuts);
+        let blends = !drawing.blend.is_over(cuts);
         if blends {
-            std::mem::swap(before, drawn);
+            std::mem::swap(&mut drawing.before, &mut drawing.drawn);
         }
-        if let Some(to_entity) = stands {
-            drawn.clear();
-            let positions = self.particles.positions();
-            drawn.extend(positions.map(|place| to_entity.transform_point3(place)));
-        } else {
-            interpolate(drawn, previous, &self.particles, fraction);
-            let place = Drawn {
-                built: self.built,
-                state: self.state,
-                particles: &self.particles,
-                entity,
-                targets,
-                fraction,
-            };
-            let is_skinned = pose.place(&self.built.shared, fraction, drawn);
-            place.place(carriers, is_skinned, drawn);
-        }
+        self.place(stands, entity, fraction);
+        let drawing = &mut *self.drawing;
         if blends {
-            blend.add(lod.cuts, seconds, &self.particles, before, drawn);
+            let (before, drawn) = (&drawing.before, &mut drawing.drawn);
+            (drawing.blend).add(cuts, seconds, &self.particles, before, drawn);
         }
-        *version = version.wrapping_add(1);
-        *settled = state;
+        drawing.version = drawing.version.wrapping_add(1);
+        drawing.settled = settled;
         let surface = self.built.surface();
         if is_seen
             && let Some(mut mesh) = meshes.get_mut(&self.mesh.handle)
             && mesh.count_vertices() == surface.vertices()
         {
-            write_mesh(&mut mesh, surface, drawn, normals, tangents);
+            let (normals, tangents) = (&mut drawing.normals, &mut drawing.tangents);
+            write_mesh(&mut mesh, surface, &drawing.drawn, normals, tangents);
         }
+    }
+
+    /// Finds where the targets of the tick are drawn; later attachments count from the next tick on. Returns the place of the
+    /// particles relative to their entity if they are frozen.
+    fn find_targets(&mut self, around: &Surroundings, entity: Affine3A) -> Option<Affine3A> {
+        let drawing = &mut *self.drawing;
+        let drawn_at = self.state.targets.iter();
+        let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
+        drawing.targets.clear();
+        (drawing.targets).extend(drawn_at.map(GlobalTransform::affine));
+        let stands = self
+            .state
+            .lod
+            .frozen
+            .map(|stands| match drawing.targets.first() {
+                None => *drawing.frozen.get_or_insert(self.frame.to_entity()),
+                Some(target) => {
+                    let place = rigid(target) * stands.carrier.inverse() * stands.frame;
+                    entity.inverse() * Affine3A::from(place)
+                }
+            });
+        if stands.is_none() {
+            drawing.frozen = None;
+        }
+        stands
+    }
+
+    /// Places the drawn particles in their entity's frame.
+    fn place(&mut self, stands: Option<Affine3A>, entity: GlobalTransform, fraction: f32) {
+        let drawing = &mut *self.drawing;
+        let drawn = &mut drawing.drawn;
+        if let Some(to_entity) = stands {
+            drawn.clear();
+            let positions = self.particles.positions();
+            drawn.extend(positions.map(|place| to_entity.transform_point3(place)));
+            return;
+        }
+        interpolate(drawn, &drawing.previous, &self.particles, fraction);
+        let place = Drawn {
+            built: self.built,
+            state: self.state,
+            particles: &self.particles,
+            entity,
+            targets: &drawing.targets,
+            fraction,
+        };
+        let is_skinned = (drawing.pose).place(&self.built.shared, fraction, drawn);
+        place.place(&mut drawing.carriers, is_skinned, drawn);
     }
 }
 
