@@ -45,7 +45,7 @@ pub(super) fn sleeps_as_it_was(
         cloth.scratch.contact_settings.friction,
     );
     let source = built.source();
-    let pins = cloth.pins.unwrap_or(&NO_PINS);
+    let pins = cloth.game.pins.unwrap_or(&NO_PINS);
     // If something wakes it in this tick, it continues with the step that it would have been prepared with.
     let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
     is_prepared
@@ -54,15 +54,16 @@ pub(super) fn sleeps_as_it_was(
         && state.written == Some(cloth.particles.last_changed())
         && state.attachments.is_empty()
         && cloth
+            .game
             .attachments
             .is_none_or(|attachments| attachments.as_slice().is_empty())
-        && cloth.teleport.is_none()
+        && cloth.game.teleport.is_none()
         && !around.roots.jumps(cloth.entity)
         && is_in_same_pose(cloth, around)
         && cloth.fault.is_none()
-        && built.is_made_from(cloth.cloth.last_changed(), &inputs.material, pins)
-        && sources.find(cloth.entity, &cloth.cloth, source) == Ok(source)
-        && (state.air).is_still(wind.as_ref(), cloth.pressure, field, || {
+        && built.is_made_from(cloth.game.cloth.last_changed(), &inputs.material, pins)
+        && sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
+        && (state.air).is_still(wind.as_ref(), cloth.game.pressure, field, || {
             ball(built, &cloth.particles, state.stretch.bound, &cloth.frame)
         })
         && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))
@@ -71,7 +72,7 @@ pub(super) fn sleeps_as_it_was(
 /// Whether its pose is the same as in the last tick, or it follows none.
 fn is_in_same_pose(cloth: &PrepareQueryItem, around: &Surroundings) -> bool {
     let place = |joint| global_transform(&around.targets.transforms, joint);
-    match (&cloth.skin, &cloth.built.skin) {
+    match (&cloth.game.skin, &cloth.built.skin) {
         (None, None) => true,
         (Some(skin), Some(known)) => {
             skin.last_changed() == known.changed

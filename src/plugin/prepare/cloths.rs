@@ -59,21 +59,21 @@ pub(crate) fn prepare_cloths(
         }
         let (seconds, ticks) = cloth.state.lod.take(time.delta_secs());
         let inputs = Inputs::of(
-            cloth.settings,
-            cloth.material,
-            cloth.method,
-            cloth.narrow_phase,
-            cloth.self_collision,
+            cloth.game.settings,
+            cloth.game.material,
+            cloth.game.method,
+            cloth.game.narrow_phase,
+            cloth.game.self_collision,
             gravity.0,
         );
-        let lod = cloth.lod.or(global_lod);
+        let lod = cloth.game.lod.or(global_lod);
         let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
         let outcome = inputs.and_then(|inputs| {
             if cloth.state.lod.turn == LodAction::Stand {
                 skip(&mut cloth);
                 return stand_still(&mut cloth, &around);
             }
-            let wind = around.field.of_cloth(cloth.air)?;
+            let wind = around.field.of_cloth(cloth.game.air)?;
             if sleeps_as_it_was(&cloth, &inputs, &around, &wind, seconds) {
                 return Ok(());
             }
@@ -91,7 +91,7 @@ pub(crate) fn prepare_cloths(
                 cloth.state.rest.disturb();
             }
         }
-        if cloth.teleport.is_some() && outcome.is_ok() {
+        if cloth.game.teleport.is_some() && outcome.is_ok() {
             commands.entity(cloth.entity).try_remove::<ClothTeleport>();
         }
         // An asset that is being loaded is no fault.
@@ -127,6 +127,7 @@ fn stand_still(cloth: &mut PrepareQueryItem, around: &Surroundings) -> Result<()
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let targets = &around.targets;
     let attachments = cloth
+        .game
         .attachments
         .map_or(&[][..], ClothAttachments::as_slice);
     freeze(
@@ -206,19 +207,20 @@ fn build_cloth(
     let (frame, mut scale) = ClothFrame::of(&transform)?;
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
-    if cloth.skin.is_some() {
+    if cloth.game.skin.is_some() {
         let place = |joint| global_transform(&targets.transforms, joint);
         (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
         // How large it is in the world is the skeleton's matter.
         scale = scratch.pose.scale().unwrap_or(scale);
     }
     let wanted = BuildInputs {
-        cloth: &cloth.cloth,
-        changed: cloth.cloth.last_changed(),
-        source: sources.find(cloth.entity, &cloth.cloth, built.source())?,
+        cloth: &cloth.game.cloth,
+        changed: cloth.game.cloth.last_changed(),
+        source: sources.find(cloth.entity, &cloth.game.cloth, built.source())?,
         material: &inputs.material,
-        pins: cloth.pins.unwrap_or(&NO_PINS),
+        pins: cloth.game.pins.unwrap_or(&NO_PINS),
         attachments: cloth
+            .game
             .attachments
             .map_or(&[][..], ClothAttachments::as_slice),
         scale,
@@ -229,7 +231,7 @@ fn build_cloth(
         *cloth.frame = frame;
     }
     let begins = build == Build::New && is_new;
-    let skin = cloth.skin.as_ref();
+    let skin = cloth.game.skin.as_ref();
     place_pose(
         skin, sources, &frame, begins, particles, built, state, scratch,
     )?;
@@ -247,7 +249,8 @@ fn take_over(
 ) -> Result<bool, ClothError> {
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     // A cloth with a fault may have been moved anywhere meanwhile.
-    let jumps = cloth.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
+    let jumps =
+        cloth.game.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
     let seconds = (seconds, jumps);
     let has_stood = resume(&around.targets, *frame, seconds, *before, particles, state);
     // Saving or restoring particles may mark them as changed without a change.
@@ -261,7 +264,7 @@ fn take_over(
     if let Some(self_collision) = &inputs.self_collision {
         self_collision.validate(surface)?;
     }
-    if let Some(pressure) = cloth.pressure {
+    if let Some(pressure) = cloth.game.pressure {
         pressure.validate(surface)?;
     }
     Ok(was_written)
@@ -278,6 +281,7 @@ fn apply_motion(
 ) -> Result<(), ClothError> {
     let Surroundings { targets, roots, .. } = around;
     let attachments = cloth
+        .game
         .attachments
         .map_or(&[][..], ClothAttachments::as_slice);
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
@@ -298,10 +302,10 @@ fn apply_motion(
     let new_from_old = new_from_old([&*cloth.frame, frame], scratch.carried.as_ref());
     let is_moved = new_from_old.is_some();
     let new_from_old = new_from_old.unwrap_or_default();
-    scratch.teleports = cloth.teleport.is_some()
+    scratch.teleports = cloth.game.teleport.is_some()
         || roots.jumps(cloth.entity)
         || target.is_some_and(|target| roots.jumps(target));
-    if let Some(skin) = &cloth.skin
+    if let Some(skin) = &cloth.game.skin
         && moves
         && was_built
     {

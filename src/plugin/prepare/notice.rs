@@ -21,9 +21,9 @@ pub(super) fn notice_new(cloth: &mut PrepareQueryItem, inputs: &Inputs, notices:
     };
     cloth.built.noticed.is_due = false;
     let surface = cloth.built.surface();
-    let attachments = cloth.attachments.map(ClothAttachments::as_slice);
+    let attachments = cloth.game.attachments.map(ClothAttachments::as_slice);
     let attached = attachments.into_iter().flatten();
-    let pins = cloth.pins.into_iter().flat_map(Pins::iter);
+    let pins = cloth.game.pins.into_iter().flat_map(Pins::iter);
     let mut pins = pins.chain(attached.map(|attachment| &attachment.pin));
     let vain = pins.find(|pin| pin.is_in_vain(surface));
     let vain = vain.map(|pin| in_vain(pin, surface));

@@ -26,10 +26,9 @@ use crate::{
 /// The pins of a cloth from which the game took its [`Pins`].
 pub(super) static NO_PINS: Pins = Pins::none();
 
+/// The components of a cloth that the game writes.
 #[derive(QueryData)]
-#[query_data(mutable)]
-pub(crate) struct PrepareQuery {
-    pub entity: Entity,
+pub(crate) struct GameQuery {
     pub cloth: Ref<'static, Cloth>,
     pub material: Option<&'static ClothMaterial>,
     pub pins: Option<&'static Pins>,
@@ -42,6 +41,15 @@ pub(crate) struct PrepareQuery {
     pub air: Option<&'static ClothAir>,
     pub pressure: Option<&'static ClothPressure>,
     pub lod: Option<&'static ClothLod>,
+    pub teleport: Option<&'static ClothTeleport>,
+}
+
+/// A cloth that is prepared for a tick.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct PrepareQuery {
+    pub entity: Entity,
+    pub game: GameQuery,
     pub particles: &'static mut ClothParticles,
     pub built: &'static mut ClothBuilt,
     pub state: &'static mut ClothState,
@@ -51,7 +59,6 @@ pub(crate) struct PrepareQuery {
     pub bounds: &'static mut BroadPhaseBounds,
     pub search: &'static mut ClothSearch,
     pub contacts: &'static mut ClothContacts,
-    pub teleport: Option<&'static ClothTeleport>,
     pub fault: Option<&'static ClothFault>,
 }
 

@@ -34,7 +34,7 @@ pub(super) fn see_whether_it_rests(
         inputs.self_collision,
         acceleration,
     ));
-    let (field, pressure) = (&*around.field, cloth.pressure);
+    let (field, pressure) = (&*around.field, cloth.game.pressure);
     let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
     let is_still = state.air.is_still(wind.as_ref(), pressure, field, ball);
     state.air.renew(wind, pressure.copied(), field, ball);
