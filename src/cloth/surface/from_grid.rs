@@ -1,10 +1,8 @@
 //! A surface made from a grid.
 
-use std::sync::OnceLock;
-
 use bevy::math::UVec2;
 
-use super::{Extent, Spacing, Surface};
+use super::{Derived, Extent, Spacing, Surface};
 use crate::cloth::grid::ClothGrid;
 
 impl Surface {
@@ -42,12 +40,7 @@ impl Surface {
                 pieces: 1,
             },
             grid: Some(*grid),
-            uvs: OnceLock::new(),
-            faces: OnceLock::new(),
-            fans: OnceLock::new(),
-            graph: OnceLock::new(),
-            chains: OnceLock::new(),
-            flat: OnceLock::new(),
+            derived: Derived::default(),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use bevy::math::Vec3;
 
 use super::{
-    Extent, Spacing, Surface,
+    Derived, Extent, Spacing, Surface,
     calibration::calibrate,
     faces::Faces,
     graph::Graph,
@@ -273,12 +273,11 @@ impl Welded {
                 pieces,
             },
             grid: None,
-            uvs: OnceLock::from(uvs),
-            faces: OnceLock::from(faces),
-            fans: OnceLock::new(),
-            graph: OnceLock::new(),
-            chains: OnceLock::new(),
-            flat: OnceLock::new(),
+            derived: Derived {
+                uvs: OnceLock::from(uvs),
+                faces: OnceLock::from(faces),
+                ..Derived::default()
+            },
         }
     }
 }

@@ -67,7 +67,12 @@ pub struct Surface {
     spacing: Spacing,
     extent: Extent,
     grid: Option<ClothGrid>,
-    // Computed lazily: a cloth without contacts needs none of them.
+    derived: Derived,
+}
+
+/// Computed when they are first asked for: a cloth without contacts needs none of them.
+#[derive(Default, Clone)]
+struct Derived {
     uvs: OnceLock<Vec<Vec2>>,
     faces: OnceLock<Faces>,
     fans: OnceLock<Fans>,
@@ -233,7 +238,7 @@ impl Surface {
 
     /// Texture coordinates of each particle; empty if there are none.
     pub fn uvs(&self) -> &[Vec2] {
-        self.uvs.get_or_init(|| {
+        self.derived.uvs.get_or_init(|| {
             let grid = self.grid.as_ref();
             grid.map_or_else(Vec::new, grid::uvs)
         })
@@ -241,7 +246,7 @@ impl Surface {
 
     /// Its faces, by their owners.
     pub(crate) fn faces(&self) -> &Faces {
-        self.faces.get_or_init(|| {
+        self.derived.faces.get_or_init(|| {
             let grid = self.grid.as_ref();
             grid.map_or_else(Faces::default, grid::faces)
         })
@@ -249,7 +254,8 @@ impl Surface {
 
     /// Where the corners of its faces are, by their owners.
     pub(crate) fn fans(&self) -> &Fans {
-        self.fans
+        self.derived
+            .fans
             .get_or_init(|| Fans::new(self.faces(), self.layout()))
     }
 
@@ -263,7 +269,7 @@ impl Surface {
 
     /// Neighbours of each particle.
     pub(crate) fn graph(&self) -> &Graph {
-        self.graph.get_or_init(|| match &self.grid {
+        self.derived.graph.get_or_init(|| match &self.grid {
             Some(grid) => grid::graph(grid),
             None => {
                 let edges = self.links.iter();
@@ -275,7 +281,7 @@ impl Surface {
 
     /// The chains of a mesh along its structural links. Their indices count from the first structural link.
     pub(crate) fn chains(&self) -> &Chains {
-        self.chains.get_or_init(|| {
+        self.derived.chains.get_or_init(|| {
             let links = self.links.iter();
             let links = links.filter(|link| link.kind == SpringKind::Structural);
             let edges: Vec<[u32; 2]> = links.map(|link| link.ends).collect();
@@ -287,7 +293,7 @@ impl Surface {
 
     /// Its plane, if it is flat and convex. The shortest path between two particles is then a straight line.
     pub(crate) fn flat(&self) -> Option<&Flat> {
-        let flat = self.flat.get_or_init(|| match &self.grid {
+        let flat = self.derived.flat.get_or_init(|| match &self.grid {
             Some(grid) => Some(grid::flat(grid)),
             None if self.extent.pieces > 1 => None,
             None => Flat::find(
@@ -316,12 +322,7 @@ impl Default for Surface {
             spacing: Spacing::default(),
             extent: Extent::default(),
             grid: None,
-            uvs: OnceLock::new(),
-            faces: OnceLock::new(),
-            fans: OnceLock::new(),
-            graph: OnceLock::new(),
-            chains: OnceLock::new(),
-            flat: OnceLock::new(),
+            derived: Derived::default(),
         }
     }
 }

@@ -106,15 +106,18 @@ fn shift(
         if skins.read(cloth.entity, place, &mut joints).is_err() {
             joints.clear();
         }
-        let carrier = match cloth.state.targets.first() {
+        let carrier = match cloth.state.attachments.targets.first() {
             Some(target) => pose(*target),
             None => own.map(|own: GlobalTransform| rigid(&own.affine())),
         };
         let state = &mut *cloth.state;
         state.pose.shift(shift, [before, after], &joints);
-        state.first_target = state.first_target.map(|was| shift.rigid(was, carrier));
+        state.attachments.first_target = state
+            .attachments
+            .first_target
+            .map(|was| shift.rigid(was, carrier));
         state.lod.frozen = state.lod.frozen.map(|was| was.shifted(shift, carrier));
-        state.air.shift(shift, zone);
+        state.inputs.air.shift(shift, zone);
         let rounding = 2.0 * shift.rounding(before.isometry().translation);
         state
             .rests_on

@@ -33,13 +33,7 @@ pub(super) fn sleeps_as_it_was(
         return false;
     }
     let acceleration = cloth.frame.isometry().rotation.inverse() * inputs.gravity;
-    let known = (
-        inputs.settings,
-        inputs.search,
-        inputs.narrow_phase,
-        inputs.self_collision,
-        acceleration,
-    );
+    let known = inputs.known(acceleration);
     let known_contact = (
         cloth.scratch.contact_settings.particle_radius,
         cloth.scratch.contact_settings.friction,
@@ -49,10 +43,10 @@ pub(super) fn sleeps_as_it_was(
     // If something wakes it in this tick, it continues with the step that it would have been prepared with.
     let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
     is_prepared
-        && state.known == Some(known)
+        && state.inputs.known == Some(known)
         && known_contact == (inputs.settings.particle_radius, inputs.material.friction)
-        && state.written == Some(cloth.particles.last_changed())
-        && state.attachments.is_empty()
+        && state.inputs.written == Some(cloth.particles.last_changed())
+        && state.attachments.given.is_empty()
         && cloth
             .game
             .attachments
@@ -63,7 +57,7 @@ pub(super) fn sleeps_as_it_was(
         && cloth.fault.is_none()
         && built.is_made_from(cloth.game.cloth.last_changed(), &inputs.material, pins)
         && sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
-        && (state.air).is_still(wind.as_ref(), cloth.game.pressure, field, || {
+        && (state.inputs.air).is_still(wind.as_ref(), cloth.game.pressure, field, || {
             ball(built, &cloth.particles, state.stretch.bound, &cloth.frame)
         })
         && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))

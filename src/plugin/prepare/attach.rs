@@ -117,11 +117,11 @@ pub(crate) fn follow_targets(
     motions: &mut Vec<PinMotion>,
 ) {
     // A snapshot may hold attachments that the game does not have.
-    let is_free = state.attachments.is_empty() && state.attached.is_empty();
+    let is_free = state.attachments.given.is_empty() && state.attachments.attached.is_empty();
     if wanted.is_empty() && is_free {
         return;
     }
-    if state.attachments != wanted || wanted.is_empty() {
+    if state.attachments.given != wanted || wanted.is_empty() {
         attach(wanted, places, frame, particles, built, state);
         // Released particles are not carried along.
         let is_held =
@@ -130,7 +130,7 @@ pub(crate) fn follow_targets(
     }
     if let Some(first) = places.first() {
         let pose = rigid(first);
-        let was = state.first_target.replace(pose);
+        let was = state.attachments.first_target.replace(pose);
         if let (Some(was), Some(before)) = (was, teleport_from) {
             let jump = pose * was.inverse();
             let (from, to) = (before.isometry(), frame.isometry());
@@ -138,7 +138,7 @@ pub(crate) fn follow_targets(
         }
     }
     let carried = motions.len();
-    for attached in &state.attached {
+    for attached in &state.attachments.attached {
         let target = places[attached.attachment];
         let particle = attached.particle as usize;
         let to = frame.from_world(target.transform_point3(attached.offset));
@@ -165,8 +165,8 @@ fn attach(
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) {
-    let before = std::mem::take(&mut state.attached);
-    let known = std::mem::take(&mut state.attachments);
+    let before = std::mem::take(&mut state.attachments.attached);
+    let known = std::mem::take(&mut state.attachments.given);
     for (attachment, each) in wanted.iter().enumerate() {
         if let Some(old) = known.iter().position(|known| known == each) {
             let kept = before.iter().filter(|attached| attached.attachment == old);
@@ -174,13 +174,13 @@ fn attach(
                 attachment,
                 ..*attached
             });
-            state.attached.extend(kept);
+            state.attachments.attached.extend(kept);
             continue;
         }
         let from_world = places[attachment].inverse();
         each.pin.for_each(built.surface(), |index| {
             let position = frame.to_world(particles.position_at(index));
-            state.attached.push(Attached {
+            state.attachments.attached.push(Attached {
                 particle: index as u32,
                 attachment,
                 offset: from_world.transform_point3(position),
@@ -189,13 +189,13 @@ fn attach(
     }
     let released = before.iter().map(|attached| attached.particle as usize);
     built.give_masses(released, particles);
-    for attached in &state.attached {
+    for attached in &state.attachments.attached {
         particles.pin(attached.particle as usize);
     }
     if known.first() != wanted.first() {
-        state.first_target = None;
+        state.attachments.first_target = None;
     }
-    state.attachments = wanted.to_vec();
+    state.attachments.given = wanted.to_vec();
     built.forget_tethers();
     state.rest.disturb();
 }

@@ -247,7 +247,7 @@ fn follow_changes(
     if was.areal_density != material.areal_density || are_others_pinned {
         particles.assign_masses(&built.shared.surface, material, pins)?;
         // They are pinned again with the offsets that they have.
-        for attached in &state.attached {
+        for attached in &state.attachments.attached {
             particles.pin(attached.particle as usize);
         }
     }
@@ -265,7 +265,7 @@ fn follow_changes(
         built.solver = built.shared.solver.clone();
         built.solver.set_tethers(tethers);
         // The stretch that bounds rely on is measured over other springs now.
-        state.written = None;
+        state.inputs.written = None;
     }
     state.rest.disturb();
     Ok(())

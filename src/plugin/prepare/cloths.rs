@@ -58,14 +58,7 @@ pub(crate) fn prepare_cloths(
             continue;
         }
         let (seconds, ticks) = cloth.state.lod.take(time.delta_secs());
-        let inputs = Inputs::of(
-            cloth.game.settings,
-            cloth.game.material,
-            cloth.game.method,
-            cloth.game.narrow_phase,
-            cloth.game.self_collision,
-            gravity.0,
-        );
+        let inputs = Inputs::of(&cloth.game, gravity.0);
         let lod = cloth.game.lod.or(global_lod);
         let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
         let outcome = inputs.and_then(|inputs| {
@@ -120,7 +113,7 @@ fn skip(cloth: &mut PrepareQueryItem) {
 
 /// Keeps the cloth's shape, and moves it with its carrier.
 fn stand_still(cloth: &mut PrepareQueryItem, around: &Surroundings) -> Result<(), ClothError> {
-    if cloth.state.written != Some(cloth.particles.last_changed()) {
+    if cloth.state.inputs.written != Some(cloth.particles.last_changed()) {
         check_particles(&mut cloth.particles)?;
     }
     cloth.contacts.clear();
@@ -255,7 +248,8 @@ fn take_over(
     let has_stood = resume(&around.targets, *frame, seconds, *before, particles, state);
     // Saving or restoring particles may mark them as changed without a change.
     let was_written = has_stood
-        || state.written != Some(particles.last_changed()) && !state.rest.sleeps_as(particles);
+        || state.inputs.written != Some(particles.last_changed())
+            && !state.rest.sleeps_as(particles);
     // Particles that nothing wrote are as they were when they were last checked.
     if was_written || !state.is_valid {
         state.largest_speed = check_particles(particles)?;
@@ -288,12 +282,12 @@ fn apply_motion(
     let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
     targets.find(
         attachments,
-        &state.attachments,
+        &state.attachments.given,
         built.surface(),
-        &mut state.targets,
+        &mut state.attachments.targets,
         &mut scratch.targets,
     )?;
-    let target = state.targets.first().copied();
+    let target = state.attachments.targets.first().copied();
     let (moves, was_built) = (seconds > 0.0, build == Build::Kept);
     scratch.carried = match moves && build != Build::New {
         true => roots.carry(cloth.entity, target)?,

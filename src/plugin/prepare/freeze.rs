@@ -21,7 +21,7 @@ use crate::{
 /// Place of the carrier of a cloth whose entity is at `frame`: its first attachment's target if it has one, else the
 /// entity. `None` if that target is gone.
 fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<Isometry3d> {
-    let Some(target) = state.targets.first() else {
+    let Some(target) = state.attachments.targets.first() else {
         return Some(frame.isometry());
     };
     let place = global_transform(&targets.transforms, *target)?;
@@ -45,9 +45,9 @@ pub(crate) fn freeze(
     let transform = targets.cloths.of(entity)?;
     let (now, _) = ClothFrame::of(&transform)?;
     let Some(carried_by) = carrier(targets, state, now) else {
-        return match (attachments.first(), state.targets.first()) {
+        return match (attachments.first(), state.attachments.targets.first()) {
             (Some(ClothAttachment { pin, .. }), Some(&target))
-                if state.attachments == attachments =>
+                if state.attachments.given == attachments =>
             {
                 Err(ClothError::NoTarget {
                     pin: format!("{pin:?}"),
@@ -61,16 +61,16 @@ pub(crate) fn freeze(
     let was = frame.isometry();
     let frozen = state.lod.frozen.unwrap_or_else(|| {
         particles.set_body_motion(Isometry3d::IDENTITY, 0.0);
-        state.written = Some(particles.last_changed());
+        state.inputs.written = Some(particles.last_changed());
         state.carriers.clear();
-        let carrier = state.first_target.unwrap_or(was);
+        let carrier = state.attachments.first_target.unwrap_or(was);
         Frozen {
             frame: was,
             carrier,
             last: carrier,
         }
     });
-    let pose = if state.targets.is_empty() {
+    let pose = if state.attachments.targets.is_empty() {
         now.isometry()
     } else {
         carried_by * frozen.carrier.inverse() * frozen.frame
@@ -103,8 +103,8 @@ pub(crate) fn resume(
     };
     particles.set_body_motion(by, seconds);
     // Its last place while frozen, not its place as it froze.
-    if state.first_target.is_some() {
-        state.first_target = Some(frozen.last);
+    if state.attachments.first_target.is_some() {
+        state.attachments.first_target = Some(frozen.last);
     }
     state.rest.disturb();
     true

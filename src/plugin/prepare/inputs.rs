@@ -2,10 +2,12 @@
 
 use bevy::math::Vec3;
 
+use super::preparing::GameQueryItem;
 use crate::{
     cloth::{ClothError, ClothMaterial},
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
+    plugin::state::KnownInputs,
     solver::ClothSettings,
 };
 
@@ -26,18 +28,11 @@ impl Inputs {
     ///
     /// # Errors
     /// The first value that is out of range. The material is checked when it changes.
-    pub fn of(
-        settings: Option<&ClothSettings>,
-        material: Option<&ClothMaterial>,
-        search: Option<&SearchMethod>,
-        narrow_phase: Option<&NarrowPhase>,
-        self_collision: Option<&ClothSelfCollision>,
-        gravity: Vec3,
-    ) -> Result<Self, ClothError> {
-        let settings = settings.copied().unwrap_or_default();
-        let material = material.copied().unwrap_or_default();
+    pub fn of(game: &GameQueryItem, gravity: Vec3) -> Result<Self, ClothError> {
+        let settings = game.settings.copied().unwrap_or_default();
+        let material = game.material.copied().unwrap_or_default();
         settings.validate()?;
-        let search = search.copied().unwrap_or_default();
+        let search = game.method.copied().unwrap_or_default();
         search.validate()?;
         let gravity = settings.gravity.unwrap_or(gravity);
         for value in gravity.to_array() {
@@ -47,9 +42,20 @@ impl Inputs {
             settings,
             material,
             search,
-            narrow_phase: narrow_phase.copied().unwrap_or_default(),
-            self_collision: self_collision.copied(),
+            narrow_phase: game.narrow_phase.copied().unwrap_or_default(),
+            self_collision: game.self_collision.copied(),
             gravity,
         })
+    }
+
+    /// Those that wake a cloth at rest when they change. `acceleration` is that of gravity in the cloth's frame (m/s²).
+    pub fn known(&self, acceleration: Vec3) -> KnownInputs {
+        KnownInputs {
+            settings: self.settings,
+            search: self.search,
+            narrow_phase: self.narrow_phase,
+            self_collision: self.self_collision,
+            acceleration,
+        }
     }
 }

@@ -27,19 +27,16 @@ pub(super) fn see_whether_it_rests(
     let (particles, state) = (&cloth.particles, &mut *cloth.state);
     let (built, scratch) = (&*cloth.built, &*cloth.scratch);
     let settings = inputs.settings;
-    let known = Some((
-        settings,
-        inputs.search,
-        inputs.narrow_phase,
-        inputs.self_collision,
-        acceleration,
-    ));
+    let known = Some(inputs.known(acceleration));
     let (field, pressure) = (&*around.field, cloth.game.pressure);
     let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
-    let is_still = state.air.is_still(wind.as_ref(), pressure, field, ball);
-    state.air.renew(wind, pressure.copied(), field, ball);
-    if state.known != known || !is_still || !scratch.pins.is_empty() || !settings.sleeps {
-        state.known = known;
+    let is_still = state
+        .inputs
+        .air
+        .is_still(wind.as_ref(), pressure, field, ball);
+    state.inputs.air.renew(wind, pressure.copied(), field, ball);
+    if state.inputs.known != known || !is_still || !scratch.pins.is_empty() || !settings.sleeps {
+        state.inputs.known = known;
         state.rest.disturb();
     } else if !state.rest.is_asleep() {
         let scale = (built.surface().diagonal(), acceleration.length());
@@ -47,7 +44,7 @@ pub(super) fn see_whether_it_rests(
         state.rest.observe(seconds, particles, scale, lies_on_cloth);
     }
     // The plugin's own writing, up to here.
-    state.written = Some(particles.last_changed());
+    state.inputs.written = Some(particles.last_changed());
 }
 
 /// Prepares what the solver does in the tick.
@@ -67,7 +64,7 @@ pub(super) fn prepare_step(
     let surface = built.surface().clone();
     if !state.rest.is_asleep() {
         let (surface, field) = (&*surface, &*around.field);
-        (state.air).set(&mut built.solver, surface, particles, &cloth.frame, field);
+        (state.inputs.air).set(&mut built.solver, surface, particles, &cloth.frame, field);
     }
     let along = surface.particles_along();
     // A move for several ticks takes the sub-steps of one: that saves the time.
@@ -129,7 +126,7 @@ pub(super) fn prepare_contact(
         narrow_phase: inputs.narrow_phase,
         ..ContactSettings::default()
     };
-    let by_air = (state.air).acceleration(material, state.largest_speed, seconds);
+    let by_air = (state.inputs.air).acceleration(material, state.largest_speed, seconds);
     let acceleration = acceleration.length() + by_air;
     let pins = &scratch.pins;
     scratch.reach =

@@ -38,26 +38,8 @@ pub struct ClothState {
     pub(crate) stretch: Stretch,
     /// Speed of the fastest particle as the tick begins (m/s).
     pub(crate) largest_speed: f32,
-    /// When the plugin last wrote the particles: a later change is the game's.
-    #[cfg_attr(feature = "serialize", serde(skip))]
-    pub(crate) written: Option<Tick>,
-    /// Inputs that wake a cloth at rest when they change, besides those that it is built from.
-    pub(crate) known: Option<(
-        ClothSettings,
-        SearchMethod,
-        NarrowPhase,
-        Option<ClothSelfCollision>,
-        Vec3,
-    )>,
-    /// The same for the air.
-    pub(crate) air: AirState,
-    /// The attachments from which `attached` was made, and the entities that they name.
-    #[cfg_attr(feature = "serialize", serde(skip))]
-    pub(crate) attachments: Vec<ClothAttachment>,
-    pub(crate) targets: Vec<Entity>,
-    pub(crate) attached: Vec<Attached>,
-    /// Last place of the first attachment's target.
-    pub(crate) first_target: Option<Isometry3d>,
+    pub(crate) inputs: InputMemory,
+    pub(crate) attachments: AttachmentMemory,
     /// The pose that it follows, as the last tick ended.
     pub(crate) pose: Pose,
     /// The colliders that it touched as it fell asleep, each with its place then.
@@ -76,6 +58,65 @@ pub struct ClothState {
     pub(crate) was_dragged: bool,
 }
 
+/// The attachments of a cloth.
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct AttachmentMemory {
+    /// Those from which `attached` was made, and the entities that they name.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub given: Vec<ClothAttachment>,
+    pub targets: Vec<Entity>,
+    pub attached: Vec<Attached>,
+    /// Last place of the first attachment's target.
+    pub first_target: Option<Isometry3d>,
+}
+
+impl AttachmentMemory {
+    fn copy_from(&mut self, other: &Self) {
+        self.given.clone_from(&other.given);
+        self.targets.clone_from(&other.targets);
+        self.attached.clone_from(&other.attached);
+        self.first_target = other.first_target;
+    }
+
+    /// Forgets all but the targets.
+    fn detach(&mut self) {
+        self.attached.clear();
+        self.given.clear();
+        self.first_target = None;
+    }
+}
+
+/// What wakes a cloth at rest when it changes, besides what it is built from, its particles, its place and the air.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct KnownInputs {
+    pub settings: ClothSettings,
+    pub search: SearchMethod,
+    pub narrow_phase: NarrowPhase,
+    pub self_collision: Option<ClothSelfCollision>,
+    /// Of gravity, in the cloth's frame (m/s²).
+    pub acceleration: Vec3,
+}
+
+/// The inputs of the last tick.
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct InputMemory {
+    /// When the plugin last wrote the particles: a later change is the game's.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub written: Option<Tick>,
+    pub known: Option<KnownInputs>,
+    pub air: AirState,
+}
+
+impl InputMemory {
+    fn copy_from(&mut self, other: &Self) {
+        (self.written, self.known) = (other.written, other.known);
+        self.air.clone_from(&other.air);
+    }
+}
+
 impl ClothState {
     /// Copies `other` into its own memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
@@ -87,13 +128,8 @@ impl ClothState {
             layer_substeps,
             stretch,
             largest_speed,
-            written,
-            known,
-            ref air,
+            ref inputs,
             ref attachments,
-            ref targets,
-            ref attached,
-            first_target,
             ref pose,
             ref rests_on,
             ref carriers,
@@ -103,17 +139,14 @@ impl ClothState {
             was_dragged,
         } = *other;
         self.rest.copy_from(rest);
-        self.air.clone_from(air);
-        self.attachments.clone_from(attachments);
-        self.targets.clone_from(targets);
-        self.attached.clone_from(attached);
+        self.inputs.copy_from(inputs);
+        self.attachments.copy_from(attachments);
         self.pose.copy_from(pose);
         self.rests_on.clone_from(rests_on);
         self.carriers.clone_from(carriers);
         (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
         (self.layer_substeps, self.stretch) = (layer_substeps, stretch);
         (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
-        (self.written, self.known, self.first_target) = (written, known, first_target);
         (self.resumes, self.excess) = (resumes, excess);
         self.was_dragged = was_dragged;
     }
@@ -123,13 +156,14 @@ impl ClothState {
         let len = particles.len();
         let is_of_all = |count: usize| count == 0 || count == len;
         let is_attached = |attached: &Attached| {
-            (attached.particle as usize) < len && attached.attachment < self.targets.len()
+            (attached.particle as usize) < len
+                && attached.attachment < self.attachments.targets.len()
         };
         let blocks = particles.blocks().len();
         self.rest.is_valid()
             && is_of_all(self.pose.places.len())
             && is_of_all(self.pose.normals.len())
-            && self.attached.iter().all(is_attached)
+            && self.attachments.attached.iter().all(is_attached)
             && self
                 .carriers
                 .iter()
@@ -140,26 +174,24 @@ impl ClothState {
     pub(crate) fn detach(&mut self) {
         self.largest_gravity = 0.0;
         self.carriers.clear();
-        self.attached.clear();
-        self.attachments.clear();
-        self.first_target = None;
+        self.attachments.detach();
         self.pose = Pose::default();
     }
 }
 
 impl MapEntities for ClothState {
     fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        let targets = self.targets.iter_mut();
+        let targets = self.attachments.targets.iter_mut();
         let carried = self.carriers.iter_mut().map(|(entity, _)| entity);
         for entity in targets.chain(carried) {
             *entity = mapper.get_mapped(*entity);
         }
-        for attachment in &mut self.attachments {
+        for attachment in &mut self.attachments.given {
             attachment.map_entities(mapper);
         }
         for known in &mut self.rests_on {
             known.map_entities(mapper);
         }
-        self.air.map_entities(mapper);
+        self.inputs.air.map_entities(mapper);
     }
 }

@@ -27,6 +27,7 @@ pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchSto
 pub use fault::ClothFault;
 pub(crate) use lod::{Frozen, LodAction};
 pub use memory::ClothState;
+pub(crate) use memory::KnownInputs;
 pub(crate) use notices::{Notice, Notices, log_notices};
 pub(crate) use parts::ClothParts;
 pub(crate) use pose::{Pose, SkinLimits};

@@ -90,7 +90,7 @@ impl IntegrateQueryItem<'_, '_> {
         let survey = self.particles.survey();
         self.state.is_valid &= survey.is_valid;
         self.state.largest_speed = survey.largest_speed;
-        self.state.written = Some(self.particles.last_changed());
+        self.state.inputs.written = Some(self.particles.last_changed());
         self.remember_contacts();
         self.push_bodies();
         let rotation = self.frame.isometry().rotation;
@@ -100,7 +100,7 @@ impl IntegrateQueryItem<'_, '_> {
         self.stats.stretch = self.state.stretch;
         self.stats.air_impulse = rotation * self.built.solver.air_impulse();
         (self.stats.enclosed_volume, self.stats.gauge_pressure) = self.built.solver.enclosed();
-        self.state.air.memory = self.built.solver.air_memory();
+        self.state.inputs.air.memory = self.built.solver.air_memory();
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 
@@ -188,7 +188,7 @@ impl IntegrateQueryItem<'_, '_> {
     pub(crate) fn restart(&mut self) {
         self.particles.copy_from(&self.scratch.backup);
         self.scratch.detection.restart();
-        let air = self.state.air.memory;
+        let air = self.state.inputs.air.memory;
         self.built.solver.set_air_memory(air);
     }
 

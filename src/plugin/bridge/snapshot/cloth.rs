@@ -104,7 +104,7 @@ impl ClothSnapshot {
                 let root = built.tree().root_sphere(&particles, state.stretch.bound);
                 (root.center.into(), root.radius())
             });
-        self.is_written = state.written != Some(particles.last_changed());
+        self.is_written = state.inputs.written != Some(particles.last_changed());
         self.contacts.clone_from(contacts);
         self.mutual.clone_from(&scratch.mutual);
         Ok(())
@@ -144,7 +144,9 @@ impl ClothSnapshot {
         // A game may have removed some.
         entity.insert_if_new(<(ClothParticles, ClothParts)>::default());
         let wanted = entity.get::<ClothAttachments>().cloned();
-        let last_written = entity.get::<ClothState>().and_then(|state| state.written);
+        let last_written = entity
+            .get::<ClothState>()
+            .and_then(|state| state.inputs.written);
         let mut weighs_the_same = false;
         if let Some(mut particles) = entity.get_mut::<ClothParticles>() {
             // Particles that the game has written have not been weighed yet.
@@ -163,15 +165,16 @@ impl ClothSnapshot {
         }
         if let Some(mut state) = entity.get_mut::<ClothState>() {
             state.copy_from(&self.state);
-            state.written = written.filter(|_| !self.is_written);
+            state.inputs.written = written.filter(|_| !self.is_written);
             // In a file that was edited by hand, they may be anything.
             let survey = self.particles.survey();
             state.is_valid &= survey.is_valid;
             state.largest_speed = survey.largest_speed;
             // Attachments are not written to files: they are the game's components.
             let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
-            if state.attachments.is_empty() && state.targets.len() == wanted.len() {
-                state.attachments.extend_from_slice(wanted);
+            if state.attachments.given.is_empty() && state.attachments.targets.len() == wanted.len()
+            {
+                state.attachments.given.extend_from_slice(wanted);
             }
             state.resumes = true;
         }

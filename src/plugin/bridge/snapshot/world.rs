@@ -133,7 +133,7 @@ impl ClothWorldSnapshot {
         let own: Vec<Entity> = own.collect();
         for entity in own {
             let state = world.get::<ClothState>(entity);
-            let carriers = state.map_or(&[][..], |state| &state.targets);
+            let carriers = state.map_or(&[][..], |state| &state.attachments.targets);
             #[cfg(feature = "mesh")]
             let joints = joints(world, entity);
             #[cfg(not(feature = "mesh"))]

@@ -261,7 +261,7 @@ impl DrawQueryItem<'_, '_> {
     /// particles relative to their entity if they are frozen.
     fn find_targets(&mut self, around: &Surroundings, entity: Affine3A) -> Option<Affine3A> {
         let drawing = &mut *self.drawing;
-        let drawn_at = self.state.targets.iter();
+        let drawn_at = self.state.attachments.targets.iter();
         let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
         drawing.targets.clear();
         (drawing.targets).extend(drawn_at.map(GlobalTransform::affine));

@@ -43,7 +43,7 @@ impl Carriers {
         std::mem::swap(&mut self.before, &mut self.now);
         self.now.frame = frame;
         self.now.targets.clear();
-        let entities = state.targets.iter().copied();
+        let entities = state.attachments.targets.iter().copied();
         self.now
             .targets
             .extend(entities.zip(scratch.targets.iter().copied()));
@@ -112,13 +112,13 @@ impl Weights {
             return;
         }
         self.made_for = Some(built.pins_version);
-        let targets = state.attachments.len();
+        let targets = state.attachments.given.len();
         self.carriers = targets + 1;
         let mut carrier_of = vec![None; particles.len()];
         for (carrier, inverse_mass) in carrier_of.iter_mut().zip(particles.inverse_masses()) {
             *carrier = (inverse_mass == 0.0).then_some(targets);
         }
-        for attached in &state.attached {
+        for attached in &state.attachments.attached {
             carrier_of[attached.particle as usize] = Some(attached.attachment);
         }
         self.own.clear();
@@ -194,7 +194,7 @@ impl Drawn<'_> {
             carriers.weights.made_for = None;
             is_corrected = true;
         } else if !self.built.pinned.is_empty() {
-            for index in 0..=self.state.attachments.len() {
+            for index in 0..=self.state.attachments.given.len() {
                 if let Some(correction) = self.correction(carriers, index) {
                     if !is_corrected {
                         carriers
@@ -233,7 +233,7 @@ impl Drawn<'_> {
     /// Offset of a carrier's drawn place from its interpolated place, if it is not zero.
     fn correction(&self, carriers: &Carriers, index: usize) -> Option<Isometry3d> {
         let Carriers { before, now, .. } = carriers;
-        if index == self.state.attachments.len() {
+        if index == self.state.attachments.given.len() {
             let drawn = self.entity.affine();
             let differs = before.frame != now.frame || drawn != now.frame.affine();
             let (was, is) = (before.frame.isometry(), now.frame.isometry());
@@ -265,7 +265,7 @@ impl Drawn<'_> {
             particle,
             attachment,
             offset,
-        } in &self.state.attached
+        } in &self.state.attachments.attached
         {
             if let (Some(target), Some(place)) = (
                 self.targets.get(*attachment),

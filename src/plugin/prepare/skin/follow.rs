@@ -80,7 +80,7 @@ pub(crate) fn stand_in_pose(
     std::mem::swap(&mut scratch.pose, &mut state.pose);
     if let Some(turn) = state.pose.turn_since(&scratch.pose) {
         teleport_to_pose([&scratch.pose, &state.pose], turn, particles);
-        state.written = Some(particles.last_changed());
+        state.inputs.written = Some(particles.last_changed());
     }
     Ok(())
 }
@@ -120,7 +120,7 @@ fn renew_limits(
     let released: Vec<usize> = held.filter(|index| !is_held(index)).collect();
     if !released.is_empty() {
         built.give_masses(released.into_iter(), particles);
-        for attached in &state.attached {
+        for attached in &state.attachments.attached {
             particles.pin(attached.particle as usize);
         }
         built.forget_tethers();
@@ -171,7 +171,7 @@ pub(crate) fn move_with_pose(
     {
         teleport_to_pose([from, to], turn, particles);
         // They move with their skeleton, not with the target that they are attached to.
-        state.first_target = None;
+        state.attachments.first_target = None;
     }
     let jumps = scratch.teleports || !was_there;
     if jumps {
