@@ -1,9 +1,7 @@
 //! How a particle is named.
 
-use bevy::reflect::Reflect;
-
 /// Which particle: an index, or (row, column).
-#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParticleId {
     /// `row × columns + column`.
     Index(usize),

@@ -1,9 +1,7 @@
 //! A spring.
 
-use bevy::reflect::Reflect;
-
 /// The deformation that a spring resists.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SpringKind {
     /// Stretch: neighbours in a row or column.
     Structural,
@@ -14,7 +12,7 @@ pub enum SpringKind {
 }
 
 /// A spring between two particles.
-#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
     /// The deformation that it resists.
     pub kind: SpringKind,

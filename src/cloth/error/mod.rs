@@ -12,6 +12,7 @@ use super::{limits::MAX_PARTICLES, particle_id::ParticleId, spring::Spring};
 /// The plugin logs each error once with its entity, marks the entity with a [`ClothFault`](crate::plugin::ClothFault),
 /// and continues with the other entities. Fixing the value brings the entity back.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[reflect(opaque)]
 #[reflect(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothError {
@@ -35,10 +36,8 @@ pub enum ClothError {
     #[error("{quantity} must be {expected}, not {value}")]
     Quantity {
         /// The name of the quantity, with its unit.
-        #[reflect(ignore)]
         quantity: &'static str,
         /// The valid range.
-        #[reflect(ignore)]
         expected: &'static str,
         /// The invalid value.
         value: f32,
@@ -343,10 +342,8 @@ pub enum ClothError {
     )]
     NoSuchBounds {
         /// The bounding volumes, in the plural.
-        #[reflect(ignore)]
         volume: &'static str,
         /// The rule.
-        #[reflect(ignore)]
         rule: &'static str,
     },
     /// The target of an attached pin does not exist or has no transform.
