@@ -12,6 +12,7 @@ use super::{
 
 /// The plane of a [`Cloth`](crate::cloth::Cloth) at rest, in its entity's frame.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothPlane {
     /// Columns along +x, rows along −y, facing +z: a curtain, a flag.
@@ -38,6 +39,7 @@ impl ClothPlane {
 
 /// The grid of a cloth, before the transform's scale.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Debug, Clone, PartialEq)]
 pub struct GridShape {
     /// Particles along the width, at least 2.
@@ -111,6 +113,7 @@ impl GridShape {
 
 /// A validated grid. Springs, trees and meshes are built from it.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 pub struct ClothGrid {
     columns: u32,
     rows: u32,

@@ -35,6 +35,7 @@ pub(crate) type View = [f32; END];
 
 /// Eight particles: 256 bytes, four cache lines. The last eight numbers are room for a view to be shifted.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
 pub(crate) struct Block(
@@ -120,6 +121,7 @@ impl Block {
 
 /// Which block and lane each particle of a grid is in.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Layout {
     pub columns: u32,

@@ -24,6 +24,7 @@ use super::error::ClothError;
 /// third. A shear compliance below the stretch compliance adds springs across each edge, between the two opposite
 /// corners. A larger one changes nothing.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothMaterial {
     /// Mass per area (kg/m²), positive.

@@ -53,6 +53,7 @@ use super::{
 /// # let _ = (curtain, tablecloth, kite);
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[component(on_add = log_unsimulated)]
 #[require(ClothParticles, ClothMaterial, Pins, Transform)]
@@ -67,6 +68,7 @@ pub struct Cloth {
 
 /// The shape of a [`Cloth`].
 #[derive(Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothShape {

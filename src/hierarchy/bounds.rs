@@ -11,6 +11,7 @@ use crate::cloth::{ClothError, ClothParticles};
 
 /// The bounding volumes of a tree's nodes, with a volume type and a rule chosen at run time.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct NodeBounds {

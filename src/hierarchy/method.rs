@@ -22,6 +22,7 @@ const PARTICLES_A_COLLIDER: f32 = 600.0;
 ///
 /// [`Paper`]: BoundRule::Paper
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 #[non_exhaustive]
@@ -105,6 +106,7 @@ impl fmt::Display for SearchMethod {
 
 /// The reason for a cloth's search method.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 #[non_exhaustive]
 pub enum SearchReason {

@@ -13,6 +13,7 @@ pub(crate) const ROUNDING: f32 = 1.0 + 1.0e-5;
 
 /// The core of a [`Probe`].
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 pub enum Core {
     /// A point: the probe is a ball.
     Point(Vec3),
@@ -217,6 +218,7 @@ impl Core {
 /// A region to search for, in the cloth's frame: all particles whose distance from a core is less than a radius and
 /// their own.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 pub struct Probe {
     /// The core.
     pub core: Core,

@@ -11,6 +11,7 @@ use crate::cloth::ClothParticles;
 
 /// The result of the last search for a node.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 pub enum NodeState {
     /// An ancestor did not touch: the node was not tested.
     #[default]
@@ -24,6 +25,7 @@ pub enum NodeState {
 /// A top-down search through a tree, level by level, with its results. Reused from tick to tick; once it has grown, it
 /// does not allocate.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 pub struct TopDownQuery {
     found: SearchBuffers,
 }

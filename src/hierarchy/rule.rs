@@ -7,6 +7,7 @@ use crate::cloth::ClothError;
 
 /// The rule that defines the bounding volumes of a tree's nodes.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 pub enum BoundRule {

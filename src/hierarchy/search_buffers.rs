@@ -4,6 +4,7 @@ use bevy::reflect::Reflect;
 
 /// Results of searches, and memory for the next one.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 pub(crate) struct SearchBuffers {
     /// Nodes in the order of the tests, and whether they touched.
     pub visits: Vec<(u32, bool)>,

@@ -78,6 +78,7 @@ impl Places<'_, '_> {
 /// The frame of a cloth's particles: the global translation and rotation of its entity as of the last tick. The
 /// particles already include the entity's scale, so lengths in this frame are metres.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothFrame {

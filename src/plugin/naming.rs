@@ -8,6 +8,7 @@ use bevy::{
 /// The part of an entity that has the fault: an entity may be a cloth and a collider at once, or a mesh that a cloth
 /// drives.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 pub(crate) enum Part {
     Cloth,
     Collider,

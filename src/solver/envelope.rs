@@ -10,6 +10,7 @@ use super::{step::DAMPING_REFERENCE, substepping::Substepping};
 /// continues, but the cloth no longer moves as its material should. Each limit was measured by the lab's experiment
 /// `stability`.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[non_exhaustive]
 pub enum ClothLimit {
     /// A spring is stretched by 15 % more than its material stretches under four times the weight of the cloth: there

@@ -14,6 +14,7 @@ use crate::cloth::ClothError;
 
 /// Settings of a cloth's simulation. They may change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSettings {

@@ -44,6 +44,7 @@ pub enum DampingFrame {
 
 /// Order in time: how the error of a motion falls with the length Δt of a sub-step.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum TimeOrder {

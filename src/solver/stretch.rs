@@ -6,6 +6,7 @@ use crate::cloth::{ClothParticles, SpringKind, Springs};
 
 /// Stretch of a cloth: length / rest length − 1 of its most stretched spring, at least 0.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Stretch {

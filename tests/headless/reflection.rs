@@ -33,6 +33,7 @@ fn components(app: &App, entity: Entity) -> Vec<(ComponentId, String)> {
         let is_private = [
             "BroadPhaseBounds",
             "ColliderMotion",
+            "MeshDrawing",
             "BoneColliders",
             "RootMotion",
         ]
@@ -103,12 +104,17 @@ fn every_component_travels() {
     let (mut app, entities) = everything();
     let mut names = Vec::new();
     for entity in entities {
-        for (_, name) in components(&app, entity) {
+        for (id, name) in components(&app, entity) {
+            let id = app
+                .world()
+                .components()
+                .get_info(id)
+                .and_then(|info| info.type_id());
             let other = app.world_mut().spawn_empty().id();
             let app_registry = app.world().resource::<AppTypeRegistry>().clone();
             let registry = app_registry.read();
-            let registration = registry
-                .get_with_type_path(&name)
+            let registration = id
+                .and_then(|id| registry.get(id))
                 .unwrap_or_else(|| panic!("{name} is not registered"));
             let component = registration
                 .data::<ReflectComponent>()

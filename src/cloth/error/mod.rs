@@ -12,6 +12,7 @@ use super::{limits::MAX_PARTICLES, particle_id::ParticleId, spring::Spring};
 /// The plugin logs each error once with its entity, marks the entity with a [`ClothFault`](crate::plugin::ClothFault),
 /// and continues with the other entities. Fixing the value brings the entity back.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
 #[reflect(opaque)]
 #[reflect(Debug, Clone, PartialEq)]
 #[non_exhaustive]

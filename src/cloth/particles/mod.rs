@@ -46,6 +46,7 @@ const AFTER_A_JUMP: u32 = 3;
 /// Empty until the first tick after the [`Cloth`](crate::cloth::Cloth) was spawned. Games may read and write it between ticks.
 /// To rebuild the cloth at rest, empty it: `*particles = default()`.
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothParticles {

@@ -30,6 +30,7 @@ pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
 /// # let _ = (flag, sheet, curtain, scarf, painted, ring, skirt);
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct Pins(Vec<Pin>);
 

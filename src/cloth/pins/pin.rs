@@ -9,6 +9,7 @@ use bevy::{
 
 /// A corner of the cloth at rest, seen from its front: +z, or +y for a lying cloth.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum Corner {
     /// (0, 0).
@@ -24,6 +25,7 @@ pub enum Corner {
 
 /// A selection of particles to pin.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Pin {

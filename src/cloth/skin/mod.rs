@@ -54,6 +54,7 @@ pub use paint::{ClothPaint, RestFunction};
 /// # let _ = (cape, coat);
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSkin {
     /// The largest distance of each particle from its position in the pose (m). 0 holds it there. Infinity, or anything
@@ -81,6 +82,7 @@ pub struct ClothSkin {
 ///  (     ←→ distance
 /// ```
 #[derive(Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothBackstop {
     /// Distance of the sphere from the pose (m). Infinity, or anything beyond 10¹² m, gives a particle none.

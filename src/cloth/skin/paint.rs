@@ -24,6 +24,7 @@ use crate::cloth::{
 /// # let _ = (all, red, code);
 /// ```
 #[derive(Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothPaint {

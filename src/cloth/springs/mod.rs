@@ -21,6 +21,7 @@ use super::{
 ///
 /// The order of the sweep also makes the solver stable: colour by colour is stable at every size, row by row diverges.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct Springs {

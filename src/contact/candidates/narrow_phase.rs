@@ -27,6 +27,7 @@ const EDGES_FROM: f32 = 2.0;
 /// The narrow phase of a cloth: its colliders are tested against particles or against triangles. A component of the
 /// cloth.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 pub enum NarrowPhase {

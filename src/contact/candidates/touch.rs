@@ -7,6 +7,7 @@ use crate::contact::colliders::MovingCollider;
 
 /// A particle near a collider, and its depth.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ContactPoint {

@@ -14,6 +14,7 @@ use bevy::{
 ///
 /// These layers are only for cloth: it ignores the collision groups of a physics engine.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 pub struct ClothLayers {
     /// The layers that the entity is a member of, one bit each.

@@ -14,6 +14,7 @@ use crate::hierarchy::Core;
 
 /// The shape of a collider, scaled, in its own frame.
 #[derive(Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[non_exhaustive]
 pub enum ColliderShape {
     /// A ball around the origin.

@@ -20,6 +20,7 @@ use crate::cloth::ClothError;
 /// A shape of many points, before the transform's scale. Clones share it and the geometry built from it: cloning is
 /// cheap, and clones are equal.
 #[derive(Reflect, Debug, Clone)]
+#[type_path = "bevy_drape"]
 #[reflect(opaque, Debug, Clone, PartialEq)]
 pub struct SharedCollider(Arc<Made>);
 

@@ -30,6 +30,7 @@ const MAX_OF_SPACING: f32 = 0.5;
 /// };
 /// ```
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothSelfCollision {

@@ -36,6 +36,7 @@ use halving::GridTree;
 /// Nodes are numbered level by level from the root, 0. A grid's tree stores no nodes, only the halves of its rows and
 /// columns on each level.
 #[derive(Reflect, Debug, Clone)]
+#[type_path = "bevy_drape"]
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone)]
 pub struct QuadTree(Arc<dyn Tree>);

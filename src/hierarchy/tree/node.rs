@@ -4,6 +4,7 @@ use bevy::reflect::Reflect;
 
 /// A node of a [`QuadTree`](crate::hierarchy::QuadTree): a patch of the cloth.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 pub struct Node {
     /// Its level, 0 for the root.
     pub level: usize,

@@ -19,6 +19,7 @@ pub use obb::Obb;
 
 /// A type of bounding volume.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 pub enum BoundingVolume {

@@ -12,6 +12,7 @@ use super::{bounding::Volume, kdop::KDop, obb::Obb};
 
 /// The bounding volume of a node, around its particles including their radius.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(opaque)]
 #[non_exhaustive]
 pub enum NodeVolume {

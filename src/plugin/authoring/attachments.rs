@@ -37,11 +37,13 @@ use crate::cloth::Pin;
 /// }
 /// ```
 #[derive(Component, Reflect, MapEntities, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, MapEntities, Default, Debug, Clone, PartialEq)]
 pub struct ClothAttachments(#[entities] Vec<ClothAttachment>);
 
 /// A pin and the entity that it follows.
 #[derive(Reflect, MapEntities, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothAttachment {
     /// The particles.
@@ -53,6 +55,7 @@ pub struct ClothAttachment {
 
 /// The entity that pins follow.
 #[derive(Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothTarget {
@@ -130,6 +133,7 @@ impl ClothAttachments {
 /// Without it a jump drags the cloth along by its pins. The log names a cloth whose pins jump by more than 2 m in a
 /// tick, once.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothTeleport;
 

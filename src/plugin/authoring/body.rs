@@ -19,6 +19,7 @@ use crate::{cloth::ClothError, contact::BodyMass};
 ///
 /// A cloth that pushes a body does not sleep.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(ClothPush)]
 pub struct ClothBody {
@@ -39,6 +40,7 @@ pub struct ClothBody {
 
 /// How the cloths that touch a [`ClothBody`] changed its motion in the last tick, in the world.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothPush {
     /// Change of the velocity of its centre of mass (m/s).

@@ -25,12 +25,14 @@ use bevy::{
 /// }
 /// ```
 #[derive(Component, Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(BoneColliders)]
 pub struct ClothBones(Vec<ClothBone>);
 
 /// A ball around a bone's head, or a capsule from there to the head of another bone.
 #[derive(Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothBone {
     /// `Name` of the bone; the collider becomes its child.
@@ -92,5 +94,6 @@ pub(crate) struct BoneColliders {
 /// On such a collider: the entity with the [`ClothBones`]. Reflected and mapped, so that a collider in a scene, or one
 /// that was cloned with its skeleton, is recognised and replaced.
 #[derive(Component, Reflect, Debug, Clone, Copy)]
+#[type_path = "bevy_drape"]
 #[reflect(Component)]
 pub(crate) struct BoneColliderOf(#[entities] pub Entity);

@@ -9,6 +9,7 @@ use bevy::{
 /// Gravitational acceleration of every cloth (m/s²), in the world.
 /// [`ClothSettings::gravity`](crate::solver::ClothSettings::gravity) overrides it for a single cloth.
 #[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothGravity(pub Vec3);
 

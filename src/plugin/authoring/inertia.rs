@@ -28,6 +28,7 @@ use crate::{
 /// }
 /// ```
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(RootMotion)]
 pub struct ClothInertia {

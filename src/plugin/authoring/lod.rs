@@ -16,6 +16,7 @@ const MOST_TICKS: u32 = 16;
 
 /// How often a cloth is simulated.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -94,6 +95,7 @@ impl ClothLodLevel {
 /// }
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothLod {
     /// This level, whatever the distance; `None` chooses by distance.
@@ -199,6 +201,7 @@ impl ClothLod {
 /// Level of detail of all cloths without a [`ClothLod`]. The resource does not exist unless the game inserts it;
 /// without it they are all at [`ClothLodLevel::Full`].
 #[derive(Resource, Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct GlobalClothLod(pub ClothLod);
 

@@ -23,6 +23,7 @@ use bevy::{
 ///
 /// Scenes and clones hold only the assets that it replaced; everything else is made again.
 #[derive(Component, Reflect, Debug, Default, Clone)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct ClothMesh {
     #[reflect(ignore)]

@@ -16,6 +16,7 @@ use crate::plugin::frame::Places;
 /// spawning changes nothing. Set it yourself, to any number of your own, where entities share both, or where apps spawn
 /// them in different places. 0 stands for none yet. Equal values go by the entity's id.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq, Hash)]
 #[component(clone_behavior = Ignore)]

@@ -12,6 +12,7 @@ use bevy::{
 /// [`Cloth`](crate::cloth::Cloth) gives the `SkinnedMesh` back. To change the skeleton, insert a new `SkinnedMesh`,
 /// which the plugin takes over.
 #[derive(Component, Reflect, Debug, Default, Clone)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct ClothSkeleton {
     /// Inverse bind poses: they take the mesh, as it is bound, to the frame of each joint.

@@ -30,6 +30,7 @@ pub(crate) const DENSITY: f32 = 1.2;
 ///   u(x) = U + |U| · turbulence · n₃((x − ∫ U dt) ⁄ turbulence_length)    it goes along with the wind (Taylor 1938)
 /// ```
 #[derive(Resource, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothWind {
     /// Velocity of the air (m/s), at most 10⁶ along each axis.
@@ -107,6 +108,7 @@ impl ClothWind {
 
 /// How the air acts on one cloth. A cloth without it uses the defaults.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothAir {
     /// Drag coefficient `C_d` of cloth broadside to the wind, from 0 to 10⁶.

@@ -19,6 +19,7 @@ use crate::{
 /// It blows at full strength in the middle and falls off smoothly towards the border, over the fraction `softness` of
 /// its size.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothWindZone {
@@ -32,6 +33,7 @@ pub struct ClothWindZone {
 
 /// A shape around an entity's origin, in the entity's frame: the entity's scale applies to its lengths.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]

@@ -29,6 +29,7 @@ use crate::{
 /// uses. All shapes work, including compounds, convex hulls, meshes and height fields; only lines and custom shapes
 /// can't be touched.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct RapierClothCollider;
 

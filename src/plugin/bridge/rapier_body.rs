@@ -50,6 +50,7 @@ use crate::plugin::{
 /// fall through. Very soft cloth, otherwise moved by the forces of its springs, is solved by chains as long as it
 /// carries a body. A body on cloth rolls, but hardly slides: the particles hold it as if by friction without a limit.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone)]
 #[require(ReadMassProperties, Velocity)]
 pub struct ClothPushBack;

@@ -38,6 +38,7 @@ use crate::{
 /// The look of the gizmos of cloths: a gizmo config group, whose `GizmoConfig` sets line width and depth. Gizmos show
 /// the last tick, whereas the mesh is drawn up to a tick behind it.
 #[derive(GizmoConfigGroup, Reflect, Debug, Clone)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone)]
 pub struct ClothGizmos {
     /// Draws the finest level's volumes of every cloth, even without a [`ShowClothGizmos`].
@@ -83,6 +84,7 @@ impl Default for ClothGizmos {
 /// # assert_eq!(right_half.region.min.x, 0.5);
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ShowClothGizmos {
     /// The first and the last level of the tree whose volumes are drawn, 0 for the root. Levels deeper than the tree

@@ -18,6 +18,7 @@ use crate::{
 /// A cloth's surface, springs, tree of bounding volumes and solver. The plugin builds them from the cloth's other
 /// components, and again when those change. Empty until the first tick. Scenes and clones don't have it.
 #[derive(Component, Reflect, Debug, Default)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothBuilt {

@@ -15,6 +15,7 @@ use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};
 
 /// A collider that a cloth touches.
 #[derive(Reflect, MapEntities, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothContact {
     /// The collider's entity.
@@ -47,6 +48,7 @@ pub struct ClothContact {
 /// The colliders that a cloth touched in the last tick in which it moved. They stay while the cloth sleeps, and while
 /// no time passes.
 #[derive(Component, Reflect, MapEntities, Debug, Default, Clone)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, MapEntities, Default, Debug, Clone)]
 #[component(clone_behavior = Ignore)]
@@ -135,6 +137,7 @@ fn finite(value: Vec3) -> Vec3 {
 
 /// Sent when a cloth and a collider begin to touch.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[non_exhaustive]
 pub struct ClothTouchStarted {
     /// The cloth's entity.
@@ -149,6 +152,7 @@ pub struct ClothTouchStarted {
 
 /// Sent when a cloth and a collider no longer touch, or when one of them is gone: the entities may no longer exist.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[non_exhaustive]
 pub struct ClothTouchStopped {
     /// The cloth's entity.

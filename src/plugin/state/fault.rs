@@ -15,6 +15,7 @@ use crate::{cloth::ClothError, plugin::naming::Part};
 /// On a cloth or collider that is left out of the simulation, with the reason. The plugin removes it as soon as the
 /// fault is corrected.
 #[derive(Component, Reflect, MapEntities, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, MapEntities, Debug, Clone, PartialEq)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothFault {

@@ -14,6 +14,7 @@ use crate::{
 /// The bounding volumes of the last tick in which a collider was near, and the result of the search through them.
 /// Scenes and clones don't have it, because it belongs to a single tick.
 #[derive(Component, Reflect, Debug, Default)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug)]
 #[component(clone_behavior = Ignore)]
 pub struct ClothSearch {

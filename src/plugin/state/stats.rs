@@ -14,6 +14,7 @@ use crate::{
 
 /// Figures of a cloth's last tick.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ClothStats {

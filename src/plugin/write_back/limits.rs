@@ -27,6 +27,7 @@ const GATHERED: u32 = 32;
 /// Sent when a cloth has been outside the envelope in which it is simulated well for more than an instant. The log says
 /// so too, with the remedy: once for each limit, and again when it gets ten times worse.
 #[derive(Message, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[non_exhaustive]
 pub struct ClothLimitExceeded {
     /// The cloth.

@@ -16,6 +16,7 @@ const ATMOSPHERE: f32 = 101_325.0;
 ///
 /// It may change at any time; nothing is built again.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]

@@ -44,6 +44,7 @@ const FOR_LOAD: f32 = 12.0;
 /// The number of sub-steps in a tick. Cost grows in proportion to the sub-steps, and the error of the motion falls with
 /// their square. Stretch that passes from chain to chain falls faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum Substepping {
     /// As many as the cloth needs:

@@ -46,6 +46,7 @@ use crate::cloth::{ClothError, FARTHEST};
 /// # let _ = (table, stone, stool, head);
 /// ```
 #[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Transform)]
 #[non_exhaustive]
@@ -94,6 +95,7 @@ pub enum ClothCollider {
 
 /// The shape made from a mesh.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 #[non_exhaustive]
 pub enum MeshCollider {

@@ -17,6 +17,7 @@ use solid::Solid;
 /// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with precomputed
 /// data. Clones share the data. Two geometries are equal if they are clones of each other.
 #[derive(Reflect, Debug, Clone)]
+#[type_path = "bevy_drape"]
 #[reflect(opaque, Debug, Clone, PartialEq)]
 pub struct ColliderGeometry(Arc<Geometry>);
 

@@ -56,6 +56,7 @@ use row::{choose, line, slide};
 /// }
 /// ```
 #[derive(Resource, Reflect, Debug, Clone, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothPanel {
     /// Shown or hidden.
@@ -96,6 +97,7 @@ impl ClothPanel {
 
 /// Speed of a collider (m/s), set by the panel. The game reads it and moves the collider.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothColliderSpeed(pub f32);
 

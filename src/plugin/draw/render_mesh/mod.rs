@@ -63,6 +63,7 @@ use drawn::Driven;
 /// }
 /// ```
 #[derive(Component, Reflect, MapEntities, Debug, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, FromWorld, MapEntities, Debug, Clone, PartialEq)]
 pub struct ClothRenderMesh {
     /// The cloth that drives the mesh.
@@ -81,6 +82,7 @@ impl FromWorld for ClothRenderMesh {
 /// The drawn copy of a [`ClothRenderMesh`]. Scenes and clones hold only the asset that was replaced; everything else is
 /// made again.
 #[derive(Component, Reflect, Debug, Default)]
+#[type_path = "bevy_drape"]
 #[reflect(Component, Default)]
 #[component(clone_behavior = Custom(clone_replaced))]
 struct RenderMeshState {
