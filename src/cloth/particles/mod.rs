@@ -1,6 +1,7 @@
 //! The particles of a cloth, as a structure of arrays.
 
 mod body;
+mod extent;
 mod load;
 mod loads;
 mod past;

@@ -1,6 +1,6 @@
 //! Operations of the solver and the plugin on all particles.
 
-use bevy::math::{DVec3, Isometry3d, Vec3, bounding::BoundingSphere};
+use bevy::math::{DVec3, Isometry3d, Vec3};
 
 use super::{
     AFTER_A_JUMP, ClothParticles,
@@ -9,14 +9,11 @@ use super::{
 };
 use crate::cloth::{
     error::ClothError,
-    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X, Y, Z},
+    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X},
     material::ClothMaterial,
     pins::Pins,
     surface::Surface,
 };
-
-/// Number of blocks compared at a time.
-const BLOCKS: usize = 64;
 
 /// The result of one pass over the particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -291,86 +288,6 @@ impl ClothParticles {
     pub(crate) fn copy_places_from(&mut self, other: &Self) {
         self.layout = other.layout;
         self.blocks.clone_from(&other.blocks);
-    }
-
-    /// The largest distance of a particle from its position in `other`, now or before its last displacement (m). NaN if
-    /// any position is NaN.
-    pub(crate) fn farthest_from(&self, other: &Self) -> f32 {
-        let (mut largest, mut is_nan) = ([0.0_f32; LANES], [false; LANES]);
-        for (block, was) in self.blocks.iter().zip(&other.blocks) {
-            let (view, was) = (block.view(), was.view());
-            for lane in 0..LANES {
-                let (mut now, mut before) = (0.0, 0.0);
-                for axis in [X, X + LANES, X + 2 * LANES] {
-                    let moved = view[axis + lane] - was[axis + lane];
-                    let came = moved - view[DX + axis + lane];
-                    now += moved * moved;
-                    before += came * came;
-                }
-                is_nan[lane] |= (now + before).is_nan();
-                let farther = if now > before { now } else { before };
-                largest[lane] = if farther > largest[lane] {
-                    farther
-                } else {
-                    largest[lane]
-                };
-            }
-        }
-        if is_nan.contains(&true) {
-            return f32::NAN;
-        }
-        largest.into_iter().fold(0.0, f32::max).sqrt() * (1.0 + 1.0e-6)
-    }
-
-    /// Whether every particle is within `reach` (m) of its position in `other`. False for different particles, or if a
-    /// position is NaN.
-    pub(crate) fn stays_within(&self, reach: f32, other: &Self) -> bool {
-        if self.layout != other.layout {
-            return false;
-        }
-        let blocks = self.blocks.chunks(BLOCKS).zip(other.blocks.chunks(BLOCKS));
-        // The first few blocks usually show a motion.
-        blocks.into_iter().all(|(now, before)| {
-            // NaN survives a sum, and the square of infinity is infinite.
-            let (mut largest, mut sum) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-            for (block, was) in now.iter().zip(before) {
-                let (view, was) = (block.view(), was.view());
-                for lane in 0..LANES {
-                    let x = view[X + lane] - was[X + lane];
-                    let y = view[Y + lane] - was[Y + lane];
-                    let z = view[Z + lane] - was[Z + lane];
-                    let square = x * x + y * y + z * z;
-                    sum[lane] += square;
-                    largest[lane] = if square > largest[lane] {
-                        square
-                    } else {
-                        largest[lane]
-                    };
-                }
-            }
-            let farthest = largest.into_iter().fold(0.0, f32::max);
-            farthest <= reach * reach && sum.iter().all(|sum| !sum.is_nan())
-        })
-    }
-
-    /// A bounding sphere of all particles (m).
-    pub(crate) fn bounding_sphere(&self) -> BoundingSphere {
-        let low = self.positions().fold(Vec3::MAX, Vec3::min);
-        let high = self.positions().fold(Vec3::MIN, Vec3::max);
-        let radius = low.distance(high) / 2.0 * (1.0 + 1.0e-5);
-        BoundingSphere::new(low.midpoint(high), radius.max(0.0))
-    }
-
-    /// The largest distance from a particle to a corner of its faces (m).
-    pub(crate) fn longest_face_reach(&self, surface: &Surface) -> f32 {
-        let mut longest = 0.0_f32;
-        for particle in 0..self.len() as u32 {
-            let from = self.position_at(particle as usize);
-            for corner in surface.faces().of(particle).iter().flatten() {
-                longest = longest.max(from.distance_squared(self.position_at(*corner as usize)));
-            }
-        }
-        longest.sqrt()
     }
 
     /// Sets the position of a particle.

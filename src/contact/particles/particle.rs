@@ -3,7 +3,8 @@
 use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
 
 use super::{
-    lanes::{Cuboid, HalfSpace, LaneMotion, Round, Sums, push_cuboid, push_half_space, push_round},
+    lanes::{LaneMotion, Sums, push_cuboid, push_half_space, push_round},
+    near::{Cuboid, HalfSpace, Round},
     planes::{Frame, Planes, find_planes, push_planes},
 };
 use crate::{

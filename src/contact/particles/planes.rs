@@ -6,7 +6,10 @@
 use bevy::math::{Isometry3d, Mat3, Vec3};
 use multiversion::multiversion;
 
-use super::lanes::{LaneMotion, Near, Sums, is_clear, push, survey};
+use super::{
+    lanes::{LaneMotion, Sums, is_clear, push, survey},
+    near::Near,
+};
 use crate::{
     cloth::{Block, LANES, Lanes, View, W, X, Y, Z},
     contact::{candidates::ContactBlock, colliders::ColliderShape},

@@ -1,0 +1,183 @@
+//! Pushes particles out of all colliders at the end of a sub-step.
+
+use super::{Detection, send_on};
+use crate::{
+    cloth::ClothParticles,
+    contact::{
+        candidates::{Candidates, ContactSettings, NarrowPhase},
+        colliders::MovingCollider,
+        edges::push_shape,
+        friction::{Impulse, PushOut},
+        particles::{ContactResult, ParticlesNearEdges, lane_motion, push_particles},
+        triangles::{CoreMotion, ResumePoint, TrianglePush},
+    },
+    solver::SubStep,
+};
+
+/// The penetrating area of triangles is measured in every fourth sub-step, in the last one, and until there is some. It
+/// costs half as much as a push.
+const MEASURED_EACH: u32 = 4;
+
+/// A particle is pushed by six triangles, by at least a third of each.
+const TRIANGLES_A_PUSH: f32 = 3.0;
+
+impl Detection {
+    /// Pushes particles out of the colliders. Returns whether anything moved.
+    pub(super) fn push_out(
+        &mut self,
+        particles: &mut ClothParticles,
+        settings: &ContactSettings,
+        substep: SubStep,
+        mut others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
+    ) -> bool {
+        self.margin.begin_substep(substep.farthest_move);
+        for touch in &mut self.touches {
+            let travel = touch.collider.max_surface_travel(f32::INFINITY);
+            touch.travelled += travel / substep.count as f32;
+        }
+        let mut is_pushed = false;
+        let (mut next, mut from) = (0, ResumePoint::default());
+        let (mut area, mut volume) = (0.0, 0.0);
+        loop {
+            if self.margin.is_outrun(particles) {
+                others(&mut self.colliders);
+                self.search(particles, settings, substep.index + 1);
+            }
+            let at = self.touches.partition_point(|touch| touch.id < next);
+            if at == self.touches.len() {
+                return is_pushed;
+            }
+            let (found, stopped) = self.push_out_of(at, from, particles, settings, substep);
+            let given = self.share(at, &found, particles, substep);
+            // Several triangles may push one particle.
+            self.margin.note(found.farthest_push);
+            is_pushed |= found.farthest_push > 0.0;
+            let touch = &mut self.touches[at];
+            touch.deepest = touch.deepest.max(found.deepest);
+            let seconds = f64::from(particles.substep());
+            touch.impulse += (given.linear / seconds).as_vec3();
+            touch.angular_impulse += (given.angular / seconds).as_vec3();
+            area += found.area;
+            volume += found.volume;
+            from = stopped.unwrap_or_default();
+            if stopped.is_some() {
+                next = touch.id;
+                continue;
+            }
+            touch.area = touch.area.max(area);
+            touch.volume = touch.volume.max(volume);
+            (area, volume) = (0.0, 0.0);
+            let Some(after) = touch.id.checked_add(1) else {
+                return is_pushed;
+            };
+            next = after;
+        }
+    }
+
+    /// Pushes particles out of one collider. Returns what it did, and where to go on if candidates may be missing.
+    fn push_out_of(
+        &mut self,
+        at: usize,
+        from: ResumePoint,
+        particles: &mut ClothParticles,
+        settings: &ContactSettings,
+        substep: SubStep,
+    ) -> (ContactResult, Option<ResumePoint>) {
+        let (touch, margin) = (&self.touches[at], &self.margin);
+        let count = self.candidates.all.len();
+        let Candidates {
+            all, blocks, helds, ..
+        } = &mut self.candidates;
+        let collider = &touch.collider;
+        let first = touch.of.blocks.start;
+        let contacts = &mut blocks[touch.of.blocks.clone()];
+        if self.bodies.iter().any(|body| body.id == touch.id) {
+            let blocks = contacts.iter().map(|contact| contact.block as usize);
+            let embedded = self.embedding.blocks(touch.id);
+            self.before.save(blocks.chain(embedded), particles);
+        }
+        let has_edges = collider.shape.has_edges();
+        // The guard measures the cloth.
+        let odometer = if has_edges { 0.0 } else { margin.odometer() } + touch.travelled;
+        let motion = collider.in_substep(substep);
+        let travel = motion.slide.length() + motion.swing;
+        let shares = match touch.narrow_phase {
+            NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
+            _ => 1.0,
+        };
+        let push_out = PushOut::new(particles.substep(), travel, shares);
+        let lanes = lane_motion(&motion, settings, push_out, odometer);
+        self.embedding.hide(touch.id, particles);
+        let (found, stopped) = match touch.narrow_phase {
+            _ if has_edges => {
+                self.shapes.reserve(count);
+                let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
+                let of = (touch.id, &collider.shape, self.surface.len());
+                let of = (by_triangles || collider.shape.is_geometry()).then_some(of);
+                let limit = collider.max_surface_travel(f32::INFINITY) + margin.size();
+                let travelled = [touch.travelled, limit];
+                (self.shapes.guard).measure(particles, margin.origin(), contacts, travelled);
+                let known = self.shapes.of(touch.of.candidates.clone(), of);
+                let mut pushing = ParticlesNearEdges {
+                    candidates: &all[touch.of.candidates.clone()],
+                    contacts,
+                    first,
+                    motion,
+                    settings,
+                    lanes: &lanes,
+                };
+                let edges = by_triangles.then_some(&*self.surface);
+                (push_shape(particles, &mut pushing, known, edges), None)
+            }
+            NarrowPhase::Triangles => {
+                let is_measured = touch.area == 0.0
+                    || (substep.index + 1).is_multiple_of(MEASURED_EACH)
+                    || substep.index + 1 == substep.count;
+                let mut pushed = TrianglePush::new(
+                    &all[touch.of.candidates.clone()],
+                    (contacts, first),
+                    &mut helds[touch.of.helds.clone()],
+                    (self.surface.fans(), self.surface.max_faces() as f32),
+                    [margin.left(), margin.moved_now()],
+                    is_measured,
+                );
+                let core = CoreMotion::new(motion, settings);
+                let stopped = pushed.push(particles, (&core, &lanes), from);
+                (pushed.found, stopped)
+            }
+            NarrowPhase::Auto | NarrowPhase::Particles => {
+                let of = (&motion, settings);
+                let found = push_particles(particles, contacts, (&mut [], 0), of, &lanes);
+                (found, None)
+            }
+        };
+        let of = (touch.id, &motion);
+        let embedded = self.embedding.push(particles, blocks, of, settings);
+        (found.and(&embedded), stopped)
+    }
+
+    /// Gives a body its share of the pushes, if the collider is one. Returns the impulse on the collider.
+    fn share(
+        &mut self,
+        at: usize,
+        found: &ContactResult,
+        particles: &mut ClothParticles,
+        substep: SubStep,
+    ) -> Impulse {
+        let touch = &mut self.touches[at];
+        let mut given = found.given;
+        let body = self.bodies.iter_mut().find(|body| body.id == touch.id);
+        if let Some(body) = body
+            && found.farthest_push > 0.0
+        {
+            let mut moving = touch.collider.clone();
+            let [kept, gone] = body.share(&self.before, particles, &mut moving, substep);
+            given.scale(f64::from(kept));
+            touch.travelled += gone;
+            self.margin.deviate(body.deviation(&moving, substep.end()));
+            let touches = std::slice::from_mut(touch);
+            send_on(touches, &mut self.colliders, body.id, &moving);
+        }
+        given
+    }
+}
