@@ -36,22 +36,45 @@ pub enum SearchMethod {
     Tree(BoundingVolume, BoundRule),
 }
 
+/// All pairs of a volume and a rule, whether they match or not.
+const PAIRS: usize = BoundingVolume::ALL.len() * BoundRule::ALL.len();
+
+const fn pair(index: usize) -> (BoundingVolume, BoundRule) {
+    let volumes = BoundingVolume::ALL.len();
+    let (_, volume) = BoundingVolume::ALL[index % volumes];
+    let (_, rule) = BoundRule::ALL[index / volumes];
+    (volume, rule)
+}
+
+/// `Auto`, `Scan`, and the pairs that match.
+const COUNT: usize = {
+    let (mut count, mut index) = (2, 0);
+    while index < PAIRS {
+        let (volume, rule) = pair(index);
+        if rule.matches(volume) {
+            count += 1;
+        }
+        index += 1;
+    }
+    count
+};
+
 impl SearchMethod {
     /// All methods, for menus.
-    pub const ALL: [Self; 12] = [
-        Self::Auto,
-        Self::Scan,
-        Self::Tree(BoundingVolume::Sphere, BoundRule::RestShape),
-        Self::Tree(BoundingVolume::Aabb, BoundRule::RestShape),
-        Self::Tree(BoundingVolume::Sphere, BoundRule::Refit),
-        Self::Tree(BoundingVolume::Aabb, BoundRule::Refit),
-        Self::Tree(BoundingVolume::Obb, BoundRule::Refit),
-        Self::Tree(BoundingVolume::KDop14, BoundRule::Refit),
-        Self::Tree(BoundingVolume::KDop18, BoundRule::Refit),
-        Self::Tree(BoundingVolume::KDop26, BoundRule::Refit),
-        Self::Tree(BoundingVolume::Sphere, BoundRule::Paper),
-        Self::Tree(BoundingVolume::Aabb, BoundRule::Paper),
-    ];
+    pub const ALL: [Self; COUNT] = {
+        let mut all = [Self::Auto; COUNT];
+        all[1] = Self::Scan;
+        let (mut next, mut index) = (2, 0);
+        while index < PAIRS {
+            let (volume, rule) = pair(index);
+            if rule.matches(volume) {
+                all[next] = Self::Tree(volume, rule);
+                next += 1;
+            }
+            index += 1;
+        }
+        all
+    };
 
     /// The rule of the volumes, if the method uses any.
     pub fn rule(self) -> Option<BoundRule> {

@@ -40,8 +40,8 @@ impl BoundRule {
     }
 
     /// Whether a volume supports the rule. All volumes support `Refit`; spheres and AABBs support all rules.
-    pub fn matches(self, volume: BoundingVolume) -> bool {
-        self == Self::Refit || matches!(volume, BoundingVolume::Sphere | BoundingVolume::Aabb)
+    pub const fn matches(self, volume: BoundingVolume) -> bool {
+        matches!(self, Self::Refit) || volume.takes_all_rules()
     }
 
     /// # Errors

@@ -1,15 +1,12 @@
 //! Storage of a tree's bounding volumes.
 
-use bevy::math::{
-    Vec3,
-    bounding::{Aabb3d, BoundingSphere},
-};
+use bevy::math::Vec3;
 
 use super::refit::RefitLevels;
 use crate::hierarchy::{
     probe::ROUNDING,
     rule::BoundRule,
-    volume::{BoundingVolume, KDop, Obb, Volume},
+    volume::{BoundingVolume, Volume, with_volumes},
 };
 
 /// Growth factor of a rest radius. Finite, so that a leaf's radius, 0 times this, is always 0.
@@ -48,61 +45,52 @@ impl<V: Volume> Bounds<V> {
     }
 }
 
-/// Bounding volumes of one of the types, so that all loops over nodes are compiled for it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Volumes {
-    Sphere(Bounds<BoundingSphere>),
-    Aabb(Bounds<Aabb3d>),
-    Obb(Bounds<Obb>),
-    KDop14(Bounds<KDop<7>>),
-    KDop18(Bounds<KDop<9>>),
-    KDop26(Bounds<KDop<13>>),
+macro_rules! define_volumes {
+    ($($(#[$doc:meta])* $variant:ident($volume:ty), $name:literal, $takes_all_rules:literal;)*) => {
+        /// Bounding volumes of one of the types, so that all loops over nodes are compiled for it.
+        #[derive(Debug, Clone, PartialEq)]
+        pub(crate) enum Volumes {
+            $($variant(Bounds<$volume>),)*
+        }
+
+        impl Volumes {
+            /// An empty set of a type.
+            pub fn of(volume: BoundingVolume) -> Self {
+                match volume {
+                    $(BoundingVolume::$variant => Self::$variant(Bounds::default()),)*
+                }
+            }
+
+            /// The type.
+            pub fn kind(&self) -> BoundingVolume {
+                match self {
+                    $(Self::$variant(_) => BoundingVolume::$variant,)*
+                }
+            }
+        }
+
+        define_each! { ($) $($variant)* }
+    };
 }
+
+/// Defines `each!`, which runs the same code for any type. `$d` is a dollar sign, of the inner macro's own variables.
+macro_rules! define_each {
+    (($d:tt) $($variant:ident)*) => {
+        macro_rules! each {
+            ($d volumes:expr, $d bounds:ident => $d code:expr) => {{
+                use $crate::hierarchy::tree::Volumes;
+                match $d volumes {
+                    $(Volumes::$variant($d bounds) => $d code,)*
+                }
+            }};
+        }
+    };
+}
+with_volumes!(define_volumes);
+pub(crate) use each;
 
 impl Default for Volumes {
     fn default() -> Self {
         Self::of(BoundingVolume::Sphere)
-    }
-}
-
-/// Runs the same code for any type.
-macro_rules! each {
-    ($volumes:expr, $bounds:ident => $code:expr) => {{
-        use $crate::hierarchy::tree::Volumes;
-        match $volumes {
-            Volumes::Sphere($bounds) => $code,
-            Volumes::Aabb($bounds) => $code,
-            Volumes::Obb($bounds) => $code,
-            Volumes::KDop14($bounds) => $code,
-            Volumes::KDop18($bounds) => $code,
-            Volumes::KDop26($bounds) => $code,
-        }
-    }};
-}
-pub(crate) use each;
-
-impl Volumes {
-    /// An empty set of a type.
-    pub fn of(volume: BoundingVolume) -> Self {
-        match volume {
-            BoundingVolume::Sphere => Self::Sphere(Bounds::default()),
-            BoundingVolume::Aabb => Self::Aabb(Bounds::default()),
-            BoundingVolume::Obb => Self::Obb(Bounds::default()),
-            BoundingVolume::KDop14 => Self::KDop14(Bounds::default()),
-            BoundingVolume::KDop18 => Self::KDop18(Bounds::default()),
-            BoundingVolume::KDop26 => Self::KDop26(Bounds::default()),
-        }
-    }
-
-    /// The type.
-    pub fn kind(&self) -> BoundingVolume {
-        match self {
-            Self::Sphere(_) => BoundingVolume::Sphere,
-            Self::Aabb(_) => BoundingVolume::Aabb,
-            Self::Obb(_) => BoundingVolume::Obb,
-            Self::KDop14(_) => BoundingVolume::KDop14,
-            Self::KDop18(_) => BoundingVolume::KDop18,
-            Self::KDop26(_) => BoundingVolume::KDop26,
-        }
     }
 }

@@ -35,6 +35,11 @@ pub(crate) trait Volume: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Inflated by `radius` (m): around particles including their radius.
     fn inflated(&self, radius: f32) -> Self;
 
+    /// The corners of each of its faces, in order, for drawing. Spheres and boxes, which gizmos know, have none.
+    fn faces(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
+    }
+
     /// Around four particles in each lane.
     fn of_particles(children: [&View; 4], into: &mut Self::Lanes);
 

@@ -174,6 +174,10 @@ impl<const N: usize> Volume for KDop<N> {
         (0..N).all(|at| self.low[at] <= other.low[at] && other.high[at] <= self.high[at])
     }
 
+    fn faces(&self) -> Vec<Vec<Vec3>> {
+        Self::faces(self)
+    }
+
     fn inflated(&self, radius: f32) -> Self {
         let reach = |at: usize| radius * Vec3::from(Self::axis(at)).length();
         Self {

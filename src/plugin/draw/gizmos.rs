@@ -332,9 +332,7 @@ fn draw_volume(
             let rotation = Quat::from_mat3(&obb.axes);
             draw_box(Isometry3d::new(obb.centre, rotation), 2.0 * obb.half_size);
         }
-        NodeVolume::KDop14(polytope) => draw_faces(&polytope.faces(), frame, color, gizmos),
-        NodeVolume::KDop18(polytope) => draw_faces(&polytope.faces(), frame, color, gizmos),
-        NodeVolume::KDop26(polytope) => draw_faces(&polytope.faces(), frame, color, gizmos),
+        other => draw_faces(&other.faces(), frame, color, gizmos),
     }
 }
 
