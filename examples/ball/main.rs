@@ -56,7 +56,7 @@ fn main() -> ExitCode {
         drawn_at: f64::INFINITY,
         scene: |app| {
             app.add_plugins(scene::ScenePlugin)
-                .insert_resource(Keys(&[("Up, Down", "faster, slower ball")]))
+                .add_plugins(Keys(&[("Up, Down", "faster, slower ball")]))
                 .add_systems(Update, press_keys);
         },
         report: headless::report,

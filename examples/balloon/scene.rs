@@ -27,7 +27,7 @@ pub fn build(app: &mut App) {
     ))
     .insert_resource(ClothWind::gusty(Vec3::new(0.5, 0.0, -0.2)))
     .insert_resource(Pump(GAS))
-    .insert_resource(Keys(&[
+    .add_plugins(Keys(&[
         ("Up, Down", "more, less gas"),
         ("Right, Left", "more, less wind"),
     ]))

@@ -31,7 +31,7 @@ pub fn build(app: &mut App) {
     .init_resource::<ClothWind>()
     // The skeleton moves from frame to frame.
     .init_resource::<TickByTick>()
-    .insert_resource(Keys(&[
+    .add_plugins(Keys(&[
         ("W", "run, stand still"),
         ("J", "jump"),
         ("T", "teleport"),

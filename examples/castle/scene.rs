@@ -35,7 +35,7 @@ pub fn build(app: &mut App) {
         })
         // From 25 m on each flag moves in every second tick, from 50 m on in every fourth.
         .insert_resource(GlobalClothLod(ClothLod::default()))
-        .insert_resource(Keys(&[
+        .add_plugins(Keys(&[
             ("Up, Down", "stronger, weaker wind"),
             ("D", "level of detail on, off"),
         ]))

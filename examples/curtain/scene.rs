@@ -35,7 +35,7 @@ pub fn build(app: &mut App) {
         TransformInterpolationPlugin::default(),
     ))
     .init_resource::<Rail>()
-    .insert_resource(Keys(&[
+    .add_plugins(Keys(&[
         ("O", "open, close the curtain"),
         ("Up, Down", "faster, slower walker"),
     ]))

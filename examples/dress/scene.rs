@@ -52,7 +52,7 @@ pub fn build(app: &mut App) {
         DrapePlugins::default(),
         TransformInterpolationPlugin::default(),
     ))
-    .insert_resource(Keys(&[
+    .add_plugins(Keys(&[
         ("T", "spin, stand still"),
         ("Up, Down", "spin faster, slower"),
     ]))

@@ -25,7 +25,7 @@ pub fn build(app: &mut App) {
     let stage = StagePlugin::lit_from(-2.0, 3.2, 2.6);
     app.add_plugins((stage, FigurePlugin, DrapePlugins::default()))
         .init_resource::<Crossings>()
-        .insert_resource(Keys(&[("S", "self-collision on, off")]))
+        .add_plugins(Keys(&[("S", "self-collision on, off")]))
         .add_systems(Startup, (spawn_bar, spawn_cloth).chain())
         .add_systems(
             FixedUpdate,

@@ -32,7 +32,7 @@ pub fn build(app: &mut App) {
         DrapePlugins::default(),
         StagePlugin::lit_from(-3.0, 5.0, 3.0),
     ))
-    .insert_resource(Keys(&[
+    .add_plugins(Keys(&[
         ("T", "toss the ball up"),
         ("Up, Down", "double, halve the ball's mass"),
     ]))

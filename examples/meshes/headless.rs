@@ -84,7 +84,7 @@ pub fn report(mut run: Run) -> ExitCode {
     let figures = run.finish();
     let pictures = SHOTS.map(|(name, shot)| {
         run.example.name = name;
-        run.app.insert_resource(shot);
+        run.example.shot = shot;
         run.picture()
     });
     let world = run.app.world_mut();
@@ -117,7 +117,8 @@ pub fn report(mut run: Run) -> ExitCode {
         asleep: stats.is_asleep,
         fault: fault.map(|fault| fault.error.to_string()),
     };
-    let cloths: Vec<Row> = cloths.iter_mut(world).map(row).collect();
+    let mut cloths: Vec<Row> = cloths.iter_mut(world).map(row).collect();
+    cloths.sort_by(|one, other| one.name.cmp(&other.name));
     let is_whole = cloths
         .iter()
         .all(|row| row.fault.is_none() && row.particles > 0);

@@ -74,8 +74,7 @@ impl Run {
     pub fn new(example: Example, view: View, grid: Grid, options: Options) -> Self {
         let mut app = App::new();
         app.add_plugins((view.plugins(example.title), MeasuringPlugin))
-            .insert_resource(grid)
-            .insert_resource(example.shot);
+            .insert_resource(grid);
         (example.scene)(&mut app);
         Self {
             ticks: ticks_in(&app, options.seconds).max(1),
@@ -142,7 +141,7 @@ impl Run {
         ticks_in(&self.app, seconds)
     }
 
-    /// Goes on until the example's picture is due, and draws it as the app's [`Shot`] says then.
+    /// Goes on until the example's picture is due, and draws it.
     pub fn picture(&mut self) -> Picture {
         self.until(self.ticks_in(self.example.drawn_at));
         self.take_picture(&format!("{}.png", self.example.name))
@@ -193,7 +192,8 @@ impl Run {
 
     fn draw(&mut self, format: Format, file: &str) -> Result<PathBuf, String> {
         if self.view == View::Offscreen {
-            draw(&mut self.app, format, &self.options.out, file)
+            let shot = self.example.shot;
+            draw(&mut self.app, shot, format, &self.options.out, file)
         } else {
             Err("no graphics adapter found".into())
         }
@@ -275,8 +275,13 @@ impl fmt::Display for Picture {
     }
 }
 
-fn draw(app: &mut App, format: Format, out: &Path, file: &str) -> Result<PathBuf, String> {
-    let shot = *app.world().resource::<Shot>();
+fn draw(
+    app: &mut App,
+    shot: Shot,
+    format: Format,
+    out: &Path,
+    file: &str,
+) -> Result<PathBuf, String> {
     let path = out.join(file);
     fs::create_dir_all(out)
         .map_err(|error| format!("{} could not be made: {error}", out.display()))?;

@@ -37,8 +37,11 @@ const KEYS: [(&str, &str); 10] = [
 ];
 
 /// An example's own keys, as they stand in the panel above [`KEYS`].
-#[derive(Resource)]
 pub struct Keys(pub &'static [(&'static str, &'static str)]);
+
+impl Plugin for Keys {
+    fn build(&self, _: &mut App) {}
+}
 
 /// Runs the example in a window beside the panel until it is closed.
 pub fn run(example: Example, grid: Grid) -> ExitCode {
@@ -47,8 +50,8 @@ pub fn run(example: Example, grid: Grid) -> ExitCode {
         .insert_resource(grid)
         .insert_resource(example.shot);
     (example.scene)(&mut app);
-    let own: &[_] = app.world().get_resource().map_or(&[], |Keys(keys)| keys);
-    let keys = own.iter().chain(&KEYS);
+    let own = app.get_added_plugins().into_iter();
+    let keys = own.flat_map(|Keys(keys)| *keys).chain(&KEYS);
     let panel = ClothPanel {
         keys: keys
             .map(|(key, what)| (key.to_string(), what.to_string()))

@@ -15,7 +15,7 @@ pub struct KeysPlugin;
 
 impl Plugin for KeysPlugin {
     fn build(&self, app: &mut App) {
-        app.insert_resource(Keys(&[
+        app.add_plugins(Keys(&[
             ("Up, Down", "stronger, weaker wind"),
             ("Left, Right", "turn the wind"),
             ("T", "turbulence on, off"),

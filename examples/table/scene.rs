@@ -38,7 +38,7 @@ pub fn build(app: &mut App) {
     app.add_plugins((stage, PhysicsPlugin, FigurePlugin, DrapePlugins::default()))
         .init_resource::<Pull>()
         .init_resource::<Shown>()
-        .insert_resource(Keys(&[("T", "pull the cloth off")]))
+        .add_plugins(Keys(&[("T", "pull the cloth off")]))
         .add_systems(Startup, (spawn_table, spawn_cloth, things::spawn))
         .add_systems(
             FixedUpdate,
