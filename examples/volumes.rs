@@ -39,17 +39,11 @@ use bevy_drape::{
 };
 use serde::Serialize;
 
-use crate::shared::{
-    headless::{Picture, Run, median, print},
-    stage::{Grid, Shot, StagePlugin},
-    start::{Example, Options},
-    view::View,
-    window,
-    woven::{Weave, woven},
-};
+use crate::shared::headless::{Picture, Run};
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::{Grid, Shot, StagePlugin};
+use crate::shared::{measured::median, parts::report::print, start::Example};
 
-/// Particles along either side of a cloth, unless asked.
-const PARTICLES: u32 = 32;
 /// Width of a cloth (m). This and all places are sums of few powers of two, so that the cloths differ by nothing, not even
 /// by rounding.
 const WIDTH: f32 = 1.5;
@@ -60,72 +54,54 @@ const RADIUS: f32 = 0.3;
 /// Distance between the cloths (m).
 const PITCH: Vec2 = Vec2::new(2.5, 2.25);
 
-const SHOT: Shot = Shot {
-    from: Vec3::new(-2.6, 1.6, 12.0),
-    focus: Vec3::new(0.0, 0.12, 0.0),
-    fov: 0.375,
-};
-
-struct ScenePlugin;
-
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: false,
-            light_from: Vec3::new(4.0, 8.0, 3.0),
-        };
-        app.add_plugins((stage, DrapePlugins::default()))
-            .insert_resource(ClearColor(Color::srgb(0.22, 0.24, 0.27)))
-            .add_systems(Startup, spawn_panels)
-            .add_systems(FixedUpdate, swing.before(ClothSystems::Prepare))
-            .add_systems(Update, write_labels);
-    }
+fn build(app: &mut App) {
+    let stage = StagePlugin {
+        has_floor: false,
+        ..StagePlugin::lit_from(4.0, 8.0, 3.0)
+    };
+    app.add_plugins((stage, DrapePlugins::default()))
+        .insert_resource(ClearColor(Color::srgb(0.22, 0.24, 0.27)))
+        .add_systems(Startup, spawn_panels)
+        .add_systems(FixedUpdate, swing.before(ClothSystems::Prepare))
+        .add_systems(Update, write_labels);
 }
 
 /// Where a ball swings.
 #[derive(Component)]
 struct Swing(Vec3);
 
-fn spawn_panels(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut images: ResMut<Assets<Image>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-    mut store: ResMut<GizmoConfigStore>,
-) {
+fn spawn_panels(mut shop: Workshop, mut store: ResMut<GizmoConfigStore>) {
     let (config, look) = store.config_mut::<ClothGizmos>();
     config.line.width = 1.6;
     look.unvisited = Color::srgba(0.5, 0.6, 0.7, 0.12);
-    let weave = woven(Weave::Plain, &mut images, 2, |_, _| {
-        Color::srgb(0.33, 0.43, 0.72)
-    });
-    let cloth_material = materials.add(StandardMaterial {
+    let weave = shop.weave(Weave::Plain, 2, |_, _| Color::srgb(0.33, 0.43, 0.72));
+    let sheer = shop.paint(StandardMaterial {
         // The ball, behind, is seen through it.
         base_color: Color::WHITE.with_alpha(0.6),
         alpha_mode: AlphaMode::Blend,
         ..weave
     });
-    let ball_material = materials.add(Color::srgb(0.95, 0.6, 0.2));
-    let ball_mesh = meshes.add(Sphere::new(RADIUS).mesh().uv(64, 32));
+    let orange = shop.paint(Color::srgb(0.95, 0.6, 0.2));
+    let ball = shop.mesh(Sphere::new(RADIUS).mesh().uv(64, 32));
+    let side = shop.grid.0;
     for (place, (_, volume)) in BoundingVolume::ALL.into_iter().enumerate() {
         let (row, column) = ((place / 3) as f32, (place % 3) as f32);
         let middle = Vec3::new((column - 1.0) * PITCH.x, (0.5 - row) * PITCH.y, 0.0);
-        commands.spawn((
+        shop.commands.spawn((
             Name::new(volume.name()),
-            Cloth::new(grid.0, grid.0, WIDTH / (grid.0 - 1) as f32).centred(),
+            Cloth::new(side, side, WIDTH / (side - 1) as f32).centred(),
             SearchMethod::Tree(volume, BoundRule::Refit),
             ShowClothGizmos::level(LEVEL),
-            MeshMaterial3d(cloth_material.clone()),
+            sheer.clone(),
             NotShadowCaster,
             Transform::from_translation(middle),
         ));
         let rest = middle + Vec3::new(0.125, -0.1875, 0.0);
-        commands.spawn((
+        shop.commands.spawn((
             ClothCollider::ball(RADIUS),
             Swing(rest),
-            Mesh3d(ball_mesh.clone()),
-            MeshMaterial3d(ball_material.clone()),
+            ball.clone(),
+            orange.clone(),
             Transform::from_translation(rest + Vec3::NEG_Z),
         ));
     }
@@ -202,14 +178,12 @@ fn measure(mut cloths: Query<(&ClothStats, &mut Measured)>) {
     }
 }
 
-fn headless(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let scene = ("volumes", ScenePlugin);
-    let mut run = Run::new(scene, view, grid, options, |app| {
-        app.register_required_components::<Cloth, Measured>()
-            .add_systems(FixedLast, measure);
-    });
-    run.finish();
-    let picture = run.take_picture(SHOT, &options.out, "volumes.png");
+fn report(mut run: Run) -> ExitCode {
+    run.app
+        .register_required_components::<Cloth, Measured>()
+        .add_systems(FixedLast, measure);
+    let picture = run.picture();
+    let figures = run.finish();
     let world = run.app.world_mut();
     let mut cloths = world.query::<(&SearchMethod, &mut Measured, &ClothParticles)>();
     let mut first: Option<Vec<Vec3>> = None;
@@ -228,14 +202,15 @@ fn headless(view: View, grid: Grid, options: &Options) -> ExitCode {
         let positions: Vec<Vec3> = particles.positions().collect();
         same &= *first.get_or_insert_with(|| positions.clone()) == positions;
     }
+    let Grid(grid) = *world.resource::<Grid>();
     let report = Report {
-        ticks: run.ticks,
-        particles: grid.0 * grid.0,
+        ticks: figures.ticks,
+        particles: grid * grid,
         cloths: rows,
         same,
         picture,
     };
-    print(&report, options.json, print_report)
+    print(&report, run.options.json, print_report)
 }
 
 fn print_report(report: &Report) {
@@ -266,15 +241,18 @@ fn print_report(report: &Report) {
 fn main() -> ExitCode {
     Example {
         name: "volumes",
-        about: "Debug view: six kinds of bounding volume, side by side. Opens a window if possible, otherwise runs headless.",
+        about: "Debug view: six kinds of bounding volume, side by side.",
+        title: "six bounding volumes (debug view)",
         seconds: "3",
-        particles: PARTICLES,
-        window: |grid| {
-            let mut app = window::app("six bounding volumes (debug view)", ScenePlugin, SHOT, &[]);
-            app.insert_resource(grid);
-            window::run(app)
+        particles: 32,
+        shot: Shot {
+            from: Vec3::new(-2.6, 1.6, 12.0),
+            focus: Vec3::new(0.0, 0.12, 0.0),
+            fov: 0.375,
         },
-        headless,
+        drawn_at: f64::INFINITY,
+        scene: build,
+        report,
     }
     .run()
 }

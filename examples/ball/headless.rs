@@ -3,26 +3,17 @@
 use std::{process::ExitCode, time::Instant};
 
 use bevy::prelude::*;
-use bevy_drape::{contact::deepest_penetration, plugin::ClothBuilt, prelude::*};
+use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::PhysicsSet;
 use serde::Serialize;
 
-use crate::{
-    measured::{Figures, MeasuringPlugin},
-    scene::{self, Ball, ScenePlugin},
-    shared::{
-        headless::{Picture, Run, median, print, ticks_in},
-        stage::Grid,
-        start::Options,
-        view::View,
-    },
-};
+use crate::scene::{self, Ball};
+use crate::shared::parts::{depth::Placed, report::Report};
+use crate::shared::{headless::Run, measured::median};
 
 /// What is printed: times are medians over all ticks, the rest is the largest of any tick.
 #[derive(Serialize)]
-struct Report {
-    #[serde(flatten)]
-    figures: Figures,
+struct Own {
     springs: usize,
     /// All of `FixedUpdate`.
     tick_ms: f64,
@@ -37,8 +28,6 @@ struct Report {
     deepest_penetration_mm: f32,
     /// How deep any particle was at the end of a tick, by brute force in f64.
     deepest_left_mm: f64,
-    #[serde(flatten)]
-    picture: Picture,
 }
 
 /// What is measured on the way.
@@ -49,79 +38,73 @@ struct Measured {
     tick_ms: Vec<f64>,
     rapier_ms: Vec<f64>,
     cloth_ms: Vec<f64>,
-    contacts: usize,
     nodes_visited: usize,
     deepest: f32,
-    deepest_left: f64,
+    deepest_left_mm: f64,
 }
 
 /// How far the ball is past the cloth's plane (m) when the cloth is well wrapped around it.
 const WRAPPED: f32 = 1.2;
 
-/// Simulates, prints the report, and saves `ball.png` if `view` can draw.
-pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let scene = ("the ball and the cloth", ScenePlugin);
-    let mut run = Run::new(scene, view, grid, options, |app| {
-        app.add_plugins(MeasuringPlugin)
-            .init_resource::<Measured>()
-            .add_systems(
-                FixedUpdate,
-                (
-                    start_tick.before(scene::drive_ball),
-                    start_cloth
-                        .after(PhysicsSet::Writeback)
-                        .before(ClothSystems::Prepare),
-                    end_tick.after(ClothSystems::WriteBack),
-                ),
-            )
-            .add_systems(FixedLast, look_at_the_worst);
-    });
-    let moment = scene::moment_beyond(WRAPPED, options.seconds);
-    run.until(ticks_in(&run.app, moment).clamp(1, run.ticks));
-    let picture = run.take_picture(scene::SHOT, &options.out, "ball.png");
-    run.finish();
-    let figures = Figures::of(&mut run);
+/// Simulates, prints the report, and saves `ball.png`.
+pub fn report(mut run: Run) -> ExitCode {
+    let measuring = (
+        start_tick.before(scene::drive_ball),
+        start_cloth
+            .after(PhysicsSet::Writeback)
+            .before(ClothSystems::Prepare),
+        end_tick.after(ClothSystems::WriteBack),
+    );
+    run.app
+        .init_resource::<Measured>()
+        .add_systems(FixedUpdate, measuring)
+        .add_systems(FixedLast, look_at_the_worst);
+    run.example.drawn_at = scene::moment_beyond(WRAPPED, run.options.seconds);
+    let picture = run.picture();
+    let figures = run.finish();
     let world = run.app.world_mut();
     let mut cloths = world.query::<&ClothBuilt>();
     let springs = cloths.iter(world).map(|built| built.springs().len()).sum();
     let mut measured = world.resource_mut::<Measured>();
-    let report = Report {
-        figures,
+    let own = Own {
         springs,
         tick_ms: median(&mut measured.tick_ms),
         rapier_ms: median(&mut measured.rapier_ms),
         cloth_ms: median(&mut measured.cloth_ms),
-        contacts: measured.contacts,
+        contacts: figures.contacts,
         nodes_visited: measured.nodes_visited,
         deepest_penetration_mm: 1.0e3 * measured.deepest,
-        deepest_left_mm: 1.0e3 * measured.deepest_left,
-        picture,
+        deepest_left_mm: measured.deepest_left_mm,
     };
-    print(&report, options.json, print_report)
+    let report = Report {
+        title: "A ball and a cloth",
+        figures,
+        own,
+        picture: Some(picture),
+    };
+    report.print(&mut run, print_own)
 }
 
-fn print_report(report: &Report) {
-    let over = |milliseconds| 100.0 * (milliseconds / report.figures.solver_ms - 1.0);
-    report.figures.print("A ball and a cloth");
-    println!("  springs          {}", report.springs);
+fn print_own(Report { figures, own, .. }: &Report<Own>) {
+    let over = |milliseconds| 100.0 * (milliseconds / figures.solver_ms - 1.0);
+    println!("  springs          {}", own.springs);
     println!(
         "  whole tick       {:.4} ms: cloth systems {:.4} ms, rapier {:.4} ms (medians)",
-        report.tick_ms, report.cloth_ms, report.rapier_ms
+        own.tick_ms, own.cloth_ms, own.rapier_ms
     );
     println!(
         "  over the solver  {:.0} % more for the cloth systems, {:.0} % more for the whole tick",
-        over(report.cloth_ms),
-        over(report.tick_ms)
+        over(own.cloth_ms),
+        over(own.tick_ms)
     );
     println!(
         "  contacts         at most {} particles, {} nodes visited",
-        report.contacts, report.nodes_visited
+        own.contacts, own.nodes_visited
     );
     println!(
         "  penetration      at most {:.2} mm before the response, {:.4} mm after a tick",
-        report.deepest_penetration_mm, report.deepest_left_mm
+        own.deepest_penetration_mm, own.deepest_left_mm
     );
-    println!("  picture          {}", report.picture);
 }
 
 fn start_tick(mut measured: ResMut<Measured>) {
@@ -145,28 +128,18 @@ fn end_tick(mut measured: ResMut<Measured>) {
 }
 
 fn look_at_the_worst(
-    cloths: Query<(
-        &ClothStats,
-        &ClothContacts,
-        &ClothFrame,
-        &ClothParticles,
-        &ClothSettings,
-    )>,
+    cloths: Query<(&ClothStats, &ClothContacts, Placed)>,
     balls: Query<(&Transform, &ClothCollider), With<Ball>>,
     mut measured: ResMut<Measured>,
 ) {
-    for (stats, contacts, frame, particles, settings) in &cloths {
-        measured.contacts = measured.contacts.max(stats.contacts);
+    for (stats, contacts, cloth) in &cloths {
         measured.nodes_visited = measured.nodes_visited.max(stats.nodes_visited);
         for contact in contacts.iter() {
             measured.deepest = measured.deepest.max(contact.deepest_penetration);
         }
         for (transform, collider) in &balls {
-            if let Ok(shape) = collider.scaled(transform.scale) {
-                let pose = Isometry3d::from_translation(frame.from_world(transform.translation));
-                let left = deepest_penetration(particles, &shape, pose, settings.particle_radius);
-                measured.deepest_left = measured.deepest_left.max(left);
-            }
+            let left = cloth.depth_in(collider, transform);
+            measured.deepest_left_mm = measured.deepest_left_mm.max(left);
         }
     }
 }

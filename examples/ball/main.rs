@@ -30,29 +30,42 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-mod controls;
 mod headless;
-#[path = "../shared/measured.rs"]
-mod measured;
-#[path = "../shared/physics.rs"]
-mod physics;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
 
 use std::process::ExitCode;
 
-use crate::shared::start::Example;
+use bevy::prelude::*;
+use bevy_drape::plugin::ClothColliderSpeed;
+
+// Where the scene looks for it: the lab shows that scene as well.
+use crate::shared::parts::physics;
+use crate::shared::{parts::arrows::up_down, start::Example, window::Keys};
 
 fn main() -> ExitCode {
     Example {
         name: "ball",
-        about: "Debug view: a ball travels through a hanging cloth. Opens a window if possible, otherwise runs headless.",
+        about: "Debug view: a ball travels through a hanging cloth.",
+        title: "a ball and a cloth (debug view)",
         seconds: "12",
         // So fine that it drapes as fabric does.
         particles: 48,
-        window: controls::run,
-        headless: headless::run,
+        shot: scene::SHOT,
+        drawn_at: f64::INFINITY,
+        scene: |app| {
+            app.add_plugins(scene::ScenePlugin)
+                .add_plugins(Keys(&[("Up, Down", "faster, slower ball")]))
+                .add_systems(Update, press_keys);
+        },
+        report: headless::report,
     }
     .run()
+}
+
+fn press_keys(keys: Res<ButtonInput<KeyCode>>, mut speeds: Query<&mut ClothColliderSpeed>) {
+    for mut speed in &mut speeds {
+        speed.0 = (speed.0 + 0.25 * up_down(&keys)).clamp(0.0, 10.0);
+    }
 }

@@ -39,10 +39,7 @@ impl Plugin for ScenePlugin {
             .add_plugins((
                 PhysicsPlugin,
                 DrapePlugins::default(),
-                StagePlugin {
-                    has_floor: true,
-                    light_from: Vec3::new(5.5, 6.5, 1.8),
-                },
+                StagePlugin::lit_from(5.5, 6.5, 1.8),
             ))
             .add_systems(Startup, (spawn_ball, spawn_cloth))
             .add_systems(FixedUpdate, drive_ball.before(PhysicsSet::SyncBackend));

@@ -23,11 +23,7 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-#[path = "../shared/measured.rs"]
-mod measured;
 mod models;
-#[path = "../shared/plain.rs"]
-mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
@@ -35,56 +31,25 @@ mod shared;
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
 
-use crate::{
-    plain::Moment,
-    scene::{Pump, ROOM, ScenePlugin},
-    shared::{start::Example, window},
-};
-
-const TITLE: &str = "balloons";
+use crate::shared::{parts::report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "balloon",
-        about: "Balloons are inflated. Opens a window if possible, otherwise runs headless.",
+        about: "Balloons are inflated.",
+        title: "balloons",
         seconds: "6",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let keys = [
-                ("Up, Down", "more, less gas"),
-                ("Right, Left", "more, less wind"),
-            ];
-            let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
-            app.insert_resource(grid).add_systems(Update, press_keys);
-            window::run(app)
+        // Rings of triangles on either side.
+        particles: 16,
+        shot: Shot {
+            from: Vec3::new(0.4, 1.1, 2.6),
+            focus: Vec3::new(0.03, 1.02, 0.0),
+            fov: 0.42,
         },
-        headless: |view, grid, options| {
-            let moment = Moment {
-                at: scene::DRAWN_AT,
-                shot: scene::SHOT,
-                file: "balloon.png",
-            };
-            plain::run((TITLE, ScenePlugin), &moment, view, grid, options)
-        },
+        drawn_at: 4.0,
+        scene: scene::build,
+        report: report::plain,
     }
     .run()
-}
-
-fn press_keys(
-    keys: Res<ButtonInput<KeyCode>>,
-    mut pump: ResMut<Pump>,
-    mut wind: ResMut<ClothWind>,
-) {
-    for (key, change) in [(KeyCode::ArrowUp, 0.03), (KeyCode::ArrowDown, -0.03)] {
-        if keys.just_pressed(key) {
-            pump.0 = (pump.0 / ROOM + change).clamp(0.03, 1.2) * ROOM;
-        }
-    }
-    for (key, factor) in [(KeyCode::ArrowRight, 1.25), (KeyCode::ArrowLeft, 0.8)] {
-        if keys.just_pressed(key) {
-            wind.velocity *= factor;
-        }
-    }
 }

@@ -2,11 +2,9 @@
 
 use std::f32::consts::TAU;
 
-use bevy::{
-    asset::RenderAssetUsages,
-    mesh::{Indices, PrimitiveTopology},
-    prelude::*,
-};
+use bevy::prelude::*;
+
+use crate::shared::parts::surfaces::smooth;
 
 /// How far the discs are apart in their middle (m): vertices in the same place would be one particle.
 const APART: f32 = 0.004;
@@ -56,13 +54,5 @@ pub fn discs(radius: f32, rings: u32) -> Mesh {
             }
         }
     }
-    let mesh = Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::default(),
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-    .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-    .with_inserted_indices(Indices::U32(indices))
-    .with_computed_smooth_normals();
-    mesh.clone().with_generated_tangents().unwrap_or(mesh)
+    smooth(positions, uvs, indices)
 }

@@ -3,57 +3,54 @@
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
-use crate::{
-    models::discs,
-    shared::{
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
-};
+use crate::models::discs;
+use crate::shared::parts::arrows::{right_left, up_down};
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::StagePlugin;
+use crate::shared::window::Keys;
 
-/// Rings of triangles on either side.
-pub const PARTICLES: u32 = 16;
 /// Radius of the discs that a balloon is made of (m).
 const RADIUS: f32 = 0.28;
 /// What goes into one (m³): 1.2185 radius³, W. H. Paulsen 1994.
-pub const ROOM: f32 = 1.2185 * RADIUS * RADIUS * RADIUS;
+const ROOM: f32 = 1.2185 * RADIUS * RADIUS * RADIUS;
 /// Gas that they are blown up with at first (m³), and how fast (m³/s). The air around them presses by `OUTSIDE` Pa: less than that of the
 /// sea, so that it is felt how they get harder.
 const GAS: f32 = 1.06 * ROOM;
 const BLOWING: f32 = 0.4 * ROOM;
 const OUTSIDE: f32 = 500.0;
 
-/// When the picture is drawn (s).
-pub const DRAWN_AT: f64 = 4.0;
-
-/// All three.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(0.4, 1.1, 2.6),
-    focus: Vec3::new(0.03, 1.02, 0.0),
-    fov: 0.42,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
+pub fn build(app: &mut App) {
+    app.add_plugins((
+        StagePlugin::lit_from(-2.5, 4.5, 3.5),
+        DrapePlugins::default(),
+    ))
+    .insert_resource(ClothWind::gusty(Vec3::new(0.5, 0.0, -0.2)))
+    .insert_resource(Pump(GAS))
+    .add_plugins(Keys(&[
+        ("Up, Down", "more, less gas"),
+        ("Right, Left", "more, less wind"),
+    ]))
+    .add_systems(Startup, spawn_balloons)
+    .add_systems(FixedUpdate, blow_up.before(ClothSystems::Prepare))
+    .add_systems(Update, press_keys);
+}
 
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            light_from: Vec3::new(-2.5, 4.5, 3.5),
-        };
-        app.init_resource::<Grid>()
-            .insert_resource(ClothWind::gusty(Vec3::new(0.5, 0.0, -0.2)))
-            .add_plugins((stage, DrapePlugins::default()))
-            .insert_resource(Pump(GAS))
-            .add_systems(Startup, spawn_balloons)
-            .add_systems(FixedUpdate, blow_up.before(ClothSystems::Prepare));
+fn press_keys(
+    keys: Res<ButtonInput<KeyCode>>,
+    mut pump: ResMut<Pump>,
+    mut wind: ResMut<ClothWind>,
+) {
+    let more = 0.03 * up_down(&keys);
+    if more != 0.0 {
+        pump.0 = (pump.0 / ROOM + more).clamp(0.03, 1.2) * ROOM;
     }
+    wind.velocity *= 1.25_f32.powf(right_left(&keys));
 }
 
 /// The gas that all are brought to (m³).
 #[derive(Resource)]
-pub struct Pump(pub f32);
+struct Pump(f32);
 
 fn gas(volume: f32) -> ClothPressure {
     ClothPressure::Gas {
@@ -74,15 +71,10 @@ fn blow_up(mut balloons: Query<&mut ClothPressure>, pump: Res<Pump>, time: Res<T
     }
 }
 
-fn spawn_balloons(
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-) {
-    let balloon = meshes.add(discs(RADIUS, grid.0.max(3)));
-    let white = materials.add(Color::srgb(0.92, 0.92, 0.90));
+fn spawn_balloons(mut shop: Workshop) {
+    let rings = shop.grid.0.max(3);
+    let balloon = shop.mesh(discs(RADIUS, rings));
+    let white = shop.paint(Color::srgb(0.92, 0.92, 0.90));
     for (name, color, place, turn) in [
         (
             "red",
@@ -104,30 +96,28 @@ fn spawn_balloons(
         ),
     ] {
         let height = place.y - RADIUS;
-        commands.spawn((
-            Mesh3d(meshes.add(Cylinder::new(0.008, height))),
-            MeshMaterial3d(white.clone()),
-            Transform::from_translation(place.with_y(0.5 * height)),
-        ));
+        let stick = shop.mesh(Cylinder::new(0.008, height));
+        let middle = Transform::from_translation(place.with_y(0.5 * height));
+        shop.commands.spawn((stick, white.clone(), middle));
         // Silk with a thread of light now and then, and as shiny.
-        let silk = woven(Weave::Plain, &mut images, 2, |_, yarn| match yarn % 16 {
+        let silk = shop.weave(Weave::Plain, 2, |_, yarn| match yarn % 16 {
             0 => color.mix(&Color::WHITE, 0.5),
             _ => color,
         });
-        let silk = StandardMaterial {
+        let silk = shop.paint(StandardMaterial {
             metallic: 0.3,
             perceptual_roughness: 0.35,
             reflectance: 0.6,
             ..silk
-        };
+        });
         let tip = Pin::Near {
             point: Vec3::NEG_Y * RADIUS,
             radius: 0.018,
         };
-        commands.spawn((
+        shop.commands.spawn((
             Name::new(name),
             Cloth::mesh(),
-            Mesh3d(balloon.clone()),
+            balloon.clone(),
             Pins::new([tip]),
             gas(0.02 * ROOM),
             ClothMaterial {
@@ -141,7 +131,7 @@ fn spawn_balloons(
                 ..ClothSettings::substeps(48)
             },
             ShowClothGizmos::nothing(),
-            MeshMaterial3d(materials.add(silk)),
+            silk,
             Transform::from_translation(place).with_rotation(Quat::from_rotation_y(turn)),
         ));
     }

@@ -31,11 +31,7 @@
 //! | C | next contact method: automatic, particles, triangles |
 
 mod hero;
-#[path = "../shared/measured.rs"]
-mod measured;
 mod model;
-#[path = "../shared/plain.rs"]
-mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
@@ -43,16 +39,8 @@ mod shared;
 use std::{env, path::Path, process::ExitCode};
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
 
-use crate::{
-    hero::{Hero, ScriptPlugin},
-    plain::Moment,
-    scene::ScenePlugin,
-    shared::{start::Example, window},
-};
-
-const TITLE: &str = "a hero in a cape";
+use crate::shared::{parts::report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     if env::args().any(|argument| argument == "--write-model") {
@@ -60,30 +48,22 @@ fn main() -> ExitCode {
     }
     Example {
         name: "cape",
-        about: "A hero runs, jumps and teleports in a cape. Opens a window if possible, otherwise runs headless.",
+        about: "A hero runs, jumps and teleports in a cape.",
+        title: "a hero in a cape",
         seconds: "9",
         particles: scene::PARTICLES,
-        window: |grid| {
-            let keys = [
-                ("W", "run, stand still"),
-                ("J", "jump"),
-                ("T", "teleport"),
-                ("Up, Down", "stronger, weaker wind"),
-            ];
-            let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
-            app.insert_resource(grid).add_systems(Update, press_keys);
-            window::run(app)
+        // All of the circle that the hero runs around, with room for a jump where it is nearest.
+        shot: Shot {
+            from: Vec3::new(-2.1, 2.2, 7.7),
+            focus: Vec3::new(0.0, 1.08, 0.0),
+            fov: 0.52,
         },
-        headless: |view, grid, options| {
-            let moment = Moment {
-                at: scene::DRAWN_AT,
-                shot: scene::SHOT,
-                file: "cape.png",
-            };
-            let scene = |app: &mut App| {
-                app.add_plugins((ScenePlugin, ScriptPlugin));
-            };
-            plain::run((TITLE, scene), &moment, view, grid, options)
+        // As the cape flies.
+        drawn_at: 2.95,
+        scene: scene::build,
+        report: |mut run| {
+            run.app.add_plugins(hero::ScriptPlugin);
+            report::plain(run)
         },
     }
     .run()
@@ -101,31 +81,6 @@ fn write_model() -> ExitCode {
         Err(error) => {
             eprintln!("{}: {error}", path.display());
             ExitCode::FAILURE
-        }
-    }
-}
-
-/// From one press to the next (m/s).
-const STRONGER: f32 = 2.0;
-
-fn press_keys(
-    keys: Res<ButtonInput<KeyCode>>,
-    mut heroes: Query<&mut Hero>,
-    mut wind: ResMut<ClothWind>,
-) {
-    for mut hero in &mut heroes {
-        if keys.just_pressed(KeyCode::KeyW) {
-            hero.runs = !hero.runs;
-        }
-        hero.jumps |= keys.just_pressed(KeyCode::KeyJ);
-        hero.teleports |= keys.just_pressed(KeyCode::KeyT);
-    }
-    for (key, change) in [
-        (KeyCode::ArrowUp, STRONGER),
-        (KeyCode::ArrowDown, -STRONGER),
-    ] {
-        if keys.just_pressed(key) {
-            wind.velocity.x = (wind.velocity.x + change).clamp(-20.0, 20.0);
         }
     }
 }

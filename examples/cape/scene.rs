@@ -9,14 +9,10 @@ use bevy::{
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
 
-use crate::{
-    hero::{Hero, animate, go, load_moves, prepare_player},
-    shared::{
-        headless::TickByTick,
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
-};
+use crate::hero::{Hero, animate, go, load_moves, prepare_player};
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::{Grid, StagePlugin};
+use crate::shared::{headless::TickByTick, parts::arrows::up_down, window::Keys};
 
 /// What `model/` writes: metres, y up, the ground at 0.
 pub const HERO: &str = "models/hero.glb";
@@ -24,40 +20,41 @@ pub const HERO: &str = "models/hero.glb";
 /// Particles down the cape, as it is modelled.
 pub const PARTICLES: u32 = 27;
 
-/// When the cape flies (s).
-pub const DRAWN_AT: f64 = 2.95;
-
-/// All of the circle that the hero runs around, with room for a jump where it is nearest.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(-2.1, 2.2, 7.7),
-    focus: Vec3::new(0.0, 1.08, 0.0),
-    fov: 0.52,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
+pub fn build(app: &mut App) {
+    app.add_plugins((
+        StagePlugin::lit_from(-3.0, 5.0, 4.5),
+        DrapePlugins::default(),
+        TransformInterpolationPlugin::default(),
+    ))
+    // Still air: what blows the cape is the hero's own speed.
+    .init_resource::<ClothWind>()
+    // The skeleton moves from frame to frame.
+    .init_resource::<TickByTick>()
+    .add_plugins(Keys(&[
+        ("W", "run, stand still"),
+        ("J", "jump"),
+        ("T", "teleport"),
+        ("Up, Down", "stronger, weaker wind"),
+    ]))
+    .add_systems(Startup, (load_moves, spawn_hero).chain())
+    .add_systems(FixedUpdate, go.before(ClothSystems::Prepare))
+    .add_systems(Update, (animate, press_keys))
+    .add_observer(prepare_player)
+    .add_observer(dress);
+}
 
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            light_from: Vec3::new(-3.0, 5.0, 4.5),
-        };
-        app.add_plugins((
-            stage,
-            DrapePlugins::default(),
-            TransformInterpolationPlugin::default(),
-        ))
-        // Still air: what blows the cape is the hero's own speed.
-        .init_resource::<ClothWind>()
-        // The skeleton moves from frame to frame.
-        .init_resource::<TickByTick>()
-        .add_systems(Startup, (load_moves, spawn_hero).chain())
-        .add_systems(FixedUpdate, go.before(ClothSystems::Prepare))
-        .add_systems(Update, animate)
-        .add_observer(prepare_player)
-        .add_observer(dress);
+fn press_keys(
+    keys: Res<ButtonInput<KeyCode>>,
+    mut heroes: Query<&mut Hero>,
+    mut wind: ResMut<ClothWind>,
+) {
+    for mut hero in &mut heroes {
+        hero.runs ^= keys.just_pressed(KeyCode::KeyW);
+        hero.jumps |= keys.just_pressed(KeyCode::KeyJ);
+        hero.teleports |= keys.just_pressed(KeyCode::KeyT);
     }
+    wind.velocity.x = (wind.velocity.x + 2.0 * up_down(&keys)).clamp(-20.0, 20.0);
 }
 
 fn spawn_hero(mut commands: Commands, assets: Res<AssetServer>, grid: Res<Grid>) {
@@ -97,21 +94,21 @@ fn dress(
     ready: On<WorldInstanceReady>,
     children: Query<&Children>,
     skinned: Query<(), With<SkinnedMesh>>,
-    mut images: ResMut<Assets<Image>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    mut commands: Commands,
+    mut shop: Workshop,
 ) {
     let below = children.iter_descendants(ready.entity);
     for cape in below.filter(|entity| skinned.contains(*entity)) {
         // Red wool with a border of gold along the hem.
-        let wool = woven(Weave::Twill, &mut images, 1, |runs_down, yarn| {
-            match (runs_down, yarn) {
-                (false, 59..62) => Color::srgb(0.86, 0.66, 0.26),
-                (false, _) => Color::srgb(0.56, 0.05, 0.08),
-                (true, _) => Color::srgb(0.74, 0.09, 0.11),
-            }
+        let wool = shop.weave(Weave::Twill, 1, |runs_down, yarn| match (runs_down, yarn) {
+            (false, 59..62) => Color::srgb(0.86, 0.66, 0.26),
+            (false, _) => Color::srgb(0.56, 0.05, 0.08),
+            (true, _) => Color::srgb(0.74, 0.09, 0.11),
         });
-        commands.entity(cape).insert((
+        let wool = shop.paint(StandardMaterial {
+            uv_transform: Affine2::from_scale(Vec2::new(2.0, 1.0)),
+            ..wool
+        });
+        shop.commands.entity(cape).insert((
             Cloth::mesh(),
             Pins::none(),
             ClothSkin::painted(),
@@ -125,10 +122,7 @@ fn dress(
             },
             ClothSelfCollision::default(),
             ShowClothGizmos::nothing(),
-            MeshMaterial3d(materials.add(StandardMaterial {
-                uv_transform: Affine2::from_scale(Vec2::new(2.0, 1.0)),
-                ..wool
-            })),
+            wool,
         ));
     }
 }

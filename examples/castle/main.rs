@@ -23,10 +23,6 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-#[path = "../shared/measured.rs"]
-mod measured;
-#[path = "../shared/plain.rs"]
-mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
@@ -34,58 +30,25 @@ mod shared;
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
 
-use crate::{
-    plain::Moment,
-    scene::ScenePlugin,
-    shared::{start::Example, window},
-};
-
-const TITLE: &str = "a castle with sixty flags";
+use crate::shared::{parts::report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "castle",
-        about: "Sixty flags in the wind on a castle. Opens a window if possible, otherwise runs headless.",
+        about: "Sixty flags in the wind on a castle.",
+        title: "a castle with sixty flags",
         seconds: "5",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let keys = [
-                ("Up, Down", "stronger, weaker wind"),
-                ("D", "level of detail on, off"),
-            ];
-            let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
-            app.insert_resource(grid).add_systems(Update, press_keys);
-            window::run(app)
+        // Along a flag; down it there are half as many.
+        particles: 24,
+        shot: Shot {
+            from: Vec3::new(15.0, 9.5, 34.0),
+            focus: Vec3::new(1.0, 5.6, 0.0),
+            fov: 0.52,
         },
-        headless: |view, grid, options| {
-            let moment = Moment {
-                at: scene::DRAWN_AT,
-                shot: scene::SHOT,
-                file: "castle.png",
-            };
-            plain::run((TITLE, ScenePlugin), &moment, view, grid, options)
-        },
+        drawn_at: 3.0,
+        scene: scene::build,
+        report: report::plain,
     }
     .run()
-}
-
-fn press_keys(
-    keys: Res<ButtonInput<KeyCode>>,
-    mut wind: ResMut<ClothWind>,
-    lod: Option<Res<GlobalClothLod>>,
-    mut commands: Commands,
-) {
-    if keys.just_pressed(KeyCode::KeyD) {
-        match lod {
-            Some(_) => commands.remove_resource::<GlobalClothLod>(),
-            None => commands.insert_resource(GlobalClothLod(ClothLod::default())),
-        }
-    }
-    for (key, factor) in [(KeyCode::ArrowUp, 1.25), (KeyCode::ArrowDown, 0.8)] {
-        if keys.just_pressed(key) {
-            wind.velocity *= factor;
-        }
-    }
 }

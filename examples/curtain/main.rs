@@ -24,10 +24,6 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-#[path = "../shared/measured.rs"]
-mod measured;
-#[path = "../shared/plain.rs"]
-mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
@@ -36,51 +32,26 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 
-use crate::{
-    plain::Moment,
-    scene::{Rail, ScenePlugin, Walker},
-    shared::{start::Example, window},
-};
-
-const TITLE: &str = "a walk through a curtain";
+use crate::shared::{parts::report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "curtain",
-        about: "A walker pushes through a curtain on rings. Opens a window if possible, otherwise runs headless.",
+        about: "A walker pushes through a curtain on rings.",
+        title: "a walk through a curtain",
         seconds: "9",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let keys = [("O", "open, close the curtain"), ("Up, Down", "faster, slower walker")];
-            let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
-            app.insert_resource(grid).add_systems(Update, press_keys);
-            window::run(app)
+        // Across a half of the curtain; down it there are half as many again.
+        particles: 41,
+        // From where the walker comes to, a little from the side.
+        shot: Shot {
+            from: Vec3::new(1.6, 1.66, 4.25),
+            focus: Vec3::new(0.0, 1.12, 0.0),
+            fov: 0.56,
         },
-        headless: |view, grid, options| {
-            let moment = Moment {
-                at: scene::PARTED_AT,
-                shot: scene::SHOT,
-                file: "curtain.png",
-            };
-            plain::run((TITLE, ScenePlugin), &moment, view, grid, options)
-        },
+        // As the walker comes out between the halves.
+        drawn_at: 2.6,
+        scene: scene::build,
+        report: report::plain,
     }
     .run()
-}
-
-fn press_keys(
-    keys: Res<ButtonInput<KeyCode>>,
-    mut rail: ResMut<Rail>,
-    mut walkers: Query<&mut Walker>,
-) {
-    if keys.just_pressed(KeyCode::KeyO) {
-        rail.is_open = !rail.is_open;
-    }
-    for mut walker in &mut walkers {
-        for (key, change) in [(KeyCode::ArrowUp, 0.25), (KeyCode::ArrowDown, -0.25)] {
-            if keys.just_pressed(key) {
-                walker.speed = (walker.speed + change).clamp(0.0, 4.0);
-            }
-        }
-    }
 }

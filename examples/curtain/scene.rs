@@ -6,13 +6,11 @@ use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
 
-use crate::shared::{
-    stage::{Grid, Shot, StagePlugin},
-    woven::{Weave, woven},
-};
+use crate::shared::parts::arrows::up_down;
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::StagePlugin;
+use crate::shared::window::Keys;
 
-/// Particles across a half of the curtain; down it there are half as many again.
-pub const PARTICLES: u32 = 41;
 /// Width of the cloth of one half, and how much of it the rings leave when closed and when drawn open.
 const WIDTH: f32 = 1.5;
 const CLOSED: f32 = 0.62;
@@ -29,41 +27,38 @@ const DRAWING: f32 = 1.2;
 const TURNING: f32 = 2.3;
 const SPEED: f32 = 1.1;
 
-/// When the walker comes out between the halves (s).
-pub const PARTED_AT: f64 = 2.6;
-
-/// From where the walker comes to, a little from the side.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.6, 1.66, 4.25),
-    focus: Vec3::new(0.0, 1.12, 0.0),
-    fov: 0.56,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
+pub fn build(app: &mut App) {
+    app.add_plugins((
+        StagePlugin::lit_from(-3.5, 5.0, 4.5),
+        DrapePlugins::default(),
+        TransformInterpolationPlugin::default(),
+    ))
+    .init_resource::<Rail>()
+    .add_plugins(Keys(&[
+        ("O", "open, close the curtain"),
+        ("Up, Down", "faster, slower walker"),
+    ]))
+    .add_systems(Startup, (spawn_rail, spawn_curtains, spawn_walker))
+    .add_systems(FixedUpdate, (draw, walk).before(ClothSystems::Prepare))
+    .add_systems(Update, press_keys);
+}
 
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            light_from: Vec3::new(-3.5, 5.0, 4.5),
-        };
-        app.init_resource::<Grid>()
-            .init_resource::<Rail>()
-            .add_plugins((
-                stage,
-                DrapePlugins::default(),
-                TransformInterpolationPlugin::default(),
-            ))
-            .add_systems(Startup, (spawn_rail, spawn_curtains, spawn_walker))
-            .add_systems(FixedUpdate, (draw, walk).before(ClothSystems::Prepare));
+fn press_keys(
+    keys: Res<ButtonInput<KeyCode>>,
+    mut rail: ResMut<Rail>,
+    mut walkers: Query<&mut Walker>,
+) {
+    rail.is_open ^= keys.just_pressed(KeyCode::KeyO);
+    for mut walker in &mut walkers {
+        walker.speed = (walker.speed + 0.25 * up_down(&keys)).clamp(0.0, 4.0);
     }
 }
 
 /// Whether the curtain is drawn open, and how far it is: 0 as the cloth is flat, 1 as it is asked for.
 #[derive(Resource, Default)]
-pub struct Rail {
-    pub is_open: bool,
+struct Rail {
+    is_open: bool,
     share: Option<f32>,
 }
 
@@ -87,31 +82,19 @@ fn wall(share: f32) -> f32 {
     share.max(CLOSED) * WIDTH + 0.5 * GAP
 }
 
-fn spawn_curtains(
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-) {
-    let columns = grid.0.max(2);
+fn spawn_curtains(mut shop: Workshop) {
+    let columns = shop.grid.0.max(2);
     let rows = columns * 3 / 2;
     let spacing = WIDTH / (columns - 1) as f32;
-    let weave = woven(Weave::Twill, &mut images, 5, |runs_down, yarn| {
+    let fabric = shop.fabric(Weave::Twill, 5, |runs_down, yarn| {
         match (runs_down, yarn % 32) {
             (true, 0..3) => Color::srgb(0.90, 0.76, 0.44),
             (true, _) => Color::srgb(0.05, 0.36, 0.38),
             (false, _) => Color::srgb(0.03, 0.25, 0.30),
         }
     });
-    let fabric = materials.add(weave);
-    let brass = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.86, 0.62, 0.24),
-        perceptual_roughness: 0.35,
-        metallic: 0.8,
-        ..default()
-    });
-    let torus = meshes.add(Torus::new(0.026, 0.036));
+    let brass = shop.brass(0.35);
+    let torus = shop.mesh(Torus::new(0.026, 0.036));
     for side in [-1.0, 1.0] {
         let mut ring = |column: u32| {
             let ring = Ring {
@@ -121,16 +104,10 @@ fn spawn_curtains(
             let place = Transform::from_translation(ring.place(1.0));
             let upright = Transform::from_xyz(0.0, 0.024, 0.0)
                 .with_rotation(Quat::from_rotation_z(FRAC_PI_2));
-            let mesh = (
-                Mesh3d(torus.clone()),
-                MeshMaterial3d(brass.clone()),
-                upright,
-            );
+            let mesh = (torus.clone(), brass.clone(), upright);
             let ring = (ring, place, Visibility::default(), TransformInterpolation);
-            (
-                Pin::Cell(0, column),
-                commands.spawn(ring).with_child(mesh).id(),
-            )
+            let ring = shop.commands.spawn(ring).with_child(mesh).id();
+            (Pin::Cell(0, column), ring)
         };
         let last = columns - 1;
         let columns_with_rings = (0..last).step_by(RING as usize).chain([last]);
@@ -138,7 +115,7 @@ fn spawn_curtains(
         // Columns run along +x: the other half is turned round, for both to begin at their walls.
         let wall = Vec3::new(side * wall(1.0), TOP, 0.0);
         let turn = Quat::from_rotation_y(if side < 0.0 { 0.0 } else { PI });
-        commands.spawn((
+        shop.commands.spawn((
             Name::new(if side < 0.0 {
                 "left half"
             } else {
@@ -153,43 +130,31 @@ fn spawn_curtains(
             },
             ClothSettings::substeps(24),
             ClothSelfCollision::default(),
-            MeshMaterial3d(fabric.clone()),
+            fabric.clone(),
             ShowClothGizmos::nothing(),
             Transform::from_translation(wall).with_rotation(turn),
         ));
     }
 }
 
-fn spawn_rail(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    commands.spawn((Name::new("floor"), ClothCollider::plane()));
-    let wood = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.36, 0.21, 0.11),
-        perceptual_roughness: 0.6,
-        ..default()
-    });
+fn spawn_rail(mut shop: Workshop) {
+    shop.commands
+        .spawn((Name::new("floor"), ClothCollider::plane()));
+    let wood = shop.rough(Color::srgb(0.36, 0.21, 0.11), 0.6);
     let length = 2.0 * CLOSED * WIDTH + 0.2;
     let lying = Quat::from_rotation_z(FRAC_PI_2);
     let height = TOP + 0.046;
-    commands.spawn((
-        Mesh3d(meshes.add(Cylinder::new(0.018, length))),
-        MeshMaterial3d(wood.clone()),
-        Transform::from_xyz(0.0, height, 0.0).with_rotation(lying),
-    ));
+    let mut part = |mesh: Mesh, place: Transform| {
+        let mesh = shop.mesh(mesh);
+        shop.commands.spawn((mesh, wood.clone(), place));
+    };
+    let rail = Transform::from_xyz(0.0, height, 0.0).with_rotation(lying);
+    part(Cylinder::new(0.018, length).into(), rail);
     for side in [-0.5, 0.5] {
-        commands.spawn((
-            Mesh3d(meshes.add(Sphere::new(0.036).mesh().uv(32, 16))),
-            MeshMaterial3d(wood.clone()),
-            Transform::from_xyz(side * length, height, 0.0),
-        ));
-        commands.spawn((
-            Mesh3d(meshes.add(Cylinder::new(0.016, height))),
-            MeshMaterial3d(wood.clone()),
-            Transform::from_xyz(side * (length - 0.08), 0.5 * height, 0.0),
-        ));
+        let knob = Transform::from_xyz(side * length, height, 0.0);
+        part(Sphere::new(0.036).mesh().uv(32, 16), knob);
+        let post = Transform::from_xyz(side * (length - 0.08), 0.5 * height, 0.0);
+        part(Cylinder::new(0.016, height).into(), post);
     }
 }
 
@@ -216,35 +181,27 @@ fn draw(
 
 /// Who walks to and fro along z.
 #[derive(Component)]
-pub struct Walker {
+struct Walker {
     /// In m/s.
-    pub speed: f32,
+    speed: f32,
     towards: f32,
 }
 
-fn spawn_walker(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let clay = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.86, 0.42, 0.20),
-        perceptual_roughness: 0.6,
-        ..default()
-    });
+fn spawn_walker(mut shop: Workshop) {
+    let clay = shop.rough(Color::srgb(0.86, 0.42, 0.20), 0.6);
     let body = (
         ClothCollider::capsule(0.2, 0.95),
-        Mesh3d(meshes.add(Capsule3d::new(0.2, 0.95))),
-        MeshMaterial3d(clay.clone()),
+        shop.mesh(Capsule3d::new(0.2, 0.95)),
+        clay.clone(),
         Transform::from_xyz(0.0, 0.72, 0.0),
     );
     let head = (
         ClothCollider::ball(0.15),
-        Mesh3d(meshes.add(Sphere::new(0.15).mesh().uv(48, 24))),
-        MeshMaterial3d(clay),
+        shop.mesh(Sphere::new(0.15).mesh().uv(48, 24)),
+        clay,
         Transform::from_xyz(0.0, 1.53, 0.0),
     );
-    commands.spawn((
+    shop.commands.spawn((
         Name::new("walker"),
         Walker {
             speed: SPEED,

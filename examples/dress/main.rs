@@ -23,62 +23,34 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-#[path = "../shared/measured.rs"]
-mod measured;
-mod models;
-#[path = "../shared/plain.rs"]
-mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
-#[path = "../shared/turned.rs"]
-mod turned;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
 
-use crate::{
-    plain::Moment,
-    scene::{Figure, ScenePlugin},
-    shared::{start::Example, window},
-};
-
-const TITLE: &str = "a skirt that spins";
+use crate::shared::{parts::report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "dress",
-        about: "A skirt on a figure that spins. Opens a window if possible, otherwise runs headless.",
+        about: "A skirt on a figure that spins.",
+        title: "a skirt that spins",
         seconds: "9",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let keys = [("T", "spin, stand still"), ("Up, Down", "spin faster, slower")];
-            let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &keys);
-            app.insert_resource(grid).add_systems(Update, press_keys);
-            window::run(app)
+        // From the waist to the hem.
+        particles: 18,
+        // All of the figure, from a little above its waist.
+        shot: Shot {
+            from: Vec3::new(0.8, 1.35, 2.85),
+            focus: Vec3::new(0.0, 0.87, 0.0),
+            fov: 0.52,
         },
-        headless: |view, grid, options| {
-            let moment = Moment {
-                at: scene::DRAWN_AT,
-                shot: scene::SHOT,
-                file: "dress.png",
-            };
-            plain::run((TITLE, ScenePlugin), &moment, view, grid, options)
-        },
+        // As the skirt flies.
+        drawn_at: 3.4,
+        scene: scene::build,
+        report: report::plain,
     }
     .run()
-}
-
-fn press_keys(keys: Res<ButtonInput<KeyCode>>, mut figures: Query<&mut Figure>) {
-    for mut figure in &mut figures {
-        if keys.just_pressed(KeyCode::KeyT) {
-            figure.twirls = !figure.twirls;
-        }
-        for (key, change) in [(KeyCode::ArrowUp, 0.5), (KeyCode::ArrowDown, -0.5)] {
-            if keys.just_pressed(key) {
-                figure.speed = (figure.speed + change).clamp(0.0, 10.0);
-            }
-        }
-    }
 }

@@ -6,17 +6,13 @@ use bevy::{math::Affine2, prelude::*};
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
 
-use crate::{
-    models::{AROUND, skirt},
-    shared::{
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
-    turned::turned,
-};
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::parts::{arrows::up_down, surfaces::turned};
+use crate::shared::stage::StagePlugin;
+use crate::shared::window::Keys;
 
-/// Particles from the waist to the hem.
-pub const PARTICLES: u32 = 18;
+/// Particles around the skirt for one from its waist to its hem.
+const AROUND: u32 = 5;
 /// Height and radius of the waist, and radius of the hem and how far below the waist it is as the skirt is cut (m). Hardly wider than
 /// where it flies: all that is wider would hang in the air in folds that are too sharp for the mesh.
 const WAIST: f32 = 1.02;
@@ -49,61 +45,55 @@ const BODY: [[f32; 2]; 15] = [
     [0.050, 0.54],
 ];
 
-/// When the skirt flies (s).
-pub const DRAWN_AT: f64 = 3.4;
-
-/// All of the figure, from a little above its waist.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(0.8, 1.35, 2.85),
-    focus: Vec3::new(0.0, 0.87, 0.0),
-    fov: 0.52,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
+pub fn build(app: &mut App) {
+    app.add_plugins((
+        StagePlugin::lit_from(-3.0, 4.0, 3.5),
+        DrapePlugins::default(),
+        TransformInterpolationPlugin::default(),
+    ))
+    .add_plugins(Keys(&[
+        ("T", "spin, stand still"),
+        ("Up, Down", "spin faster, slower"),
+    ]))
+    .add_systems(Startup, (spawn_figure, spawn_stand))
+    .add_systems(FixedUpdate, turn.before(ClothSystems::Prepare))
+    .add_systems(Update, press_keys);
+}
 
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            light_from: Vec3::new(-3.0, 4.0, 3.5),
-        };
-        app.init_resource::<Grid>()
-            .add_plugins((
-                stage,
-                DrapePlugins::default(),
-                TransformInterpolationPlugin::default(),
-            ))
-            .add_systems(Startup, (spawn_figure, spawn_stand))
-            .add_systems(FixedUpdate, turn.before(ClothSystems::Prepare));
+fn press_keys(keys: Res<ButtonInput<KeyCode>>, mut figures: Query<&mut Figure>) {
+    for mut figure in &mut figures {
+        figure.twirls ^= keys.just_pressed(KeyCode::KeyT);
+        figure.speed = (figure.speed + 0.5 * up_down(&keys)).clamp(0.0, 10.0);
     }
 }
 
 /// What turns.
 #[derive(Component)]
-pub struct Figure {
+struct Figure {
     /// How fast when it twirls (rad/s).
-    pub speed: f32,
+    speed: f32,
     /// Whether it twirls at all.
-    pub twirls: bool,
+    twirls: bool,
     /// How fast now (rad/s).
     now: f32,
 }
 
-fn spawn_figure(
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-) {
-    let linen = woven(Weave::Plain, &mut images, 5, |_, _| {
-        Color::srgb(0.80, 0.73, 0.62)
-    });
+/// A flared skirt: a cone of cloth from its waist down to its hem, of this many rings of triangles.
+fn skirt(rings: u32) -> Mesh {
+    let profile: Vec<[f32; 2]> = (0..=rings)
+        .map(|ring| ring as f32 / rings as f32)
+        .map(|part| [WAIST_RADIUS.lerp(HEM_RADIUS, part), -DROP * part])
+        .collect();
+    turned(&profile, AROUND * rings, TAU)
+}
+
+fn spawn_figure(mut shop: Workshop) {
+    let linen = Color::srgb(0.80, 0.73, 0.62);
     let waist = Transform::from_xyz(0.0, WAIST, 0.0);
     let body = (
-        Mesh3d(meshes.add(turned(&BODY, 64, TAU))),
-        MeshMaterial3d(materials.add(linen)),
+        shop.mesh(turned(&BODY, 64, TAU)),
+        shop.fabric(Weave::Plain, 5, |_, _| linen),
     );
     // What the skirt touches: hips, and what would be legs.
     let hips = (
@@ -119,25 +109,31 @@ fn spawn_figure(
         twirls: true,
         now: 0.0,
     };
-    let figure = commands
+    let figure = shop
+        .commands
         .spawn((Name::new("figure"), figure, TransformInterpolation, waist))
         .insert((body, children![hips, legs]))
         .id();
     // Bands of colour around the hem.
-    let cloth = woven(Weave::Twill, &mut images, 1, |runs_down, yarn| {
-        match (runs_down, yarn) {
-            (true, 42..46 | 56..59) => Color::srgb(0.95, 0.86, 0.66),
-            (true, 46..56) => Color::srgb(0.12, 0.22, 0.46),
-            (true, _) => Color::srgb(0.74, 0.10, 0.20),
-            (false, _) => Color::srgb(0.48, 0.06, 0.16),
-        }
+    let cloth = shop.weave(Weave::Twill, 1, |runs_down, yarn| match (runs_down, yarn) {
+        (true, 42..46 | 56..59) => Color::srgb(0.95, 0.86, 0.66),
+        (true, 46..56) => Color::srgb(0.12, 0.22, 0.46),
+        (true, _) => Color::srgb(0.74, 0.10, 0.20),
+        (false, _) => Color::srgb(0.48, 0.06, 0.16),
     });
-    let spacing_at_waist = TAU * WAIST_RADIUS / (AROUND * grid.0) as f32;
+    let cloth = shop.paint(StandardMaterial {
+        // As long around as from the waist to the hem.
+        uv_transform: Affine2::from_scale(Vec2::new(1.0, 6.0)),
+        ..cloth
+    });
+    let rings = shop.grid.0;
+    let mesh = shop.mesh(skirt(rings));
+    let spacing_at_waist = TAU * WAIST_RADIUS / (AROUND * rings) as f32;
     let inner_edge = Pin::at_rest(|place| place.length() < WAIST_RADIUS + 1.0e-3);
-    commands.spawn((
+    shop.commands.spawn((
         Name::new("skirt"),
         Cloth::mesh(),
-        Mesh3d(meshes.add(skirt(WAIST_RADIUS, HEM_RADIUS, DROP, grid.0))),
+        mesh,
         Pins::none(),
         ClothAttachments::new([(inner_edge, figure)]),
         ClothMaterial {
@@ -147,25 +143,13 @@ fn spawn_figure(
         ClothSettings::substeps(24),
         ClothSelfCollision::of_thickness(THICKNESS.min(0.4 * spacing_at_waist)),
         ShowClothGizmos::nothing(),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            // As long around as from the waist to the hem.
-            uv_transform: Affine2::from_scale(Vec2::new(1.0, 6.0)),
-            ..cloth
-        })),
+        cloth,
         waist,
     ));
 }
 
-fn spawn_stand(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let wood = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.36, 0.20, 0.10),
-        perceptual_roughness: 0.5,
-        ..default()
-    });
+fn spawn_stand(mut shop: Workshop) {
+    let wood = shop.rough(Color::srgb(0.36, 0.20, 0.10), 0.5);
     let foot = [
         [0.0, 0.045],
         [0.03, 0.045],
@@ -181,12 +165,9 @@ fn spawn_stand(
         [0.0, 0.085],
     ];
     let mut part = |mesh: Mesh, height: f32| {
+        let mesh = shop.mesh(mesh);
         let place = Transform::from_xyz(0.0, height, 0.0);
-        commands.spawn((
-            Mesh3d(meshes.add(mesh)),
-            MeshMaterial3d(wood.clone()),
-            place,
-        ));
+        shop.commands.spawn((mesh, wood.clone(), place));
     };
     part(turned(&foot, 64, TAU), 0.0);
     part(Cylinder::new(0.02, 0.75).mesh().build(), 0.4);

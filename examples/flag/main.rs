@@ -24,48 +24,33 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-#[path = "../shared/measured.rs"]
-mod measured;
-#[path = "../shared/plain.rs"]
-mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
-#[path = "../shared/windy.rs"]
-mod windy;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
 
-use crate::{
-    plain::Moment,
-    scene::ScenePlugin,
-    shared::{start::Example, window},
-};
-
-const TITLE: &str = "a flag in the wind";
+use crate::shared::{parts::report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "flag",
-        about: "A flag in the wind, on a swaying pole. Opens a window if possible, otherwise runs headless.",
+        about: "A flag in the wind, on a swaying pole.",
+        title: "a flag in the wind",
         seconds: "8",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &windy::KEYS);
-            app.insert_resource(grid)
-                .add_systems(Update, windy::press_keys);
-            window::run(app)
+        // Along the flag; down it there are two thirds as many.
+        particles: 48,
+        // The flag, from below.
+        shot: Shot {
+            from: Vec3::new(2.0, 1.3, 4.4),
+            focus: Vec3::new(0.8, 2.08, 0.0),
+            fov: 0.46,
         },
-        headless: |view, grid, options| {
-            let moment = Moment {
-                at: scene::DRAWN_AT,
-                shot: scene::SHOT,
-                file: "flag.png",
-            };
-            plain::run((TITLE, ScenePlugin), &moment, view, grid, options)
-        },
+        drawn_at: 6.0,
+        scene: scene::build,
+        report: report::plain,
     }
     .run()
 }

@@ -3,16 +3,11 @@
 use bevy::prelude::*;
 use bevy_drape::{contact::intersections, plugin::ClothBuilt, prelude::*};
 
-use crate::{
-    figure::{Figure, FigurePlugin},
-    shared::{
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
-};
+use crate::shared::parts::figure::{Figure, FigurePlugin};
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::StagePlugin;
+use crate::shared::window::Keys;
 
-/// Particles across the cloth; down it there are half as many again.
-pub const PARTICLES: u32 = 24;
 /// Width of the cloth (m).
 const WIDTH: f32 = 0.6;
 /// How high the bar begins, and where it lets go (m).
@@ -25,32 +20,38 @@ const THICKNESS: f32 = 0.006;
 /// Ticks from one count to the next, in a window.
 const TICKS_A_COUNT: u32 = 16;
 
-/// From the side, where the folds show.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(0.72, 0.52, 1.0),
-    focus: Vec3::new(0.0, 0.17, 0.0),
-    fov: 0.5,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
+pub fn build(app: &mut App) {
+    let stage = StagePlugin::lit_from(-2.0, 3.2, 2.6);
+    app.add_plugins((stage, FigurePlugin, DrapePlugins::default()))
+        .init_resource::<Crossings>()
+        .add_plugins(Keys(&[("S", "self-collision on, off")]))
+        .add_systems(Startup, (spawn_bar, spawn_cloth).chain())
+        .add_systems(
+            FixedUpdate,
+            (
+                sink.before(ClothSystems::Prepare),
+                count_crossings.after(ClothSystems::WriteBack),
+            ),
+        )
+        .add_systems(Update, press_key);
+}
 
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            light_from: Vec3::new(-2.0, 3.2, 2.6),
-        };
-        app.add_plugins((stage, FigurePlugin, DrapePlugins::default()))
-            .init_resource::<Crossings>()
-            .add_systems(Startup, (spawn_bar, spawn_cloth).chain())
-            .add_systems(
-                FixedUpdate,
-                (
-                    sink.before(ClothSystems::Prepare),
-                    count_crossings.after(ClothSystems::WriteBack),
-                ),
-            );
+/// Without contact with itself the cloth passes through itself, and the figure says so.
+fn press_key(
+    keys: Res<ButtonInput<KeyCode>>,
+    cloths: Query<(Entity, Has<ClothSelfCollision>), With<Cloth>>,
+    mut commands: Commands,
+) {
+    if !keys.just_pressed(KeyCode::KeyS) {
+        return;
+    }
+    for (cloth, touches_itself) in &cloths {
+        if touches_itself {
+            commands.entity(cloth).remove::<ClothSelfCollision>();
+        } else {
+            commands.entity(cloth).insert(contact());
+        }
     }
 }
 
@@ -70,52 +71,39 @@ pub struct Crossings {
 
 /// What holds the upper edge.
 #[derive(Component)]
-pub struct Bar;
+struct Bar;
 
-fn spawn_bar(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    commands.spawn((Name::new("floor"), ClothCollider::plane()));
-    let wood = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.42, 0.27, 0.15),
-        perceptual_roughness: 0.7,
-        ..default()
-    });
+fn spawn_bar(mut shop: Workshop) {
+    shop.commands
+        .spawn((Name::new("floor"), ClothCollider::plane()));
+    let wood = shop.rough(Color::srgb(0.42, 0.27, 0.15), 0.7);
     let along = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
-    commands.spawn((
+    let stick = shop.mesh(Cylinder::new(0.012, WIDTH + 0.16));
+    let above = Transform::from_xyz(0.0, 0.012, 0.0).with_rotation(along);
+    shop.commands.spawn((
         Name::new("bar"),
         Bar,
         Transform::from_xyz(0.0, TOP, 0.0),
         Visibility::default(),
-        children![(
-            Mesh3d(meshes.add(Cylinder::new(0.012, WIDTH + 0.16))),
-            MeshMaterial3d(wood),
-            Transform::from_xyz(0.0, 0.012, 0.0).with_rotation(along),
-        )],
+        children![(stick, wood, above)],
     ));
 }
 
-fn spawn_cloth(
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-) {
+fn spawn_cloth(mut shop: Workshop) {
     // Broad stripes across: each fold shows another.
-    let weave = woven(Weave::WeftTwill, &mut images, 5, |runs_down, yarn| {
+    let stripes = shop.fabric(Weave::WeftTwill, 5, |runs_down, yarn| {
         match (runs_down, yarn / 16) {
             (true, _) | (false, 1) => Color::srgb(0.86, 0.84, 0.78),
             (false, 0 | 2) => Color::srgb(0.13, 0.36, 0.52),
             (false, _) => Color::srgb(0.80, 0.42, 0.20),
         }
     });
-    let spacing = WIDTH / (grid.0 - 1) as f32;
-    let rows = (3 * grid.0 / 2).max(2);
-    commands.spawn((
+    let columns = shop.grid.0;
+    let spacing = WIDTH / (columns - 1) as f32;
+    let rows = (3 * columns / 2).max(2);
+    shop.commands.spawn((
         Name::new("cloth"),
-        Cloth::new(grid.0, rows, spacing).centred(),
+        Cloth::new(columns, rows, spacing).centred(),
         Pins::none(),
         held(),
         contact(),
@@ -123,14 +111,14 @@ fn spawn_cloth(
             particle_radius: 0.003,
             ..default()
         },
-        MeshMaterial3d(materials.add(weave)),
+        stripes,
         ShowClothGizmos::nothing(),
         Transform::from_xyz(0.0, TOP - 0.5 * (rows - 1) as f32 * spacing, 0.0),
     ));
 }
 
 /// Of the cloth with itself.
-pub fn contact() -> ClothSelfCollision {
+fn contact() -> ClothSelfCollision {
     ClothSelfCollision {
         thickness: THICKNESS,
         friction: 0.4,

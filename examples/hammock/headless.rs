@@ -7,22 +7,12 @@ use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
 use serde::Serialize;
 
-use crate::{
-    measured::{Figures, MeasuringPlugin},
-    scene::{self, Ball, ScenePlugin},
-    shared::{
-        headless::{Picture, Run, print, ticks_in},
-        stage::Grid,
-        start::Options,
-        view::View,
-    },
-};
+use crate::scene::{self, Ball};
+use crate::shared::{headless::Run, parts::report::Report};
 
 /// What is printed.
 #[derive(Serialize)]
-struct Report {
-    #[serde(flatten)]
-    figures: Figures,
+struct Own {
     ball_kg: f32,
     cloth_kg: f64,
     /// How high the ball got again after it first fell into the hammock (m).
@@ -31,8 +21,6 @@ struct Report {
     height_m: f32,
     last_moves_mm: f32,
     last_speed_mm_s: f32,
-    #[serde(flatten)]
-    picture: Picture,
 }
 
 /// Where the ball was after each tick (m), and how fast (m/s).
@@ -42,24 +30,32 @@ struct Way {
     speeds: Vec<f32>,
 }
 
-/// Simulates, prints the report, and saves `hammock.png` if `view` can draw.
-pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let scene = ("a ball in a hammock", ScenePlugin);
-    let mut run = Run::new(scene, view, grid, options, |app| {
-        app.insert_resource(scene::SHOT)
-            .add_plugins(MeasuringPlugin)
-            .init_resource::<Way>()
-            .add_systems(FixedLast, follow);
-    });
-    run.finish();
-    let picture = run.take_picture(scene::SHOT, &options.out, "hammock.png");
-    let report = report(&mut run, picture);
-    print(&report, options.json, print_report)
+/// Simulates, prints the report, and saves `hammock.png`.
+pub fn report(mut run: Run) -> ExitCode {
+    run.app
+        .init_resource::<Way>()
+        .add_systems(FixedLast, follow);
+    let report = Report {
+        title: "A ball in a hammock",
+        picture: Some(run.picture()),
+        own: own(&mut run),
+        figures: run.finish(),
+    };
+    report.print(&mut run, |Report { own, .. }| {
+        println!(
+            "  masses           ball {} kg, cloth {:.2} kg",
+            own.ball_kg, own.cloth_kg
+        );
+        println!("  bounce           {:.2} m", own.bounce_m);
+        println!(
+            "  at the end       {:.3} m high; in the last second moved {:.2} mm, at most {:.1} mm/s",
+            own.height_m, own.last_moves_mm, own.last_speed_mm_s
+        );
+    })
 }
 
-fn report(run: &mut Run, picture: Picture) -> Report {
-    let figures = Figures::of(run);
-    let second = ticks_in(&run.app, 1.0) as usize;
+fn own(run: &mut Run) -> Own {
+    let second = run.ticks_in(1.0) as usize;
     let world = run.app.world_mut();
     let mut cloths = world.query::<&ClothParticles>();
     let masses = cloths.iter(world).flat_map(ClothParticles::inverse_masses);
@@ -78,30 +74,14 @@ fn report(run: &mut Run, picture: Picture) -> Report {
     let places = || way.places[last..].iter().copied();
     let low = places().fold(Vec3::MAX, Vec3::min);
     let high = places().fold(Vec3::MIN, Vec3::max);
-    Report {
-        figures,
+    Own {
         ball_kg: scene::MASS,
         cloth_kg,
         bounce_m: highest - lowest,
         height_m: heights.last().copied().unwrap_or(f32::NAN),
         last_moves_mm: 1.0e3 * high.distance(low),
         last_speed_mm_s: 1.0e3 * way.speeds[last..].iter().copied().fold(0.0, f32::max),
-        picture,
     }
-}
-
-fn print_report(report: &Report) {
-    report.figures.print("A ball in a hammock");
-    println!(
-        "  masses           ball {} kg, cloth {:.2} kg",
-        report.ball_kg, report.cloth_kg
-    );
-    println!("  bounce           {:.2} m", report.bounce_m);
-    println!(
-        "  at the end       {:.3} m high; in the last second moved {:.2} mm, at most {:.1} mm/s",
-        report.height_m, report.last_moves_mm, report.last_speed_mm_s
-    );
-    println!("  picture          {}", report.picture);
 }
 
 fn follow(balls: Query<(&Transform, &Velocity), With<Ball>>, mut way: ResMut<Way>) {

@@ -23,28 +23,34 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-mod controls;
 mod headless;
-#[path = "../shared/measured.rs"]
-mod measured;
-#[path = "../shared/physics.rs"]
-mod physics;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
 
 use std::process::ExitCode;
 
-use crate::shared::start::Example;
+use bevy::prelude::*;
+
+use crate::shared::{stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "hammock",
-        about: "A ball falls into a hammock. Opens a window if possible, otherwise runs headless.",
+        about: "A ball falls into a hammock.",
+        title: "a ball in a hammock",
         seconds: "12",
-        particles: scene::PARTICLES,
-        window: controls::run,
-        headless: headless::run,
+        // Along the hammock; across it half as many.
+        particles: 48,
+        // The whole of it, from the side and a little above.
+        shot: Shot {
+            from: Vec3::new(1.5, 2.0, 4.0),
+            focus: Vec3::new(0.0, 0.7, 0.0),
+            fov: 0.5,
+        },
+        drawn_at: f64::INFINITY,
+        scene: scene::build,
+        report: headless::report,
     }
     .run()
 }

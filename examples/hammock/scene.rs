@@ -7,16 +7,11 @@ use bevy_rapier3d::prelude::{
 };
 use bevy_transform_interpolation::prelude::TransformInterpolation;
 
-use crate::{
-    physics::PhysicsPlugin,
-    shared::{
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
-};
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::parts::{arrows::up_down, physics::PhysicsPlugin};
+use crate::shared::stage::StagePlugin;
+use crate::shared::window::Keys;
 
-/// Particles along the hammock; across it half as many.
-pub const PARTICLES: u32 = 48;
 /// Length of the cloth, and in which part of its size its posts stand once it hangs.
 const LENGTH: f32 = 2.4;
 const SLACK: f32 = 0.86;
@@ -30,29 +25,38 @@ pub const MASS: f32 = 1.0;
 /// How far it is above the cloth at first (m).
 const DROP: f32 = 0.1;
 
-/// The whole of it, from the side and a little above.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.5, 2.0, 4.0),
-    focus: Vec3::new(0.0, 0.7, 0.0),
-    fov: 0.5,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
+pub fn build(app: &mut App) {
+    app.add_plugins((
+        PhysicsPlugin,
+        DrapePlugins::default(),
+        StagePlugin::lit_from(-3.0, 5.0, 3.0),
+    ))
+    .add_plugins(Keys(&[
+        ("T", "toss the ball up"),
+        ("Up, Down", "double, halve the ball's mass"),
+    ]))
+    .add_systems(Startup, (spawn_hammock, spawn_ball, spawn_ground))
+    .add_systems(FixedUpdate, hang_up.before(PhysicsSet::SyncBackend))
+    .add_systems(Update, press_keys);
+}
 
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<Grid>()
-            .add_plugins((
-                PhysicsPlugin,
-                DrapePlugins::default(),
-                StagePlugin {
-                    has_floor: true,
-                    light_from: Vec3::new(-3.0, 5.0, 3.0),
-                },
-            ))
-            .add_systems(Startup, (spawn_hammock, spawn_ball, spawn_ground))
-            .add_systems(FixedUpdate, hang_up.before(PhysicsSet::SyncBackend));
+fn press_keys(
+    keys: Res<ButtonInput<KeyCode>>,
+    mut balls: Query<(&mut Velocity, &mut ColliderMassProperties), With<Ball>>,
+) {
+    for (mut velocity, mut properties) in &mut balls {
+        if keys.just_pressed(KeyCode::KeyT) {
+            // Some 0.8 m high.
+            velocity.linear.y = 4.0;
+        }
+        let factor = 2.0_f32.powf(up_down(&keys));
+        if factor != 1.0
+            && let ColliderMassProperties::Mass(mass) = *properties
+        {
+            // From a beach ball to a cannon ball.
+            *properties = ColliderMassProperties::Mass((mass * factor).clamp(0.05, 50.0));
+        }
     }
 }
 
@@ -60,23 +64,13 @@ impl Plugin for ScenePlugin {
 #[derive(Component)]
 struct Post(Vec3);
 
-fn spawn_hammock(
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-) {
-    let columns = grid.0.max(4);
+fn spawn_hammock(mut shop: Workshop) {
+    let columns = shop.grid.0.max(4);
     let rows = columns / 2;
     let spacing = LENGTH / (columns - 1) as f32;
     let width = spacing * (rows - 1) as f32;
-    let wood = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.45, 0.28, 0.15),
-        perceptual_roughness: 0.7,
-        ..default()
-    });
-    let pole = meshes.add(Cylinder::new(0.03, HEIGHT + 0.04));
+    let wood = shop.rough(Color::srgb(0.45, 0.28, 0.15), 0.7);
+    let pole = shop.mesh(Cylinder::new(0.03, HEIGHT + 0.04));
     let corners = [
         (Corner::TopLeft, -1.0, -1.0),
         (Corner::TopRight, 1.0, -1.0),
@@ -92,19 +86,19 @@ fn spawn_hammock(
             Visibility::default(),
         );
         let below = Transform::from_xyz(0.0, -0.5 * HEIGHT, 0.0);
-        let pole = (Mesh3d(pole.clone()), MeshMaterial3d(wood.clone()), below);
-        let post = commands.spawn(post).with_child(pole).id();
+        let pole = (pole.clone(), wood.clone(), below);
+        let post = shop.commands.spawn(post).with_child(pole).id();
         (Pin::Corner(corner), post)
     });
     // Stripes across, as hammocks have.
-    let weave = woven(Weave::Twill, &mut images, 3, |runs_down, yarn| {
+    let stripes = shop.fabric(Weave::Twill, 3, |runs_down, yarn| {
         match (runs_down, yarn / 8 % 4) {
             (true, 0) => Color::srgb(0.80, 0.22, 0.16),
             (true, 2) => Color::srgb(0.10, 0.40, 0.45),
             _ => Color::srgb(0.94, 0.90, 0.80),
         }
     });
-    commands.spawn((
+    shop.commands.spawn((
         Name::new("hammock"),
         Cloth::new(columns, rows, spacing).lying().centred(),
         Pins::none(),
@@ -112,7 +106,7 @@ fn spawn_hammock(
         ClothMaterial::CANVAS,
         // What is held by four points and carries something needs more of them than by default.
         ClothSettings::substeps(40),
-        MeshMaterial3d(materials.add(weave)),
+        stripes,
         ShowClothGizmos::nothing(),
         Transform::from_xyz(0.0, HEIGHT, 0.0),
     ));
@@ -136,18 +130,10 @@ fn hang_up(mut posts: Query<(&Post, &mut Transform)>, time: Res<Time>) {
 #[derive(Component)]
 pub struct Ball;
 
-fn spawn_ball(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let mesh = meshes.add(Sphere::new(RADIUS).mesh().uv(64, 32));
-    let material = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.95, 0.65, 0.15),
-        perceptual_roughness: 0.45,
-        ..default()
-    });
-    commands
+fn spawn_ball(mut shop: Workshop) {
+    let mesh = shop.mesh(Sphere::new(RADIUS).mesh().uv(64, 32));
+    let orange = shop.rough(Color::srgb(0.95, 0.65, 0.15), 0.45);
+    shop.commands
         .spawn((
             Name::new("ball"),
             Ball,
@@ -163,7 +149,7 @@ fn spawn_ball(
             Transform::from_xyz(0.15, HEIGHT + RADIUS + DROP, 0.05),
             Visibility::default(),
         ))
-        .with_child((Mesh3d(mesh), MeshMaterial3d(material)));
+        .with_child((mesh, orange));
 }
 
 /// For a ball that is tossed out of the hammock.

@@ -3,21 +3,39 @@
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-use bevy_drape::{
-    plugin::{ClothBuilt, ClothFault},
-    prelude::*,
-};
+use bevy_drape::prelude::*;
 use serde::Serialize;
 
-use crate::{
-    scene::{SHOTS, ScenePlugin},
-    shared::{
-        headless::{Picture, Run, median, print},
-        stage::Grid,
-        start::Options,
-        view::View,
-    },
-};
+use crate::shared::headless::{Picture, Run};
+use crate::shared::{measured::median, parts::report::print, stage::Shot};
+
+/// The pictures: each cloth by itself.
+const SHOTS: [(&str, Shot); 3] = [
+    (
+        "pennant",
+        Shot {
+            from: Vec3::new(-3.0, 1.3, 4.4),
+            focus: Vec3::new(-3.4, 1.3, 0.15),
+            fov: 0.46,
+        },
+    ),
+    (
+        "poncho",
+        Shot {
+            from: Vec3::new(-0.4, 1.9, 3.9),
+            focus: Vec3::new(-0.6, 1.06, 0.5),
+            fov: 0.44,
+        },
+    ),
+    (
+        "ridge_tent",
+        Shot {
+            from: Vec3::new(6.7, 1.7, 2.3),
+            focus: Vec3::new(3.1, 0.5, -0.1),
+            fov: 0.48,
+        },
+    ),
+];
 
 /// What is printed.
 #[derive(Serialize)]
@@ -58,15 +76,17 @@ fn measure(mut cloths: Query<(&ClothStats, &mut Measured)>) {
     }
 }
 
-/// Simulates, prints the report, and saves a picture of each cloth if `view` can draw.
-pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
-    let scene = ("meshes as cloth", ScenePlugin);
-    let mut run = Run::new(scene, view, fineness, options, |app| {
-        app.register_required_components::<Cloth, Measured>()
-            .add_systems(FixedLast, measure);
+/// Simulates, prints the report, and saves a picture of each cloth.
+pub fn report(mut run: Run) -> ExitCode {
+    run.app
+        .register_required_components::<Cloth, Measured>()
+        .add_systems(FixedLast, measure);
+    let figures = run.finish();
+    let pictures = SHOTS.map(|(name, shot)| {
+        run.example.name = name;
+        run.example.shot = shot;
+        run.picture()
     });
-    run.finish();
-    let pictures = SHOTS.map(|(file, shot)| run.take_picture(shot, &options.out, file));
     let world = run.app.world_mut();
     let mut cloths = world.query::<(
         &Name,
@@ -97,16 +117,17 @@ pub fn run(view: View, fineness: Grid, options: &Options) -> ExitCode {
         asleep: stats.is_asleep,
         fault: fault.map(|fault| fault.error.to_string()),
     };
-    let cloths: Vec<Row> = cloths.iter_mut(world).map(row).collect();
+    let mut cloths: Vec<Row> = cloths.iter_mut(world).map(row).collect();
+    cloths.sort_by(|one, other| one.name.cmp(&other.name));
     let is_whole = cloths
         .iter()
         .all(|row| row.fault.is_none() && row.particles > 0);
     let report = Report {
-        ticks: run.ticks,
+        ticks: figures.ticks,
         cloths,
         pictures: pictures.into(),
     };
-    let code = print(&report, options.json, print_report);
+    let code = print(&report, run.options.json, print_report);
     if is_whole { code } else { ExitCode::FAILURE }
 }
 

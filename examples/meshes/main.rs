@@ -33,20 +33,26 @@ mod shared;
 
 use std::process::ExitCode;
 
-use crate::shared::{start::Example, window};
+use bevy::prelude::*;
+
+use crate::shared::{stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "meshes",
-        about: "A pennant, a poncho and a tent, each from a mesh. Opens a window if possible, otherwise runs headless.",
+        about: "A pennant, a poncho and a tent, each from a mesh.",
+        title: "meshes as cloth",
         seconds: "9",
-        particles: scene::FINENESS,
-        window: |grid| {
-            let mut app = window::app("meshes as cloth", scene::ScenePlugin, scene::ALL, &[]);
-            app.insert_resource(grid);
-            window::run(app)
+        // Triangles along either side of the pennant, and rings of the poncho.
+        particles: 24,
+        shot: Shot {
+            from: Vec3::new(0.3, 2.6, 8.8),
+            focus: Vec3::new(0.05, 0.95, 0.0),
+            fov: 0.46,
         },
-        headless: headless::run,
+        drawn_at: f64::INFINITY,
+        scene: scene::build,
+        report: headless::report,
     }
     .run()
 }

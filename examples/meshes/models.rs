@@ -2,11 +2,9 @@
 
 use std::f32::consts::TAU;
 
-use bevy::{
-    asset::RenderAssetUsages,
-    mesh::{Indices, PrimitiveTopology},
-    prelude::*,
-};
+use bevy::prelude::*;
+
+use crate::shared::parts::surfaces::{rings_of_triangles, surface};
 
 /// A pennant: from its staff, `height` m along −y, to a point `length` m along +x, with `count` triangles along either side.
 pub fn pennant(height: f32, length: f32, count: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
@@ -37,7 +35,7 @@ pub fn pennant(height: f32, length: f32, count: u32) -> (Vec<Vec3>, Vec<[u32; 3]
 /// ends along a seam with vertices of its own on either side, as its texture does.
 pub fn poncho(side: f32, hole: f32, rings: u32) -> Mesh {
     let around = 4 * rings;
-    let (mut positions, mut uvs, mut indices) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut positions, mut uvs) = (Vec::new(), Vec::new());
     for ring in 0..=rings {
         for step in 0..=around {
             let (sin, cos) = if step == around {
@@ -52,28 +50,7 @@ pub fn poncho(side: f32, hole: f32, rings: u32) -> Mesh {
             uvs.push([step as f32 / around as f32, ring as f32 / rings as f32]);
         }
     }
-    let width = around + 1;
-    for ring in 0..rings {
-        for step in 0..around {
-            let a = ring * width + step;
-            let (b, c, d) = (a + 1, a + width, a + width + 1);
-            // Diagonals in turns, so that no direction is favoured.
-            if (ring + step) % 2 == 0 {
-                indices.extend([a, b, c, c, b, d]);
-            } else {
-                indices.extend([a, b, d, a, d, c]);
-            }
-        }
-    }
-    Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::default(),
-    )
-    .with_inserted_attribute(
-        Mesh::ATTRIBUTE_NORMAL,
-        vec![[0.0, 1.0, 0.0]; positions.len()],
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-    .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-    .with_inserted_indices(Indices::U32(indices))
+    let normals = vec![[0.0, 1.0, 0.0]; positions.len()];
+    surface(positions, uvs, rings_of_triangles(rings, around))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
 }

@@ -6,16 +6,9 @@ use bevy::{gltf::GltfAssetLabel, math::Affine2, prelude::*};
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
 
-use crate::{
-    models,
-    shared::{
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
-};
-
-/// Triangles along either side of the pennant, and rings of the poncho.
-pub const FINENESS: u32 = 24;
+use crate::models;
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::StagePlugin;
 
 /// The tent, as a modelling program exports it: metres, y up, the ground at 0.
 const TENT: &str = "models/tent.glb";
@@ -25,59 +18,18 @@ const YARD: Vec3 = Vec3::new(-3.4, 2.1, 0.15);
 const PERSON: Vec3 = Vec3::new(-0.6, 0.0, 0.5);
 const CAMP: Vec3 = Vec3::new(3.0, 0.0, -0.2);
 
-/// All of it, and each by itself.
-pub const ALL: Shot = Shot {
-    from: Vec3::new(0.3, 2.6, 8.8),
-    focus: Vec3::new(0.05, 0.95, 0.0),
-    fov: 0.46,
-};
-pub const SHOTS: [(&str, Shot); 3] = [
-    (
-        "pennant.png",
-        Shot {
-            from: Vec3::new(-3.0, 1.3, 4.4),
-            focus: Vec3::new(-3.4, 1.3, 0.15),
-            fov: 0.46,
-        },
-    ),
-    (
-        "poncho.png",
-        Shot {
-            from: Vec3::new(-0.4, 1.9, 3.9),
-            focus: Vec3::new(-0.6, 1.06, 0.5),
-            fov: 0.44,
-        },
-    ),
-    (
-        "ridge_tent.png",
-        Shot {
-            from: Vec3::new(6.7, 1.7, 2.3),
-            focus: Vec3::new(3.1, 0.5, -0.1),
-            fov: 0.48,
-        },
-    ),
-];
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
-
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            light_from: Vec3::new(-3.5, 5.0, 4.0),
-        };
-        app.add_plugins((
-            stage,
-            DrapePlugins::default(),
-            TransformInterpolationPlugin::default(),
-        ))
-        .add_systems(
-            Startup,
-            (spawn_floor, spawn_pennant, spawn_poncho, spawn_tent),
-        )
-        .add_systems(FixedUpdate, (sway, press).before(ClothSystems::Prepare));
-    }
+pub fn build(app: &mut App) {
+    app.add_plugins((
+        StagePlugin::lit_from(-3.5, 5.0, 4.0),
+        DrapePlugins::default(),
+        TransformInterpolationPlugin::default(),
+    ))
+    .add_systems(
+        Startup,
+        (spawn_floor, spawn_pennant, spawn_poncho, spawn_tent),
+    )
+    .add_systems(FixedUpdate, (sway, press).before(ClothSystems::Prepare));
 }
 
 fn spawn_floor(mut commands: Commands) {
@@ -88,31 +40,29 @@ fn spawn_floor(mut commands: Commands) {
 #[derive(Component)]
 struct Sways;
 
-fn spawn_pennant(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    fineness: Res<Grid>,
-) {
-    let wood = materials.add(Color::srgb(0.45, 0.32, 0.2));
-    commands.spawn((
-        Mesh3d(meshes.add(Cylinder::new(0.025, 2.3))),
-        MeshMaterial3d(wood.clone()),
+fn spawn_pennant(mut shop: Workshop) {
+    let wood = shop.paint(Color::srgb(0.45, 0.32, 0.2));
+    let pole = (
+        shop.mesh(Cylinder::new(0.025, 2.3)),
+        wood.clone(),
         Transform::from_translation(POLE + Vec3::Y * 1.15),
-    ));
+    );
+    shop.commands.spawn(pole);
     let lying = Quat::from_rotation_z(FRAC_PI_2);
-    commands.spawn((
+    let yard = (
         Name::new("yard"),
         Sways,
         TransformInterpolation,
-        Mesh3d(meshes.add(Cylinder::new(0.018, 0.95))),
-        MeshMaterial3d(wood),
+        shop.mesh(Cylinder::new(0.018, 0.95)),
+        wood,
         Transform::from_translation(YARD).with_rotation(lying),
-    ));
+    );
+    shop.commands.spawn(yard);
+    let red = shop.paint(fabric(Color::srgb(0.72, 0.07, 0.12)));
     // Positions and triangles as the game has them; its upper edge follows the entity that is called "yard".
-    let (positions, triangles) = models::pennant(0.8, 1.5, fineness.0);
+    let (positions, triangles) = models::pennant(0.8, 1.5, shop.grid.0);
     let edge = Pin::at_rest(|place| place.x < 1.0e-3);
-    commands.spawn((
+    shop.commands.spawn((
         Name::new("pennant"),
         Cloth::triangles(positions, triangles),
         Pins::none(),
@@ -123,7 +73,7 @@ fn spawn_pennant(
         },
         ClothSettings::substeps(30),
         ShowClothGizmos::nothing(),
-        MeshMaterial3d(materials.add(fabric(Color::srgb(0.72, 0.07, 0.12)))),
+        red,
         // Its point down.
         Transform::from_translation(YARD + Vec3::X * 0.4).with_rotation(lying.inverse()),
     ));
@@ -139,17 +89,12 @@ fn sway(mut yards: Query<&mut Transform, With<Sways>>, time: Res<Time>) {
     }
 }
 
-fn spawn_poncho(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut images: ResMut<Assets<Image>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    fineness: Res<Grid>,
-) {
-    let skin = materials.add(Color::srgb(0.55, 0.57, 0.6));
-    let mut body = |name: &str, collider, mesh: Mesh, place: Transform| {
-        let mesh = (Mesh3d(meshes.add(mesh)), MeshMaterial3d(skin.clone()));
-        commands.spawn((Name::new(name.to_string()), collider, mesh, place));
+fn spawn_poncho(mut shop: Workshop) {
+    let skin = shop.paint(Color::srgb(0.55, 0.57, 0.6));
+    let mut body = |name: &'static str, collider, mesh: Mesh, place: Transform| {
+        let look = (shop.mesh(mesh), skin.clone());
+        shop.commands
+            .spawn((Name::new(name), collider, look, place));
     };
     let at = |x: f32, y: f32| Transform::from_translation(PERSON + Vec3::new(x, y, 0.0));
     body(
@@ -178,7 +123,8 @@ fn spawn_poncho(
         at(0.0, 0.86),
     );
     // The mesh asset of the entity is the cloth.
-    let poncho = meshes.add(models::poncho(1.5, 0.17, fineness.0));
+    let rings = shop.grid.0;
+    let poncho = shop.mesh(models::poncho(1.5, 0.17, rings));
     // Rings of colour from the hole to the hem, between light yarns.
     let colors = [
         [196, 86, 42],
@@ -188,7 +134,7 @@ fn spawn_poncho(
         [150, 44, 48],
         [58, 94, 120],
     ];
-    let weave = woven(Weave::Herringbone, &mut images, 1, |runs_down, yarn| {
+    let weave = shop.weave(Weave::Herringbone, 1, |runs_down, yarn| {
         let [r, g, b] = colors[(yarn as usize / 6) % colors.len()];
         if runs_down {
             Color::srgb_u8(226, 216, 196)
@@ -196,10 +142,17 @@ fn spawn_poncho(
             Color::srgb_u8(r, g, b)
         }
     });
-    commands.spawn((
+    let weave = shop.paint(StandardMaterial {
+        // As wide around as from the hole to the hem.
+        uv_transform: Affine2::from_scale(Vec2::new(12.0, 1.5)),
+        // The mesh has no tangents.
+        normal_map_texture: None,
+        ..weave
+    });
+    shop.commands.spawn((
         Name::new("poncho"),
         Cloth::mesh(),
-        Mesh3d(poncho),
+        poncho,
         ClothMaterial {
             damping: 0.08,
             friction: 0.6,
@@ -214,13 +167,7 @@ fn spawn_poncho(
         // Nobody is thin enough to slip between particles.
         NarrowPhase::Particles,
         ShowClothGizmos::nothing(),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            // As wide around as from the hole to the hem.
-            uv_transform: Affine2::from_scale(Vec2::new(12.0, 1.5)),
-            // The mesh has no tangents.
-            normal_map_texture: None,
-            ..weave
-        })),
+        weave,
         // Around the neck.
         Transform::from_translation(PERSON + Vec3::Y * 1.47),
     ));
@@ -230,12 +177,7 @@ fn spawn_poncho(
 #[derive(Component)]
 struct Presses;
 
-fn spawn_tent(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
+fn spawn_tent(mut shop: Workshop, assets: Res<AssetServer>) {
     let primitive = |mesh| {
         let label = GltfAssetLabel::Primitive { mesh, primitive: 0 };
         Mesh3d(assets.load(label.from_asset(TENT)))
@@ -245,7 +187,7 @@ fn spawn_tent(
     };
     let place = Transform::from_translation(CAMP).with_rotation(Quat::from_rotation_y(0.45));
     // It waits for its asset. The artist has painted what is pinned: pegs and ridge, in the alpha of the vertex colours.
-    commands.spawn((
+    shop.commands.spawn((
         Name::new("tent"),
         Cloth::mesh(),
         primitive(0),
@@ -259,16 +201,18 @@ fn spawn_tent(
         material(0),
         place,
     ));
-    commands.spawn((Name::new("poles"), primitive(1), material(1), place));
-    commands.spawn((
+    shop.commands
+        .spawn((Name::new("poles"), primitive(1), material(1), place));
+    let ball = (
         Name::new("ball"),
         Presses,
         TransformInterpolation,
         ClothCollider::ball(0.24),
-        Mesh3d(meshes.add(Sphere::new(0.24).mesh().uv(64, 32))),
-        MeshMaterial3d(materials.add(Color::srgb(0.92, 0.42, 0.04))),
+        shop.mesh(Sphere::new(0.24).mesh().uv(64, 32)),
+        shop.paint(Color::srgb(0.92, 0.42, 0.04)),
         Transform::from_translation(CAMP + Vec3::Y),
-    ));
+    );
+    shop.commands.spawn(ball);
 }
 
 /// Towards the tent's front side and back, every six seconds.

@@ -2,26 +2,16 @@
 
 use std::process::ExitCode;
 
-use bevy::{ecs::query::QueryData, platform::collections::HashMap, prelude::*};
-use bevy_drape::{contact::deepest_penetration, plugin::ClothContact, prelude::*};
+use bevy::{platform::collections::HashMap, prelude::*};
+use bevy_drape::{plugin::ClothContact, prelude::*};
 use serde::Serialize;
 
-use crate::{
-    measured::{Figures, MeasuringPlugin},
-    scene::{self, ScenePlugin},
-    shared::{
-        headless::{Picture, Run, median, print},
-        stage::Grid,
-        start::Options,
-        view::View,
-    },
-};
+use crate::shared::parts::{depth::Placed, report::Report};
+use crate::shared::{headless::Run, measured::median};
 
 /// What is printed.
 #[derive(Serialize)]
-struct Report {
-    #[serde(flatten)]
-    figures: Figures,
+struct Own {
     /// Each way that the cloth was searched, with the reason and the number of ticks.
     searches: Vec<(String, u64)>,
     /// Medians over the ticks that had something near, and were not asleep.
@@ -33,8 +23,6 @@ struct Report {
     /// Searches that were done again within a tick, in all.
     requeries: u64,
     shapes: Vec<Shape>,
-    #[serde(flatten)]
-    picture: Picture,
 }
 
 /// One collider's contact.
@@ -68,23 +56,16 @@ struct Measured {
     requeries: u64,
 }
 
-/// Simulates, prints the report, and saves `shapes.png` if `view` can draw.
-pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let scene = ("cloth over every shape", ScenePlugin);
-    let mut run = Run::new(scene, view, grid, options, |app| {
-        app.add_plugins(MeasuringPlugin)
-            .init_resource::<Measured>()
-            .add_systems(FixedLast, measure);
-    });
-    run.finish();
-    let picture = run.take_picture(scene::SHOT, &options.out, "shapes.png");
-    let figures = Figures::of(&mut run);
-    let world = run.app.world_mut();
-    let mut measured = world.resource_mut::<Measured>();
+/// Simulates, prints the report, and saves `shapes.png`.
+pub fn report(mut run: Run) -> ExitCode {
+    run.app
+        .init_resource::<Measured>()
+        .add_systems(FixedLast, measure);
+    let picture = run.picture();
+    let mut measured = run.app.world_mut().resource_mut::<Measured>();
     let mut shapes: Vec<Shape> = measured.shapes.values().cloned().collect();
     shapes.sort_by(|a, b| a.name.cmp(&b.name));
-    let report = Report {
-        figures,
+    let own = Own {
         searches: measured.searches.clone(),
         colliders_near: median(&mut measured.near),
         nodes_visited: median(&mut measured.visited),
@@ -93,33 +74,37 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
         query_ms: median(&mut measured.query_ms),
         requeries: measured.requeries,
         shapes,
-        picture,
     };
-    print(&report, options.json, print_report)
+    let report = Report {
+        title: "Cloth over every shape",
+        figures: run.finish(),
+        own,
+        picture: Some(picture),
+    };
+    report.print(&mut run, |report| print_own(&report.own))
 }
 
-fn print_report(report: &Report) {
-    report.figures.print("Cloth over every shape");
-    for (how, ticks) in &report.searches {
+fn print_own(own: &Own) {
+    for (how, ticks) in &own.searches {
         println!("  search           {how}: {ticks} ticks");
     }
     println!(
         "  each search      {} colliders near, {} nodes visited, {} particles tested (medians)",
-        report.colliders_near, report.nodes_visited, report.particles_tested
+        own.colliders_near, own.nodes_visited, own.particles_tested
     );
     println!(
         "  extra searches   {} within a tick, after particles outran the first",
-        report.requeries
+        own.requeries
     );
     println!(
         "  search time      {:.4} ms to refit, {:.4} ms to search (medians)",
-        report.rebuild_ms, report.query_ms
+        own.rebuild_ms, own.query_ms
     );
     println!(
         "  {:<14} {:>10} {:>6} {:>6} {:>10} {:>10} {:>10} {:>10}",
         "collider", "tested by", "most", "last", "found, mm", "left, mm", "area, cm²", "cut, cm³"
     );
-    for shape in &report.shapes {
+    for shape in &own.shapes {
         println!(
             "  {:<14} {:>10} {:>6} {:>6} {:>10.2} {:>10.5} {:>10.1} {:>10.3}",
             shape.name,
@@ -132,28 +117,18 @@ fn print_report(report: &Report) {
             shape.volume_cm3
         );
     }
-    println!("  picture          {}", report.picture);
-}
-
-#[derive(QueryData)]
-struct Measuring {
-    stats: &'static ClothStats,
-    contacts: &'static ClothContacts,
-    frame: &'static ClothFrame,
-    particles: &'static ClothParticles,
-    settings: &'static ClothSettings,
 }
 
 fn measure(
-    cloths: Query<Measuring>,
+    cloths: Query<(&ClothStats, &ClothContacts, Placed)>,
     colliders: Query<(Entity, &Name, &Transform, &ClothCollider)>,
     mut measured: ResMut<Measured>,
 ) {
     let measured = &mut *measured;
-    for cloth in &cloths {
-        measured.count_search(cloth.stats);
-        if cloth.stats.colliders_near > 0 && !cloth.stats.is_asleep {
-            measured.add(cloth.stats);
+    for (stats, contacts, cloth) in &cloths {
+        measured.count_search(stats);
+        if stats.colliders_near > 0 && !stats.is_asleep {
+            measured.add(stats);
         }
         for (entity, name, transform, collider) in &colliders {
             let shape = measured.shapes.entry(entity).or_insert_with(|| Shape {
@@ -162,15 +137,11 @@ fn measure(
                 ..default()
             });
             shape.last = 0;
-            if let Some(contact) = cloth.contacts.with(entity) {
+            if let Some(contact) = contacts.with(entity) {
                 shape.see(contact);
             }
-            let pose = cloth.frame.isometry().inverse() * transform.to_isometry();
-            if let Ok(solid) = collider.scaled(transform.scale) {
-                let radius = cloth.settings.particle_radius;
-                let left = deepest_penetration(cloth.particles, &solid, pose, radius);
-                shape.deepest_left_mm = shape.deepest_left_mm.max(1.0e3 * left);
-            }
+            let left = cloth.depth_in(collider, transform);
+            shape.deepest_left_mm = shape.deepest_left_mm.max(left);
         }
     }
 }

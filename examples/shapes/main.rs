@@ -27,29 +27,31 @@
 //! | C | next contact method: automatic, particles, triangles |
 
 mod headless;
-#[path = "../shared/measured.rs"]
-mod measured;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
 
 use std::process::ExitCode;
 
-use crate::shared::{start::Example, window};
+use bevy::prelude::*;
+
+use crate::shared::{stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "shapes",
-        about: "Cloth falls over every collider shape. Opens a window if possible, otherwise runs headless.",
+        about: "Cloth falls over every collider shape.",
+        title: "cloth over every shape",
         seconds: "6",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let title = "cloth over every shape";
-            let mut app = window::app(title, scene::ScenePlugin, scene::SHOT, &[]);
-            app.insert_resource(grid);
-            window::run(app)
+        particles: 64,
+        shot: Shot {
+            from: Vec3::new(1.9, 3.0, 4.6),
+            focus: Vec3::new(1.25, 0.02, 0.12),
+            fov: 0.5,
         },
-        headless: headless::run,
+        drawn_at: f64::INFINITY,
+        scene: scene::build,
+        report: headless::report,
     }
     .run()
 }

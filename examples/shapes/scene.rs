@@ -5,13 +5,9 @@ use std::f32::consts::TAU;
 use bevy::{light::NotShadowCaster, mesh::VertexAttributeValues, prelude::*};
 use bevy_drape::prelude::*;
 
-use crate::shared::{
-    stage::{Grid, Shot, StagePlugin},
-    woven::{Weave, woven},
-};
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::StagePlugin;
 
-/// Particles along either side.
-pub const PARTICLES: u32 = 64;
 /// Width of the cloth (m).
 const WIDTH: f32 = 2.4;
 /// The height that it falls from (m).
@@ -25,42 +21,32 @@ const SECOND: Vec3 = Vec3::new(2.5, 0.0, 0.0);
 const DUNES: f32 = 0.9;
 const HEIGHTS: usize = 19;
 
-/// The whole of it, from a little above.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.9, 3.0, 4.6),
-    focus: Vec3::new(1.25, 0.02, 0.12),
-    fov: 0.5,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
-
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            // So low that each fold has a side in the shade.
-            light_from: Vec3::new(-3.5, 3.2, 2.2),
-        };
-        app.add_plugins((stage, DrapePlugins::default()))
-            .add_systems(Startup, (spawn_shapes, spawn_others, spawn_cloths));
-    }
+pub fn build(app: &mut App) {
+    // So low that each fold has a side in the shade.
+    let stage = StagePlugin::lit_from(-3.5, 3.2, 2.2);
+    app.add_plugins((stage, DrapePlugins::default()))
+        .add_systems(Startup, (spawn_shapes, spawn_others, spawn_cloths));
 }
 
-fn spawn_shapes(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
+fn spawn_shape(
+    shop: &mut Workshop,
+    name: &str,
+    collider: ClothCollider,
+    mesh: Mesh,
+    place: Transform,
+    color: Color,
 ) {
-    commands.spawn((Name::new("floor"), ClothCollider::plane()));
-    let mut spawn = |name: &str, collider, mesh: Mesh, place: Transform, color: Color| {
-        let material = materials.add(StandardMaterial {
-            base_color: color,
-            perceptual_roughness: 0.5,
-            ..default()
-        });
-        let mesh = (Mesh3d(meshes.add(mesh)), MeshMaterial3d(material));
-        commands.spawn((Name::new(name.to_string()), collider, mesh, place));
+    let look = (shop.mesh(mesh), shop.rough(color, 0.5));
+    let name = Name::new(name.to_string());
+    shop.commands.spawn((name, collider, look, place));
+}
+
+fn spawn_shapes(mut shop: Workshop) {
+    shop.commands
+        .spawn((Name::new("floor"), ClothCollider::plane()));
+    let mut spawn = |name: &str, collider, mesh: Mesh, place, color| {
+        spawn_shape(&mut shop, name, collider, mesh, place, color);
     };
     spawn(
         "ball",
@@ -98,20 +84,10 @@ fn spawn_shapes(
 
 /// Those that are more than a formula, below the second cloth: solids of Bevy's, a stone by the hull of its mesh, a ring by the
 /// triangles of its own, and dunes.
-fn spawn_others(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let mut spawn = |name: &str, collider: ClothCollider, mesh: Mesh, place: Transform, color| {
-        let material = materials.add(StandardMaterial {
-            base_color: color,
-            perceptual_roughness: 0.5,
-            ..default()
-        });
+fn spawn_others(mut shop: Workshop) {
+    let mut spawn = |name: &str, collider, mesh: Mesh, place: Transform, color| {
         let place = place.with_translation(SECOND + place.translation);
-        let mesh = (Mesh3d(meshes.add(mesh)), MeshMaterial3d(material));
-        commands.spawn((Name::new(name.to_string()), collider, mesh, place));
+        spawn_shape(&mut shop, name, collider, mesh, place, color);
     };
     let cylinder = Cylinder::new(0.2, 0.4);
     spawn(
@@ -200,30 +176,26 @@ fn change_positions(mesh: &mut Mesh, change: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-fn spawn_cloths(
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-) {
+fn spawn_cloths(mut shop: Workshop) {
     // A tea towel: off-white, with a thin stripe every so often along both ways.
-    let weave = woven(Weave::Plain, &mut images, 5, |_, yarn| {
+    let weave = shop.weave(Weave::Plain, 5, |_, yarn| {
         if (29..33).contains(&yarn) {
             Color::srgb(0.50, 0.16, 0.22)
         } else {
             Color::srgb(0.93, 0.91, 0.86)
         }
     });
-    let material = materials.add(StandardMaterial {
+    let sheer = shop.paint(StandardMaterial {
         // So sheer that what is below is seen.
         base_color: Color::WHITE.with_alpha(0.42),
         alpha_mode: AlphaMode::Blend,
         ..weave
     });
+    let side = shop.grid.0;
     for (name, place) in [("cloth", Vec3::ZERO), ("second cloth", SECOND)] {
-        commands.spawn((
+        shop.commands.spawn((
             Name::new(name),
-            Cloth::new(grid.0, grid.0, WIDTH / (grid.0 - 1) as f32)
+            Cloth::new(side, side, WIDTH / (side - 1) as f32)
                 .lying()
                 .centred(),
             Pins::none(),
@@ -237,7 +209,7 @@ fn spawn_cloths(
                 // So that it stays inside of its envelope as it lands.
                 ..ClothSettings::substeps(36)
             },
-            MeshMaterial3d(material.clone()),
+            sheer.clone(),
             // Sheer fabric lets the light through.
             NotShadowCaster,
             ShowClothGizmos::nothing(),

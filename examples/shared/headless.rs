@@ -5,7 +5,6 @@ use std::{
     fmt, fs,
     io::{IsTerminal, stderr},
     path::{Path, PathBuf},
-    process::ExitCode,
     thread,
     time::{Duration, Instant},
 };
@@ -22,9 +21,10 @@ use bevy::{
 use serde::Serialize;
 
 use super::{
+    measured::{Figures, MeasuringPlugin},
     pixels::Pixels,
     stage::{Grid, Shot},
-    start::Options,
+    start::{Example, Options},
     view::View,
 };
 
@@ -57,6 +57,8 @@ pub struct TickByTick;
 /// An app and how far it has come.
 pub struct Run {
     pub app: App,
+    pub example: Example,
+    pub options: Options,
     view: View,
     film: Film,
     /// In all.
@@ -64,35 +66,37 @@ pub struct Run {
     /// How long what is done took, without pictures (s).
     pub wall_seconds: f64,
     done: u64,
+    is_ready: bool,
 }
 
 impl Run {
-    /// Of a scene, with what measures it, for as long as the options say.
-    pub fn new(
-        (title, scene): (&str, impl Plugin),
-        view: View,
-        grid: Grid,
-        options: &Options,
-        measure: impl FnOnce(&mut App),
-    ) -> Self {
+    /// Of an example, for as long as the options say. Its report may add to the app before the first tick.
+    pub fn new(example: Example, view: View, grid: Grid, options: Options) -> Self {
         let mut app = App::new();
-        app.add_plugins((view.plugins(title), scene))
+        app.add_plugins((view.plugins(example.title), MeasuringPlugin))
             .insert_resource(grid);
-        measure(&mut app);
-        let ticks = ticks_in(&app, options.seconds).max(1);
-        let film = Film::of(&app, options);
-        app.finish();
-        app.cleanup();
-        let mut run = Self {
+        (example.scene)(&mut app);
+        Self {
+            ticks: ticks_in(&app, options.seconds).max(1),
+            film: Film::of(&app, &options),
             app,
+            example,
+            options,
             view,
-            film,
-            ticks,
             wall_seconds: 0.0,
             done: 0,
-        };
-        run.wait_for_assets();
-        run
+            is_ready: false,
+        }
+    }
+
+    /// Before the first tick.
+    fn get_ready(&mut self) {
+        if !self.is_ready {
+            self.is_ready = true;
+            self.app.finish();
+            self.app.cleanup();
+            self.wait_for_assets();
+        }
     }
 
     /// Lets time stand still until all meshes are there, and the scenes of files.
@@ -116,17 +120,31 @@ impl Run {
     }
 
     /// Goes on to the end.
-    pub fn finish(&mut self) {
+    pub fn finish(&mut self) -> Figures {
         self.until(self.ticks);
+        Figures::of(self)
     }
 
-    /// Goes on until this many ticks are done, and films what is to be filmed on the way.
+    /// Goes on until this many ticks are done, or all of them. Films on the way.
     pub fn until(&mut self, ticks: u64) {
+        self.get_ready();
+        let ticks = ticks.min(self.ticks);
         while let Some(frame) = self.film.pop_until(ticks) {
             self.advance(frame.tick);
             self.save_frame(&frame.file);
         }
         self.advance(ticks);
+    }
+
+    /// Fixed ticks in this many seconds.
+    pub fn ticks_in(&self, seconds: f64) -> u64 {
+        ticks_in(&self.app, seconds)
+    }
+
+    /// Goes on until the example's picture is due, and draws it.
+    pub fn picture(&mut self) -> Picture {
+        self.until(self.ticks_in(self.example.drawn_at));
+        self.take_picture(&format!("{}.png", self.example.name))
     }
 
     fn advance(&mut self, ticks: u64) {
@@ -146,10 +164,10 @@ impl Run {
         self.wall_seconds += start.elapsed().as_secs_f64();
     }
 
-    /// Draws one frame into an image and saves it, while time stands still.
-    pub fn take_picture(&mut self, shot: Shot, out: &Path, file: &str) -> Picture {
+    /// Draws one frame and saves it, while time stands still.
+    fn take_picture(&mut self, file: &str) -> Picture {
         say("");
-        let drawn = self.draw(shot, PICTURE, out, file);
+        let drawn = self.draw(PICTURE, file);
         let adapter = self.app.world().get_resource::<RenderAdapterInfo>();
         let (picture, no_picture) = match drawn {
             Ok(path) => (Some(path), None),
@@ -162,29 +180,20 @@ impl Run {
         }
     }
 
-    /// Draws the film's next frame as the app's [`Shot`] is now.
+    /// Draws the film's next frame.
     fn save_frame(&mut self, file: &str) {
-        let shot = self.app.world().get_resource::<Shot>().copied();
-        let (format, out) = (self.film.format, self.film.out.clone());
+        let format = self.film.format;
         self.film.format.is_warm = true;
-        let drawn = shot
-            .ok_or_else(|| "this example has no film".into())
-            .and_then(|shot| self.draw(shot, format, &out, file));
-        if let Err(why) = drawn {
+        if let Err(why) = self.draw(format, file) {
             eprintln!("{file}: {why}");
             self.film.frames.clear();
         }
     }
 
-    fn draw(
-        &mut self,
-        shot: Shot,
-        format: Format,
-        out: &Path,
-        file: &str,
-    ) -> Result<PathBuf, String> {
+    fn draw(&mut self, format: Format, file: &str) -> Result<PathBuf, String> {
         if self.view == View::Offscreen {
-            draw(&mut self.app, shot, format, out, file)
+            let shot = self.example.shot;
+            draw(&mut self.app, shot, format, &self.options.out, file)
         } else {
             Err("no graphics adapter found".into())
         }
@@ -202,7 +211,6 @@ fn say(how_far: &str) {
 struct Film {
     format: Format,
     frames: VecDeque<Frame>,
-    out: PathBuf,
 }
 
 struct Frame {
@@ -223,7 +231,6 @@ impl Film {
         Self {
             format: FRAME,
             frames: (0..options.frames).map(frame).collect(),
-            out: options.out.clone(),
         }
     }
 
@@ -244,8 +251,7 @@ struct Format {
     is_warm: bool,
 }
 
-/// Fixed ticks in this many seconds.
-pub fn ticks_in(app: &App, seconds: f64) -> u64 {
+fn ticks_in(app: &App, seconds: f64) -> u64 {
     let timestep = app.world().resource::<Time<Fixed>>().timestep();
     (seconds / timestep.as_secs_f64()).round() as u64
 }
@@ -347,28 +353,4 @@ fn save_to(path: PathBuf, format: Format) -> impl FnMut(On<ScreenshotCaptured>) 
             error!("{why}");
         }
     }
-}
-
-/// Prints a report, for a program to read or for a person.
-pub fn print<R: Serialize>(report: &R, json: bool, as_text: fn(&R)) -> ExitCode {
-    if !json {
-        as_text(report);
-        return ExitCode::SUCCESS;
-    }
-    match serde_json::to_string(report) {
-        Ok(text) => {
-            println!("{text}");
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("The report could not be written as JSON: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-/// The value in the middle; 0 of none.
-pub fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

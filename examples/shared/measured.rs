@@ -4,12 +4,12 @@ use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use serde::Serialize;
 
-use crate::shared::headless::{Run, median};
+use super::headless::Run;
 
 /// Figures of the cloths that every report has.
 #[derive(Serialize)]
 pub struct Figures {
-    ticks: u64,
+    pub ticks: u64,
     simulated_seconds: f64,
     wall_seconds: f64,
     particles: usize,
@@ -19,6 +19,9 @@ pub struct Figures {
     pub solver_ms: f64,
     largest_stretch_percent: f32,
     is_asleep: bool,
+    /// The most particles that touched in any tick: for reports that say so.
+    #[serde(skip)]
+    pub contacts: usize,
 }
 
 #[derive(Resource, Default)]
@@ -26,6 +29,7 @@ struct Measured {
     solver_ms: Vec<f64>,
     substeps: u32,
     largest_stretch: f32,
+    contacts: usize,
 }
 
 /// Measures each tick.
@@ -39,22 +43,24 @@ impl Plugin for MeasuringPlugin {
 }
 
 fn measure(cloths: Query<&ClothStats>, mut measured: ResMut<Measured>) {
-    let mut solver_ms = 0.0;
+    let (mut solver_ms, mut contacts) = (0.0, 0);
     for stats in &cloths {
         if !stats.is_asleep {
             solver_ms += stats.integrate_ms;
         }
         measured.substeps = measured.substeps.max(stats.substeps);
         measured.largest_stretch = measured.largest_stretch.max(stats.stretch.structural);
+        contacts += stats.contacts;
     }
+    measured.contacts = measured.contacts.max(contacts);
     if solver_ms > 0.0 {
         measured.solver_ms.push(solver_ms);
     }
 }
 
 impl Figures {
-    /// Of a run with a [`MeasuringPlugin`].
-    pub fn of(run: &mut Run) -> Self {
+    /// Of all that a run has done.
+    pub(super) fn of(run: &mut Run) -> Self {
         let (ticks, wall_seconds) = (run.ticks, run.wall_seconds);
         let timestep = run.app.world().resource::<Time<Fixed>>().timestep();
         let simulated_seconds = ticks as f64 * timestep.as_secs_f64();
@@ -72,6 +78,7 @@ impl Figures {
             solver_ms: median(&mut measured.solver_ms),
             largest_stretch_percent: 100.0 * measured.largest_stretch,
             is_asleep,
+            contacts: measured.contacts,
         }
     }
 
@@ -97,4 +104,10 @@ impl Figures {
         );
         println!("  largest stretch  {:.2} %", self.largest_stretch_percent);
     }
+}
+
+/// The value in the middle; 0 of none.
+pub fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

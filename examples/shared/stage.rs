@@ -47,6 +47,16 @@ pub struct StagePlugin {
     pub has_floor: bool,
 }
 
+impl StagePlugin {
+    /// With a floor.
+    pub fn lit_from(x: f32, y: f32, z: f32) -> Self {
+        Self {
+            light_from: Vec3::new(x, y, z),
+            has_floor: true,
+        }
+    }
+}
+
 impl Plugin for StagePlugin {
     fn build(&self, app: &mut App) {
         app.insert_resource(*self)

@@ -2,9 +2,18 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
+use bevy::app::App;
 use clap::{CommandFactory, FromArgMatches, Parser, parser::ValueSource};
 
-use super::{stage::Grid, view::View};
+use super::{
+    headless::Run,
+    stage::{Grid, Shot},
+    view::View,
+    window,
+};
+
+/// What `--help` says of every example.
+const OPENS: &str = "Opens a window if possible, otherwise runs headless.";
 
 /// Opens a window if possible, otherwise runs headless.
 #[derive(Parser)]
@@ -46,15 +55,25 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 /// An example.
+#[derive(Clone, Copy)]
 pub struct Example {
     pub name: &'static str,
+    /// A sentence for `--help`.
     pub about: &'static str,
+    /// Of its window, and of its report if that is the plain one.
+    pub title: &'static str,
     /// How long it simulates without a window, unless asked (s).
     pub seconds: &'static str,
     /// Particles along either side of a cloth, unless asked.
     pub particles: u32,
-    pub window: fn(Grid) -> ExitCode,
-    pub headless: fn(View, Grid, &Options) -> ExitCode,
+    /// From where it is seen.
+    pub shot: Shot,
+    /// When its picture is drawn without a window (s). A shorter run draws it at its end.
+    pub drawn_at: f64,
+    /// Adds all but the camera.
+    pub scene: fn(&mut App),
+    /// Simulates without a window, and prints the report.
+    pub report: fn(Run) -> ExitCode,
 }
 
 impl Example {
@@ -65,7 +84,7 @@ impl Example {
         }
         let command = Options::command()
             .name(self.name)
-            .about(self.about)
+            .about(format!("{} {OPENS}", self.about))
             .mut_arg("seconds", |seconds| seconds.default_value(self.seconds));
         let matches = command.get_matches();
         let options = match Options::from_arg_matches(&matches) {
@@ -80,10 +99,10 @@ impl Example {
                         eprintln!("--{option} counts only with --headless.");
                     }
                 }
-                return (self.window)(grid);
+                return window::run(self, grid);
             }
             eprintln!("No window opens here: running headless.");
         }
-        (self.headless)(View::without_window(), grid, &options)
+        (self.report)(Run::new(self, View::without_window(), grid, options))
     }
 }

@@ -15,7 +15,12 @@ use bevy_drape::{
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext, input::EguiWantsInput};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin};
 
-use super::{preparing::PreparingPlugin, stage::Shot, view::View};
+use super::{
+    preparing::PreparingPlugin,
+    stage::{Grid, Shot},
+    start::Example,
+    view::View,
+};
 
 /// The keys of every example, as they stand in the panel.
 const KEYS: [(&str, &str); 10] = [
@@ -31,42 +36,42 @@ const KEYS: [(&str, &str); 10] = [
     ("C", "next contact method"),
 ];
 
-/// An app that runs a scene in a window beside the panel, which lists the example's own keys first.
-pub fn app(title: &str, scene: impl Plugin, shot: Shot, more_keys: &[(&str, &str)]) -> App {
-    let keys = more_keys.iter().chain(&KEYS);
+/// An example's own keys, as they stand in the panel above [`KEYS`].
+pub struct Keys(pub &'static [(&'static str, &'static str)]);
+
+impl Plugin for Keys {
+    fn build(&self, _: &mut App) {}
+}
+
+/// Runs the example in a window beside the panel until it is closed.
+pub fn run(example: Example, grid: Grid) -> ExitCode {
+    let mut app = App::new();
+    app.add_plugins(View::Window.plugins(example.title))
+        .insert_resource(grid)
+        .insert_resource(example.shot);
+    (example.scene)(&mut app);
+    let own = app.get_added_plugins().into_iter();
+    let keys = own.flat_map(|Keys(keys)| *keys).chain(&KEYS);
     let panel = ClothPanel {
         keys: keys
             .map(|(key, what)| (key.to_string(), what.to_string()))
             .collect(),
         ..default()
     };
-    let mut app = App::new();
-    app.add_plugins((
-        View::Window.plugins(title),
-        scene,
-        ClothPanelPlugin,
-        PreparingPlugin,
-        PanOrbitCameraPlugin,
-    ))
-    .insert_resource(panel)
-    .insert_resource(shot)
-    .add_systems(PreStartup, keep_egui_off_the_scene)
-    .add_systems(Startup, spawn_cameras)
-    .add_systems(
-        Update,
-        (
-            draw_beside_panel,
-            free_mouse_for_panel,
-            press_clock_keys,
-            press_gizmo_keys,
-            press_cloth_keys,
-        ),
-    );
-    app
-}
-
-/// Runs it until it is closed.
-pub fn run(mut app: App) -> ExitCode {
+    app.add_plugins((ClothPanelPlugin, PreparingPlugin, PanOrbitCameraPlugin))
+        .insert_resource(panel)
+        .add_systems(PreStartup, keep_egui_off_the_scene)
+        .add_systems(Startup, spawn_cameras)
+        .add_systems(
+            Update,
+            (
+                draw_beside_panel,
+                free_mouse_for_panel,
+                press_clock_keys,
+                press_gizmo_keys,
+                press_cloth_keys,
+            ),
+        );
     match app.run() {
         AppExit::Success => ExitCode::SUCCESS,
         AppExit::Error(code) => ExitCode::from(code.get()),

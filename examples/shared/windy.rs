@@ -3,26 +3,35 @@
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
+use super::arrows::{right_left, up_down};
+use crate::shared::window::Keys;
+
 /// From one press to the next (m/s, rad).
 const STRONGER: f32 = 2.0;
 const TURN: f32 = 0.3;
 
-/// What the panel says of them.
-pub const KEYS: [(&str, &str); 3] = [
-    ("Up, Down", "stronger, weaker wind"),
-    ("Left, Right", "turn the wind"),
-    ("T", "turbulence on, off"),
-];
+/// Listens to the keys.
+pub struct KeysPlugin;
+
+impl Plugin for KeysPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(Keys(&[
+            ("Up, Down", "stronger, weaker wind"),
+            ("Left, Right", "turn the wind"),
+            ("T", "turbulence on, off"),
+        ]))
+        .add_systems(Update, press_keys);
+    }
+}
 
 /// Changes the resource; `unsteady` are its gusts and turbulence while they are off.
-pub fn press_keys(
+fn press_keys(
     keys: Res<ButtonInput<KeyCode>>,
     mut wind: ResMut<ClothWind>,
     mut unsteady: Local<Option<(f32, f32)>>,
 ) {
-    let pressed = |key| f32::from(u8::from(keys.just_pressed(key)));
-    let stronger = STRONGER * (pressed(KeyCode::ArrowUp) - pressed(KeyCode::ArrowDown));
-    let turn = TURN * (pressed(KeyCode::ArrowLeft) - pressed(KeyCode::ArrowRight));
+    let stronger = STRONGER * up_down(&keys);
+    let turn = -TURN * right_left(&keys);
     if stronger != 0.0 || turn != 0.0 {
         let speed = wind.velocity.length();
         let direction = wind.velocity.try_normalize().unwrap_or(Vec3::X);

@@ -3,20 +3,13 @@
 use std::process::ExitCode;
 
 use bevy::{platform::collections::HashMap, prelude::*};
-use bevy_drape::{contact::deepest_penetration, prelude::*};
+use bevy_drape::prelude::*;
 use serde::Serialize;
 
-use crate::{
-    measured::{Figures, MeasuringPlugin},
-    scene::{self, Pull, ScenePlugin, Shown},
-    shared::{
-        headless::{Picture, Run, print, ticks_in},
-        stage::Grid,
-        start::Options,
-        view::View,
-    },
-    things::Thing,
-};
+use crate::scene::{self, Pull, Shown};
+use crate::shared::headless::{Picture, Run};
+use crate::shared::parts::{depth::Placed, report::Report};
+use crate::things::Thing;
 
 /// After which part of the time the cloth is pulled, and how long after that it is drawn again (s).
 const PULLED_AFTER: f64 = 0.6;
@@ -24,9 +17,7 @@ const DRAWN_AFTER: f64 = 0.5;
 
 /// What is printed.
 #[derive(Serialize)]
-struct Report {
-    #[serde(flatten)]
-    figures: Figures,
+struct Own {
     /// The most triangles that an edge of the table passed through after any tick: until it was pulled, and in all.
     edges_through_at_rest: usize,
     edges_through: usize,
@@ -52,24 +43,20 @@ struct Row {
 #[derive(Resource, Default)]
 struct Depths(HashMap<Entity, (String, f64)>);
 
-/// Simulates, prints the report, and saves `table.png` and `table_pulled.png` if `view` can draw.
-pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
-    let mut run = Run::new(("a tablecloth", ScenePlugin), view, grid, options, |app| {
-        app.add_plugins(MeasuringPlugin)
-            .init_resource::<Depths>()
-            .add_systems(FixedLast, measure);
-    });
-    let pulled = ticks_in(&run.app, PULLED_AFTER * options.seconds);
-    run.until(pulled);
-    let laid = run.take_picture(scene::SHOT, &options.out, "table.png");
+/// Simulates, prints the report, and saves `table.png` and `table_pulled.png`.
+pub fn report(mut run: Run) -> ExitCode {
+    run.app
+        .init_resource::<Depths>()
+        .add_systems(FixedLast, measure);
+    run.example.drawn_at = PULLED_AFTER * run.options.seconds;
+    let laid = run.picture();
     let edges_through_at_rest = run.app.world().resource::<Shown>().most;
     run.app.world_mut().resource_mut::<Pull>().begin();
-    let drawn = pulled + ticks_in(&run.app, DRAWN_AFTER);
-    run.until(drawn.min(run.ticks));
-    let pulled = run.take_picture(scene::SHOT, &options.out, "table_pulled.png");
-    run.finish();
+    run.example.name = "table_pulled";
+    run.example.drawn_at += DRAWN_AFTER;
+    let pulled = run.picture();
+    let figures = run.finish();
 
-    let figures = Figures::of(&mut run);
     let world = run.app.world_mut();
     let mut things = world.query::<(&Name, &Thing, &Transform)>();
     let row = |(name, thing, now): (&Name, &Thing, &Transform)| {
@@ -91,8 +78,7 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
     let left_on_table = places.filter(|place| scene::is_on_table(*place)).count();
     let mut deepest_left: Vec<_> = world.resource::<Depths>().0.values().cloned().collect();
     deepest_left.sort_by(|a, b| a.0.cmp(&b.0));
-    let report = Report {
-        figures,
+    let own = Own {
         edges_through_at_rest,
         edges_through: world.resource::<Shown>().most,
         deepest_left,
@@ -101,21 +87,26 @@ pub fn run(view: View, grid: Grid, options: &Options) -> ExitCode {
         laid,
         pulled,
     };
-    print(&report, options.json, print_report)
+    let report = Report {
+        title: "A tablecloth, pulled off",
+        figures,
+        own,
+        picture: None,
+    };
+    report.print(&mut run, |report| print_own(&report.own))
 }
 
-fn print_report(report: &Report) {
-    report.figures.print("A tablecloth, pulled off");
+fn print_own(own: &Own) {
     println!(
         "  poke-through     at most {} triangles that a table edge crosses before the pull, {} overall",
-        report.edges_through_at_rest, report.edges_through
+        own.edges_through_at_rest, own.edges_through
     );
     println!("  penetration      the most after any tick, by brute force:");
-    for (name, depth) in &report.deepest_left {
+    for (name, depth) in &own.deepest_left {
         println!("    {name:<14} {depth:.3} mm");
     }
     println!("  dishes           at the end:");
-    for row in &report.things {
+    for row in &own.things {
         println!(
             "    {:<14} moved by {:.1} mm, leans by {:.1}°, {}",
             row.name,
@@ -126,28 +117,24 @@ fn print_report(report: &Report) {
     }
     println!(
         "  cloth            {} particles still on the table",
-        report.left_on_table
+        own.left_on_table
     );
-    println!("  pictures         {}", report.laid);
-    println!("                   {}", report.pulled);
+    println!("  pictures         {}", own.laid);
+    println!("                   {}", own.pulled);
 }
 
 fn measure(
-    cloths: Query<(&ClothParticles, &ClothFrame, &ClothSettings)>,
+    cloths: Query<Placed>,
     colliders: Query<(Entity, &Name, &Transform, &ClothCollider)>,
     mut depths: ResMut<Depths>,
 ) {
-    for (particles, frame, settings) in &cloths {
+    for cloth in &cloths {
         for (entity, name, transform, collider) in &colliders {
-            let pose = frame.isometry().inverse() * transform.to_isometry();
-            if let Ok(shape) = collider.scaled(transform.scale) {
-                let depth = deepest_penetration(particles, &shape, pose, settings.particle_radius);
-                let known = depths
-                    .0
-                    .entry(entity)
-                    .or_insert_with(|| (name.to_string(), 0.0));
-                known.1 = known.1.max(1.0e3 * depth);
-            }
+            let known = depths
+                .0
+                .entry(entity)
+                .or_insert_with(|| (name.to_string(), 0.0));
+            known.1 = known.1.max(cloth.depth_in(collider, transform));
         }
     }
 }

@@ -27,13 +27,7 @@
 //! | C | next contact method: automatic, particles, triangles |
 
 mod edges;
-#[path = "../shared/figure.rs"]
-mod figure;
 mod headless;
-#[path = "../shared/measured.rs"]
-mod measured;
-#[path = "../shared/physics.rs"]
-mod physics;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
@@ -43,27 +37,25 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 
-use crate::shared::{start::Example, window};
+use crate::shared::{stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "table",
-        about: "A cloth is pulled off a laid table. Opens a window if possible, otherwise runs headless.",
+        about: "A cloth is pulled off a laid table.",
+        title: "a tablecloth",
         seconds: "4",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let keys = [("T", "pull the cloth off")];
-            let mut app = window::app("a tablecloth", scene::ScenePlugin, scene::SHOT, &keys);
-            app.insert_resource(grid).add_systems(Update, press_key);
-            window::run(app)
+        // Along the cloth; across it in proportion.
+        particles: 40,
+        // From the side from which the cloth is pulled.
+        shot: Shot {
+            from: Vec3::new(1.45, 1.6, 2.0),
+            focus: Vec3::new(0.05, 0.58, 0.0),
+            fov: 0.5,
         },
-        headless: headless::run,
+        drawn_at: f64::INFINITY,
+        scene: scene::build,
+        report: headless::report,
     }
     .run()
-}
-
-fn press_key(keys: Res<ButtonInput<KeyCode>>, mut pull: ResMut<scene::Pull>) {
-    if keys.just_pressed(KeyCode::KeyT) {
-        pull.begin();
-    }
 }

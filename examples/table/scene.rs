@@ -5,19 +5,16 @@ use bevy_drape::{plugin::ClothBuilt, prelude::*};
 use bevy_rapier3d::prelude::{Collider, Friction, PhysicsSet, RigidBody, Velocity};
 use bevy_transform_interpolation::prelude::TransformInterpolation;
 
+use crate::shared::parts::figure::{Figure, FigurePlugin};
+use crate::shared::parts::physics::PhysicsPlugin;
+use crate::shared::parts::workshop::{Weave, Workshop};
+use crate::shared::stage::{Grid, StagePlugin};
+use crate::shared::window::Keys;
 use crate::{
     edges::edges_through,
-    figure::{Figure, FigurePlugin},
-    physics::PhysicsPlugin,
-    shared::{
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
-    things::{Thing, spawn_things},
+    things::{self, Thing},
 };
 
-/// Particles along the cloth; across it in proportion.
-pub const PARTICLES: u32 = 40;
 /// Length and width of the cloth (m).
 const LENGTH: f32 = 1.7;
 const WIDTH: f32 = 1.3;
@@ -35,34 +32,27 @@ const SPEED: f32 = 4.0;
 const ACCELERATION: f32 = 12.0;
 const WAY: f32 = 1.9;
 
-/// From the side from which the cloth is pulled.
-pub const SHOT: Shot = Shot {
-    from: Vec3::new(1.45, 1.6, 2.0),
-    focus: Vec3::new(0.05, 0.58, 0.0),
-    fov: 0.5,
-};
-
 /// The scene, without a camera.
-pub struct ScenePlugin;
+pub fn build(app: &mut App) {
+    let stage = StagePlugin::lit_from(-2.6, 3.6, 2.4);
+    app.add_plugins((stage, PhysicsPlugin, FigurePlugin, DrapePlugins::default()))
+        .init_resource::<Pull>()
+        .init_resource::<Shown>()
+        .add_plugins(Keys(&[("T", "pull the cloth off")]))
+        .add_systems(Startup, (spawn_table, spawn_cloth, things::spawn))
+        .add_systems(
+            FixedUpdate,
+            (
+                (lay_again, pull).chain().before(PhysicsSet::SyncBackend),
+                count_edges.after(ClothSystems::WriteBack),
+            ),
+        )
+        .add_systems(Update, (write_figure, press_key));
+}
 
-impl Plugin for ScenePlugin {
-    fn build(&self, app: &mut App) {
-        let stage = StagePlugin {
-            has_floor: true,
-            light_from: Vec3::new(-2.6, 3.6, 2.4),
-        };
-        app.add_plugins((stage, PhysicsPlugin, FigurePlugin, DrapePlugins::default()))
-            .init_resource::<Pull>()
-            .init_resource::<Shown>()
-            .add_systems(Startup, (spawn_table, spawn_cloth, spawn_things))
-            .add_systems(
-                FixedUpdate,
-                (
-                    (lay_again, pull).chain().before(PhysicsSet::SyncBackend),
-                    count_edges.after(ClothSystems::WriteBack),
-                ),
-            )
-            .add_systems(Update, write_figure);
+fn press_key(keys: Res<ButtonInput<KeyCode>>, mut pull: ResMut<Pull>) {
+    if keys.just_pressed(KeyCode::KeyT) {
+        pull.begin();
     }
 }
 
@@ -95,39 +85,33 @@ struct Hand;
 
 /// The table's top, as the cloth touches it.
 #[derive(Component)]
-pub struct Top;
+struct Top;
 
 /// The same as things stand on it: higher by the cloth.
 #[derive(Component)]
 struct Support;
 
-fn spawn_table(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    commands.spawn((Name::new("floor"), ClothCollider::plane()));
-    commands.spawn((
+fn spawn_table(mut shop: Workshop) {
+    shop.commands
+        .spawn((Name::new("floor"), ClothCollider::plane()));
+    shop.commands.spawn((
         RigidBody::Fixed,
         Collider::cuboid(50.0, 0.5, 50.0),
         Transform::from_xyz(0.0, -0.5, 0.0),
     ));
-    let wood = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.36, 0.21, 0.11),
-        perceptual_roughness: 0.55,
-        ..default()
-    });
+    let wood = shop.rough(Color::srgb(0.36, 0.21, 0.11), 0.55);
     let size = 2.0 * TOP;
     let middle = Transform::from_xyz(0.0, HEIGHT - TOP.y, 0.0);
-    commands.spawn((
+    let plate = shop.mesh(Cuboid::from_size(size));
+    shop.commands.spawn((
         Name::new("table"),
         Top,
         ClothCollider::cuboid(size.x, size.y, size.z),
-        Mesh3d(meshes.add(Cuboid::from_size(size))),
-        MeshMaterial3d(wood.clone()),
+        plate,
+        wood.clone(),
         middle,
     ));
-    commands.spawn((
+    shop.commands.spawn((
         Support,
         RigidBody::Fixed,
         Collider::cuboid(TOP.x, TOP.y, TOP.z),
@@ -135,15 +119,16 @@ fn spawn_table(
         middle.with_translation(middle.translation + Vec3::Y * (SURFACE - HEIGHT)),
     ));
     let leg = Vec3::new(0.05, HEIGHT - size.y, 0.05);
+    let mesh = shop.mesh(Cuboid::from_size(leg));
     for (x, z) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
-        commands.spawn((
+        shop.commands.spawn((
             ClothCollider::cuboid(leg.x, leg.y, leg.z),
-            Mesh3d(meshes.add(Cuboid::from_size(leg))),
-            MeshMaterial3d(wood.clone()),
+            mesh.clone(),
+            wood.clone(),
             Transform::from_xyz(x * (TOP.x - 0.08), 0.5 * leg.y, z * (TOP.z - 0.08)),
         ));
     }
-    commands.spawn((
+    shop.commands.spawn((
         Name::new("hand"),
         Hand,
         TransformInterpolation,
@@ -151,25 +136,21 @@ fn spawn_table(
     ));
 }
 
-fn spawn_cloth(
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    grid: Res<Grid>,
-) {
+fn spawn_cloth(mut shop: Workshop) {
     // Linen with a red check.
-    let weave = woven(Weave::Plain, &mut images, 10, |_, yarn| {
+    let linen = shop.fabric(Weave::Plain, 10, |_, yarn| {
         if yarn < 24 {
             Color::srgb(0.70, 0.10, 0.12)
         } else {
             Color::srgb(0.92, 0.90, 0.85)
         }
     });
-    let spacing = LENGTH / (grid.0 - 1) as f32;
+    let columns = shop.grid.0;
+    let spacing = LENGTH / (columns - 1) as f32;
     let rows = (WIDTH / spacing).round() as u32 + 1;
-    commands.spawn((
+    shop.commands.spawn((
         Name::new("tablecloth"),
-        Cloth::new(grid.0, rows, spacing).lying().centred(),
+        Cloth::new(columns, rows, spacing).lying().centred(),
         Pins::none(),
         ClothMaterial {
             friction: 0.3,
@@ -181,7 +162,7 @@ fn spawn_cloth(
             ..ClothSettings::substeps(24)
         },
         ClothSelfCollision::default(),
-        MeshMaterial3d(materials.add(weave)),
+        linen,
         ShowClothGizmos::nothing(),
         Transform::from_xyz(0.0, HEIGHT + RADIUS, 0.0),
     ));

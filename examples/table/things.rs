@@ -5,14 +5,17 @@ use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{Collider, ColliderMassProperties, Friction, RigidBody, Velocity};
 use bevy_transform_interpolation::prelude::TransformInterpolation;
 
-use crate::scene::SURFACE;
+use crate::{
+    scene::SURFACE,
+    shared::parts::workshop::{Paint, Workshop},
+};
 
 /// A body, and where it stands at first.
 #[derive(Component)]
 pub struct Thing(pub Transform);
 
 /// A part of a thing: its mesh, how high its middle is above the thing's foot (m), and its material.
-type Part = (Mesh, f32, Handle<StandardMaterial>);
+type Part = (Mesh, f32, Paint);
 
 /// A cylinder that is a part of a body's collider: its radius, and how high its ends are (m).
 type Solid = [f32; 3];
@@ -21,26 +24,19 @@ type Solid = [f32; 3];
 /// along the table slides under it: below an upright wall it would be pinched and torn.
 type Round = Option<(f32, f32)>;
 
-pub fn spawn_things(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let mut paint = |color: Color, perceptual_roughness: f32, metallic: f32| {
-        materials.add(StandardMaterial {
-            base_color: color,
-            perceptual_roughness,
-            metallic,
-            ..default()
-        })
-    };
-    let porcelain = paint(Color::srgb(0.90, 0.90, 0.88), 0.25, 0.0);
-    let blue = paint(Color::srgb(0.08, 0.22, 0.48), 0.25, 0.0);
-    let glass = paint(Color::srgb(0.03, 0.20, 0.10), 0.12, 0.0);
-    let paper = paint(Color::srgb(0.88, 0.82, 0.66), 0.8, 0.0);
-    let cork = paint(Color::srgb(0.55, 0.36, 0.20), 0.9, 0.0);
-    let brass = paint(Color::srgb(0.86, 0.62, 0.24), 0.3, 0.9);
-    let wax = paint(Color::srgb(0.93, 0.88, 0.76), 0.6, 0.0);
+pub fn spawn(mut shop: Workshop) {
+    let porcelain = shop.rough(Color::srgb(0.90, 0.90, 0.88), 0.25);
+    let blue = shop.rough(Color::srgb(0.08, 0.22, 0.48), 0.25);
+    let glass = shop.rough(Color::srgb(0.03, 0.20, 0.10), 0.12);
+    let paper = shop.rough(Color::srgb(0.88, 0.82, 0.66), 0.8);
+    let cork = shop.rough(Color::srgb(0.55, 0.36, 0.20), 0.9);
+    let brass = shop.paint(StandardMaterial {
+        base_color: Color::srgb(0.86, 0.62, 0.24),
+        perceptual_roughness: 0.3,
+        metallic: 0.9,
+        ..default()
+    });
+    let wax = shop.rough(Color::srgb(0.93, 0.88, 0.76), 0.6);
 
     let mut spawn = |name: &str,
                      mass: f32,
@@ -53,7 +49,12 @@ pub fn spawn_things(
             let cylinder = Collider::cylinder(0.5 * (high - low), radius);
             (Vec3::Y * 0.5 * (low + high), Quat::IDENTITY, cylinder)
         });
-        let mut thing = commands.spawn((
+        let parts = parts.into_iter().map(|(mesh, height, material)| {
+            let place = Transform::from_xyz(0.0, height, 0.0);
+            (shop.mesh(mesh), material, place)
+        });
+        let parts: Vec<_> = parts.collect();
+        let mut thing = shop.commands.spawn((
             Name::new(name.to_string()),
             Thing(home),
             home,
@@ -73,9 +74,8 @@ pub fn spawn_things(
                 Transform::from_xyz(0.0, 0.5 * length, 0.0),
             ));
         }
-        for (mesh, height, material) in parts {
-            let place = Transform::from_xyz(0.0, height, 0.0);
-            thing.with_child((Mesh3d(meshes.add(mesh)), MeshMaterial3d(material), place));
+        for part in parts {
+            thing.with_child(part);
         }
     };
 

@@ -24,50 +24,33 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-#[path = "../shared/measured.rs"]
-mod measured;
-#[path = "../shared/plain.rs"]
-mod plain;
 mod scene;
 #[path = "../shared/mod.rs"]
 mod shared;
-#[path = "../shared/turned.rs"]
-mod turned;
-#[path = "../shared/windy.rs"]
-mod windy;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
 
-use crate::{
-    plain::Moment,
-    scene::ScenePlugin,
-    shared::{start::Example, window},
-};
-
-const TITLE: &str = "a pavilion in gusty wind";
+use crate::shared::{parts::report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {
         name: "tent",
-        about: "A pavilion in gusty wind. Opens a window if possible, otherwise runs headless.",
+        about: "A pavilion in gusty wind.",
+        title: "a pavilion in gusty wind",
         seconds: "8",
-        particles: scene::PARTICLES,
-        window: |grid| {
-            let mut app = window::app(TITLE, ScenePlugin, scene::SHOT, &windy::KEYS);
-            app.insert_resource(grid)
-                .add_systems(Update, windy::press_keys);
-            window::run(app)
+        // From the peak to the hem of the roof.
+        particles: 18,
+        // All of it, from somebody's height.
+        shot: Shot {
+            from: Vec3::new(2.6, 1.6, 8.6),
+            focus: Vec3::new(0.15, 1.88, 0.0),
+            fov: 0.50,
         },
-        headless: |view, grid, options| {
-            let moment = Moment {
-                at: scene::DRAWN_AT,
-                shot: scene::SHOT,
-                file: "tent.png",
-            };
-            plain::run((TITLE, ScenePlugin), &moment, view, grid, options)
-        },
+        drawn_at: 5.2,
+        scene: scene::build,
+        report: report::plain,
     }
     .run()
 }
