@@ -1,4 +1,4 @@
-//! What a player sees: meshes that follow the particles, and gizmos. Runs once a frame.
+//! The picture: meshes that follow the particles, and gizmos. Runs once a frame.
 //!
 //! In: particles of the last two ticks, drawn transforms, visibility. Out: vertices of meshes, and lines.
 
