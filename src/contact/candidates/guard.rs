@@ -143,7 +143,7 @@ mod tests {
     /// Particles that walk at random, one of them far: what is said to be clear has not moved by its clearance since, from any
     /// test to any later one, and most of what is far from the fast one is clear.
     #[test]
-    fn what_is_clear_has_not_used_its_room() {
+    fn what_is_clear_has_not_used_its_clearance() {
         let surface = Cloth::new(20, 20, 0.1).surface(Vec3::ONE).expect("a grid");
         let mut particles =
             ClothParticles::at_rest(&surface, &ClothMaterial::COTTON).expect("particles");

@@ -128,7 +128,7 @@ impl Detection {
         if is_new || self.colliders.iter().all(|(known, _)| *known != id) {
             self.colliders.push((id, collider.clone()));
         }
-        self.hold(id, collider, narrow_phase, 0, found, particles);
+        self.list(id, collider, narrow_phase, 0, found, particles);
     }
 
     /// Finds cloth that begins the tick deep inside a collider, among the particles that the search has found for it:
@@ -167,7 +167,7 @@ impl Detection {
     }
 
     /// Adds a collider after a number of sub-steps.
-    fn hold(
+    fn list(
         &mut self,
         id: usize,
         collider: &MovingCollider,

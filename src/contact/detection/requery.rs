@@ -71,7 +71,7 @@ impl Detection {
             let mut all: Vec<u32> = self.kept.particles(*id).chain(found).collect();
             all.sort_unstable();
             all.dedup();
-            self.hold(*id, collider, narrow_phase, passed, &all, particles);
+            self.list(*id, collider, narrow_phase, passed, &all, particles);
         }
         self.colliders = colliders;
         self.found = found;

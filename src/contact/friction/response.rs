@@ -68,7 +68,7 @@ const SLOWEST_OUT: f32 = 0.05;
 const FASTEST_OUT: f32 = 0.25;
 
 impl PushOut {
-    /// For a sub-step of `seconds`, in which the collider itself moves by `travel` (m) and so makes room at once.
+    /// For a sub-step of `seconds`, in which the collider itself moves by `travel` (m) and so makes way at once.
     /// `shares` is the share of each of several pushes on the same particle.
     pub fn new(seconds: f32, travel: f32, shares: f32) -> Self {
         let seconds = seconds / shares;
