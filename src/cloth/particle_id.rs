@@ -1,7 +1,10 @@
 //! How a particle is named.
 
+use bevy::reflect::Reflect;
+
 /// Which particle: an index, or (row, column).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
 pub enum ParticleId {
     /// `row × columns + column`.
     Index(usize),

@@ -1,7 +1,10 @@
 //! A spring.
 
+use bevy::reflect::Reflect;
+
 /// The deformation that a spring resists.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[type_path = "bevy_drape"]
 pub enum SpringKind {
     /// Stretch: neighbours in a row or column.
     Structural,
@@ -12,7 +15,8 @@ pub enum SpringKind {
 }
 
 /// A spring between two particles.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
 pub struct Spring {
     /// The deformation that it resists.
     pub kind: SpringKind,
