@@ -36,7 +36,7 @@ pub enum SearchMethod {
     Tree(BoundingVolume, BoundRule),
 }
 
-/// All pairs of a volume and a rule, whether they match or not.
+/// Number of pairs of a volume and a rule, whether they match or not.
 const PAIRS: usize = BoundingVolume::ALL.len() * BoundRule::ALL.len();
 
 const fn pair(index: usize) -> (BoundingVolume, BoundRule) {
@@ -46,7 +46,7 @@ const fn pair(index: usize) -> (BoundingVolume, BoundRule) {
     (volume, rule)
 }
 
-/// `Auto`, `Scan`, and the pairs that match.
+/// Number of methods: `Auto`, `Scan`, and the pairs that match.
 const COUNT: usize = {
     let (mut count, mut index) = (2, 0);
     while index < PAIRS {

@@ -5,7 +5,7 @@
 //!   authoring   what a game writes            state   what the plugin keeps
 //!
 //!   FixedUpdate:   prepare → search → step → write_back          PostUpdate:   draw
-//!                                 bridge: rapier, egui, snapshots, reflection
+//!                                 bridge: rapier, egui, snapshots, reflection, diagnostics, origins
 //! ```
 //!
 //! A stage imports from those before it. `simulation` adds the systems in their order.

@@ -26,7 +26,7 @@ pub(super) struct DampingReference {
 }
 
 impl DampingReference {
-    /// The drift as a tick begins. Without damping it is not measured.
+    /// The damping frame's motion as a tick begins. Without damping it is not measured.
     pub fn of(step: &TickStep) -> Self {
         let dt = step.seconds / step.substeps.max(1) as f32;
         match step.damped_against {

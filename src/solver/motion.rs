@@ -231,7 +231,7 @@ impl MotionConstraints {
     }
 }
 
-/// A displacement with a push, as seen from a place that goes some `displacement` (m): no longer than it was.
+/// A displacement with a push, as seen from a place that is displaced by `displacement` (m): no longer than it was.
 fn with_push(moved: Vec3, pushed: Vec3, displacement: Vec3) -> Vec3 {
     let before = moved - displacement;
     let after = before + pushed;
@@ -270,8 +270,8 @@ mod tests {
                 backstop: (centre - normal * (behind + back), back),
             };
             let (other, _) = allowed.backstop;
-            let is_allowed = |at: Vec3, room: f32| {
-                at.distance(centre) <= radius + room && at.distance(other) >= back - room
+            let is_allowed = |at: Vec3, clearance: f32| {
+                at.distance(centre) <= radius + clearance && at.distance(other) >= back - clearance
             };
             let found = allowed.nearest(place);
             assert!(is_allowed(found, 1.0e-5), "{case}: {found}");

@@ -257,9 +257,13 @@ fn a_list_of_springs_is_solved_like_a_grid() {
     let mut built = start;
     let mut on_grid = Solver::new(&springs, &built);
     let (mut stretch, mut truth) = (Stretch::default(), Stretch::default());
+    let fine = TickStep {
+        substeps: 80,
+        ..STEP
+    };
     for _ in 0..64 * 15 {
-        stretch = solver.advance(&mut listed, STEP, &[], |_, _| false);
-        truth = on_grid.advance(&mut built, STEP, &[], |_, _| false);
+        stretch = solver.advance(&mut listed, fine, &[], |_, _| false);
+        truth = on_grid.advance(&mut built, fine, &[], |_, _| false);
     }
     // What one sweep leaves of a spring's load, and with it the order's part in the result, is below
     // F (w + w) Δt², as for a hanging column: 63 particles' weight on one is 63 g Δt² = 0.4 mm a spring, and seven

@@ -121,7 +121,7 @@ impl ClothParticles {
 
     /// One row of particles laid out in the rows of a grid of as many, by their indices; `None` of any others.
     pub(crate) fn laid_out(&self, surface: &Surface) -> Option<Self> {
-        let (from, to) = (self.sound_layout(), surface.layout());
+        let (from, to) = (self.valid_layout(), surface.layout());
         if from.rows != 1 || from.len() != to.len() {
             return None;
         }
@@ -150,7 +150,7 @@ impl ClothParticles {
 
     /// Number of particles.
     pub fn len(&self) -> usize {
-        self.sound_layout().len()
+        self.valid_layout().len()
     }
 
     /// Whether there are no particles, as before the first tick.
@@ -160,12 +160,12 @@ impl ClothParticles {
 
     /// Number of particles in a row.
     pub fn columns(&self) -> u32 {
-        self.sound_layout().columns
+        self.valid_layout().columns
     }
 
     /// Number of particles in a column.
     pub fn rows(&self) -> u32 {
-        self.sound_layout().rows
+        self.valid_layout().rows
     }
 
     /// The index of a particle, if it exists.
@@ -298,7 +298,7 @@ impl ClothParticles {
         &'a self,
         of: fn(&Block, usize) -> T,
     ) -> impl ExactSizeIterator<Item = T> + 'a {
-        let slots = self.sound_layout().slots();
+        let slots = self.valid_layout().slots();
         slots.map(move |Slot { block, lane }| of(&self.blocks[block], lane))
     }
 
@@ -317,7 +317,7 @@ impl ClothParticles {
             validity::is_valid(squares, block.inverse_mass(slot.lane))
         };
         let Some((index, slot)) = self
-            .sound_layout()
+            .valid_layout()
             .slots()
             .enumerate()
             .find(|(_, slot)| !valid(*slot))

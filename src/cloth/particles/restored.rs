@@ -24,7 +24,7 @@ impl ClothParticles {
 
     /// The memory layout, or an empty one if a scene file or an inspector has written an invalid one. The particles are
     /// then rebuilt.
-    pub(super) fn sound_layout(&self) -> Layout {
+    pub(super) fn valid_layout(&self) -> Layout {
         let Layout { columns, rows, .. } = self.layout;
         let is_valid =
             self.blocks.len() == self.layout.blocks() && self.layout == Layout::new(columns, rows);

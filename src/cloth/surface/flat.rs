@@ -20,7 +20,7 @@ impl Flat {
         (self.places[a] - self.places[b])
             .abs()
             .to_array()
-            .map(|span| span as f32)
+            .map(|of| of as f32)
     }
 
     /// The plane of particles at `rest` (m) with faces of a total `area` (m²), if they are flat and convex. There may

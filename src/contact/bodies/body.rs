@@ -87,11 +87,11 @@ struct PushSum {
 }
 
 impl PushSum {
-    fn add(&mut self, mass: f64, offset: DVec3, moving: Vec3) {
-        let moving = moving.as_dvec3();
-        self.push += mass * moving;
-        self.turn += offset.cross(mass * moving);
-        self.square += mass * moving.length_squared();
+    fn add(&mut self, mass: f64, offset: DVec3, displacement: Vec3) {
+        let displacement = displacement.as_dvec3();
+        self.push += mass * displacement;
+        self.turn += offset.cross(mass * displacement);
+        self.square += mass * displacement.length_squared();
     }
 
     /// The fraction that the particles keep, and the body's displacement and rotation.

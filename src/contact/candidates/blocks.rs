@@ -83,7 +83,7 @@ pub(crate) struct Candidates {
     pub all: Vec<Candidate>,
     pub blocks: Vec<ContactBlock>,
     /// For each block of the colliders that are tested against triangles.
-    pub helds: Vec<FrictionBudget>,
+    pub budgets: Vec<FrictionBudget>,
     /// The last contact block of each of the cloth's blocks.
     marks: Vec<u32>,
     /// A bit for each particle, to sort them.
@@ -95,7 +95,7 @@ impl Candidates {
     pub fn clear(&mut self) {
         self.all.clear();
         self.blocks.clear();
-        self.helds.clear();
+        self.budgets.clear();
     }
 
     /// Begins the tick again.
@@ -104,7 +104,7 @@ impl Candidates {
             contact.depth = [f32::NEG_INFINITY; LANES];
             contact.clear_until = f32::NEG_INFINITY;
         }
-        self.helds.fill(FrictionBudget::NONE);
+        self.budgets.fill(FrictionBudget::NONE);
     }
 
     /// Adds the candidates of a collider, in any order. With `is_left_out`, adds the triangles that they own, too; it
@@ -117,7 +117,7 @@ impl Candidates {
         layout: Layout,
         is_left_out: Option<&impl Fn(&[u32; 3]) -> bool>,
     ) -> Ranges {
-        let first = [self.all.len(), self.blocks.len(), self.helds.len()];
+        let first = [self.all.len(), self.blocks.len(), self.budgets.len()];
         self.sort(found, surface.len());
         self.marks.resize(layout.blocks(), 0);
         for index in first[0]..self.all.len() {
@@ -162,12 +162,12 @@ impl Candidates {
         }
         if is_left_out.is_some() {
             let count = self.blocks.len() - first[1];
-            self.helds.resize(first[2] + count, FrictionBudget::NONE);
+            self.budgets.resize(first[2] + count, FrictionBudget::NONE);
         }
         Ranges {
             candidates: first[0]..self.all.len(),
             blocks: first[1]..self.blocks.len(),
-            helds: first[2]..self.helds.len(),
+            budgets: first[2]..self.budgets.len(),
         }
     }
 
@@ -211,5 +211,5 @@ impl Candidates {
 pub(crate) struct Ranges {
     pub candidates: Range<usize>,
     pub blocks: Range<usize>,
-    pub helds: Range<usize>,
+    pub budgets: Range<usize>,
 }

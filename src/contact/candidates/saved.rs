@@ -11,14 +11,14 @@ use crate::contact::friction::FrictionBudget;
 pub(crate) struct SavedCandidates {
     points: Vec<(usize, ContactPoint)>,
     /// Also by the cloth's blocks.
-    helds: Vec<(usize, u32, FrictionBudget)>,
+    budgets: Vec<(usize, u32, FrictionBudget)>,
 }
 
 impl SavedCandidates {
     /// Saves the results so far.
     pub fn take(&mut self, touches: &[Touch], candidates: &Candidates) {
         self.points.clear();
-        self.helds.clear();
+        self.budgets.clear();
         for touch in touches {
             let id = touch.id;
             for candidate in &candidates.all[touch.of.candidates.clone()] {
@@ -29,10 +29,10 @@ impl SavedCandidates {
                 }
             }
             let blocks = &candidates.blocks[touch.of.blocks.clone()];
-            let helds = &candidates.helds[touch.of.helds.clone()];
-            let each = blocks.iter().zip(helds);
+            let budgets = &candidates.budgets[touch.of.budgets.clone()];
+            let each = blocks.iter().zip(budgets);
             let active = each.filter(|(_, held)| held.is_active);
-            self.helds
+            self.budgets
                 .extend(active.map(|(contact, held)| (id, contact.block, *held)));
         }
     }
@@ -61,11 +61,11 @@ impl SavedCandidates {
                 candidates.blocks[block].depth[lane] = point.depth;
             }
         }
-        for &(id, block, held) in &self.helds {
+        for &(id, block, held) in &self.budgets {
             let Some(of) = of(id) else { continue };
             let blocks = &candidates.blocks[of.blocks.clone()];
             if let Ok(at) = blocks.binary_search_by_key(&block, |contact| contact.block)
-                && let Some(to) = candidates.helds[of.helds.clone()].get_mut(at)
+                && let Some(to) = candidates.budgets[of.budgets.clone()].get_mut(at)
             {
                 *to = held;
             }

@@ -200,7 +200,7 @@ impl ColliderSubstep<'_> {
 
     /// Carries a point (m) and a normal along with it from a fraction of the sub-step to the end.
     pub fn carry(&self, part: f32, point: Vec3, normal: Vec3) -> (Vec3, Vec3) {
-        let moving = [self.passed(part), self.substep.end()];
-        self.collider.carry(moving, point, normal)
+        let parts = [self.passed(part), self.substep.end()];
+        self.collider.carry(parts, point, normal)
     }
 }

@@ -47,7 +47,7 @@ pub struct Detection {
     margin: Margin,
     requeries: u32,
     found: TopDownQuery,
-    kept: SavedCandidates,
+    saved: SavedCandidates,
     /// The dynamic colliders.
     bodies: Vec<Body>,
     /// Memory of earlier ones.

@@ -86,7 +86,10 @@ impl Detection {
         let (touch, margin) = (&self.touches[at], &self.margin);
         let count = self.candidates.all.len();
         let Candidates {
-            all, blocks, helds, ..
+            all,
+            blocks,
+            budgets,
+            ..
         } = &mut self.candidates;
         let collider = &touch.collider;
         let first = touch.of.blocks.start;
@@ -136,7 +139,7 @@ impl Detection {
                 let mut pushed = TrianglePush::new(
                     &all[touch.of.candidates.clone()],
                     (contacts, first),
-                    &mut helds[touch.of.helds.clone()],
+                    &mut budgets[touch.of.budgets.clone()],
                     (self.surface.fans(), self.surface.max_faces() as f32),
                     [margin.left(), margin.moved_now()],
                     is_measured,

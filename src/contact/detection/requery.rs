@@ -46,7 +46,7 @@ impl Detection {
                 body.set_searched(moving);
             }
         }
-        self.kept.take(&self.touches, &self.candidates);
+        self.saved.take(&self.touches, &self.candidates);
         for touch in &mut self.touches {
             touch.of = Ranges::default();
         }
@@ -68,14 +68,14 @@ impl Detection {
             }
             // Tested particles stay candidates, so that no contact is forgotten.
             let found = found.candidates().iter().copied();
-            let mut all: Vec<u32> = self.kept.particles(*id).chain(found).collect();
+            let mut all: Vec<u32> = self.saved.particles(*id).chain(found).collect();
             all.sort_unstable();
             all.dedup();
             self.list(*id, collider, narrow_phase, passed, &all, particles);
         }
         self.colliders = colliders;
         self.found = found;
-        self.kept.give_back(&self.touches, &mut self.candidates);
+        self.saved.give_back(&self.touches, &mut self.candidates);
     }
 
     /// Takes pushes by anything else into account, of at most this distance (m).

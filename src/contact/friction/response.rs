@@ -105,8 +105,8 @@ impl PushOut {
 
     /// The released part of an overlap (m).
     pub fn of(&self, overlap: f32) -> f32 {
-        let let_out = (overlap * self.rate).max(self.slowest);
-        let_out.min(self.fastest).min(overlap)
+        let released = (overlap * self.rate).max(self.slowest);
+        released.min(self.fastest).min(overlap)
     }
 }
 

@@ -137,7 +137,7 @@ impl Members {
         }
     }
 
-    /// Writes changes back to the particles. Marks the affected cloths, and updates their holds.
+    /// Writes changes back to the particles. Marks the affected cloths, and updates the means of their pushes.
     pub fn scatter(
         &self,
         cloths: &mut [Participant],

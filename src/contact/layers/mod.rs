@@ -57,7 +57,7 @@ use mean_pushes::MeanPushes;
 use members::{Members, NOBODY};
 use motion::Motion;
 use near_features::NearFeatures;
-use near_patches::{Clearances, Meets};
+use near_patches::{Meets, PatchBoxes};
 use origin::Origin;
 use pair::{NearPair, VERTEX_AND_FACE};
 use patch_pair::Candidate;
@@ -100,7 +100,7 @@ const REFERENCE: f32 = 0.05;
 pub(crate) struct MutualContact {
     circumstances: Circumstances,
     motion: Motion,
-    clearances: Clearances,
+    boxes: PatchBoxes,
     near: NearFeatures,
     /// The pairs that may touch in the sub-step.
     contacts: Vec<NearPair>,
@@ -173,7 +173,7 @@ impl MutualContact {
             }
             self.near.restart(begins);
             self.motion.reset(cloths);
-            self.clearances.reset(cloths, self.motion.patches.len());
+            self.boxes.reset(cloths, self.motion.patches.len());
             self.mean_pushes.clear(cloths);
             self.contacts.clear();
             (self.is_known, self.ticks_off) = (true, 0);
@@ -339,16 +339,16 @@ impl MutualContact {
     ) -> Option<f32> {
         let Self {
             motion,
-            clearances,
+            boxes,
             near,
             last,
             counts,
             ..
         } = self;
-        let (have_left, clearance) = clearances.renew(cloths, motion, last.reserve);
+        let (have_left, clearance) = boxes.renew(cloths, motion, last.reserve);
         if have_left {
             let among = Meets { cloths, meets };
-            near.renew(clearances, &among, motion, &mut counts.work);
+            near.renew(boxes, &among, motion, &mut counts.work);
         }
         let slack = near.look(cloths, motion, last.reserve, counts)?;
         Some(slack.min(2.0 * clearance))

@@ -14,7 +14,7 @@
 use super::{
     compare::{compare, cross},
     motion::Motion,
-    near_patches::{Clearances, Meets},
+    near_patches::{Meets, PatchBoxes},
     participant::Participant,
     patch_pair::{Candidate, PatchPair, Place, measure, unfolded_by},
     work::{Counts, MOST_LISTED},
@@ -106,14 +106,14 @@ impl NearFeatures {
     /// Drops the pairs of patches whose boxes are apart, and adds those whose boxes have begun to overlap.
     pub fn renew(
         &mut self,
-        clearances: &mut Clearances,
+        boxes: &mut PatchBoxes,
         among: &Meets<impl Fn(usize, usize) -> bool>,
         motion: &Motion,
         work: &mut usize,
     ) {
         let (listed, has_changed) = (&mut self.listed, &mut self.has_changed);
         self.pairs.retain(|pair| {
-            let is_near = clearances.overlap(pair.of);
+            let is_near = boxes.overlap(pair.of);
             if !is_near {
                 *listed -= pair.count as usize;
                 *has_changed |= pair.has_contacts();
@@ -121,7 +121,7 @@ impl NearFeatures {
             is_near
         });
         let (pairs, were_tangled) = (&mut self.pairs, &self.were_tangled);
-        clearances.search(among, motion, work, |of| {
+        boxes.search(among, motion, work, |of| {
             let is_tangled = were_tangled.binary_search(&in_order(of)).is_ok();
             pairs.push(PatchPair::new(of, is_tangled));
         });

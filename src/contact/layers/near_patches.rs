@@ -12,7 +12,7 @@ const AHEAD: f32 = 8.0;
 /// A box around each patch, in which it may move, and the boxes of the trees' nodes.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Clearances {
+pub(super) struct PatchBoxes {
     /// Of each patch, without the motion that all have in common.
     boxes: Vec<Bounds>,
     /// Of the nodes of each cloth's tree.
@@ -40,7 +40,7 @@ impl<F: Fn(usize, usize) -> bool> Meets<'_, F> {
     }
 }
 
-impl Clearances {
+impl PatchBoxes {
     /// Begins with patches that have no boxes.
     pub fn reset(&mut self, cloths: &[Participant], patches: usize) {
         self.boxes.clear();

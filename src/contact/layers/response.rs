@@ -98,7 +98,7 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
             }
         }
         if mobility < LEAST_FREE * free {
-            // FrictionBudget from both sides.
+            // Held from both sides.
             (along, mobility) = ([0.0; 4], free);
         }
     }

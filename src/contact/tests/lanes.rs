@@ -172,11 +172,11 @@ proptest! {
         let core = CapsuleCore { axis: [0.0; 3], half_length: 0.0, radius: 0.29 };
         let run = |is_widest: bool| {
             let (mut blocks, mut contacts) = (blocks.clone(), contacts.clone());
-            let mut helds = vec![FrictionBudget::NONE; BLOCKS as usize];
+            let mut budgets = vec![FrictionBudget::NONE; BLOCKS as usize];
             let mut sums = Sums::default();
             let of = (&motion, &cells);
             let from = Place::default();
-            let (b, c, h, s) = (&mut blocks, &mut contacts, &mut helds, &mut sums);
+            let (b, c, h, s) = (&mut blocks, &mut contacts, &mut budgets, &mut sums);
             let stop = if is_widest {
                 push_cells(b, c, h, of, from, s)
             } else {
@@ -187,7 +187,7 @@ proptest! {
             } else {
                 hold_all_baseline(b, c, h, &core, &motion, 0.001, s);
             }
-            (bits(&blocks, &contacts, &sums), stop, helds)
+            (bits(&blocks, &contacts, &sums), stop, budgets)
         };
         prop_assert!(run(true) == run(false));
     }

@@ -105,20 +105,20 @@ fn hold(
 pub(crate) fn hold_all(
     blocks: &mut [Block],
     contacts: &[ContactBlock],
-    helds: &mut [FrictionBudget],
+    budgets: &mut [FrictionBudget],
     core: &CapsuleCore,
     motion: &LaneMotion,
     seconds: f32,
     sums: &mut Sums,
 ) {
-    hold_all_baseline(blocks, contacts, helds, core, motion, seconds, sums);
+    hold_all_baseline(blocks, contacts, budgets, core, motion, seconds, sums);
 }
 
 #[inline(always)]
 pub(crate) fn hold_all_baseline(
     blocks: &mut [Block],
     contacts: &[ContactBlock],
-    helds: &mut [FrictionBudget],
+    budgets: &mut [FrictionBudget],
     core: &CapsuleCore,
     motion: &LaneMotion,
     seconds: f32,
@@ -127,7 +127,7 @@ pub(crate) fn hold_all_baseline(
     // Not an exponential function: its rounding differs between instruction sets.
     let kept = KEPT_FOR / (KEPT_FOR + seconds);
     let mut own = *sums;
-    for (contact, held) in contacts.iter().zip(helds) {
+    for (contact, held) in contacts.iter().zip(budgets) {
         if held.is_active {
             let view = blocks[contact.block as usize].view_mut();
             hold(view, held, core, motion, kept, &mut own);

@@ -81,7 +81,7 @@ impl Corner {
 fn push_eight(
     blocks: &mut [Block],
     (contact, corners): (&mut ContactBlock, [Corner; 3]),
-    helds: &mut [FrictionBudget],
+    budgets: &mut [FrictionBudget],
     is_cell: &[bool; LANES],
     (motion, cells): (&LaneMotion, &Cells),
     sums: &mut Sums,
@@ -138,9 +138,9 @@ fn push_eight(
         for (corner, share) in corners.iter().zip(&pushes.shares) {
             let momentum = move_corner(corner.view_mut(blocks), share, &pushes, motion, sums);
             if corner.is_shifted {
-                helds[corner.contact].add_shifted(&momentum);
+                budgets[corner.contact].add_shifted(&momentum);
             } else {
-                helds[corner.contact].add(&momentum);
+                budgets[corner.contact].add(&momentum);
             }
         }
     }
@@ -196,19 +196,19 @@ pub(crate) fn slots_of(
 pub(crate) fn push_cells(
     blocks: &mut [Block],
     contacts: &mut [ContactBlock],
-    helds: &mut [FrictionBudget],
+    budgets: &mut [FrictionBudget],
     of: (&LaneMotion, &Cells),
     from: Place,
     sums: &mut Sums,
 ) -> (Stop, Place) {
-    push_cells_baseline(blocks, contacts, helds, of, from, sums)
+    push_cells_baseline(blocks, contacts, budgets, of, from, sums)
 }
 
 #[inline(always)]
 pub(crate) fn push_cells_baseline(
     blocks: &mut [Block],
     contacts: &mut [ContactBlock],
-    helds: &mut [FrictionBudget],
+    budgets: &mut [FrictionBudget],
     (motion, cells): (&LaneMotion, &Cells),
     from: Place,
     sums: &mut Sums,
@@ -234,7 +234,7 @@ pub(crate) fn push_cells_baseline(
         for which in u32::from(is_begun)..2 {
             let corners = corners[which as usize];
             let both = (&mut *contact, corners);
-            let (left, least) = push_eight(blocks, both, helds, &is_cell, (motion, cells), sums);
+            let (left, least) = push_eight(blocks, both, budgets, &is_cell, (motion, cells), sums);
             clear = clear.min(least);
             contact.clear_until = f32::NEG_INFINITY;
             let next = Place {

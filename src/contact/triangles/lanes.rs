@@ -214,8 +214,8 @@ pub(crate) fn pushes(
         let rz = u * a[DZ + l] + v * b[DZ + l] + w * c[DZ + l] - mz;
         let apart = nx * rx + ny * ry + nz * rz;
         let depth = cells.reach - distance;
-        let (stopped, let_out) = motion.push_out.of_lane(depth, apart);
-        let far = if is_pushed { stopped + let_out } else { 0.0 };
+        let (stopped, released) = motion.push_out.of_lane(depth, apart);
+        let far = if is_pushed { stopped + released } else { 0.0 };
         let stopped = if is_pushed { stopped } else { 0.0 };
         let nx = if is_pushed { nx } else { 0.0 };
         let ny = if is_pushed { ny } else { 0.0 };

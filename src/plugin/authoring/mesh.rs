@@ -26,6 +26,7 @@ use bevy::{
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct ClothMesh {
+    /// The mesh that is drawn. A clone has that of its original, by which its `Mesh3d` is recognised, until it gets its own.
     #[reflect(ignore)]
     pub(crate) handle: Handle<Mesh>,
     /// The asset that the cloth was made from.

@@ -1,7 +1,7 @@
 //! Components and resources that a game writes, each with its validation.
 //!
-//! In: the game's values. Out: the same values; later stages only read them. Beside some of them lies the little memory
-//! that Bevy requires with the component, such as how far a character has moved.
+//! In: the game's values. Out: the same values, which later stages read. Beside some of them lies what the plugin writes with
+//! them: the push on a body, the mesh that is drawn, the skeleton taken over, and how far a character has moved.
 
 mod attachments;
 mod body;

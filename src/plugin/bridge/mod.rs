@@ -1,6 +1,7 @@
 //! Ways to and from the rest of the world: rapier, egui, snapshots, reflection, diagnostics, and floating origins.
 //!
-//! In: any of the components. Out: what the other side calls them. No stage imports from here.
+//! In: any of the components. Out: colliders, bodies and velocities of rapier, widgets, snapshots, diagnostics. No stage imports
+//! from here.
 
 mod diagnostics;
 mod origin;

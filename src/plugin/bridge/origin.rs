@@ -53,9 +53,9 @@ use crate::{
 /// }
 /// ```
 pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), ClothError> {
-    for displacement in by.to_array() {
+    for component in by.to_array() {
         let quantity = "jump of the world's origin (m)";
-        ClothError::check(displacement, f32::is_finite, quantity, "finite")?;
+        ClothError::check(component, f32::is_finite, quantity, "finite")?;
     }
     // A world without the plugin remembers nothing.
     if world.contains_resource::<WindField>() {

@@ -175,7 +175,7 @@ impl Plugin for ClothGizmosPlugin {
 /// Volumes and a search of the gizmos' own, kept from frame to frame: the tick's search may have touched no volume at
 /// all.
 #[derive(Default)]
-struct DrawQuery {
+struct GizmoMemory {
     bounds: NodeBounds,
     query: TopDownQuery,
     states: Vec<NodeState>,
@@ -197,7 +197,7 @@ struct Drawn {
 fn draw_cloths(
     cloths: Query<Drawn>,
     store: Res<GizmoConfigStore>,
-    mut drawing: Local<DrawQuery>,
+    mut drawing: Local<GizmoMemory>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
     let look = store.config::<ClothGizmos>().1;
@@ -219,7 +219,7 @@ fn draw_cloths(
     }
 }
 
-impl DrawQuery {
+impl GizmoMemory {
     /// Finds the current place of each volume, and whether it was visited or touched.
     fn search(&mut self, cloth: &DrawnItem) {
         let (tree, surface) = (cloth.built.tree(), cloth.built.surface());

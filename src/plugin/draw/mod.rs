@@ -1,4 +1,5 @@
-//! The picture: meshes that follow the particles, and gizmos. Runs once a frame.
+//! The picture: meshes that follow the particles, and gizmos. Drawn once a frame; in each tick, the positions at its beginning
+//! are remembered.
 //!
 //! In: particles of the last two ticks, drawn transforms, visibility. Out: vertices of meshes, and lines.
 

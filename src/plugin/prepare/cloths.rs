@@ -15,7 +15,7 @@ use super::{
     build::{Build, BuildInputs, build},
     carry::{carry, new_from_old},
     drag::jump,
-    freeze::{freeze, resume},
+    freeze::{freeze, thaw},
     inputs::Inputs,
     notice::notice_new,
     preparing::{NO_PINS, PrepareQuery, PrepareQueryItem, Surroundings},
@@ -53,7 +53,7 @@ pub(crate) fn prepare_cloths(
         if cloth.stats.level != level {
             cloth.stats.level = level;
         }
-        if cloth.state.lod.turn == LodAction::Wait {
+        if cloth.state.lod.action == LodAction::Wait {
             skip(&mut cloth);
             continue;
         }
@@ -62,7 +62,7 @@ pub(crate) fn prepare_cloths(
         let lod = cloth.game.lod.or(global_lod);
         let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
         let outcome = inputs.and_then(|inputs| {
-            if cloth.state.lod.turn == LodAction::Stand {
+            if cloth.state.lod.action == LodAction::Stand {
                 skip(&mut cloth);
                 return stand_still(&mut cloth, &around);
             }
@@ -245,7 +245,7 @@ fn take_over(
     let jumps =
         cloth.game.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
     let seconds = (seconds, jumps);
-    let has_stood = resume(&around.targets, *frame, seconds, *before, particles, state);
+    let has_stood = thaw(&around.targets, *frame, seconds, *before, particles, state);
     // Saving or restoring particles may mark them as changed without a change.
     let was_written = has_stood
         || state.inputs.written != Some(particles.last_changed())

@@ -85,7 +85,7 @@ pub(crate) fn freeze(
 
 /// Thaws a frozen cloth, whose entity is at `now`, in a tick of `seconds`. It gets the velocity of its carrier, or none
 /// if it `jumps`. Returns whether it was frozen.
-pub(crate) fn resume(
+pub(crate) fn thaw(
     targets: &Targets,
     now: ClothFrame,
     (seconds, jumps): (f32, bool),

@@ -31,10 +31,10 @@ pub(crate) fn follow_roots(
     marked: Query<Entity, With<ClothTeleport>>,
     places: Places,
     time: Res<Time>,
-    mut jumped: ResMut<Teleporting>,
+    mut teleporting: ResMut<Teleporting>,
 ) {
-    jumped.0.clear();
-    jumped.0.extend(&marked);
+    teleporting.0.clear();
+    teleporting.0.extend(&marked);
     for (entity, inertia, mut motion) in &mut roots {
         let place = places.of(entity).map(|place| rigid(&place.affine()));
         let checked = inertia.validate().and(place).and_then(|place| {
@@ -60,7 +60,7 @@ pub(crate) fn follow_roots(
         let displacement = Vec3::from(place.translation - last.translation);
         let turn = last.rotation.angle_between(place.rotation);
         if displacement.length() > inertia.teleport_distance || turn > inertia.teleport_angle {
-            jumped.0.push(entity);
+            teleporting.0.push(entity);
         } else if last != place && (inertia.linear < 1.0 || inertia.angular < 1.0) {
             let rotation = last.rotation.slerp(place.rotation, 1.0 - inertia.angular);
             motion.carried = Some(Carried {
@@ -79,14 +79,14 @@ pub(crate) fn follow_roots(
 pub(crate) struct Roots<'w, 's> {
     roots: Query<'w, 's, &'static RootMotion>,
     parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
-    jumped: Res<'w, Teleporting>,
+    teleporting: Res<'w, Teleporting>,
 }
 
 impl Roots<'_, '_> {
     /// Whether an entity, or one above it, teleports.
     pub fn jumps(&self, entity: Entity) -> bool {
-        let has_jumped = |entity: Entity| self.jumped.0.contains(&entity);
-        !self.jumped.0.is_empty()
+        let has_jumped = |entity: Entity| self.teleporting.0.contains(&entity);
+        !self.teleporting.0.is_empty()
             && (has_jumped(entity) || self.parents.iter_ancestors(entity).any(has_jumped))
     }
 

@@ -1,4 +1,7 @@
 //! Which colliders are near each cloth, and which particles they may touch within the tick.
+//!
+//! In: the particles, the reach of each cloth, the motions of colliders and their tree. Out: the colliders near, volumes and
+//! visited nodes, and the candidates.
 
 use bevy::{
     ecs::{

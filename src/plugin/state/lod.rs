@@ -35,7 +35,7 @@ pub(crate) struct LodState {
     pub level: ClothLodLevel,
     /// Number of distances that it has passed.
     pub passed: usize,
-    pub turn: LodAction,
+    pub action: LodAction,
     /// The time of ticks in which it waited (s).
     pub waited: f32,
     /// The number of these ticks, and the number of ticks until it is simulated, 1 for the coming one.
@@ -97,10 +97,10 @@ impl LodState {
         let was = std::mem::replace(&mut self.level, level);
         let ticks = level.ticks().map(|ticks| if rests { 1 } else { ticks });
         let Some(ticks) = ticks else {
-            if self.turn != LodAction::Stand {
+            if self.action != LodAction::Stand {
                 self.cuts = self.cuts.wrapping_add(1);
             }
-            self.turn = LodAction::Stand;
+            self.action = LodAction::Stand;
             (self.waited, self.ticks) = (0.0, 0);
             return;
         };
@@ -109,9 +109,9 @@ impl LodState {
             self.level = was;
             return;
         }
-        let has_stood = self.turn == LodAction::Stand;
+        let has_stood = self.action == LodAction::Stand;
         if !(is_due || rests || has_stood || was != level || self.left <= 1) {
-            self.turn = LodAction::Wait;
+            self.action = LodAction::Wait;
             self.waited += seconds;
             self.ticks += 1;
             self.left -= 1;
@@ -128,7 +128,7 @@ impl LodState {
         if has_stood || self.since + 1 < self.span || self.ticks + 1 > left {
             self.cuts = self.cuts.wrapping_add(1);
         }
-        self.turn = LodAction::Move;
+        self.action = LodAction::Move;
         (self.left, self.since, self.span) = (left, 0, left);
     }
 
@@ -161,7 +161,7 @@ mod tests {
         (0..ticks)
             .map(|_| {
                 state.begin(level, (phase, false, false), TICK);
-                match state.turn {
+                match state.action {
                     LodAction::Move => state.take(TICK).0,
                     LodAction::Wait | LodAction::Stand => 0.0,
                 }
@@ -225,7 +225,7 @@ mod tests {
         moved(&mut state, Every(4), 3, 3);
         for _ in 0..8 {
             state.begin(Every(4), (3, false, true), TICK);
-            assert_eq!((state.turn, state.cuts), (LodAction::Move, 1));
+            assert_eq!((state.action, state.cuts), (LodAction::Move, 1));
             state.take(TICK);
         }
         assert_eq!(state.drawn_part(1.0), 1.0);

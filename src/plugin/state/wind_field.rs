@@ -166,17 +166,17 @@ impl WindField {
         zones.filter(move |zone| zone.reaches(centre, radius))
     }
 
-    /// Deviation of the air from a cloth's breeze at a position in the world (m/s).
-    pub fn deviation(&self, breeze: &EffectiveWind, place: Vec3) -> Vec3 {
+    /// Deviation of the air from a cloth's wind at a position in the world (m/s).
+    pub fn deviation(&self, wind: &EffectiveWind, place: Vec3) -> Vec3 {
         let (Some(Ok(world)), Some((_, noise))) = (&self.world, &self.noise) else {
             return Vec3::ZERO;
         };
-        if breeze.deviation == 0.0 {
+        if wind.deviation == 0.0 {
             return Vec3::ZERO;
         }
         let at = (place.as_dvec3() - self.travelled) / f64::from(world.length);
         let at = at.rem_euclid(DVec3::splat(NOISE));
         let of = |apart: f64| noise.get_noise_3d(at.x + apart, at.y, at.z);
-        breeze.deviation * Vec3::from(APART.map(of))
+        wind.deviation * Vec3::from(APART.map(of))
     }
 }

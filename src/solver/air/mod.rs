@@ -1,6 +1,6 @@
 //! Air: drag and lift of a wind, and pressure.
 //!
-//! The air places at U, and a face with the normal n at v. So the face feels `u = U − v`: `u_n` along its normal, and
+//! The air moves at U, and a face with the normal n at v. So the face feels `u = U − v`: `u_n` along its normal, and
 //! `u_t` in its plane. The force on a face of the area A is
 //!
 //! ```text

@@ -18,7 +18,7 @@ use crate::{
 
 /// Which way a family is solved, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Direction {
+enum Solve {
     /// The cells between each even column and the next one, or each odd one.
     Twist { is_odd: bool },
     /// Down the columns.
@@ -30,7 +30,7 @@ enum Direction {
 /// Chains, or strips of cells, that have no particle in common.
 #[derive(Debug, Clone)]
 struct Family {
-    direction: Direction,
+    solve: Solve,
     /// k (N/m) of a row's blocks, or pairs of blocks; of rows, that of each of eight rows, group by group. 0 where there is none.
     stiffness: Vec<Lanes>,
 }
@@ -89,28 +89,23 @@ impl ChainBending {
         };
         let groups = (rows as usize).div_ceil(LANES);
         let mut families = Vec::new();
-        let mut add = |direction, stiffness| {
-            families.push(Family {
-                direction,
-                stiffness,
-            })
-        };
+        let mut add = |solve, stiffness| families.push(Family { solve, stiffness });
         if rows > 1 {
             let cells: Vec<Lanes> = plate.of_columns(|column| plate.twist(0, column)).collect();
             for is_odd in [false, true] {
                 if columns > 1 + u32::from(is_odd) {
                     let first = usize::from(is_odd);
                     let of_pairs = cells.iter().skip(first).step_by(2);
-                    add(Direction::Twist { is_odd }, of_pairs.copied().collect());
+                    add(Solve::Twist { is_odd }, of_pairs.copied().collect());
                 }
             }
         }
         if rows > 2 {
             let stiffness = plate.of_columns(|column| plate.down(1, column));
-            add(Direction::Down, stiffness.collect());
+            add(Solve::Down, stiffness.collect());
         }
         if columns > 2 {
-            add(Direction::Across, (0..groups).map(of_rows).collect());
+            add(Solve::Across, (0..groups).map(of_rows).collect());
         }
         let strip = layout.strip as usize;
         let row = || vec![NOTHING; strip];
@@ -133,8 +128,8 @@ impl ChainBending {
     /// Room for those of a weight.
     fn no_factors(&self) -> Factors {
         let rows = self.layout.rows as usize;
-        let count = |family: &Family| match family.direction {
-            Direction::Across => family.stiffness.len() * self.columns.len(),
+        let count = |family: &Family| match family.solve {
+            Solve::Across => family.stiffness.len() * self.columns.len(),
             _ => family.stiffness.len() * rows,
         };
         Factors {
@@ -192,8 +187,8 @@ impl ChainBending {
             f64::from(self.inverse_masses[slot.block][slot.lane])
         };
         let width = stiffness.len();
-        match family.direction {
-            Direction::Twist { is_odd } => {
+        match family.solve {
+            Solve::Twist { is_odd } => {
                 for column in (u32::from(is_odd)..columns - 1).step_by(2) {
                     let slot = self.layout.slot(0, column);
                     let pair = slot.block / 2;
@@ -207,7 +202,7 @@ impl ChainBending {
                     );
                 }
             }
-            Direction::Down => {
+            Solve::Down => {
                 for column in 0..columns {
                     let slot = self.layout.slot(0, column);
                     factor_chain(
@@ -221,7 +216,7 @@ impl ChainBending {
                     );
                 }
             }
-            Direction::Across => {
+            Solve::Across => {
                 let width = self.columns.len();
                 for row in 0..rows {
                     let (group, lane) = (row as usize / LANES, row as usize % LANES);
@@ -239,10 +234,10 @@ impl ChainBending {
 
     pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         for at in 0..self.families.len() {
-            match self.families[at].direction {
-                Direction::Twist { is_odd } => self.solve_cells(at, is_odd, blocks, kernels),
-                Direction::Down => self.solve_columns(at, blocks, kernels),
-                Direction::Across => self.solve_rows(at, blocks, kernels),
+            match self.families[at].solve {
+                Solve::Twist { is_odd } => self.solve_cells(at, is_odd, blocks, kernels),
+                Solve::Down => self.solve_columns(at, blocks, kernels),
+                Solve::Across => self.solve_rows(at, blocks, kernels),
             }
         }
     }

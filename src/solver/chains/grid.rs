@@ -82,7 +82,7 @@ impl GridSolver {
     ) {
         let Some(springs) = (match direction {
             Direction::Down => Some(&self.down),
-            Direction::Right | Direction::Residuals => self.diagonal.as_ref(),
+            Direction::Right | Direction::Left => self.diagonal.as_ref(),
         }) else {
             return;
         };
@@ -145,7 +145,7 @@ impl GridSolver {
 
     fn stretch(&self, longest: &Longest) -> Stretch {
         let ratio = |lanes: &Lanes, springs: &SpringBand| {
-            lanes.iter().copied().fold(0.0, f32::max).sqrt() * springs.inverse_rest
+            (lanes.iter().copied().fold(0.0, f32::max) / (springs.rest * springs.rest)).sqrt()
         };
         let structural =
             ratio(&longest.across, &self.across[0]).max(ratio(&longest.down, &self.down));
@@ -187,7 +187,7 @@ impl GridSolver {
     fn solve_in_partitions(&mut self, blocks: &mut [Block], kernels: &Kernels, partitions: usize) {
         let strip = self.layout.strip as usize;
         if let Some(springs) = &self.diagonal {
-            for direction in [Direction::Right, Direction::Residuals] {
+            for direction in [Direction::Right, Direction::Left] {
                 let all = self.scratch.split(direction, (strip, partitions), blocks);
                 in_partitions(all, |mut partition| solve(&mut partition, springs, kernels));
             }
@@ -324,7 +324,7 @@ impl SpringSolver for GridSolver {
             return self.end_in_partitions(blocks, motion, partitions);
         }
         self.solve_down(blocks, Direction::Right, kernels);
-        self.solve_down(blocks, Direction::Residuals, kernels);
+        self.solve_down(blocks, Direction::Left, kernels);
         self.solve_across(blocks, kernels);
         self.solve_down(blocks, Direction::Down, kernels);
         self.solve_again(blocks, motion, 1);

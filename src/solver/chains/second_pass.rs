@@ -163,8 +163,8 @@ impl SecondPass {
             (kernels.measure_given)(pulled, &springs.softness, &mut given[0]);
         }
         (kernels.measure_given)(from_above, &down.softness, &mut given[1]);
-        let families = [inner, down];
-        for (given, springs) in given.iter_mut().zip(families) {
+        let bands = [inner, down];
+        for (given, springs) in given.iter_mut().zip(bands) {
             // At a length l of which the part g/r is given, the pull has given g l/r.
             *given = given.map(|given| {
                 let part = (given * springs.inverse_rest).min(MOST_GIVEN);

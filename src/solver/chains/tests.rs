@@ -161,7 +161,7 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
                     (0, 1) => spring_solver.solve_across(blocks, &kernels),
                     (1, 0) => spring_solver.solve_down(blocks, Direction::Down, &kernels),
                     (1, 1) => spring_solver.solve_down(blocks, Direction::Right, &kernels),
-                    _ => spring_solver.solve_down(blocks, Direction::Residuals, &kernels),
+                    _ => spring_solver.solve_down(blocks, Direction::Left, &kernels),
                 }
                 let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
                 for chain in chains(&grid, step) {
@@ -189,7 +189,7 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
     }
 }
 
-/// GridSprings again at once, elastic chains have nothing left but the curvature of their equations: a relative error of the
+/// Solved again at once, elastic chains have nothing left but the curvature of their equations: a relative error of the
 /// order of the noise in lengths, 1 %, which each solve leaves of what it finds. A spring whose first pull was forgotten
 /// would pull as far once more. (Rigid chains have no such pull, and between two pins they have no solution.)
 #[test]

@@ -153,7 +153,7 @@ fn a_tick_is_that_of_a_plain_solver_in_f64() {
 
 /// However many partitions and whatever instructions: the same bits.
 #[test]
-fn bands_and_simd_levels_change_no_bit() {
+fn partitions_and_simd_levels_change_no_bit() {
     let bits = |partitions: usize, simd_level: SimdLevel| -> Vec<u32> {
         let material = ClothMaterial {
             bend_rigidity: 1.0e-6,

@@ -43,7 +43,7 @@ pub(crate) struct AeroCoefficients {
 const NO_AREA: f32 = f32::MIN_POSITIVE;
 
 /// The air's action on eight particles with these areas (normals as long as the area, m²) in these winds (m/s), and the
-/// position of each along its drag, for [`given`].
+/// position of each along its drag, for [`air_impulse`].
 #[inline(always)]
 fn linearize(
     view: &View,

@@ -41,7 +41,12 @@ pub(crate) struct Packet {
     pub compliance: Vec4,
 }
 
-/// Moves the ends of all springs, one packet after the other: what [`kernel`](super::kernel) does to the springs of a grid.
+/// Moves the ends of all springs, one packet after the other, towards their rest lengths, in inverse proportion to their
+/// masses. It is the XPBD distance constraint `λ = −C / (w_a + w_b + α/Δt²)`, once a sub-step (Macklin et al. 2016, 2019).
+///
+/// With q the squared length and r the rest length, C over the length, `1 − r/√q`, is taken as
+/// `(q − r²) / (1.5 q + 0.5 r²)`, the first step of Halley's iteration for the root. At a stretch ε it is off by the part
+/// ε²/4 (6·10⁻⁴ at 5 %).
 #[inline(always)]
 pub(crate) fn relax_packets(rows: &mut [Row], packets: &[Packet], step_scale: &StepScale) {
     for packet in packets {

@@ -1,4 +1,4 @@
-//! The arithmetic of bent chains, eight of them side by side, as [`kernel`](super::kernel) does that of springs.
+//! The arithmetic of bent chains, eight of them side by side, as [`chains`](super::chains) is that of springs.
 //!
 //! A chain's moments follow from the differences between neighbours, first of positions, then of displacements, so that no
 //! digit of a displacement is lost to the position. They are the right side of a pentadiagonal system `(M + s K) e = −s K p`,

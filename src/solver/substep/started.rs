@@ -113,8 +113,8 @@ impl Solver {
         }
         // Other causes that turn the cloth are not known here.
         if self.air.is_none() {
-            let [damping_reference, _] = tick.damping_reference.follow(particles.blocks());
-            tick.spin = Spin::of(particles, &step, pins, damping_reference);
+            let [drift, _] = tick.damping_reference.follow(particles.blocks());
+            tick.spin = Spin::of(particles, &step, pins, drift);
         }
         tick
     }
@@ -224,8 +224,8 @@ impl Solver {
             air.before_substep(tick.next, particles, &kernels);
             tick.damping_reference.blow(air.memory().force);
         }
-        let damping_reference = tick.damping_reference.follow(particles.blocks());
-        let prediction = Prediction::new(kind, kept, pull, damping_reference);
+        let frame = tick.damping_reference.follow(particles.blocks());
+        let prediction = Prediction::new(kind, kept, pull, frame);
         // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
         tick.damping_reference
             .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });

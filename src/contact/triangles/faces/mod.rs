@@ -42,7 +42,7 @@ pub(crate) struct TrianglePush<'a> {
     /// Blocks of the collider; `first` is the index of the first among all.
     pub contacts: &'a mut [ContactBlock],
     pub first: usize,
-    pub helds: &'a mut [FrictionBudget],
+    pub budgets: &'a mut [FrictionBudget],
     pub fans: &'a Fans,
     /// Number of triangles that may push each particle.
     max_faces: f32,
@@ -62,7 +62,7 @@ impl<'a> TrianglePush<'a> {
     pub fn new(
         candidates: &'a [Candidate],
         (contacts, first): (&'a mut [ContactBlock], usize),
-        helds: &'a mut [FrictionBudget],
+        budgets: &'a mut [FrictionBudget],
         (fans, max_faces): (&'a Fans, f32),
         [clearance, moved]: [f32; 2],
         is_measured: bool,
@@ -71,7 +71,7 @@ impl<'a> TrianglePush<'a> {
             candidates,
             contacts,
             first,
-            helds,
+            budgets,
             fans,
             max_faces,
             clearance,
@@ -223,7 +223,7 @@ impl<'a> TrianglePush<'a> {
             let (stop, next) = push_cells(
                 blocks,
                 self.contacts,
-                self.helds,
+                self.budgets,
                 of,
                 resume.place,
                 &mut sums,
@@ -273,7 +273,7 @@ impl<'a> TrianglePush<'a> {
         hold_all(
             blocks,
             self.contacts,
-            self.helds,
+            self.budgets,
             &core,
             lanes,
             seconds,

@@ -146,7 +146,7 @@ impl TrianglePush<'_> {
             .contacts
             .binary_search_by_key(&block, |contact| contact.block)
         {
-            self.helds[at].add_one(slot.lane, momentum.to_array());
+            self.budgets[at].add_one(slot.lane, momentum.to_array());
         }
         displacement.length()
     }

@@ -131,30 +131,31 @@ fn remember_positions(
         &mut MeshDrawing,
     )>,
 ) {
-    for (particles, frame, state, scratch, mut mesh) in &mut cloths {
-        match state.lod.turn {
+    for (particles, frame, state, scratch, mut drawing) in &mut cloths {
+        match state.lod.action {
             LodAction::Move => {}
             LodAction::Wait => continue,
             LodAction::Stand => {
-                mesh.carriers.freeze(*frame);
+                drawing.carriers.freeze(*frame);
                 continue;
             }
         }
         let rests = state.rest.is_asleep();
-        if !(rests && mesh.rested) {
-            mesh.previous.clear();
-            mesh.previous.extend(particles.positions());
+        if !(rests && drawing.rested) {
+            drawing.previous.clear();
+            drawing.previous.extend(particles.positions());
             // The state before it was carried along.
             let undone = scratch.carried.map(|carried| carried.undone_in(frame));
             if let Some(undone) = undone {
-                mesh.previous
+                drawing
+                    .previous
                     .iter_mut()
                     .for_each(|place| *place = undone * *place);
             }
-            mesh.pose.follow(*frame, state, scratch, undone);
-            mesh.carriers.follow(*frame, state, scratch);
+            drawing.pose.follow(*frame, state, scratch, undone);
+            drawing.carriers.follow(*frame, state, scratch);
         }
-        mesh.rested = rests;
+        drawing.rested = rests;
     }
 }
 

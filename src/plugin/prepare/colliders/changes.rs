@@ -43,7 +43,7 @@ pub(crate) struct Changes<'w, 's> {
     changed_parents: Query<'w, 's, Entity, ParentChange>,
     parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
     children: Query<'w, 's, &'static Children, Allow<Disabled>>,
-    deprived: ResMut<'w, ChangedColliders>,
+    changed: ResMut<'w, ChangedColliders>,
 }
 
 /// Colliders, and entities above colliders, that have lost a component since the last tick.
@@ -61,7 +61,7 @@ pub(crate) struct Removals<'w, 's> {
 
 /// Notes the components that colliders have lost. It runs in each frame as well as in each tick, because Bevy forgets
 /// removals after two frames, in which there may be no tick.
-pub(crate) fn note_removals(mut removals: Removals, mut deprived: ResMut<ChangedColliders>) {
+pub(crate) fn note_removals(mut removals: Removals, mut changed: ResMut<ChangedColliders>) {
     let Removals {
         bodies,
         parents,
@@ -70,7 +70,7 @@ pub(crate) fn note_removals(mut removals: Removals, mut deprived: ResMut<Changed
     } = &mut removals;
     let removed = bodies.read().chain(parents.read()).chain(places.read());
     for entity in removed.filter(|entity| concerned.contains(*entity)) {
-        deprived.0.push(entity);
+        changed.0.push(entity);
     }
 }
 
@@ -78,11 +78,11 @@ pub(crate) fn note_removals(mut removals: Removals, mut deprived: ResMut<Changed
 pub(crate) fn note_enabled(
     enabled: On<Remove, Disabled>,
     mut motions: Query<&mut ColliderMotion, Allow<Disabled>>,
-    mut deprived: ResMut<ChangedColliders>,
+    mut changed: ResMut<ChangedColliders>,
 ) {
     if let Ok(mut motion) = motions.get_mut(enabled.entity) {
         motion.stop();
-        deprived.0.push(enabled.entity);
+        changed.0.push(enabled.entity);
     }
 }
 
@@ -105,12 +105,12 @@ impl Awaited {
         self.now.append(&mut self.moving);
         self.now.extend(&changes.own);
         self.now.extend(&changes.bodies);
-        self.now.extend_from_slice(&changes.deprived.0);
+        self.now.extend_from_slice(&changes.changed.0);
         if !changes.carried.is_empty() {
             self.find_carried(changes);
         }
-        if !changes.deprived.0.is_empty() {
-            changes.deprived.0.clear();
+        if !changes.changed.0.is_empty() {
+            changes.changed.0.clear();
         }
         self.now.sort_unstable();
         self.now.dedup();
@@ -122,7 +122,7 @@ impl Awaited {
     fn find_carried(&mut self, changes: &Changes) {
         self.above.clear();
         self.above.extend(&changes.changed_parents);
-        self.above.extend_from_slice(&changes.deprived.0);
+        self.above.extend_from_slice(&changes.changed.0);
         if self.above.is_empty() {
             return;
         }

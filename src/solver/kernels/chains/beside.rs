@@ -190,7 +190,7 @@ impl Scratch {
         let border = |partition| strip * partition / partitions;
         let width = |partition| border(partition + 1) - border(partition);
         let mut rows: Vec<_> = blocks.chunks_exact_mut(strip).collect();
-        if direction == Direction::Residuals {
+        if direction == Direction::Left {
             rows.reverse();
         }
         let mut pieces: Vec<_> = (0..partitions).map(|_| Vec::with_capacity(count)).collect();

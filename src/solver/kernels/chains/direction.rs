@@ -7,7 +7,7 @@ pub(crate) enum Direction {
     /// A column further right in each row.
     Right,
     /// Likewise, but from the last row up: the same with the cloth upside down.
-    Residuals,
+    Left,
 }
 
 impl Direction {
@@ -16,7 +16,7 @@ impl Direction {
     pub fn shift(self, number: usize, strip: usize) -> usize {
         match self {
             Self::Down => 0,
-            Self::Right | Self::Residuals => number % strip,
+            Self::Right | Self::Left => number % strip,
         }
     }
 
@@ -25,7 +25,7 @@ impl Direction {
     pub fn row(self, number: usize, rows: usize) -> usize {
         match self {
             Self::Down | Self::Right => number,
-            Self::Residuals => rows - 1 - number,
+            Self::Left => rows - 1 - number,
         }
     }
 }

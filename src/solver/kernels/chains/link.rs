@@ -162,7 +162,7 @@ pub(crate) fn clamped(span: f32) -> f32 {
     if span < -FARTHEST { -FARTHEST } else { span }
 }
 
-/// Diagonal (1/kg) and right side (m) of a spring with this way, between particles of these inverse masses together (1/kg).
+/// Diagonal (1/kg) and right side (m) of a spring with this span, between particles of these inverse masses together (1/kg).
 #[inline(always)]
 pub(crate) fn terms(
     [x, y, z]: [f32; 3],
@@ -203,7 +203,7 @@ pub(crate) fn damped(
     kept * right - (1.0 - kept) * opening
 }
 
-/// The way of one lane's spring from the first to the second particle, in rest lengths.
+/// The span of one lane's spring from the first to the second particle, in rest lengths.
 #[inline(always)]
 pub(crate) fn span(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
     [(X, DX), (Y, DY), (Z, DZ)].map(|(at, moved)| {
