@@ -47,6 +47,7 @@ impl Detection {
             if at == self.touches.len() {
                 return is_pushed;
             }
+            self.save_before(at, particles);
             let (found, stopped) = self.push_out_of(at, from, particles, settings, substep);
             let given = self.share(at, &found, particles, substep);
             // Several triangles may push one particle.
@@ -74,6 +75,17 @@ impl Detection {
         }
     }
 
+    /// Saves the particles that a collider may push, if it is a body, which takes its share afterwards.
+    fn save_before(&mut self, at: usize, particles: &ClothParticles) {
+        let touch = &self.touches[at];
+        if self.bodies.iter().any(|body| body.id == touch.id) {
+            let contacts = &self.candidates.blocks[touch.of.blocks.clone()];
+            let blocks = contacts.iter().map(|contact| contact.block as usize);
+            let embedded = self.embedding.blocks(touch.id);
+            self.before.save(blocks.chain(embedded), particles);
+        }
+    }
+
     /// Pushes particles out of one collider. Returns what it did, and where to go on if candidates may be missing.
     fn push_out_of(
         &mut self,
@@ -94,11 +106,6 @@ impl Detection {
         let collider = &touch.collider;
         let first = touch.of.blocks.start;
         let contacts = &mut blocks[touch.of.blocks.clone()];
-        if self.bodies.iter().any(|body| body.id == touch.id) {
-            let blocks = contacts.iter().map(|contact| contact.block as usize);
-            let embedded = self.embedding.blocks(touch.id);
-            self.before.save(blocks.chain(embedded), particles);
-        }
         let has_edges = collider.shape.has_edges();
         // The guard measures the cloth.
         let odometer = if has_edges { 0.0 } else { margin.odometer() } + touch.travelled;
