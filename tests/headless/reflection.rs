@@ -4,7 +4,7 @@ use std::any::type_name;
 
 use bevy::{
     ecs::{
-        component::ComponentId,
+        component::{ComponentId, ComponentInfo},
         entity::{EntityHashMap, SceneEntityMapper},
         reflect::{AppTypeRegistry, ReflectMapEntities},
     },
@@ -109,7 +109,7 @@ fn every_component_travels() {
                 .world()
                 .components()
                 .get_info(id)
-                .and_then(|info| info.type_id());
+                .and_then(ComponentInfo::type_id);
             let other = app.world_mut().spawn_empty().id();
             let app_registry = app.world().resource::<AppTypeRegistry>().clone();
             let registry = app_registry.read();
