@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A folder imports from those before it. [`Detection`] keeps what a cloth may touch in a tick, and pushes it out in each
-//! sub-step. [`MutualContact`] does the same for cloth on cloth.
+//! sub-step. `MutualContact` does the same for cloth on cloth.
 
 mod bodies;
 mod candidates;

@@ -36,10 +36,10 @@ pub struct ClothInertia {
     pub linear: f32,
     /// Share of its rotation that cloth feels, from 0 to 1.
     pub angular: f32,
-    /// A move of more than this in one tick (m) is a [`ClothTeleport`] instead of a motion. Positive; infinity for
+    /// A move of more than this in one tick (m) is a [`ClothTeleport`](crate::plugin::ClothTeleport) instead of a motion. Positive; infinity for
     /// never.
     pub teleport_distance: f32,
-    /// A rotation of more than this in one tick (rad) is a [`ClothTeleport`] too. Positive; π for never, as no rotation
+    /// A rotation of more than this in one tick (rad) is a [`ClothTeleport`](crate::plugin::ClothTeleport) too. Positive; π for never, as no rotation
     /// is larger.
     pub teleport_angle: f32,
 }
