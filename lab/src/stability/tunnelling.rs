@@ -46,7 +46,7 @@ fn cell(is_swept: bool, speed: f32, ratio: f32, shots: u64) -> Row {
             is_swept,
             beside: [random.between(-1.0, 1.0), random.between(-1.0, 1.0)],
             delay: random.part(),
-            way: Vec3::Z,
+            direction: Vec3::Z,
             spin: Vec3::from_array([0; 3].map(|_| random.between(-30.0, 30.0))),
         };
         shot.through().is_some()
