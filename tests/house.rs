@@ -24,7 +24,7 @@ const FLOORS: [&[&str]; 4] = [
     &["plugin"],
 ];
 
-/// What no floor below the plugin's names.
+/// Names that no floor below the plugin's may use.
 const ECS: &str = "App Commands DeferredWorld EntityCommands EntityMut EntityRef EntityWorldMut FromWorld \
     MessageReader MessageWriter Query QueryState Res ResMut Resource Single SubApp SystemParam World";
 
@@ -66,7 +66,7 @@ fn climbing(house: &House) -> Found {
     let mut climbing = Found::new();
     for (at, module) in house.0.iter().filter(|(at, _)| floor(at).is_some()) {
         for path in module.all_paths() {
-            // What is handed on there by another floor is no less an import from it.
+            // A name that another floor hands on is an import from that floor, too.
             let named = path.get(1).filter(|_| path[0].ends_with("crate"));
             let defined = house.definition(at, path).map(|(home, ..)| top(home));
             let others = named.map(String::as_str).into_iter().chain(defined);
@@ -79,7 +79,7 @@ fn climbing(house: &House) -> Found {
     climbing
 }
 
-/// What lower floors hold of Bevy's world.
+/// Names of Bevy's world in lower floors.
 fn worldly(house: &House) -> Found {
     let mut worldly = Found::new();
     for (at, module) in &house.0 {
@@ -121,7 +121,7 @@ fn strayed(house: &House) -> Found {
     strayed
 }
 
-/// What of the files is larger than `most`.
+/// The parts of the files that are larger than `most`.
 fn larger(house: &House, most: usize, sizes: fn(&Module) -> &[(String, usize)]) -> Found {
     let mut larger = Found::new();
     for module in house.0.values() {

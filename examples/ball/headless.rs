@@ -11,7 +11,7 @@ use crate::scene::{self, Ball};
 use crate::shared::parts::{depth::Placed, report::Report};
 use crate::shared::{headless::Run, measured::median};
 
-/// What is printed: times are medians over all ticks, the rest is the largest of any tick.
+/// The printed report: times are medians over all ticks, the rest is the largest of any tick.
 #[derive(Serialize)]
 struct Own {
     springs: usize,
@@ -30,7 +30,7 @@ struct Own {
     deepest_left_mm: f64,
 }
 
-/// What is measured on the way.
+/// Measurements of each tick.
 #[derive(Resource, Default)]
 struct Measured {
     tick_start: Option<Instant>,

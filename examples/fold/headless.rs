@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::scene::Crossings;
 use crate::shared::{headless::Run, parts::report::Report};
 
-/// What is printed.
+/// The printed report.
 #[derive(Serialize)]
 struct Own {
     /// The most triangles that passed through each other after any tick: pairs.

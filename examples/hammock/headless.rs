@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::scene::{self, Ball};
 use crate::shared::{headless::Run, parts::report::Report};
 
-/// What is printed.
+/// The printed report.
 #[derive(Serialize)]
 struct Own {
     ball_kg: f32,

@@ -37,7 +37,7 @@ const SHOTS: [(&str, Shot); 3] = [
     ),
 ];
 
-/// What is printed.
+/// The printed report.
 #[derive(Serialize)]
 struct Report {
     ticks: u64,

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::shared::parts::{depth::Placed, report::Report};
 use crate::shared::{headless::Run, measured::median};
 
-/// What is printed.
+/// The printed report.
 #[derive(Serialize)]
 struct Own {
     /// Each way that the cloth was searched, with the reason and the number of ticks.
@@ -29,7 +29,7 @@ struct Own {
 #[derive(Serialize, Default, Clone)]
 struct Shape {
     name: String,
-    /// What it was tested against.
+    /// The narrow phase that tested it.
     narrow_phase: &'static str,
     /// Particles, or cells of two triangles: the most of any tick, and those of the last.
     most: usize,
@@ -38,12 +38,12 @@ struct Shape {
     deepest_found_mm: f32,
     /// The deepest that any particle was as a tick ended, by brute force in f64 (mm).
     deepest_left_mm: f64,
-    /// What the cloth covers of it: the largest area inside at the end of a sub-step (cm²), and ∫ depth dA (cm³).
+    /// The part of it that the cloth covers: the largest area inside at the end of a sub-step (cm²), and ∫ depth dA (cm³).
     area_cm2: f32,
     volume_cm3: f32,
 }
 
-/// What is measured on the way.
+/// Measurements of each tick.
 #[derive(Resource, Default)]
 struct Measured {
     searches: Vec<(String, u64)>,

@@ -256,7 +256,7 @@ fn ticks_in(app: &App, seconds: f64) -> u64 {
     (seconds / timestep.as_secs_f64()).round() as u64
 }
 
-/// What became of the picture.
+/// Whether the picture was drawn, and where it is.
 #[derive(Serialize, Default)]
 pub struct Picture {
     picture: Option<PathBuf>,

@@ -10,7 +10,7 @@ use crate::shared::{
     measured::Figures,
 };
 
-/// What is printed.
+/// The printed report.
 #[derive(Serialize)]
 pub struct Report<Own> {
     #[serde(skip)]

@@ -12,7 +12,7 @@ use super::{
     window,
 };
 
-/// What `--help` says of every example.
+/// The text of `--help` in every example.
 const OPENS: &str = "Opens a window if possible, otherwise runs headless.";
 
 /// Opens a window if possible, otherwise runs headless.

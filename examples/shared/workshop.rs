@@ -5,7 +5,7 @@ use bevy::{ecs::system::SystemParam, prelude::*};
 pub use crate::shared::woven::Weave;
 use crate::shared::{stage::Grid, woven::woven};
 
-/// What a mesh is painted with.
+/// The material of a mesh.
 pub type Paint = MeshMaterial3d<StandardMaterial>;
 
 /// Spawns entities, and makes their meshes and materials.

@@ -15,7 +15,7 @@ use crate::things::Thing;
 const PULLED_AFTER: f64 = 0.6;
 const DRAWN_AFTER: f64 = 0.5;
 
-/// What is printed.
+/// The printed report.
 #[derive(Serialize)]
 struct Own {
     /// The most triangles that an edge of the table passed through after any tick: until it was pulled, and in all.

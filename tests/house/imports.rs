@@ -40,7 +40,7 @@ impl House {
     pub fn imports(&self) -> Imports {
         let mut imports = Imports::new();
         for (at, module) in &self.0 {
-            // What is imported is of use if the code names it, and else is handed on. Traits need no name.
+            // The code uses an import if it names it; else it hands it on. Traits need no name.
             let is_used = |(name, path, is_public): &&(String, Segments, bool)| {
                 let found = self.definition(at, path).filter(|_| !is_public);
                 name == "*" || found.is_some_and(|(_, home, name)| home.traits.contains(&name))

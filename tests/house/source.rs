@@ -19,7 +19,7 @@ pub struct Module {
     pub file: String,
     /// The names that it imports, `*` for all of another module; their paths; whether for others, too.
     pub imports: Vec<(String, Segments, bool)>,
-    /// What its code names, other than in imports: a name alone is a path, too.
+    /// The paths that its code names, other than in imports: a name alone is a path, too.
     pub paths: BTreeSet<Segments>,
     pub traits: BTreeSet<String>,
     /// Types with blocks of inherent methods.

@@ -45,41 +45,6 @@ pub fn components(world: &World, entity: Entity) -> Vec<ReflectComponent> {
     known.collect()
 }
 
-/// The order in which components are chosen from.
-const ORDER: [&str; 31] = [
-    "ClothMaterial",
-    "ClothParticles",
-    "Pins",
-    "Cloth",
-    "ClothSkin",
-    "ClothCollider",
-    "ClothLayers",
-    "ClothSelfCollision",
-    "NarrowPhase",
-    "SearchMethod",
-    "ClothAttachments",
-    "ClothTeleport",
-    "ClothBody",
-    "ClothPush",
-    "ClothBones",
-    "ClothContacts",
-    "ClothFrame",
-    "ShowClothGizmos",
-    "ClothInertia",
-    "ClothLod",
-    "ClothMesh",
-    "ClothOrder",
-    "ClothColliderSpeed",
-    "RapierClothCollider",
-    "ClothPushBack",
-    "ClothSkeleton",
-    "ClothStats",
-    "ClothAir",
-    "ClothWindZone",
-    "ClothPressure",
-    "ClothSettings",
-];
-
 /// All of the crate's components that can be made from nothing; resources are components of entities of their own.
 pub fn makers(world: &World) -> Vec<(ReflectComponent, ReflectDefault)> {
     let registry = world.resource::<AppTypeRegistry>().read();
@@ -93,12 +58,8 @@ pub fn makers(world: &World) -> Vec<(ReflectComponent, ReflectDefault)> {
             Some((of.type_info().type_path(), component, default))
         })
         .collect();
-    // The registry's order is another in each run. This one keeps the sequences of the seeds; others come last.
-    let order = |path: &str| {
-        let name = path.rsplit("::").next().unwrap_or_default();
-        ORDER.iter().position(|known| *known == name)
-    };
-    all.sort_unstable_by_key(|(path, ..)| (order(path).unwrap_or(ORDER.len()), *path));
+    // The registry's order is another in each run.
+    all.sort_unstable_by_key(|(path, ..)| *path);
     all.into_iter()
         .map(|(_, component, default)| (component, default))
         .collect()
