@@ -43,9 +43,9 @@ use super::{
     search::{query_collisions, rebuild_hierarchies},
     sets::ClothSystems,
     state::{
-        BroadPhaseBounds, ClothBuilt, ClothContacts, ClothFault, ClothParts, ClothScratch,
-        ClothSearch, ClothState, ClothStats, ClothTouchStarted, ClothTouchStopped, Notices,
-        SharedParts, WindField, log_notices,
+        ClothBuilt, ClothContacts, ClothFault, ClothParts, ClothSearch, ClothStats,
+        ClothTouchStarted, ClothTouchStopped, Notices, OwnParts, SharedParts, WindField,
+        log_notices,
     },
     step::{integrate, push_bodies},
     write_back::{
@@ -242,16 +242,7 @@ fn clear_removed_cloth(
     if let Ok((built, mut particles)) = cloths.get_mut(removed.entity) {
         built.release_pins(&mut particles);
     }
-    commands.entity(removed.entity).try_remove::<(
-        ClothBuilt,
-        ClothFrame,
-        ClothSearch,
-        ClothContacts,
-        ClothStats,
-        ClothState,
-        ClothScratch,
-        BroadPhaseBounds,
-    )>();
+    commands.entity(removed.entity).try_remove::<OwnParts>();
     let known = faults.get(removed.entity).ok();
     ClothFault::report(&mut commands, removed.entity, known, Part::Cloth, Ok(()));
 }

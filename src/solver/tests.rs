@@ -320,7 +320,7 @@ fn no_particle_is_beyond_its_tether() {
                 largest.max(tethers.largest_excess(particles))
             })
         };
-        // What one sweep leaves to do is more than chains do.
+        // One sweep leaves more to do than chains do.
         let list = Springs::of_list(&springs.to_vec(), particles.len()).expect("valid springs");
         let mut swept = Solver::new(&list, &particles);
         let without = largest(&mut swept, &mut particles.clone());

@@ -87,7 +87,8 @@ impl AttachmentMemory {
     }
 }
 
-/// What wakes a cloth at rest when it changes, besides what it is built from, its particles, its place and the air.
+/// Settings and gravity: a cloth at rest wakes when they change. Its particles, its place, the air and what it is built from
+/// are compared elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct KnownInputs {

@@ -29,7 +29,7 @@ pub(crate) use lod::{Frozen, LodAction};
 pub use memory::ClothState;
 pub(crate) use memory::KnownInputs;
 pub(crate) use notices::{Notice, Notices, log_notices};
-pub(crate) use parts::ClothParts;
+pub(crate) use parts::{ClothParts, OwnParts};
 pub(crate) use pose::{Pose, SkinLimits};
 pub(crate) use resting::RestsOn;
 pub use scratch::ClothScratch;

@@ -22,6 +22,11 @@ pub(crate) type ClothParts = (
     ClothSettings,
     SearchMethod,
     NarrowPhase,
+    OwnParts,
+);
+
+/// Those of them that are the plugin's own: they go when an entity is no cloth any more.
+pub(crate) type OwnParts = (
     ClothBuilt,
     ClothFrame,
     ClothSearch,

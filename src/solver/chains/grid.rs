@@ -104,7 +104,7 @@ impl GridSolver {
         solve_rows(&mut rows, &self.across, kernels);
     }
 
-    /// What solves again what is left in rows and columns, after all chains were solved in this many partitions.
+    /// The second pass over rows and columns, after all chains were solved in this many partitions.
     pub(crate) fn second_pass(&mut self, partitions: usize) -> (&mut SecondPass, GridSprings<'_>) {
         let strip = self.layout.strip as usize;
         if let Some(pulled) = self.second_pass.pulled[1].get_mut(strip..) {

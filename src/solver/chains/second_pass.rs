@@ -33,7 +33,7 @@ const ROUNDS: usize = 4;
 /// The part of a spring's length that its pull has given, at most.
 const MOST_GIVEN: f32 = 0.9;
 
-/// What is left in chains side by side.
+/// The stretch that is left in chains side by side.
 #[derive(Debug, Clone)]
 struct Chains {
     left: Vec<f32>,

@@ -91,7 +91,7 @@ pub(crate) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64>
     right
 }
 
-/// What one chain's springs do to displacements, in f64, by the equations of [`super`].
+/// Moves displacements as one chain's springs do, in f64, by the equations of [`super`].
 fn solve_chain(
     chain: &[(u32, u32)],
     particles: &ClothParticles,

@@ -228,7 +228,7 @@ impl Forces {
         if scratch.len() < partitions {
             scratch.resize(partitions, scratch[0].clone());
         }
-        // What another partition moves in the meantime is read from a copy.
+        // Another partition moves these rows in the meantime, so a copy is read.
         borders.clear();
         let first_row = |partition: usize| rows * partition / partitions;
         for partition in 1..partitions {

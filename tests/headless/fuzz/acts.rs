@@ -1,6 +1,10 @@
 //! What is done to a world.
 
-use bevy::{ecs::entity_disabling::Disabled, prelude::*, reflect::PartialReflect};
+use bevy::{
+    ecs::{entity::EntityHashSet, entity_disabling::Disabled},
+    prelude::*,
+    reflect::PartialReflect,
+};
 use bevy_drape::prelude::*;
 
 use super::{
@@ -23,6 +27,8 @@ pub struct Pool {
     pub request: Option<bool>,
     /// Whether a tick has moved particles already.
     pub is_late: bool,
+    /// Cloths whose particles were written between two systems of the tick.
+    pub written: EntityHashSet,
     /// How many acts there were.
     pub acts: usize,
 }
@@ -96,7 +102,10 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
             }
         },
         15 => drop(world.entity_mut(entity).insert(ClothTeleport)),
-        16..=17 if !pool.is_late => place_particle(world, entity, random),
+        16..=17 if !pool.is_late => {
+            place_particle(world, entity, random);
+            pool.written.insert(entity);
+        }
         18 => replace_mesh(world, entity, random),
         19 => pool.request = Some(random.one_in(2)),
         20 => {

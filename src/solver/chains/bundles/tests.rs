@@ -63,7 +63,7 @@ fn crumpled(surface: &Surface, noise: f32) -> Vec<Row> {
     rows
 }
 
-/// What one chain's springs do to displacements, in f64, by the equations of [`super`], after they have pulled with `pulled`.
+/// Moves displacements as one chain's springs do, in f64, by the equations of [`super`], after they have pulled with `pulled`.
 fn solve_chain(
     (first, edges): (u32, &[u32]),
     list: &SpringList,

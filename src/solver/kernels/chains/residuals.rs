@@ -10,7 +10,7 @@ use crate::{
     solver::kernels::pentadiagonal::Vec3Lanes,
 };
 
-/// What is left: squared lengths of springs over those that they should have.
+/// The stretch that is left: squared lengths of springs over those that they should have.
 #[derive(Debug, Clone)]
 pub(crate) struct Residuals {
     /// Positions of the row above (m).
