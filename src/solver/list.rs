@@ -19,13 +19,18 @@ use super::{
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringList, W, X, Y, Z};
 
+/// The part of a spring's length that its pull has given, at most.
+const MOST_GIVEN: f32 = 0.9;
+
 /// A list of springs as the sub-steps want them.
 #[derive(Debug, Default, Clone)]
 pub(super) struct ListSolver {
     springs: Arc<SpringList>,
     /// Those on no chain.
     packets: Arc<[Packet]>,
-    /// What those have pulled with on the way there (kg).
+    /// How many of them are across edges: the first.
+    across: usize,
+    /// What they have pulled with, over their lengths (kg).
     pulls: Vec<Vec4>,
     chains: Bundles,
     layout: Layout,
@@ -33,6 +38,8 @@ pub(super) struct ListSolver {
     /// The particles of one sub-step, strip by strip: in the order of their indices, with what is no particle at the end of
     /// each row of the layout.
     rows: Vec<Row>,
+    /// Each particle's sum of the tensions of its springs over their lengths (N/m), by row.
+    ripples: Vec<f32>,
 }
 
 impl ListSolver {
@@ -62,14 +69,19 @@ impl ListSolver {
         for edge in springs.chains.iter().flat_map(|chain| &chain.edges) {
             is_solved[*edge as usize] = true;
         }
-        let mut packets = Vec::new();
+        let (mut packets, mut across) = (Vec::new(), 0);
         for colour in &springs.colours {
             let swept: Vec<usize> = colour.clone().filter(|at| !is_solved[*at]).collect();
             let each = swept.chunks(SPRINGS);
             packets.extend(each.map(|swept| packet(swept, &springs.springs)));
+            if springs.springs[colour.start].kind != SpringKind::Structural {
+                across = packets.len();
+            }
         }
         Self {
             springs: springs.clone(),
+            across,
+            ripples: Vec::with_capacity(layout.blocks() * LANES + 1),
             pulls: vec![Vec4::ZERO; packets.len()],
             packets: packets.into(),
             chains: Bundles::new(springs, row_of, none),
@@ -119,6 +131,54 @@ impl ListSolver {
         }
     }
 
+    /// The stretch of the material at the tensions of the last sub-step, and the angular frequency of the fastest ripples at the
+    /// median particle (rad/s): `ω² = 3/2 w Σ F/l`, as of a lattice of even triangles. Of springs along edges that give.
+    fn tensions(&mut self) -> (f32, f32) {
+        let (rows, ripples) = (&self.rows, &mut self.ripples);
+        ripples.clear();
+        ripples.resize(rows.len(), 0.0);
+        let mut material = 0.0_f32;
+        let scale = self.step_scale.inverse_weight;
+        // The tension over the length (N/m), and the elongation as a part of the length.
+        let mut add = |ends: [u32; 2], tension: f32, part: f32| {
+            let part = part.clamp(0.0, MOST_GIVEN);
+            material = material.max(part / (1.0 - part));
+            for end in ends {
+                ripples[end as usize] += tension;
+            }
+        };
+        self.chains.for_each_pull(|ends, rest, compliance, pull| {
+            if compliance > 0.0 {
+                let tension = scale * pull / rest;
+                add(ends, tension, compliance * tension);
+            }
+        });
+        let packets = self.packets.iter().zip(&self.pulls).skip(self.across);
+        for (packet, pull) in packets {
+            let (compliance, pull) = (packet.compliance.to_array(), pull.to_array());
+            for at in 0..SPRINGS {
+                if compliance[at] > 0.0 {
+                    let tension = scale * pull[at];
+                    add(
+                        [packet.from[at], packet.to[at]],
+                        tension,
+                        compliance[at] * tension,
+                    );
+                }
+            }
+        }
+        for (ripple, row) in ripples.iter_mut().zip(rows) {
+            *ripple *= 1.5 * row.place.w;
+        }
+        ripples.retain(|square| *square != 0.0);
+        let middle = ripples.len() / 2;
+        if ripples.is_empty() {
+            return (material, 0.0);
+        }
+        let (_, median, _) = ripples.select_nth_unstable_by(middle, f32::total_cmp);
+        (material, median.max(0.0).sqrt())
+    }
+
     /// The largest length over rest length, given where a particle is.
     fn stretch(&self, square_between: impl Fn(&Spring) -> f32) -> Stretch {
         let (mut structural, mut bound) = (1.0_f32, 1.0_f32);
@@ -156,18 +216,26 @@ impl SpringSolver for ListSolver {
         } else {
             self.chains.solve_there(rows, step_scale, kernels);
             (kernels.relax_packets_there)(rows, packets, &mut self.pulls, step_scale);
-            (kernels.relax_packets_back)(rows, packets, &self.pulls, step_scale);
+            (kernels.relax_packets_back)(rows, packets, &mut self.pulls, step_scale);
             self.chains.solve_back(rows, step_scale, kernels);
         }
         self.store(blocks);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
-        let stretch = motion.measures.then(|| self.measure(blocks, kernels));
+        let (material, ripple) = if motion.measures && !self.chains.is_empty() {
+            self.tensions()
+        } else {
+            (0.0, 0.0)
+        };
+        let stretch = motion.measures.then(|| Stretch {
+            material,
+            ..self.measure(blocks, kernels)
+        });
         SolvedSubstep {
             moved,
             stretch,
-            ripple: 0.0,
+            ripple,
         }
     }
 

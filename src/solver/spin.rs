@@ -1,18 +1,25 @@
-//! The angular momentum of a cloth that hangs by a vertical line, as a flag by its pole.
+//! The angular momentum of a cloth that hangs by an upright line, as a flag by its pole.
 //!
-//! Neither springs nor pins nor gravity turn such a cloth around that line. So it loses its angular momentum there to
-//! damping alone, whether the line stands still or moves without turning. But a sweep does turn it. The correction of
-//! one spring turns the springs after it, by a torque of the order of (tension/mass)² Δt², always to the same side.
-//! Only damping resists that. A limp flag of 24 × 16 particles circled its pole for ever, at 0.25 rad/s with 20
-//! sub-steps in 1/64 s, and at a tenth of that with 80.
+//! Neither springs nor pins turn such a cloth around that line, and gravity only where the line leans. So its angular momentum
+//! there is known: it changes by gravity's torque and by damping, whether the line stands still or moves without turning. But a sweep
+//! does turn it. The correction of one spring turns the springs after it, by a torque of the order of (tension/mass)² Δt², always
+//! to the same side. Only damping resists that. A limp flag of 24 × 16 particles circled its pole for ever, at 0.25 rad/s with
+//! 20 sub-steps in 1/64 s, and at a tenth of that with 80.
+//!
+//! Pins need not be exactly on the line. Beside it they turn the cloth by their distance times their pull, which is left out: by
+//! less than the sweep, as far as they count as on it.
 
 use bevy::math::Vec3;
 
 use super::step::{PinMotion, TickStep};
 use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
 
-/// Largest distance of pins from the line, in metres per metre along it.
-const STRAIGHT: f32 = 1.0e-3;
+/// Largest distance of pins from the line, as a fraction of its length, and largest difference of their motions.
+const STRAIGHT: f32 = 0.02;
+const SAME_MOTION: f32 = 1.0e-3;
+
+/// The cosine of the largest angle between the line and gravity: 10°.
+const UPRIGHT: f32 = 0.985;
 
 /// Largest angle by which a cloth is turned back in a tick (rad).
 const LARGEST_TURN: f32 = 0.01;
@@ -29,6 +36,9 @@ pub(super) struct Spin {
     /// Its displacement in a sub-step, relative to the damping frame (m).
     against: Vec3,
     substeps: u32,
+    /// Gravity (m/s²), and the lengths of a tick and of a sub-step, multiplied (s²).
+    gravity: Vec3,
+    seconds: f32,
     /// As the tick begins.
     before: Turning,
 }
@@ -43,10 +53,12 @@ struct Turning {
     /// Angular momentum of the line's own motion in a sub-step, relative to the damping frame, if the cloth moved along
     /// (kg m²).
     carried: f32,
+    /// Gravity's torque (N m).
+    torque: f32,
 }
 
 impl Spin {
-    /// Of a cloth whose pins are on one line along gravity, which stands still or moves without turning, if they are. Damping is
+    /// Of a cloth whose pins are on one upright line, which stands still or moves without turning, if they are. Damping is
     /// relative to what moves by `drift` in a sub-step (m).
     pub fn of(
         particles: &ClothParticles,
@@ -54,11 +66,11 @@ impl Spin {
         pins: &[PinMotion],
         drift: Vec3,
     ) -> Option<Self> {
-        let axis = step.acceleration.try_normalize()?;
+        let down = step.acceleration.try_normalize()?;
         let layout = particles.layout();
         let blocks = particles.blocks().iter().enumerate();
         // Most blocks hold no pin: they are passed over as a whole.
-        let mut pinned = blocks
+        let pinned = blocks
             .filter(|(_, block)| block.view()[W..W + LANES].contains(&0.0))
             .flat_map(|(index, block)| {
                 let in_row = index % layout.strip as usize;
@@ -69,21 +81,29 @@ impl Spin {
                     .filter(is_pinned)
                     .map(|lane| block.position(lane))
             });
-        let origin = pinned.next()?;
-        let mut count = 1;
+        let origin = pinned.clone().next()?;
+        // From the first pin to the one that is farthest from it; of a single pin the vertical.
+        let far = |far: Vec3, pin: Vec3| {
+            let is_farther = pin.distance_squared(origin) > far.distance_squared(origin);
+            if is_farther { pin } else { far }
+        };
+        let along = pinned.clone().fold(origin, far) - origin;
+        let axis = along.try_normalize().unwrap_or(down);
+        let axis = axis * axis.dot(down).signum();
+        let mut count = 0;
         let on_line = |pin: Vec3| {
             count += 1;
             let beside = (pin - origin).reject_from_normalized(axis);
-            beside.length() <= STRAIGHT * pin.distance(origin)
+            beside.length() <= STRAIGHT * along.length()
         };
-        if !pinned.all(on_line) {
+        if axis.dot(down) < UPRIGHT || !pinned.into_iter().all(on_line) {
             return None;
         }
         let shift = pins.first().map_or(Vec3::ZERO, |pin| pin.to - pin.from);
         // To a rounding of where they are.
         let is_along = |moved: Vec3, at: Vec3| {
             moved.distance(shift)
-                <= STRAIGHT * shift.length() + 1.0e-6 * (at.length() + origin.length())
+                <= SAME_MOTION * shift.length() + 1.0e-6 * (at.length() + origin.length())
         };
         let mut moved = pins.iter();
         let some_stay = pins.len() < count && !is_along(Vec3::ZERO, origin);
@@ -97,6 +117,8 @@ impl Spin {
                 displacement: shift / substeps as f32,
                 against: shift / substeps as f32 - drift,
                 substeps,
+                gravity: step.acceleration,
+                seconds: step.seconds * step.seconds / substeps as f32,
                 before: Turning::default(),
             };
             spin.before = spin.measure(particles, origin);
@@ -105,7 +127,7 @@ impl Spin {
     }
 
     fn measure(&self, particles: &ClothParticles, origin: Vec3) -> Turning {
-        let mut sums = [[0.0_f32; LANES]; 3];
+        let mut sums = [[0.0_f32; LANES]; 4];
         for block in particles.blocks() {
             let view = block.view();
             for lane in 0..LANES {
@@ -116,24 +138,27 @@ impl Spin {
                 sums[0][lane] += mass * turned.dot(moved);
                 sums[1][lane] += mass * turned.length_squared();
                 sums[2][lane] += mass * turned.dot(self.against);
+                sums[3][lane] += mass * turned.dot(self.gravity);
             }
         }
-        let [momentum, inertia, carried] = sums.map(|lanes| lanes.iter().sum());
+        let [momentum, inertia, carried, torque] = sums.map(|lanes| lanes.iter().sum());
         Turning {
             momentum,
             inertia,
             carried,
+            torque,
         }
     }
 
-    /// Turns the cloth as a whole so that its angular momentum is that after damping, the fraction `kept` of each
-    /// velocity. Also takes back the angle by which it was turned in the tick, in which the difference has grown
+    /// Turns the cloth as a whole so that its angular momentum is that after gravity's torque, the mean of both ends of the tick, and
+    /// damping, the fraction `kept` of each velocity. Also takes back the angle by which it was turned in the tick, in which the difference has grown
     /// evenly.
     pub fn restore(&self, particles: &mut ClothParticles, kept: f32) {
         let origin = self.origin + self.shift;
         let after = self.measure(particles, origin);
         // Damping holds against what it is relative to, which need not be the line.
-        let expected = kept * self.before.momentum - (1.0 - kept) * self.before.carried;
+        let pulled = 0.5 * (self.before.torque + after.torque) * self.seconds;
+        let expected = kept * self.before.momentum - (1.0 - kept) * self.before.carried + pulled;
         let turn = (expected - after.momentum) / after.inertia;
         if !turn.is_finite() {
             return;

@@ -20,7 +20,7 @@ pub struct Stretch {
     /// `structural` where springs act by explicit forces, and is 0 otherwise.
     pub material: f32,
     /// Number of sub-steps in a tick as long as the last that resolves ripples across the chains. It is that of a taut
-    /// membrane in a frame, at the tension in half of the cloth's width. 0 except for grids with elastic chains.
+    /// membrane in a frame, at the tension in half of the cloth's width, or at the median particle of a mesh. 0 where no chain gives.
     pub ripple_substeps: f32,
     /// Number of sub-steps in a tick as long as the last that holds the bodies on the cloth, by their weight on the
     /// chains that carry them. 0 if the cloth carries none.

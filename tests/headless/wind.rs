@@ -360,6 +360,7 @@ fn what_is_done_again_begins_with_the_same_gas() {
         max_substeps: 64,
     });
     let (once, last) = run(Substepping::Fixed(32));
-    assert_eq!((all, last), (8 + 16 + 32, 32));
+    // The last of several runs, with as many again or fewer before it.
+    assert!(last == 32 && (33..=64).contains(&all), "{all}, {last}");
     assert!(again == once, "others than in one go");
 }

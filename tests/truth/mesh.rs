@@ -223,3 +223,50 @@ fn a_mesh_is_exact_in_few_sub_steps() {
     println!("{five:.4} m off in 5 sub-steps, by one sweep {twenty:.4} in 20");
     assert!(five < twenty, "{five} {twenty}");
 }
+
+/// Cotton that hangs by its upper edge is pulled by ρ g H there, and gives α ρ g H, to a tenth: the springs there end below the edge.
+/// In a frame that is 1 % wider, a mesh of a grid's triangles has springs of 1/α along rows and columns and of half of that along
+/// diagonals: Σ F/l = 5 ε/((1 + ε) α) at a particle of the mass ρ h², so that ω² = 7.5 ε/((1 + ε) α ρ h²), resolved by 2.2/ω. As a
+/// mesh is calibrated, and solved chain by chain, a tenth is allowed.
+#[test]
+fn a_mesh_knows_its_tension() {
+    let (side, material) = (33, material(1.0e-4, f32::INFINITY));
+    let surface = surface(side, true);
+    let springs = Springs::of_surface(&surface, &material);
+    let hung = |wider: f32, is_pinned: &dyn Fn(Vec3) -> bool| {
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
+        for (index, place) in surface.rest_positions().iter().enumerate() {
+            particles
+                .set_position(index, wider * *place)
+                .expect("it exists");
+            if is_pinned(*place) {
+                particles.set_inverse_mass(index, 0.0).expect("it exists");
+            }
+        }
+        let mut solver = Solver::of_surface(&surface, &springs);
+        let mut step = step(40, GRAVITY);
+        step.damping = 0.1;
+        let mut stretch = solver.measure(&particles);
+        for _ in 0..180 {
+            stretch = solver.advance(&mut particles, step, &[], |_, _| false);
+        }
+        stretch
+    };
+    let stretch = hung(1.0, &|place| place.y > -1.0e-4);
+    let pull = material.areal_density * 9.81 * 2.0;
+    let given = material.stretch_compliance * pull;
+    println!("hung: {} of {given}", stretch.material);
+    assert!((stretch.material / given - 1.0).abs() < 0.1);
+    let on_frame = |at: f32| !(1.0e-4..2.0 - 1.0e-4).contains(&at);
+    let stretch = hung(1.01, &|place| on_frame(place.x) || on_frame(-place.y));
+    let spacing = 2.0 / (side - 1) as f32;
+    let mass = material.areal_density * spacing * spacing;
+    let square = 7.5 * 0.01 / 1.01 / material.stretch_compliance / mass;
+    let wanted = square.sqrt() / 60.0 / 2.2;
+    println!(
+        "in a frame: {} of {wanted} sub-steps",
+        stretch.ripple_substeps
+    );
+    assert!((stretch.ripple_substeps / wanted - 1.0).abs() < 0.1);
+    assert!((stretch.material / 0.01 - 1.0).abs() < 0.1);
+}

@@ -15,19 +15,27 @@
 //! the triangles by a factor of three). On a border, where edges have one face, the smallest curvature counts that agrees with the
 //! others. A mesh that is curved at rest has rest curvatures, which turn with each face.
 //!
-//! `(M + s K) e = −s K p` is solved by conjugate gradients; soft cloth needs one or two iterations.
+//! `(M + s K) e = −s K p` is solved by conjugate gradients. Cloth that is soft for its spacing and sub-steps is pushed by `−s K p`
+//! instead, like a grid.
 
 use std::{collections::BTreeMap, sync::Arc};
 
 use bevy::math::{DVec3, Vec4};
 
-use super::patch::{Patch, RestFace, faces_beside, frame};
-use crate::cloth::{Block, DX, DY, DZ, Layout, Surface, W, X, Y, Z};
+use super::{
+    patch::{Patch, RestFace, faces_beside, frame},
+    push::LIMIT,
+};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, Surface, W};
 
 /// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
 const TOLERANCE: f32 = 1.0e-4;
-/// Largest number of iterations: the rest is stiff and small, and the next sub-step continues with it.
-const MAX_ITERATIONS: usize = 40;
+/// Iterations at most, and particles times iterations. A small mesh that is stiff for its spacing needs hundreds; beyond that it is
+/// too soft.
+const MAX_ITERATIONS: usize = 400;
+const FEWEST_ITERATIONS: usize = 40;
+const MAX_WORK: usize = 200_000;
+
 /// A particle during a solve. The data that its neighbours read lies apart, close together.
 #[derive(Debug, Default, Clone, Copy)]
 struct Row {
@@ -53,11 +61,15 @@ pub(super) struct MeshBending {
     /// On it.
     diagonal: Arc<[f32]>,
     rest: Arc<[RestFace]>,
+    /// Sum of the absolute values of each particle's row (N/m), by block.
+    bounds: Arc<[Lanes]>,
     /// s (s²).
     weight: f32,
+    /// Whether forces push it, as it was prepared.
+    is_soft: bool,
     rows: Vec<Row>,
-    /// Places and displacements (m).
-    places: Vec<[Vec4; 2]>,
+    /// Where they will be (m), seen from the first particle.
+    places: Vec<Vec4>,
     /// Conjugate directions.
     directions: Vec<Vec4>,
 }
@@ -103,8 +115,17 @@ impl MeshBending {
         for at in 1..first.len() {
             first[at] = first[at].max(first[at - 1]);
         }
+        let layout = surface.layout();
+        let mut bounds = vec![[0.0; LANES]; layout.blocks()];
+        for (row, slot) in layout.slots().enumerate() {
+            let beside = entries[of(&first, row)].iter();
+            let sum = beside.map(|(_, number)| number.abs()).sum::<f32>() + diagonal[row];
+            bounds[slot.block][slot.lane] = sum;
+        }
         Self {
-            layout: surface.layout(),
+            layout,
+            bounds: bounds.into(),
+            is_soft: true,
             first: first.into(),
             entries: entries.into(),
             diagonal: diagonal.into(),
@@ -112,12 +133,16 @@ impl MeshBending {
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
             directions: vec![Vec4::ZERO; places.len()],
-            places: vec![[Vec4::ZERO; 2]; places.len()],
+            places: vec![Vec4::ZERO; places.len()],
         }
     }
 
     pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
         self.weight = weight;
+        self.is_soft = weight * self.bound(blocks) < LIMIT;
+        if self.is_soft {
+            return;
+        }
         let slots = self.layout.slots();
         for ((row, slot), diagonal) in self.rows.iter_mut().zip(slots).zip(&*self.diagonal) {
             let inverse_mass = blocks[slot.block].view()[W + slot.lane];
@@ -130,18 +155,55 @@ impl MeshBending {
         }
     }
 
+    /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
+    fn bound(&self, blocks: &[Block]) -> f32 {
+        let mut largest = 0.0_f32;
+        for (block, bounds) in blocks.iter().zip(&*self.bounds) {
+            let weights = &block.view()[W..W + LANES];
+            for (weight, bound) in weights.iter().zip(bounds) {
+                largest = largest.max(weight * bound);
+            }
+        }
+        largest
+    }
+
+    /// Takes the places where the displacements lead to.
+    fn find_places(&mut self, blocks: &[Block]) {
+        let Some(origin) = blocks.first().map(|block| block.position(0)) else {
+            return;
+        };
+        // A mesh's particles lie in one row of the layout: lane after lane.
+        for (lane, places) in self.places.chunks_mut(blocks.len()).enumerate() {
+            for (place, block) in places.iter_mut().zip(blocks) {
+                let moved = block.displacement(lane);
+                *place = ((block.position(lane) - origin) + moved).extend(0.0);
+            }
+        }
+    }
+
+    /// Adds the displacements by the forces at `places`, with this weight (s²).
+    fn add_forces(&mut self, blocks: &mut [Block], weight: f32) {
+        self.set_forces();
+        for (lane, rows) in self.rows.chunks(blocks.len().max(1)).enumerate() {
+            for (row, block) in rows.iter().zip(&mut *blocks) {
+                let moved = block.displacement(lane);
+                let given = weight * block.inverse_mass(lane) * row.left;
+                block.set_displacement(lane, moved + given.truncate());
+            }
+        }
+    }
+
+    /// Changes displacements by the implicit effect of the bending moments, or, where it is soft, by their forces.
     pub fn solve(&mut self, blocks: &mut [Block]) {
-        let rows = self.rows.iter_mut().zip(&mut self.places);
-        for ((row, place), slot) in rows.zip(self.layout.slots()) {
-            let view = blocks[slot.block].view();
-            let of = |from: usize| view[from + slot.lane];
-            *place = [
-                Vec4::new(of(X), of(Y), of(Z), 0.0),
-                Vec4::new(of(DX), of(DY), of(DZ), 0.0),
-            ];
-            row.added = Vec4::ZERO;
+        self.find_places(blocks);
+        if self.is_soft {
+            self.add_forces(blocks, self.weight);
+            return;
         }
         self.set_right_side();
+        for row in &mut self.rows {
+            row.added = Vec4::ZERO;
+        }
         if !self.conjugate_gradients() {
             return;
         }
@@ -153,22 +215,18 @@ impl MeshBending {
         }
     }
 
-    /// `left` becomes −s K p, less what the rest curvatures want.
-    fn set_right_side(&mut self) {
+    /// `left` becomes −K p, less what the rest curvatures want.
+    fn set_forces(&mut self) {
         for at in 0..self.rows.len() {
-            let [place, moved] = self.places[at];
+            let place = self.places[at];
             let mut sum = Vec4::ZERO;
             for &(other, number) in &self.entries[of(&self.first, at)] {
-                let [there, moved_there] = self.places[other as usize];
-                sum += number * ((there - place) + (moved_there - moved));
+                sum += number * (self.places[other as usize] - place);
             }
             self.rows[at].left = -sum;
         }
         for face in &*self.rest {
-            let at = |corner: usize| {
-                let [place, moved] = self.places[face.particles[corner] as usize];
-                (place + moved).truncate()
-            };
+            let at = |corner: usize| self.places[face.particles[corner] as usize].truncate();
             let Some(frame) = frame(at(0), at(1), at(2)) else {
                 continue;
             };
@@ -178,6 +236,11 @@ impl MeshBending {
                 self.rows[particle as usize].left += turned.extend(0.0);
             }
         }
+    }
+
+    /// `left` becomes s times the forces, 0 of pinned particles.
+    fn set_right_side(&mut self) {
+        self.set_forces();
         for row in &mut self.rows {
             let is_free = row.mass > 0.0;
             row.left = if is_free {
@@ -201,7 +264,8 @@ impl MeshBending {
             return norm.is_nan();
         }
         let enough = norm * TOLERANCE * TOLERANCE;
-        for _ in 0..MAX_ITERATIONS {
+        let affordable = MAX_WORK / self.rows.len().max(1);
+        for _ in 0..affordable.clamp(FEWEST_ITERATIONS, MAX_ITERATIONS) {
             let mut energy = 0.0;
             for at in 0..self.rows.len() {
                 let (row, own) = (&mut self.rows[at], self.directions[at]);
@@ -235,6 +299,25 @@ impl MeshBending {
 
 #[cfg(test)]
 impl MeshBending {
+    /// Whether forces push it, as it was prepared.
+    pub fn is_soft(&self) -> bool {
+        self.is_soft
+    }
+
+    /// K (N/m), dense. Its rows add up to nothing, as the forces do.
+    pub fn matrix(&self) -> Vec<Vec<f64>> {
+        let count = self.diagonal.len();
+        let row = |row: usize| {
+            let mut numbers = vec![0.0; count];
+            for &(column, number) in &self.entries[of(&self.first, row)] {
+                numbers[column as usize] += f64::from(number);
+                numbers[row] -= f64::from(number);
+            }
+            numbers
+        };
+        (0..count).map(row).collect()
+    }
+
     /// ½ xᵀ K x of one coordinate (J).
     pub fn energy(&self, places: &[f64]) -> f64 {
         let of_row = |row: usize| {

@@ -3,7 +3,7 @@
 //! Between its prediction and the sweep over the springs, each sub-step moves the particles from their predicted
 //! positions p to the solution y of `(M + s K) y = M p`. This is implicit Euler for bending alone, with s = Δt² and K
 //! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
-//! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A grid
+//! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A surface
 //! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction.
 
 mod chains;

@@ -235,7 +235,7 @@ kernels! {
     kick(blocks: &mut [Block], around: [&[Block]; 2], springs: &ElasticGrid, kick: &Kick, forces: &mut [Vec<Force>; 2], moved: &mut Lanes),
     relax_packets(rows: &mut [Row], packets: &[Packet], step_scale: &StepScale),
     relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale),
-    relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &[Vec4], step_scale: &StepScale),
+    relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale),
     plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Vec3Lanes]),
     plate_moments(places: [&[Vec3Lanes]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
     plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),

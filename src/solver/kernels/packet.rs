@@ -67,16 +67,17 @@ pub(crate) fn relax_packets_there(
     }
 }
 
-/// The way back: the last packet first. A spring that gives has pulled already, which it does not do twice.
+/// The way back: the last packet first. A spring that gives has pulled already, which it does not do twice. Adds what each pulls
+/// with on this way.
 #[inline(always)]
 pub(crate) fn relax_packets_back(
     rows: &mut [Row],
     packets: &[Packet],
-    pulls: &[Vec4],
+    pulls: &mut [Vec4],
     step_scale: &StepScale,
 ) {
     for (packet, pull) in packets.iter().zip(pulls).rev() {
-        relax(rows, packet, step_scale, Some(*pull));
+        *pull += relax(rows, packet, step_scale, Some(*pull));
     }
 }
 

@@ -6,7 +6,7 @@ use super::RIGIDITY;
 use crate::cloth::{ClothGrid, ClothParticles};
 
 /// Solves a dense symmetric system in place of its right side.
-fn solve_dense(matrix: &mut [Vec<f64>], right: &mut [DVec3]) {
+pub(super) fn solve_dense(matrix: &mut [Vec<f64>], right: &mut [DVec3]) {
     let count = right.len();
     for pivot in 0..count {
         let (head, tail) = matrix.split_at_mut(pivot + 1);
@@ -79,7 +79,7 @@ fn deviation(stencil: &Stencil, places: &[DVec3]) -> DVec3 {
 }
 
 /// Masses (kg), and where particles will be.
-fn start(particles: &ClothParticles) -> (Vec<f64>, Vec<DVec3>) {
+pub(super) fn start(particles: &ClothParticles) -> (Vec<f64>, Vec<DVec3>) {
     let masses = particles
         .inverse_masses()
         .map(|of| 1.0 / f64::from(of))

@@ -1,6 +1,7 @@
 //! Against dense matrices in f64.
 
 mod dense;
+mod mesh;
 mod soft;
 
 use bevy::math::{DVec3, Vec3};
@@ -69,9 +70,27 @@ fn added(
     pairs.map(|(after, before)| after - before).collect()
 }
 
-/// Whether forces push a grid, as it was prepared.
+/// Whether forces push it, as it was prepared.
 fn is_soft(bending: &Bending) -> bool {
-    matches!(&bending.of, Kind::Grid(grid) if grid.is_soft())
+    match &bending.of {
+        Kind::Grid(grid) => grid.is_soft(),
+        Kind::Mesh(mesh) => mesh.is_soft(),
+    }
+}
+
+/// The largest weight (s²) with which it is pushed, or one.
+fn softest(bending: &mut Bending, particles: &ClothParticles) -> f32 {
+    let (mut soft, mut stiff) = (0.0_f32, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (soft + stiff);
+        bending.prepare(particles.blocks(), middle);
+        if is_soft(bending) {
+            soft = middle;
+        } else {
+            stiff = middle;
+        }
+    }
+    soft
 }
 
 /// Bits of what bending leaves.

@@ -3,21 +3,6 @@
 use super::{dense::pushes, *};
 use crate::cloth::ClothGrid;
 
-/// The largest weight (s²) with which it is pushed, or one.
-fn softest(bending: &mut Bending, particles: &ClothParticles) -> f32 {
-    let (mut soft, mut stiff) = (0.0_f32, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (soft + stiff);
-        bending.prepare(particles.blocks(), middle);
-        if is_soft(bending) {
-            soft = middle;
-        } else {
-            stiff = middle;
-        }
-    }
-    soft
-}
-
 fn grids() -> impl Iterator<Item = (ClothGrid, Surface)> {
     let sides = [
         (2, 2),

@@ -94,4 +94,24 @@ impl Bundles {
         (kernels.bundle_forward)(rows, heads, steps, pulled, solved, step_scale);
         (kernels.bundle_backward)(rows, heads, steps, pulled, solved);
     }
+
+    /// Calls `visit` with each spring as it was solved last: the rows of its ends, its length at rest (m), its compliance (m/N) and
+    /// its pull (m kg).
+    pub fn for_each_pull(&self, mut visit: impl FnMut([u32; 2], f32, f32, f32)) {
+        for Bundle { heads, steps } in &*self.bundles {
+            let mut from = *heads;
+            for (step, pulled) in self.steps[steps.clone()]
+                .iter()
+                .zip(&self.pulled[steps.clone()])
+            {
+                for lane in 0..LANES {
+                    if let Some((to, rest, compliance)) = step.spring(lane) {
+                        // A multiplier is negative where its spring is too long.
+                        visit([from[lane], to], rest, compliance, -pulled[lane]);
+                        from[lane] = to;
+                    }
+                }
+            }
+        }
+    }
 }

@@ -41,6 +41,12 @@ impl Step {
         }
     }
 
+    /// The spring in one lane: the row that it leads to, its length at rest (m) and its compliance (m/N). `None` where there is none.
+    pub fn spring(&self, lane: usize) -> Option<(u32, f32, f32)> {
+        let is_there = self.hold[lane] < f32::INFINITY;
+        is_there.then_some((self.to[lane], self.rest[lane], self.compliance[lane]))
+    }
+
     /// The spring in one lane, to the particle in row `to`.
     pub fn set(&mut self, lane: usize, to: u32, spring: &Spring) {
         self.to[lane] = to;
