@@ -150,8 +150,8 @@ impl Spin {
         }
     }
 
-    /// Turns the cloth as a whole so that its angular momentum is that after gravity's torque, the mean of both ends of the tick, and
-    /// damping, the fraction `kept` of each velocity. Also takes back the angle by which it was turned in the tick, in which the difference has grown
+    /// Turns the cloth as a whole, so that its angular momentum is that after gravity's torque and damping. The torque is the mean of
+    /// that at both ends of the tick. Damping keeps the fraction `kept` of each velocity. Also takes back the angle by which it was turned in the tick, in which the difference has grown
     /// evenly.
     pub fn restore(&self, particles: &mut ClothParticles, kept: f32) {
         let origin = self.origin + self.shift;
