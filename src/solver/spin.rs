@@ -70,7 +70,7 @@ impl Spin {
         let layout = particles.layout();
         let blocks = particles.blocks().iter().enumerate();
         // Most blocks hold no pin: they are passed over as a whole.
-        let pinned = blocks
+        let mut pinned = blocks
             .filter(|(_, block)| block.view()[W..W + LANES].contains(&0.0))
             .flat_map(|(index, block)| {
                 let in_row = index % layout.strip as usize;
@@ -96,7 +96,7 @@ impl Spin {
             let beside = (pin - origin).reject_from_normalized(axis);
             beside.length() <= STRAIGHT * along.length()
         };
-        if axis.dot(down) < UPRIGHT || !pinned.into_iter().all(on_line) {
+        if axis.dot(down) < UPRIGHT || !pinned.all(on_line) {
             return None;
         }
         let shift = pins.first().map_or(Vec3::ZERO, |pin| pin.to - pin.from);
