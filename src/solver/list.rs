@@ -30,7 +30,7 @@ pub(super) struct ListSolver {
     packets: Arc<[Packet]>,
     /// How many of them are across edges: the first.
     across: usize,
-    /// What they have pulled with, over their lengths (kg).
+    /// Their pulls over their lengths (kg).
     pulls: Vec<Vec4>,
     chains: Bundles,
     layout: Layout,
@@ -81,7 +81,7 @@ impl ListSolver {
         Self {
             springs: springs.clone(),
             across,
-            ripples: Vec::with_capacity(layout.blocks() * LANES + 1),
+            ripples: vec![0.0; layout.blocks() * LANES + 1],
             pulls: vec![Vec4::ZERO; packets.len()],
             packets: packets.into(),
             chains: Bundles::new(springs, row_of, none),

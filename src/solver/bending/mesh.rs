@@ -68,8 +68,8 @@ pub(super) struct MeshBending {
     /// Whether forces push it, as it was prepared.
     is_soft: bool,
     rows: Vec<Row>,
-    /// Where they will be (m), seen from the first particle.
-    places: Vec<Vec4>,
+    /// Places and displacements (m).
+    places: Vec<[Vec4; 2]>,
     /// Conjugate directions.
     directions: Vec<Vec4>,
 }
@@ -133,7 +133,7 @@ impl MeshBending {
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
             directions: vec![Vec4::ZERO; places.len()],
-            places: vec![Vec4::ZERO; places.len()],
+            places: vec![[Vec4::ZERO; 2]; places.len()],
         }
     }
 
@@ -167,27 +167,22 @@ impl MeshBending {
         largest
     }
 
-    /// Takes the places where the displacements lead to.
-    fn find_places(&mut self, blocks: &[Block]) {
-        let Some(origin) = blocks.first().map(|block| block.position(0)) else {
-            return;
-        };
-        // A mesh's particles lie in one row of the layout: lane after lane.
-        for (lane, places) in self.places.chunks_mut(blocks.len()).enumerate() {
+    /// Takes places and displacements. A mesh's particles lie in one row of the layout: lane after lane.
+    fn load(&mut self, blocks: &[Block]) {
+        for (lane, places) in self.places.chunks_mut(blocks.len().max(1)).enumerate() {
             for (place, block) in places.iter_mut().zip(blocks) {
-                let moved = block.displacement(lane);
-                *place = ((block.position(lane) - origin) + moved).extend(0.0);
+                *place = [block.position(lane), block.displacement(lane)].map(|of| of.extend(0.0));
             }
         }
     }
 
-    /// Adds the displacements by the forces at `places`, with this weight (s²).
-    fn add_forces(&mut self, blocks: &mut [Block], weight: f32) {
+    /// Adds the displacements by the forces.
+    fn push(&mut self, blocks: &mut [Block]) {
         self.set_forces();
         for (lane, rows) in self.rows.chunks(blocks.len().max(1)).enumerate() {
             for (row, block) in rows.iter().zip(&mut *blocks) {
                 let moved = block.displacement(lane);
-                let given = weight * block.inverse_mass(lane) * row.left;
+                let given = self.weight * block.inverse_mass(lane) * row.left;
                 block.set_displacement(lane, moved + given.truncate());
             }
         }
@@ -195,9 +190,9 @@ impl MeshBending {
 
     /// Changes displacements by the implicit effect of the bending moments, or, where it is soft, by their forces.
     pub fn solve(&mut self, blocks: &mut [Block]) {
-        self.find_places(blocks);
+        self.load(blocks);
         if self.is_soft {
-            self.add_forces(blocks, self.weight);
+            self.push(blocks);
             return;
         }
         self.set_right_side();
@@ -218,15 +213,19 @@ impl MeshBending {
     /// `left` becomes −K p, less what the rest curvatures want.
     fn set_forces(&mut self) {
         for at in 0..self.rows.len() {
-            let place = self.places[at];
+            let [place, moved] = self.places[at];
             let mut sum = Vec4::ZERO;
             for &(other, number) in &self.entries[of(&self.first, at)] {
-                sum += number * (self.places[other as usize] - place);
+                let [there, moved_there] = self.places[other as usize];
+                sum += number * ((there - place) + (moved_there - moved));
             }
             self.rows[at].left = -sum;
         }
         for face in &*self.rest {
-            let at = |corner: usize| self.places[face.particles[corner] as usize].truncate();
+            let at = |corner: usize| {
+                let [place, moved] = self.places[face.particles[corner] as usize];
+                (place + moved).truncate()
+            };
             let Some(frame) = frame(at(0), at(1), at(2)) else {
                 continue;
             };

@@ -5,7 +5,7 @@ use super::{
     *,
 };
 
-/// What is to be added: the solution of `(M + s K) e = −s K p`, and its first term `−s M⁻¹ K p`.
+/// The displacements to add: the solution of `(M + s K) e = −s K p`, and its first term `−s M⁻¹ K p`.
 fn expected(bending: &Bending, particles: &ClothParticles, weight: f64) -> [Vec<DVec3>; 2] {
     let Kind::Mesh(mesh) = &bending.of else {
         panic!("a mesh's");
