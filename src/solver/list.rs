@@ -38,8 +38,6 @@ pub(super) struct ListSolver {
     /// The particles of one sub-step, strip by strip: in the order of their indices, with what is no particle at the end of
     /// each row of the layout.
     rows: Vec<Row>,
-    /// Each particle's sum of the tensions of its springs over their lengths (N/m), by row.
-    ripples: Vec<f32>,
 }
 
 impl ListSolver {
@@ -81,7 +79,6 @@ impl ListSolver {
         Self {
             springs: springs.clone(),
             across,
-            ripples: vec![0.0; layout.blocks() * LANES + 1],
             pulls: vec![Vec4::ZERO; packets.len()],
             packets: packets.into(),
             chains: Bundles::new(springs, row_of, none),
@@ -133,10 +130,10 @@ impl ListSolver {
 
     /// The stretch of the material at the tensions of the last sub-step, and the angular frequency of the fastest ripples at the
     /// median particle (rad/s): `ω² = 3/2 w Σ F/l`, as of a lattice of even triangles. Of springs along edges that give.
+    ///
+    /// The rows are stored by then, and serve as memory: the sums lie beside their displacements.
     fn tensions(&mut self) -> (f32, f32) {
-        let (rows, ripples) = (&self.rows, &mut self.ripples);
-        ripples.clear();
-        ripples.resize(rows.len(), 0.0);
+        let rows = &mut self.rows;
         let mut material = 0.0_f32;
         let scale = self.step_scale.inverse_weight;
         // The tension over the length (N/m), and the elongation as a part of the length.
@@ -144,7 +141,7 @@ impl ListSolver {
             let part = part.clamp(0.0, MOST_GIVEN);
             material = material.max(part / (1.0 - part));
             for end in ends {
-                ripples[end as usize] += tension;
+                rows[end as usize].moved.w += tension;
             }
         };
         self.chains.for_each_pull(|ends, rest, compliance, pull| {
@@ -167,16 +164,24 @@ impl ListSolver {
                 }
             }
         }
-        for (ripple, row) in ripples.iter_mut().zip(rows) {
-            *ripple *= 1.5 * row.place.w;
+        // The last row is no particle's.
+        let rows = rows.split_last_mut().map_or(&mut [][..], |(_, rows)| rows);
+        let (mut below, mut above) = (0, 0);
+        for row in &mut *rows {
+            row.moved.w *= 1.5 * row.place.w;
+            below += usize::from(row.moved.w < 0.0);
+            above += usize::from(row.moved.w > 0.0);
         }
-        ripples.retain(|square| *square != 0.0);
-        let middle = ripples.len() / 2;
-        if ripples.is_empty() {
+        // Of pinned particles, and of what is no particle, it is 0: they are not counted.
+        let middle = (below + above) / 2;
+        if middle < below || above == 0 {
             return (material, 0.0);
         }
-        let (_, median, _) = ripples.select_nth_unstable_by(middle, f32::total_cmp);
-        (material, median.max(0.0).sqrt())
+        let from_above = below + above - middle;
+        let at = rows.len() - from_above;
+        let of = |row: &Row| row.moved.w;
+        let (_, median, _) = rows.select_nth_unstable_by(at, |a, b| of(a).total_cmp(&of(b)));
+        (material, of(median).sqrt())
     }
 
     /// The largest length over rest length, given where a particle is.
