@@ -17,6 +17,7 @@ pub fn threads(stretch: f32, shear: f32) -> ClothMaterial {
         stretch_compliance: stretch,
         shear_compliance: shear,
         bend_rigidity: 0.0,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.0,
         friction: 0.0,

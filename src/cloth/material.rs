@@ -23,19 +23,26 @@ use super::error::ClothError;
 /// They stretch alike in all directions, and also resist shear, like an isotropic sheet with a Poisson's ratio of a
 /// third. A shear compliance below the stretch compliance adds springs across each edge, between the two opposite
 /// corners. A larger one changes nothing.
+///
+/// A woven cloth differs along its two sets of yarns. [`weft`](Self::weft) holds what differs across: along the rows
+/// of a grid, or across a mesh's [grain](crate::cloth::ClothGrain). The other values are then those along the warp:
+/// down the columns of a grid, or along the grain. On a mesh, the stiffer direction counts as at most a hundred times as
+/// stiff as the other, and its shear stiffness is at least √(a b) × 3⁄8, with the stiffnesses a and b of both.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothMaterial {
     /// Mass per area (kg/m²), positive.
     pub areal_density: f32,
-    /// Compliance along rows and columns (m/N), zero or more.
+    /// Compliance along rows and columns (m/N), zero or more. With a [`weft`](Self::weft), that along the warp.
     pub stretch_compliance: f32,
     /// Compliance along both diagonals (m/N), zero or more; infinity for no shear springs.
     pub shear_compliance: f32,
     /// Flexural rigidity (N·m): the moment that holds a strip bent to a curvature of 1/m, per metre of its width. Zero
-    /// or more, finite. Zero bends freely and costs nothing.
+    /// or more, finite. Zero bends freely and costs nothing. With a [`weft`](Self::weft), that of a strip along the warp.
     pub bend_rigidity: f32,
+    /// What differs along the weft; `None` for a cloth that is alike in both directions.
+    pub weft: Option<ClothWeft>,
     /// Damping along springs, the internal loss of the material: the time (s) in which a released stretch decays to
     /// 1/e. It is the τ of a Kelvin-Voigt solid, zero or more and finite. The damping ratio of an oscillation of
     /// angular frequency ω is τ ω/2. It conserves momentum and does not slow a fall. Rigid springs do not stretch and
@@ -53,12 +60,36 @@ pub struct ClothMaterial {
     pub friction: f32,
 }
 
+/// Values of a [`ClothMaterial`] along its weft: the rows of a grid, or across the grain of a mesh.
+#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub struct ClothWeft {
+    /// Compliance (m/N), zero or more.
+    pub stretch_compliance: f32,
+    /// Flexural rigidity (N·m), zero or more, finite. Twist has √(D_warp D_weft), as in an orthotropic plate by Huber
+    /// (1923).
+    pub bend_rigidity: f32,
+}
+
 impl Default for ClothMaterial {
     fn default() -> Self {
         Self::COTTON
     }
 }
 
+/// Those named in the table are from Wang, O'Brien and Ramamoorthi 2011, Data-driven elastic models for cloth: density,
+/// stiffness along u and v and in shear at the smallest strain, and the range of bending rigidities, whose largest is
+/// taken for the warp and whose smallest for the weft.
+///
+/// | preset | measured | estimated |
+/// |---|---|---|
+/// | [`DENIM`](Self::DENIM), [`TROUSERS`](Self::TROUSERS), [`POLYESTER`](Self::POLYESTER) | density, stretch, shear, bending (Wang et al.) | friction, damping |
+/// | [`INTERLOCK_KNIT`](Self::INTERLOCK_KNIT), [`RIB_KNIT`](Self::RIB_KNIT) | density, stretch, bending (Wang et al.) | friction, damping; shear, of which springs have at most a quarter |
+/// | [`COTTON`](Self::COTTON), [`SILK`](Self::SILK) | bending (KES-F) | density, stretch, shear, friction, damping |
+/// | [`LEATHER`](Self::LEATHER) | drape (Memon et al.) | all else |
+/// | [`RUBBER`](Self::RUBBER) | modulus of natural rubber, for bending | all else |
+/// | [`CANVAS`](Self::CANVAS), [`FELT`](Self::FELT) | – | all |
 impl ClothMaterial {
     /// A plain cotton weave, as in a bed sheet. Rigidity: 0.06 gf·cm²/cm, similar to KES-F measurements of light
     /// shirting; here it drapes by 41 to 46 %.
@@ -67,6 +98,7 @@ impl ClothMaterial {
         stretch_compliance: 1.0e-4,
         shear_compliance: 1.0e-3,
         bend_rigidity: 6.0e-6,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.01,
         friction: 0.4,
@@ -78,23 +110,65 @@ impl ClothMaterial {
         stretch_compliance: 2.0e-4,
         shear_compliance: 1.0e-2,
         bend_rigidity: 2.0e-6,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.005,
         friction: 0.2,
     };
-    /// Cotton twill, as in jeans. Density and rigidity are those of an 11 oz denim, bent by its own weight. It has 0.324
-    /// kg/m², and 6·10⁻⁵ N·m in its most flexible direction (Wang, O'Brien and Ramamoorthi 2011, Data-driven elastic
-    /// models for cloth). Softer denims have a third of that (0.14 to 0.23 gf·cm²/cm on the KES-F, Journal of Textiles
-    /// 2016, 4614168).
+    /// An 11 oz cotton twill, as in jeans: five times as stiff along its warp as along its weft.
     pub const DENIM: Self = Self {
         areal_density: 0.324,
-        stretch_compliance: 5.0e-5,
-        shear_compliance: 5.0e-4,
-        bend_rigidity: 6.0e-5,
-        stretch_damping: 0.0,
         damping: 0.02,
         friction: 0.5,
+        ..Self::measured([1014.0, 205.0], 53.0, [1.21e-4, 2.0e-5])
     };
+    /// A cotton twill, as in trousers.
+    pub const TROUSERS: Self = Self {
+        areal_density: 0.220,
+        damping: 0.02,
+        friction: 0.5,
+        ..Self::measured([2035.0, 2017.0], 105.0, [2.28e-4, 1.08e-4])
+    };
+    /// A polyester weave, as in a tablecloth: easy to shear.
+    pub const POLYESTER: Self = Self {
+        areal_density: 0.128,
+        damping: 0.01,
+        friction: 0.3,
+        ..Self::measured([2027.0, 2002.0], 19.0, [6.6e-5, 1.0e-5])
+    };
+    /// A double knit, as in a T-shirt: it gives thirty times as much as a weave.
+    pub const INTERLOCK_KNIT: Self = Self {
+        areal_density: 0.187,
+        damping: 0.03,
+        friction: 0.5,
+        ..Self::measured([34.0, 17.0], 9.0, [3.9e-5, 7.0e-6])
+    };
+    /// A ribbed knit, as in cuffs and jumpers.
+    pub const RIB_KNIT: Self = Self {
+        areal_density: 0.276,
+        damping: 0.03,
+        friction: 0.6,
+        ..Self::measured([65.0, 43.0], 20.0, [9.8e-5, 2.5e-5])
+    };
+
+    /// Of these stiffnesses along warp and weft and in shear (N/m), and of these rigidities (N·m). Springs across rows and
+    /// columns add their stiffness to that of both.
+    const fn measured(stretch: [f32; 2], shear: f32, bend: [f32; 2]) -> Self {
+        Self {
+            areal_density: 0.0,
+            stretch_compliance: 1.0 / (stretch[0] - shear),
+            shear_compliance: 1.0 / shear,
+            bend_rigidity: bend[0],
+            weft: Some(ClothWeft {
+                stretch_compliance: 1.0 / (stretch[1] - shear),
+                bend_rigidity: bend[1],
+            }),
+            stretch_damping: 0.0,
+            damping: 0.0,
+            friction: 0.0,
+        }
+    }
+
     /// Heavy and stiff, as in a sail or a tent. Rigidity: that of a bending length c of 4.5 cm by D = g ρ c³ (Peirce
     /// 1930), an estimate for unwashed cotton duck.
     pub const CANVAS: Self = Self {
@@ -102,6 +176,7 @@ impl ClothMaterial {
         stretch_compliance: 2.0e-5,
         shear_compliance: 1.0e-4,
         bend_rigidity: 3.6e-4,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.02,
         friction: 0.6,
@@ -113,6 +188,7 @@ impl ClothMaterial {
         stretch_compliance: 5.0e-4,
         shear_compliance: 1.0e-3,
         bend_rigidity: 1.0e-4,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.04,
         friction: 0.6,
@@ -124,6 +200,7 @@ impl ClothMaterial {
         stretch_compliance: 2.0e-4,
         shear_compliance: 4.0e-4,
         bend_rigidity: 5.0e-5,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.04,
         friction: 0.6,
@@ -135,15 +212,20 @@ impl ClothMaterial {
         stretch_compliance: 3.0e-3,
         shear_compliance: 3.0e-3,
         bend_rigidity: 1.7e-4,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.03,
         friction: 0.9,
     };
     /// The named materials, for menus.
-    pub const PRESETS: [(&str, Self); 7] = [
+    pub const PRESETS: [(&str, Self); 11] = [
         ("cotton", Self::COTTON),
         ("silk", Self::SILK),
         ("denim", Self::DENIM),
+        ("trousers", Self::TROUSERS),
+        ("polyester", Self::POLYESTER),
+        ("interlock knit", Self::INTERLOCK_KNIT),
+        ("rib knit", Self::RIB_KNIT),
         ("canvas", Self::CANVAS),
         ("felt", Self::FELT),
         ("leather", Self::LEATHER),
@@ -172,6 +254,20 @@ impl ClothMaterial {
             range,
         )?;
         check(self.bend_rigidity, finite, "bending rigidity (N·m)", range)?;
+        if let Some(weft) = self.weft {
+            check(
+                weft.stretch_compliance,
+                finite,
+                "stretch compliance of the weft (m/N)",
+                range,
+            )?;
+            check(
+                weft.bend_rigidity,
+                finite,
+                "bending rigidity of the weft (N·m)",
+                range,
+            )?;
+        }
         check(self.friction, finite, "friction μ", range)?;
         let range = "zero or more";
         check(
@@ -190,6 +286,56 @@ impl ClothMaterial {
         check(self.damping, unit, "damping D", "from 0 to 1")?;
         Ok(())
     }
+
+    /// Stretch compliances along rows, the weft, and along columns, the warp (m/N).
+    pub(crate) fn stretch_compliances(&self) -> [f32; 2] {
+        let warp = self.stretch_compliance;
+        [self.weft.map_or(warp, |weft| weft.stretch_compliance), warp]
+    }
+
+    /// The same for a mesh, which has neither rows nor columns.
+    pub(crate) fn woven_stretch(&self) -> Woven {
+        Woven::of(self.stretch_compliances())
+    }
+
+    /// Flexural rigidities of a mesh (N·m).
+    pub(crate) fn woven_bending(&self) -> Woven {
+        Woven::of(self.bend_rigidities())
+    }
+
+    /// Flexural rigidities of strips along the weft and along the warp (N·m).
+    pub(crate) fn bend_rigidities(&self) -> [f32; 2] {
+        let warp = self.bend_rigidity;
+        [self.weft.map_or(warp, |weft| weft.bend_rigidity), warp]
+    }
+}
+
+/// Two values of a mesh's material, along weft and warp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Woven {
+    /// Their geometric mean.
+    pub mean: f32,
+    /// The fourth root of the ratio of the weft's to the warp's.
+    pub ratio: f32,
+}
+
+impl Woven {
+    /// The largest ratio of two values of a mesh.
+    const FARTHEST_APART: f32 = 100.0;
+
+    fn of([weft, warp]: [f32; 2]) -> Self {
+        let of = |own: f32, other: f32| f64::from(own.max(other / Self::FARTHEST_APART));
+        let (weft, warp) = (of(weft, warp), of(warp, weft));
+        let is_alike = weft == warp;
+        Self {
+            mean: if is_alike { weft } else { (weft * warp).sqrt() } as f32,
+            ratio: if is_alike {
+                1.0
+            } else {
+                (weft / warp).powf(0.25) as f32
+            },
+        }
+    }
 }
 
 #[cfg(test)]
@@ -201,7 +347,7 @@ mod tests {
         for (name, material) in ClothMaterial::PRESETS {
             assert_eq!(material.validate(), Ok(()), "{name}");
         }
-        let bad: [(fn(&mut ClothMaterial, f32), &[f32], &str); 7] = [
+        let bad: [(fn(&mut ClothMaterial, f32), &[f32], &str); 9] = [
             (
                 |m, v| m.areal_density = v,
                 &[0.0, -1.0, f32::NAN, f32::INFINITY],
@@ -224,6 +370,26 @@ mod tests {
                 "along springs",
             ),
             (|m, v| m.damping = v, &[-0.1, 1.1, f32::NAN], "damping"),
+            (
+                |m, stretch_compliance| {
+                    m.weft = Some(ClothWeft {
+                        stretch_compliance,
+                        ..ClothWeft::default()
+                    });
+                },
+                &[-0.1, f32::NAN, f32::INFINITY],
+                "stretch compliance of the weft",
+            ),
+            (
+                |m, bend_rigidity| {
+                    m.weft = Some(ClothWeft {
+                        bend_rigidity,
+                        ..ClothWeft::default()
+                    });
+                },
+                &[-0.1, f32::NAN, f32::INFINITY],
+                "bending rigidity of the weft",
+            ),
             (
                 |m, v| m.friction = v,
                 &[-0.1, f32::NAN, f32::INFINITY],

@@ -1,6 +1,7 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
 mod error;
+mod grain;
 mod grid;
 mod lanes;
 mod limits;
@@ -16,11 +17,12 @@ mod springs;
 mod surface;
 
 pub use error::ClothError;
+pub use grain::ClothGrain;
 #[doc(hidden)]
 pub use grid::ClothGrid;
 pub use grid::{ClothPlane, GridShape};
 pub use limits::MAX_PARTICLES;
-pub use material::ClothMaterial;
+pub use material::{ClothMaterial, ClothWeft};
 pub use particle_id::ParticleId;
 pub use particles::ClothParticles;
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
@@ -36,6 +38,7 @@ pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttr
 
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;
+pub(crate) use material::Woven;
 pub(crate) use particles::{Earlier, Load, StepKind};
 pub(crate) use presence::ClothPresence;
 pub(crate) use skin::Skinning;

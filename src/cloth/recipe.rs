@@ -98,6 +98,29 @@ impl Default for ClothShape {
     }
 }
 
+impl ClothShape {
+    /// As [`Cloth::surface`].
+    pub(crate) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
+        match self {
+            Self::Grid(grid) => grid.scaled(scale).map(|grid| Surface::of_grid(&grid)),
+            Self::Triangles {
+                positions,
+                triangles,
+                weld,
+            } => {
+                let mesh = TriangleMesh {
+                    positions: positions.clone(),
+                    triangles: triangles.clone(),
+                    ..TriangleMesh::default()
+                };
+                Surface::of_mesh(&mesh, *weld, scale)
+            }
+            #[cfg(feature = "mesh")]
+            Self::Mesh { .. } => Err(ClothError::MeshNotLoaded),
+        }
+    }
+}
+
 impl Default for Cloth {
     /// 16 × 16 particles, 0.1 m apart.
     fn default() -> Self {
@@ -221,23 +244,7 @@ impl Cloth {
     /// # Errors
     /// Those of [`grid`](Self::grid) and [`Surface::of_mesh`]; [`ClothError::MeshNotLoaded`] for an asset.
     pub fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
-        match &self.shape {
-            ClothShape::Grid(grid) => grid.scaled(scale).map(|grid| Surface::of_grid(&grid)),
-            ClothShape::Triangles {
-                positions,
-                triangles,
-                weld,
-            } => {
-                let mesh = TriangleMesh {
-                    positions: positions.clone(),
-                    triangles: triangles.clone(),
-                    ..TriangleMesh::default()
-                };
-                Surface::of_mesh(&mesh, *weld, scale)
-            }
-            #[cfg(feature = "mesh")]
-            ClothShape::Mesh { .. } => Err(ClothError::MeshNotLoaded),
-        }
+        self.shape.surface(scale)
     }
 
     /// Checks that the component's own values are in range.

@@ -71,7 +71,13 @@ pub(crate) fn material_stretch(
     } else {
         pins
     };
-    material.stretch_compliance * tension(surface, material, pins, acceleration)
+    largest_compliance(material) * tension(surface, material, pins, acceleration)
+}
+
+/// That of warp or weft (m/N), whichever gives more.
+fn largest_compliance(material: &ClothMaterial) -> f32 {
+    let [weft, warp] = material.stretch_compliances();
+    weft.max(warp)
 }
 
 /// Distances over a surface at rest from each particle to a pin, including the stretch of the material.
@@ -87,7 +93,7 @@ impl Lengths<'_> {
         let [across, down] = flat.between(particle, pin);
         let square = across * across + down * down;
         let straight = square.sqrt();
-        let stretch = 1.0 + SLACK + self.material.stretch_compliance * self.tension;
+        let stretch = 1.0 + SLACK + largest_compliance(self.material) * self.tension;
         let bias = 2.0 * across * down / square;
         // Along a chain there is nothing to shear, and infinite × 0 is NaN; nor where springs run in all directions.
         if !flat.has_chains || bias == 0.0 {
@@ -101,7 +107,7 @@ impl Lengths<'_> {
 
     /// Along edges, anywhere else.
     fn along(&self, path: f32) -> f32 {
-        path * (1.0 + SLACK + self.material.stretch_compliance * self.tension)
+        path * (1.0 + SLACK + largest_compliance(self.material) * self.tension)
     }
 
     /// The pin to which each particle is tethered in a layer, and the length of the tether.

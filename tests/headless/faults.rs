@@ -104,7 +104,7 @@ fn a_spacing_that_is_no_length() {
 
 #[test]
 fn a_material_that_cannot_be() {
-    let spoiled: [fn(&mut ClothMaterial); 10] = [
+    let spoiled: [fn(&mut ClothMaterial); 11] = [
         |material| material.areal_density = 0.0,
         |material| material.areal_density = -1.0,
         |material| material.areal_density = f32::NAN,
@@ -114,6 +114,12 @@ fn a_material_that_cannot_be() {
         |material| material.shear_compliance = f32::NAN,
         |material| material.bend_rigidity = -0.5,
         |material| material.damping = 1.5,
+        |material| {
+            material.weft = Some(ClothWeft {
+                stretch_compliance: f32::NAN,
+                ..default()
+            });
+        },
         |material| material.friction = f32::NAN,
     ];
     for spoil in spoiled {

@@ -58,3 +58,4 @@ mod support;
 mod touch;
 mod uneven;
 mod wind;
+mod woven;

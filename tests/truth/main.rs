@@ -38,6 +38,7 @@ mod smooth;
 mod soft;
 mod strip;
 mod swings;
+mod woven;
 
 /// `meshes` calls the crate by this name: the crate's own tests include that file, too.
 use bevy_drape as library;

@@ -32,6 +32,7 @@ fn material(compliance: f32, shear: f32) -> ClothMaterial {
         stretch_compliance: compliance,
         shear_compliance: shear,
         bend_rigidity: 0.0,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.0,
         friction: 0.0,

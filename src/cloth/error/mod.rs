@@ -114,6 +114,23 @@ pub enum ClothError {
         /// Number of values.
         found: usize,
     },
+    /// The axis of a [`ClothGrain`](crate::cloth::ClothGrain) has no direction.
+    #[error("the axis of a grain must be finite and have a length: {axis}")]
+    GrainAxis {
+        /// The axis.
+        axis: Vec3,
+    },
+    /// A mesh with a weft has no texture coordinates that its warp could follow.
+    #[error("a weft on a mesh needs texture coordinates to follow, or a `ClothGrain` with an axis")]
+    GrainNeedsUvs,
+    /// A triangle of a mesh with a weft has no area in the texture, and so no direction of its warp.
+    #[error(
+        "triangle {triangle} has no area in the texture, so its warp has no direction: unfold it, or insert a `ClothGrain` with an axis"
+    )]
+    FoldedUvs {
+        /// Index of the triangle.
+        triangle: usize,
+    },
     /// A skinned mesh has a joint weight that is negative or not finite.
     #[error("the joint weights of vertex {vertex} must be finite and not negative: {weights:?}")]
     SkinWeights {

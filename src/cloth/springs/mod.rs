@@ -89,7 +89,8 @@ impl SpringList {
 /// Compliance of a square patch for each kind of spring (m/N); infinite for none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Compliances {
-    pub structural: f32,
+    /// Along rows and along columns.
+    pub structural: [f32; 2],
     pub shear: f32,
 }
 
@@ -108,10 +109,11 @@ impl Compliances {
             (_, 0) => (grid.spacing().x, on_border(column, grid.columns())),
             _ => (grid.step_length((down, across)), false),
         };
-        let compliance = if down > 0 && across != 0 {
-            self.shear
-        } else {
-            self.structural
+        let [along_rows, along_columns] = self.structural;
+        let compliance = match (down, across) {
+            (0, _) => along_rows,
+            (_, 0) => along_columns,
+            _ => self.shear,
         };
         let narrowed = if narrowed { 2.0 } else { 1.0 };
         compliance
@@ -138,7 +140,7 @@ impl Springs {
     /// ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are left out.
     pub fn of_grid(grid: &ClothGrid, material: &ClothMaterial) -> Self {
         let compliances = Compliances {
-            structural: material.stretch_compliance,
+            structural: material.stretch_compliances(),
             shear: material.shear_compliance,
         };
         Self {
@@ -180,28 +182,32 @@ impl Springs {
     ///
     /// Those of a mesh run along its edges, with the stretch compliance. Edges run in all directions, so they resist
     /// shear as well. If the material's shear compliance is below its stretch compliance, springs across each edge,
-    /// between the two opposite corners, add the difference.
+    /// between the two opposite corners, add the difference. A mesh without a [grain](crate::cloth::ClothGrain) takes the
+    /// geometric mean of what warp and weft have.
     pub fn of_surface(surface: &Surface, material: &ClothMaterial) -> Self {
         if let Some(grid) = surface.as_grid() {
             return Self::of_grid(grid, material);
         }
+        let woven = material.woven_stretch();
         let stiffness = |compliance: f32| 1.0 / compliance;
-        let shear = stiffness(material.shear_compliance) - stiffness(material.stretch_compliance);
+        let shear = stiffness(material.shear_compliance) - stiffness(woven.mean);
         // Rigid stretch leaves nothing to add, not even to rigid shear.
-        let shear = if material.stretch_compliance > 0.0 {
+        let shear = if woven.mean > 0.0 {
             shear.max(0.0)
         } else {
             0.0
         };
         let across = stiffness(shear);
         let compliance = |kind| match kind {
-            SpringKind::Structural => material.stretch_compliance,
+            SpringKind::Structural => woven.mean,
             SpringKind::Shear | SpringKind::Bend => across,
         };
+        let woven_links = surface.woven_links(woven.ratio);
+        let all_links = woven_links.as_deref().unwrap_or(surface.links());
         let mut list = SpringList::default();
         // Springs along edges come last: the stiffest springs are solved last.
         let [_, places] = [SpringKind::Bend, SpringKind::Structural].map(|kind| {
-            let links = surface.links().iter().filter(|link| link.kind == kind);
+            let links = all_links.iter().filter(|link| link.kind == kind);
             let springs: Vec<Spring> = links
                 .map(|link| Spring {
                     kind,
@@ -215,7 +221,7 @@ impl Springs {
         });
         let is_edge = |link: &&Link| link.kind == SpringKind::Structural;
         // Without stretch springs there are no chains.
-        if places.len() == surface.links().iter().filter(is_edge).count() {
+        if places.len() == all_links.iter().filter(is_edge).count() {
             list.chains = surface.chains().renamed(|edge| places[edge as usize]);
         }
         Self {
@@ -261,11 +267,16 @@ impl Springs {
         match &self.storage {
             SpringStorage::Grid(grid, compliances) => {
                 let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
-                let along = columns.saturating_sub(1) * rows + columns * rows.saturating_sub(1);
+                let along = [
+                    columns.saturating_sub(1) * rows,
+                    columns * rows.saturating_sub(1),
+                ];
                 let there = |compliance: f32, count: usize| {
                     if compliance.is_finite() { count } else { 0 }
                 };
-                there(compliances.structural, along)
+                let [across, down] = [0, 1].map(|at| there(compliances.structural[at], along[at]));
+                across
+                    + down
                     + there(
                         compliances.shear,
                         2 * columns.saturating_sub(1) * rows.saturating_sub(1),
@@ -284,7 +295,7 @@ impl Springs {
     pub fn has(&self, kind: SpringKind) -> bool {
         match &self.storage {
             SpringStorage::Grid(_, compliances) => match kind {
-                SpringKind::Structural => compliances.structural.is_finite(),
+                SpringKind::Structural => compliances.structural.iter().any(|of| of.is_finite()),
                 SpringKind::Shear => compliances.shear.is_finite(),
                 SpringKind::Bend => false,
             },

@@ -4,6 +4,11 @@
 //! tenth off: too stiff along the preferred direction of the edges, and too soft across it. Particles that are not in
 //! the middle of their neighbours add compliance. Both effects are measured around each particle, and each spring is
 //! corrected by the measured compliance in its direction.
+//!
+//! A woven surface has Young's moduli a along the warp and b along the weft. Springs of all directions stretch like an
+//! isotropic sheet that was drawn out along the warp: with φ from the warp and `s = cos²φ ⁄ t + t sin²φ`, t⁴ = a ⁄ b, a
+//! spring has the compliance s³ ⁄ √(a b), and a strip cut in that direction s² ⁄ √(a b). The shear modulus is
+//! √(a b) × 3⁄8. Springs cannot have all four constants of an orthotropic sheet, as their C₁₂ is C₆₆.
 
 use bevy::math::{DMat2, DMat3, DVec2, DVec3, Vec3};
 
@@ -29,8 +34,15 @@ struct Star {
 }
 
 /// Corrects the springs along edges. `normals` are the particles' normals, of length 1. `is_border` marks particles on
-/// a border, whose star is incomplete.
-pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_border: &[bool]) {
+/// a border, whose star is incomplete. The compliance that is wanted in the direction of each, relative to the
+/// material's, is the square of its `softness`; 1 for a surface that is alike in all directions.
+pub(super) fn calibrate(
+    links: &mut [Link],
+    rest: &[Vec3],
+    normals: &[Vec3],
+    is_border: &[bool],
+    softness: impl Fn(usize) -> f64,
+) {
     // Springs along edges come last.
     let first = links.partition_point(|link| link.kind != SpringKind::Structural);
     let links = &mut links[first..];
@@ -43,7 +55,9 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
         .iter()
         .map(|link| square(link) / f64::from(link.slenderness))
         .collect();
-    let mut corrected = areas.clone();
+    let softness: Vec<f64> = (0..links.len()).map(softness).collect();
+    let corrected = areas.iter().zip(&softness);
+    let mut corrected: Vec<f64> = corrected.map(|(area, soft)| area / soft.powi(3)).collect();
     let turns: Vec<Vec<DVec2>> = (0..rest.len())
         .map(|particle| {
             let neighbours = graph.of(particle as u32).iter();
@@ -85,7 +99,7 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
             sum.compliance()
         };
         let compliances: Vec<Option<DMat3>> = (0..rest.len()).map(compliance).collect();
-        for (link, corrected) in links.iter().zip(&mut corrected) {
+        for ((link, corrected), softness) in links.iter().zip(&mut corrected).zip(&softness) {
             let [a, b] = link.ends.map(|end| end as usize);
             let given = |particle: usize| {
                 let direction = strain(frames[particle].direction(rest[b] - rest[a]));
@@ -96,7 +110,8 @@ pub(super) fn calibrate(links: &mut [Link], rest: &[Vec3], normals: &[Vec3], is_
             let (count, sum) =
                 known.fold((0.0, 0.0), |(count, sum), given| (count + 1.0, sum + given));
             if count > 0.0 && sum.is_finite() {
-                *corrected *= (sum / count).clamp(LIMITS[0], LIMITS[1]);
+                let given = sum / count / (softness * softness);
+                *corrected *= given.clamp(LIMITS[0], LIMITS[1]);
             }
         }
     }
@@ -244,7 +259,7 @@ mod tests {
         links.extend((1..7).map(|other| link(other, other % 6 + 1, 1.0)));
         let before = links.clone();
         let is_border: Vec<bool> = (0..7).map(|particle| particle > 0).collect();
-        calibrate(&mut links, &rest, &[Vec3::Y; 7], &is_border);
+        calibrate(&mut links, &rest, &[Vec3::Y; 7], &is_border, |_| 1.0);
         for (link, before) in links.iter().zip(&before) {
             assert!(
                 (link.slenderness / before.slenderness - 1.0).abs() < 1.0e-4,
@@ -252,7 +267,7 @@ mod tests {
             );
         }
         // Without any whole star, too.
-        calibrate(&mut links, &rest, &[Vec3::Y; 7], &[true; 7]);
+        calibrate(&mut links, &rest, &[Vec3::Y; 7], &[true; 7], |_| 1.0);
     }
 
     /// What a star gives in a direction does not depend on the axes of its plane.

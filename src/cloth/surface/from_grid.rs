@@ -22,6 +22,7 @@ impl Surface {
             particle_of_vertex: None,
             attributes: Vec::new(),
             links: Vec::new(),
+            grain: Vec::new(),
             is_border: Vec::new(),
             scale: grid.scale(),
             spacing: Spacing {

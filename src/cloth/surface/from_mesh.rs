@@ -217,7 +217,7 @@ impl Welded {
         let normals = normals(faces.all(), &self.rest);
         let mut links = links(faces.all(), &sides, &self.rest);
         let is_border = borders(&sides, particles);
-        calibrate(&mut links, &self.rest, &normals, &is_border);
+        calibrate(&mut links, &self.rest, &normals, &is_border, |_| 1.0);
         let mut lengths: Vec<f32> = links
             .iter()
             .filter(|link| link.kind == SpringKind::Structural)
@@ -260,6 +260,7 @@ impl Welded {
             particle_of_vertex: Some(self.particle_of),
             attributes,
             links,
+            grain: Vec::new(),
             is_border,
             scale,
             spacing,

@@ -24,6 +24,7 @@ mod springs;
 mod tests;
 mod triangles;
 mod weld;
+mod woven;
 
 use std::{fmt, sync::OnceLock};
 
@@ -61,6 +62,8 @@ pub struct Surface {
     attributes: Vec<VertexAttribute>,
     /// The springs of a mesh. Those of a grid follow from its rows and columns.
     links: Vec<Link>,
+    /// Direction of the warp in each face of a mesh, of length 1; empty without a [grain](crate::cloth::ClothGrain).
+    grain: Vec<Vec3>,
     /// On a mesh, marks particles at an edge that does not have two faces.
     is_border: Vec<bool>,
     scale: Vec3,
@@ -317,6 +320,7 @@ impl Default for Surface {
             particle_of_vertex: None,
             attributes: Vec::new(),
             links: Vec::new(),
+            grain: Vec::new(),
             is_border: Vec::new(),
             scale: Vec3::ONE,
             spacing: Spacing::default(),

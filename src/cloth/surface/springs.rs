@@ -25,38 +25,49 @@ pub(crate) struct Link {
 /// patch's compliance times its length² over that area. This is Van Gelder 1998, equation 20, for a Poisson's ratio of
 /// a third, the only one that isotropic springs have.
 pub(super) fn links(faces: &[[u32; 3]], sides: &[Side], rest: &[Vec3]) -> Vec<Link> {
+    let (mut along, mut across) = (Vec::new(), Vec::new());
+    for_each_link(faces, sides, rest, |link, _| match link.kind {
+        SpringKind::Structural => along.push(link),
+        SpringKind::Shear | SpringKind::Bend => across.push(link),
+    });
+    across.append(&mut along);
+    across
+}
+
+/// Calls `visit` with each of these springs and the sides of the faces that it represents.
+pub(super) fn for_each_link(
+    faces: &[[u32; 3]],
+    sides: &[Side],
+    rest: &[Vec3],
+    mut visit: impl FnMut(Link, &[Side]),
+) {
     let distance = |[a, b]: [u32; 2]| rest[a as usize].distance(rest[b as usize]);
-    let area = |side: &Side| face_area(faces[side.face as usize], rest);
-    let link = |kind, ends: [u32; 2], area: f32| {
+    let mut visit = |kind, ends: [u32; 2], sides: &[Side]| {
         let rest_length = distance(ends);
         let square = rest_length * rest_length;
-        Link {
+        let area = |side: &Side| face_area(faces[side.face as usize], rest);
+        let area: f32 = sides.iter().map(area).sum();
+        let link = Link {
             kind,
             ends,
             rest_length,
             slenderness: square / area.max(SMALLEST_AREA * square),
-        }
+        };
+        visit(link, sides);
     };
-    let (mut along, mut across) = (Vec::new(), Vec::new());
     for sides in sides.chunk_by(|a, b| a.ends == b.ends) {
-        along.push(link(
-            SpringKind::Structural,
-            sides[0].ends,
-            sides.iter().map(area).sum(),
-        ));
+        visit(SpringKind::Structural, sides[0].ends, sides);
         for (index, one) in sides.iter().enumerate() {
             for other in &sides[index + 1..] {
                 let (a, b) = (one.opposite, other.opposite);
                 let ends = [a.min(b), a.max(b)];
                 // Two faces on top of each other have nothing across.
                 if distance(ends) > SMALLEST_AREA * distance(one.ends) {
-                    across.push(link(SpringKind::Bend, ends, area(one) + area(other)));
+                    visit(SpringKind::Bend, ends, &[*one, *other]);
                 }
             }
         }
     }
-    across.append(&mut along);
-    across
 }
 
 /// One side of a face.

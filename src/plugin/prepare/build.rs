@@ -1,5 +1,7 @@
 //! Builds cloths that are new or whose components have changed.
 
+use std::sync::Arc;
+
 use bevy::{
     ecs::change_detection::{Mut, Tick},
     math::Vec3,
@@ -10,12 +12,12 @@ use super::{
     source::Sources,
 };
 use crate::{
-    cloth::{Cloth, ClothError, ClothMaterial, ClothParticles, Pins, Surface},
+    cloth::{Cloth, ClothError, ClothGrain, ClothMaterial, ClothParticles, Pins, Surface},
     plugin::{
         authoring::ClothAttachment,
         state::{
             BuiltFrom, ClothBuilt, ClothState, FailedBuild, Recipe, Shared, SharedParts, Source,
-            stiffnesses,
+            Stiffnesses,
         },
     },
     solver::{TickStep, TimeOrder},
@@ -29,6 +31,8 @@ pub(crate) struct BuildInputs<'a> {
     /// Its mesh, if it is made from one.
     pub source: Option<Source>,
     pub material: &'a ClothMaterial,
+    /// That of a mesh with a weft.
+    pub grain: Option<&'a ClothGrain>,
     pub pins: &'a Pins,
     pub attachments: &'a [ClothAttachment],
     pub scale: Vec3,
@@ -54,7 +58,8 @@ pub(crate) fn build(
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<Build, ClothError> {
-    if is_built(wanted, built) && !particles.is_empty() {
+    let is_built = is_built(wanted, built) && !particles.is_empty();
+    if is_built && built.grain() == wanted.grain {
         follow_changes(wanted, parts, particles, built, state)?;
         return Ok(Build::Kept);
     }
@@ -63,6 +68,7 @@ pub(crate) fn build(
         changed: wanted.changed,
         source: wanted.source,
         material: *wanted.material,
+        grain: wanted.grain.cloned(),
         pins: wanted.pins.clone(),
         scale: wanted.scale,
         particles: [particles.columns(), particles.rows()],
@@ -73,7 +79,11 @@ pub(crate) fn build(
         return Err(error.clone());
     }
     let resumes = state.resumes;
-    let new = build_new(wanted, sources, parts, particles, built, state);
+    let new = if is_built {
+        follow_grain(wanted, sources, parts, particles, built, state)
+    } else {
+        build_new(wanted, sources, parts, particles, built, state)
+    };
     built.refused = new.as_ref().err().map(|error| (tried, error.clone()));
     let build = new?;
     if !resumes {
@@ -122,9 +132,9 @@ fn build_new(
         shape: cloth.shape.clone(),
         scale: scale_of(wanted),
         source: wanted.source,
+        grain: wanted.grain.cloned(),
     };
-    let make = || sources.surface(cloth, recipe.source.as_ref(), recipe.scale);
-    let shared = parts.get(&recipe, material, make)?;
+    let shared = parts.get(&recipe, material, || sources.surface(&recipe))?;
     let surface = &shared.surface;
     pins.validate(surface)?;
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
@@ -157,6 +167,39 @@ fn build_new(
         pins: pins.clone(),
     });
     Ok(build)
+}
+
+/// Takes over another grain, or none: springs and bending follow other directions, the particles stay as they are.
+fn follow_grain(
+    wanted: &BuildInputs,
+    sources: &Sources,
+    parts: &mut SharedParts,
+    particles: &mut Mut<ClothParticles>,
+    built: &mut ClothBuilt,
+    state: &mut ClothState,
+) -> Result<Build, ClothError> {
+    wanted.material.validate()?;
+    let Some(known) = &built.shared.recipe else {
+        return Ok(Build::Kept);
+    };
+    let recipe = Recipe {
+        grain: wanted.grain.cloned(),
+        ..known.clone()
+    };
+    let shared = parts.get(&recipe, wanted.material, || sources.surface(&recipe))?;
+    take_springs(built, shared, state);
+    follow_changes(wanted, parts, particles, built, state)?;
+    Ok(Build::Kept)
+}
+
+/// Takes over the springs of the same particles.
+fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothState) {
+    built.shared = shared;
+    let tethers = built.solver.take_tethers();
+    built.solver = built.shared.solver.clone();
+    built.solver.set_tethers(tethers);
+    // The stretch that bounds rely on is measured over other springs now.
+    state.inputs.written = None;
 }
 
 /// The particles of a cloth of which only the resolution has changed, while the rectangle is the same; `None` for any
@@ -251,21 +294,19 @@ fn follow_changes(
             particles.pin(attached.particle as usize);
         }
     }
-    let tethered_by =
-        |of: &ClothMaterial| [of.areal_density, of.stretch_compliance, of.shear_compliance];
+    let tethered_by = |of: &ClothMaterial| {
+        let [weft, warp] = of.stretch_compliances();
+        [of.areal_density, weft, warp, of.shear_compliance]
+    };
     let gives_otherwise = tethered_by(was) != tethered_by(material);
-    let is_sprung_otherwise = stiffnesses(was) != stiffnesses(material);
+    let is_sprung_otherwise = Stiffnesses::of(was) != Stiffnesses::of(material);
     (from.material, from.pins) = (*material, pins.clone());
     if are_others_pinned || gives_otherwise {
         built.forget_tethers();
     }
     if is_sprung_otherwise {
-        built.shared = parts.with_material(&built.shared, material);
-        let tethers = built.solver.take_tethers();
-        built.solver = built.shared.solver.clone();
-        built.solver.set_tethers(tethers);
-        // The stretch that bounds rely on is measured over other springs now.
-        state.inputs.written = None;
+        let shared = parts.with_material(&built.shared, material);
+        take_springs(built, shared, state);
     }
     state.rest.disturb();
     Ok(())

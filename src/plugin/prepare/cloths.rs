@@ -211,6 +211,7 @@ fn build_cloth(
         changed: cloth.game.cloth.last_changed(),
         source: sources.find(cloth.entity, &cloth.game.cloth, built.source())?,
         material: &inputs.material,
+        grain: cloth.game.grain(),
         pins: cloth.game.pins.unwrap_or(&NO_PINS),
         attachments: cloth
             .game

@@ -9,7 +9,7 @@ use bevy::ecs::{
 
 use super::{attach::Targets, roots::Roots, skin::Skins, source::Sources};
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, ClothSkin, Pins},
+    cloth::{Cloth, ClothGrain, ClothMaterial, ClothParticles, ClothShape, ClothSkin, Pins},
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::{
@@ -31,6 +31,7 @@ pub(super) static NO_PINS: Pins = Pins::none();
 pub(crate) struct GameQuery {
     pub cloth: Ref<'static, Cloth>,
     pub material: Option<&'static ClothMaterial>,
+    pub grain: Option<&'static ClothGrain>,
     pub pins: Option<&'static Pins>,
     pub attachments: Option<&'static ClothAttachments>,
     pub skin: Option<Ref<'static, ClothSkin>>,
@@ -42,6 +43,20 @@ pub(crate) struct GameQuery {
     pub pressure: Option<&'static ClothPressure>,
     pub lod: Option<&'static ClothLod>,
     pub teleport: Option<&'static ClothTeleport>,
+}
+
+/// The grain of a mesh from which the game took its [`ClothGrain`], or that never had one.
+static BY_TEXTURE: ClothGrain = ClothGrain::by_texture();
+
+impl GameQueryItem<'_, '_> {
+    /// The grain, if the cloth is a mesh whose material has a weft.
+    pub fn grain(&self) -> Option<&ClothGrain> {
+        self.material?.weft?;
+        match self.cloth.shape {
+            ClothShape::Grid(_) => None,
+            _ => Some(self.grain.unwrap_or(&BY_TEXTURE)),
+        }
+    }
 }
 
 /// A cloth that is prepared for a tick.

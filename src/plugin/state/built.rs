@@ -10,7 +10,7 @@ use bevy::{
 
 use super::{notices::Noticed, pose::SkinLimits, shared::Shared, source::Source};
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothParticles, Pins, Springs, Surface},
+    cloth::{ClothError, ClothGrain, ClothMaterial, ClothParticles, Pins, Springs, Surface},
     hierarchy::QuadTree,
     solver::{Solver, Tethers, material_stretch},
 };
@@ -73,6 +73,7 @@ pub(crate) struct FailedBuild {
     pub changed: Tick,
     pub source: Option<Source>,
     pub material: ClothMaterial,
+    pub grain: Option<ClothGrain>,
     pub pins: Pins,
     pub scale: Vec3,
     /// Its columns and rows.
@@ -104,6 +105,11 @@ impl ClothBuilt {
     /// The mesh that it was made from, if it was.
     pub(crate) fn source(&self) -> Option<Source> {
         self.shared.recipe.as_ref().and_then(|recipe| recipe.source)
+    }
+
+    /// The grain of a mesh with a weft.
+    pub(crate) fn grain(&self) -> Option<&ClothGrain> {
+        self.shared.recipe.as_ref()?.grain.as_ref()
     }
 
     /// Whether it was made from a `Cloth` that was changed then, and from this material and these pins.
@@ -231,6 +237,7 @@ mod tests {
         particles.pin(0);
         let mut parts = SharedParts::default();
         let recipe = Recipe {
+            grain: None,
             shape: cloth.shape,
             scale: Vec3::ONE,
             source: None,

@@ -35,7 +35,7 @@ pub(crate) use resting::RestsOn;
 pub use scratch::ClothScratch;
 pub(crate) use search::BroadPhaseBounds;
 pub use search::ClothSearch;
-pub(crate) use shared::{Recipe, Shared, SharedParts, stiffnesses};
+pub(crate) use shared::{Recipe, Shared, SharedParts, Stiffnesses};
 pub(crate) use source::Source;
 pub use stats::ClothStats;
 pub(crate) use wind_field::{EffectiveWind, WindField};

@@ -6,7 +6,10 @@ use bevy::{ecs::resource::Resource, math::Vec3};
 
 use super::source::Source;
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothShape, Skinning, SpringKind, Springs, Surface},
+    cloth::{
+        ClothError, ClothGrain, ClothMaterial, ClothShape, ClothWeft, Skinning, SpringKind,
+        Springs, Surface, TriangleMesh,
+    },
     contact::Sheet,
     hierarchy::QuadTree,
     solver::{Bending, Solver},
@@ -16,7 +19,7 @@ use crate::{
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
     pub recipe: Option<Recipe>,
-    stiffnesses: [f32; 3],
+    stiffnesses: Stiffnesses,
     pub surface: Arc<Surface>,
     pub springs: Springs,
     pub tree: QuadTree,
@@ -66,6 +69,29 @@ pub(crate) struct Recipe {
     pub scale: Vec3,
     /// The mesh, if it is made from an asset.
     pub source: Option<Source>,
+    /// That of a mesh with a weft.
+    pub grain: Option<ClothGrain>,
+}
+
+impl Recipe {
+    /// The surface of a shape that needs no asset.
+    ///
+    /// # Errors
+    /// Those of [`ClothShape::surface`] and of its grain.
+    pub fn surface_without_asset(&self) -> Result<Surface, ClothError> {
+        self.grained(self.shape.surface(self.scale)?, &TriangleMesh::default())
+    }
+
+    /// A surface made from `mesh`, with its grain.
+    ///
+    /// # Errors
+    /// Those of [`ClothGrain::apply`].
+    pub fn grained(&self, surface: Surface, mesh: &TriangleMesh) -> Result<Surface, ClothError> {
+        match &self.grain {
+            Some(grain) => grain.apply(surface, mesh),
+            None => Ok(surface),
+        }
+    }
 }
 
 /// All shared data in use.
@@ -85,7 +111,7 @@ impl SharedParts {
         material: &ClothMaterial,
         make: impl FnOnce() -> Result<Surface, ClothError>,
     ) -> Result<Arc<Shared>, ClothError> {
-        let stiffnesses = stiffnesses(material);
+        let stiffnesses = Stiffnesses::of(material);
         let mut alike = None;
         for known in self.known.iter().filter_map(Weak::upgrade) {
             if known.recipe.as_ref() == Some(recipe) {
@@ -136,11 +162,22 @@ impl SharedParts {
 }
 
 /// The values of a material that its solver depends on: compliances of stretch and shear (m/N), flexural rigidity
-/// (N·m).
-pub(crate) fn stiffnesses(material: &ClothMaterial) -> [f32; 3] {
-    [
-        material.stretch_compliance,
-        material.shear_compliance,
-        material.bend_rigidity,
-    ]
+/// (N·m), and those of the weft.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(crate) struct Stiffnesses {
+    warp: [f32; 3],
+    weft: Option<ClothWeft>,
+}
+
+impl Stiffnesses {
+    pub fn of(material: &ClothMaterial) -> Self {
+        Self {
+            warp: [
+                material.stretch_compliance,
+                material.shear_compliance,
+                material.bend_rigidity,
+            ],
+            weft: material.weft,
+        }
+    }
 }

@@ -25,9 +25,9 @@ pub(super) struct GridBending {
 }
 
 impl GridBending {
-    /// Of a plate of this flexural rigidity (N·m).
-    pub fn new(grid: &ClothGrid, rigidity: f32) -> Self {
-        let plate = Plate::new(grid, rigidity);
+    /// Of a plate of these flexural rigidities along rows and along columns (N·m).
+    pub fn new(grid: &ClothGrid, rigidities: [f32; 2]) -> Self {
+        let plate = Plate::new(grid, rigidities);
         Self {
             push: Push::new(&plate),
             plate,

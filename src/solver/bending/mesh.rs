@@ -2,7 +2,8 @@
 //!
 //! Across an edge, the difference of the two faces' slopes is linear in the four positions; on a quadratic surface it
 //! is linear in the curvature. Three edges give all three numbers of a face's curvature, exactly on any triangles. So
-//! the energy `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` does not depend on the triangulation:
+//! the energy `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` does not depend on the triangulation. A woven mesh has x along its warp and
+//! `½ Σ A (D_warp κ_xx² + 2 √(D_warp D_weft) κ_xy² + D_weft κ_yy²)`.
 //!
 //! ```text
 //!  ――― o ―――      a face and the three beside it: six particles;
@@ -26,7 +27,7 @@ use super::{
     patch::{Patch, RestFace, faces_beside, frame},
     push::LIMIT,
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, Surface, W};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, Surface, W, Woven};
 
 /// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
 const TOLERANCE: f32 = 1.0e-4;
@@ -75,8 +76,8 @@ pub(super) struct MeshBending {
 }
 
 impl MeshBending {
-    /// Of a plate of this flexural rigidity (N·m).
-    pub fn new(surface: &Surface, rigidity: f32) -> Self {
+    /// Of a plate of these flexural rigidities (N·m). Without a grain, it has their mean in all directions.
+    pub fn new(surface: &Surface, rigidity: Woven) -> Self {
         let places: Vec<DVec3> = surface
             .rest_positions()
             .iter()
@@ -86,11 +87,14 @@ impl MeshBending {
         let beside = faces_beside(faces);
         let mut matrix: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         let mut rest = Vec::new();
-        for (face, beside) in faces.iter().zip(&beside) {
-            let Some(patch) = Patch::new(*face, *beside, &places) else {
+        for (index, (face, beside)) in faces.iter().zip(&beside).enumerate() {
+            let Some(mut patch) = Patch::new(*face, *beside, &places) else {
                 continue;
             };
-            let stiffness = f64::from(rigidity) * patch.area;
+            if let Some(warp) = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0) {
+                patch.weave(warp.as_dvec3(), rigidity.ratio.into(), &places);
+            }
+            let stiffness = f64::from(rigidity.mean) * patch.area;
             for (a, &row) in patch.particles.iter().enumerate() {
                 for (b, &column) in patch.particles.iter().enumerate() {
                     let product: f64 = patch.curvature.iter().map(|of| of[a] * of[b]).sum();

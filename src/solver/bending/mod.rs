@@ -36,13 +36,13 @@ enum Kind {
 impl Bending {
     /// The resistance of a surface; `None` if its material bends freely.
     pub fn new(surface: &Surface, material: &ClothMaterial) -> Option<Self> {
-        let rigidity = material.bend_rigidity;
-        if rigidity <= 0.0 || surface.is_empty() {
+        let rigidities = material.bend_rigidities();
+        if rigidities[0].max(rigidities[1]) <= 0.0 || surface.is_empty() {
             return None;
         }
         let of = match surface.as_grid() {
-            Some(grid) => Kind::Grid(Box::new(GridBending::new(grid, rigidity))),
-            None => Kind::Mesh(MeshBending::new(surface, rigidity)),
+            Some(grid) => Kind::Grid(Box::new(GridBending::new(grid, rigidities))),
+            None => Kind::Mesh(MeshBending::new(surface, material.woven_bending())),
         };
         Some(Self { of })
     }

@@ -52,7 +52,8 @@ pub(super) fn faces_beside(faces: &[[u32; 3]]) -> Vec<[Option<u32>; 3]> {
 pub(super) struct Patch {
     /// Its corners, and the corners beyond its edges; where there is none, a corner again, with zeros.
     pub particles: [u32; 6],
-    /// Contribution of each particle's position to `κ_xx`, `κ_yy` and `√2 κ_xy` (1/m²).
+    /// Contribution of each particle's position to `κ_xx`, `κ_yy` and `√2 κ_xy` (1/m²). Of a woven patch, x is along the
+    /// warp, and each is scaled by the root of its rigidity over the mean one.
     pub curvature: [[f64; 6]; 3],
     /// m².
     pub area: f64,
@@ -117,6 +118,26 @@ impl Patch {
             curvature,
             area,
         })
+    }
+
+    /// Makes its curvatures those along `warp`, along the weft and of twist, with the fourth root of the weft's rigidity over
+    /// the warp's.
+    pub fn weave(&mut self, warp: DVec3, ratio: f64, places: &[DVec3]) {
+        let [a, b, c] = [0, 1, 2].map(|corner| places[self.particles[corner] as usize]);
+        let x = (b - a).normalize();
+        let y = (b - a).cross(c - a).normalize().cross(x);
+        let (cos, sin) = (warp.dot(x), warp.dot(y));
+        let root = std::f64::consts::SQRT_2;
+        for particle in 0..6 {
+            let [along_x, along_y, twist] = self.curvature.map(|of| of[particle]);
+            let along_warp = cos * cos * along_x + sin * sin * along_y + root * cos * sin * twist;
+            let along_weft = sin * sin * along_x + cos * cos * along_y - root * cos * sin * twist;
+            let twist = root * cos * sin * (along_y - along_x) + (cos * cos - sin * sin) * twist;
+            let woven = [along_warp / ratio, along_weft * ratio, twist];
+            for (of, number) in self.curvature.iter_mut().zip(woven) {
+                of[particle] = number;
+            }
+        }
     }
 
     /// Its forces if it is curved at rest.

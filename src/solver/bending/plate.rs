@@ -10,6 +10,8 @@
 //!  |   |   |    κ_yy likewise down a column; a chain of a border is half a spacing wide.
 //!  o ― o ― o    κ_xy in a cell, k = 2 D ⁄ area of ½ k |x₀₀ − x₀₁ − x₁₀ + x₁₁|².
 //! ```
+//! A woven cloth has D of the weft along rows, that of the warp along columns, and `√(D_weft D_warp)` against twist (Huber
+//! 1923): a cylinder of direction φ then has `½ (√D_weft cos²φ + √D_warp sin²φ)² κ²`.
 //! Each of the three is exact where the curvature is the same everywhere, in rectangular cells as in square ones. Together they
 //! are the plate's difference equation of 13 points, whose error is of second order in the spacing. Chains of four directions
 //! would have a Poisson's ratio of a third whatever their rigidities: strips of them are too soft, as their free edges curl.
@@ -27,15 +29,15 @@ pub(super) struct Plate {
 }
 
 impl Plate {
-    /// Of this flexural rigidity (N·m).
-    pub fn new(grid: &ClothGrid, rigidity: f32) -> Self {
+    /// Of these flexural rigidities along rows and along columns (N·m).
+    pub fn new(grid: &ClothGrid, rigidities: [f32; 2]) -> Self {
         let (wide, high) = (f64::from(grid.spacing().x), f64::from(grid.spacing().y));
-        let rigidity = f64::from(rigidity);
+        let [across, down] = rigidities.map(f64::from);
         Self {
             layout: Layout::new(grid.columns(), grid.rows()),
-            across: (rigidity * high / wide.powi(3)) as f32,
-            down: (rigidity * wide / high.powi(3)) as f32,
-            twist: (2.0 * rigidity / (wide * high)) as f32,
+            across: (across * high / wide.powi(3)) as f32,
+            down: (down * wide / high.powi(3)) as f32,
+            twist: (2.0 * (across * down).sqrt() / (wide * high)) as f32,
         }
     }
 

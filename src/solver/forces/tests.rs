@@ -20,6 +20,7 @@ const SOFT: ClothMaterial = ClothMaterial {
     stretch_compliance: 1.0e-3,
     shear_compliance: 2.0e-3,
     bend_rigidity: 0.0,
+    weft: None,
     stretch_damping: 0.0,
     damping: 0.0,
     friction: 0.0,

@@ -242,6 +242,7 @@ fn showing_a_value_does_not_change_it() {
         stretch_compliance: 0.123_456_79,
         shear_compliance: f32::INFINITY,
         bend_rigidity: 3.3e-9,
+        weft: None,
         stretch_damping: 0.0,
         damping: 0.999,
         friction: 7.0,

@@ -7,14 +7,16 @@ use bevy::{
         resource::Resource,
         system::{Query, Res, SystemParam},
     },
-    math::Vec3,
     mesh::{Mesh, Mesh3d},
     platform::collections::HashMap,
 };
 
 use crate::{
     cloth::{Cloth, ClothError, ClothShape, Skinning, Surface, TriangleMesh, skin_of_asset},
-    plugin::{authoring::ClothMesh, state::Source},
+    plugin::{
+        authoring::ClothMesh,
+        state::{Recipe, Source},
+    },
 };
 
 /// The number of changes of each mesh since it was loaded; unchanged meshes are not in it.
@@ -127,19 +129,15 @@ impl Sources<'_, '_> {
         Skinning::new(surface, &self.triangles(source.mesh)?.positions, &skin)
     }
 
-    /// The surface of a cloth.
+    /// The surface of a recipe.
     ///
     /// # Errors
-    /// The error of the mesh.
-    pub fn surface(
-        &self,
-        cloth: &Cloth,
-        source: Option<&Source>,
-        scale: Vec3,
-    ) -> Result<Surface, ClothError> {
-        let (ClothShape::Mesh { weld }, Some(source)) = (&cloth.shape, source) else {
-            return cloth.surface(scale);
+    /// The error of the mesh, or of its grain.
+    pub fn surface(&self, recipe: &Recipe) -> Result<Surface, ClothError> {
+        let (ClothShape::Mesh { weld }, Some(source)) = (&recipe.shape, recipe.source) else {
+            return recipe.surface_without_asset();
         };
-        Surface::of_mesh(&self.triangles(source.mesh)?, *weld, scale)
+        let mesh = self.triangles(source.mesh)?;
+        recipe.grained(Surface::of_mesh(&mesh, *weld, recipe.scale)?, &mesh)
     }
 }

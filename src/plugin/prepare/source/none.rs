@@ -2,15 +2,12 @@
 
 use std::marker::PhantomData;
 
-use bevy::{
-    ecs::{entity::Entity, system::SystemParam},
-    math::Vec3,
-};
+use bevy::ecs::{entity::Entity, system::SystemParam};
 
 use crate::{
     cloth::{Cloth, ClothError, Skinning, Surface},
     contact::ClothCollider,
-    plugin::state::Source,
+    plugin::state::{Recipe, Source},
 };
 
 /// No assets.
@@ -35,14 +32,9 @@ impl Sources<'_, '_> {
         match source {}
     }
 
-    /// The surface of a cloth.
-    pub fn surface(
-        &self,
-        cloth: &Cloth,
-        _: Option<&Source>,
-        scale: Vec3,
-    ) -> Result<Surface, ClothError> {
-        cloth.surface(scale)
+    /// The surface of a recipe.
+    pub fn surface(&self, recipe: &Recipe) -> Result<Surface, ClothError> {
+        recipe.surface_without_asset()
     }
 }
 

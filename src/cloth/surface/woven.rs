@@ -1,0 +1,137 @@
+//! The direction of the warp in each face of a mesh, and the springs of a woven one.
+
+use bevy::math::{Vec2, Vec3};
+
+use super::{
+    Surface,
+    calibration::calibrate,
+    springs::{Link, for_each_link, sides_of},
+    triangles::TriangleMesh,
+};
+use crate::cloth::{error::ClothError, spring::SpringKind};
+
+/// A triangle whose area in the texture is less than this fraction of its squared size there has no direction.
+const FOLDED: f32 = 1.0e-6;
+/// An axis is perpendicular to a face if less than this fraction of it lies in the face.
+const PERPENDICULAR: f32 = 1.0e-3;
+
+impl Surface {
+    /// Gives each face of a mesh the direction of its warp, of length 1.
+    pub(crate) fn with_grain(mut self, grain: Vec<Vec3>) -> Self {
+        self.grain = grain;
+        self
+    }
+
+    /// The normal of a face at rest, of length 1.
+    pub(crate) fn face_normal(&self, face: [u32; 3]) -> Vec3 {
+        let [a, b, c] = face.map(|corner| self.rest[corner as usize]);
+        (b - a).cross(c - a).normalize_or(Vec3::Y)
+    }
+
+    /// The direction in each face that is nearest to an axis in the entity's frame; any where it is perpendicular.
+    pub(crate) fn grain_along(&self, axis: Vec3) -> Vec<Vec3> {
+        // As the cloth is scaled.
+        let axis = (axis * self.scale).normalize_or(axis);
+        let faces = self.triangles().iter();
+        faces
+            .map(|face| {
+                let normal = self.face_normal(*face);
+                let within = axis.reject_from_normalized(normal);
+                if within.length() > PERPENDICULAR {
+                    within.normalize()
+                } else {
+                    normal.any_orthonormal_vector()
+                }
+            })
+            .collect()
+    }
+
+    /// The direction of V in each face. `mesh` is the one that the surface was made from.
+    ///
+    /// # Errors
+    /// [`ClothError::GrainNeedsUvs`] without texture coordinates; [`ClothError::FoldedUvs`] for the first face without an
+    /// area in the texture.
+    pub(crate) fn grain_of_texture(&self, mesh: &TriangleMesh) -> Result<Vec<Vec3>, ClothError> {
+        let vertices = self.vertices();
+        if mesh.uvs.len() != vertices || mesh.positions.len() != vertices {
+            return Err(ClothError::GrainNeedsUvs);
+        }
+        let sorted = |mut corners: [u32; 3]| {
+            corners.sort_unstable();
+            corners
+        };
+        // A face is the first of the triangles between its particles.
+        let particle = |vertex: u32| Some(self.particle_of_vertex(vertex as usize)? as u32);
+        let mut triangles = Vec::with_capacity(mesh.triangles.len());
+        for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+            if let (Some(a), Some(b), Some(c)) = (particle(a), particle(b), particle(c)) {
+                triangles.push((sorted([a, b, c]), index));
+            }
+        }
+        triangles.sort_unstable();
+        let of_face = |face: &[u32; 3]| {
+            let corners = sorted(*face);
+            let at = triangles.partition_point(|(known, _)| *known < corners);
+            let triangle = triangles.get(at).map_or(0, |(_, index)| *index);
+            self.along_v(mesh, mesh.triangles[triangle])
+                .ok_or(ClothError::FoldedUvs { triangle })
+        };
+        self.triangles().iter().map(of_face).collect()
+    }
+
+    /// The direction of V in a triangle of vertices, of length 1; `None` if it has no area in the texture.
+    fn along_v(&self, mesh: &TriangleMesh, triangle: [u32; 3]) -> Option<Vec3> {
+        let [a, b, c] = triangle.map(|vertex| vertex as usize);
+        let place = |vertex: usize| Some(self.rest[self.particle_of_vertex(vertex)?]);
+        let (b_place, c_place) = (place(b)? - place(a)?, place(c)? - place(a)?);
+        let [b, c]: [Vec2; 2] = [b, c].map(|vertex| mesh.uvs[vertex] - mesh.uvs[a]);
+        let area = b.perp_dot(c);
+        let is_folded = !(area.abs() > FOLDED * b.length_squared().max(c.length_squared()));
+        if is_folded {
+            return None;
+        }
+        (area.signum() * (b.x * c_place - c.x * b_place)).try_normalize()
+    }
+
+    /// The direction of the warp in a face; `None` without a grain.
+    pub(crate) fn grain_of(&self, face: usize) -> Option<Vec3> {
+        self.grain.get(face).copied()
+    }
+
+    /// The springs of a mesh whose weft is t⁴ times as compliant as its warp; `None` if they are the usual
+    /// [links](Self::links). See [`calibrate`].
+    pub(crate) fn woven_links(&self, ratio: f32) -> Option<Vec<Link>> {
+        if self.grain.is_empty() || ratio == 1.0 {
+            return None;
+        }
+        let ratio = f64::from(ratio);
+        let faces = self.triangles();
+        let (mut along, mut across, mut softness) = (Vec::new(), Vec::new(), Vec::new());
+        for_each_link(faces, &sides_of(faces), &self.rest, |mut link, sides| {
+            let [a, b] = link.ends.map(|end| self.rest[end as usize]);
+            let span = (b - a).normalize_or_zero();
+            let along_warp = |face: u32| {
+                let cosine = f64::from(self.grain[face as usize].dot(span));
+                cosine * cosine
+            };
+            let sum: f64 = sides.iter().map(|side| along_warp(side.face)).sum();
+            let warp = (sum / sides.len() as f64).min(1.0);
+            let soft = warp / ratio + (1.0 - warp) * ratio;
+            if link.kind == SpringKind::Structural {
+                along.push(link);
+                softness.push(soft);
+            } else {
+                link.slenderness *= soft.powi(3) as f32;
+                across.push(link);
+            }
+        });
+        let normals: Vec<Vec3> = (0..self.len())
+            .map(|particle| self.normal_of(particle))
+            .collect();
+        calibrate(&mut along, &self.rest, &normals, &self.is_border, |at| {
+            softness[at]
+        });
+        across.append(&mut along);
+        Some(across)
+    }
+}
