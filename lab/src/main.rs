@@ -21,12 +21,15 @@ mod draped;
 mod drawn;
 mod exactness;
 mod experiment;
+mod fabrics;
 mod frames;
 mod games;
 mod hung;
 mod layers;
 mod lod;
 mod measure;
+#[path = "../../tests/shared/meshes.rs"]
+mod meshes;
 mod methods;
 mod needs;
 mod pareto;
@@ -57,6 +60,8 @@ mod waves;
 
 use std::{path::PathBuf, process::ExitCode};
 
+/// `meshes` calls the crate by this name: the crate's own tests include that file, too.
+use bevy_drape as library;
 use clap::{Parser, ValueEnum};
 
 use crate::{
@@ -119,6 +124,8 @@ enum Name {
     Waves,
     /// A clamped strip against the heavy elastica
     Bending,
+    /// Closed forms of sheets, strips and membranes, for grids and meshes
+    Fabrics,
     /// Maps of where methods fail
     Stability,
     /// All experiments, one after the other
@@ -127,7 +134,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 18] = [
+const EXPERIMENTS: [(Name, Conduct); 19] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -145,6 +152,7 @@ const EXPERIMENTS: [(Name, Conduct); 18] = [
     (Name::Convergence, conduct::<convergence::Convergence>),
     (Name::Waves, conduct::<waves::Waves>),
     (Name::Bending, conduct::<bending::Bending>),
+    (Name::Fabrics, conduct::<fabrics::Fabrics>),
     (Name::Stability, conduct::<stability::Stability>),
 ];
 

@@ -69,13 +69,20 @@ impl Quality {
         }
     }
 
-    /// Sets this quality of a material. Its other values stay as they are.
+    /// Sets this quality of a material. Its other values stay as they are. The weft keeps its ratio to the warp.
     pub fn set(self, material: &mut ClothMaterial, place: f32) {
+        let weft = material.weft.as_mut();
         match self {
-            Self::Stretchy if place <= 0.0 => material.stretch_compliance = 0.0,
-            Self::Stretchy => material.stretch_compliance = STRETCH.value(place),
-            Self::Stiff if place <= 0.0 => material.bend_rigidity = 0.0,
-            Self::Stiff => material.bend_rigidity = BEND.value(place),
+            Self::Stretchy => set_both(
+                &mut material.stretch_compliance,
+                weft.map(|weft| &mut weft.stretch_compliance),
+                STRETCH.value_or_none(place),
+            ),
+            Self::Stiff => set_both(
+                &mut material.bend_rigidity,
+                weft.map(|weft| &mut weft.bend_rigidity),
+                BEND.value_or_none(place),
+            ),
             Self::Heavy => material.areal_density = DENSITY.value(place),
             Self::Slippery => material.friction = (1.0 - place / 100.0).max(0.0),
             Self::Damped => material.damping = (DAMPING * place / 100.0).clamp(0.0, 1.0),
@@ -103,7 +110,7 @@ impl Quality {
             Self::Stiff => format!(
                 "How much the cloth resists bending and folding.\n\
                  Flexural rigidity: {bend_rigidity} N·m. A strip of 1 cm width, bent to a radius of 1 cm, needs {} N·mm.\n\
-                 0 % is none, 100 % is {} N·m. Silk has 0.000002 N·m, denim 0.00006 N·m.",
+                 0 % is none, 100 % is {} N·m. Silk has 0.000002 N·m, canvas 0.00036 N·m.",
                 1.0e3 * bend_rigidity,
                 BEND.0[1]
             ),
@@ -127,6 +134,18 @@ impl Quality {
     }
 }
 
+/// Sets the value of the warp, and that of the weft in the same ratio; from or to 0, to the same value.
+fn set_both(warp: &mut f32, weft: Option<&mut f32>, value: f32) {
+    if let Some(weft) = weft {
+        *weft = if *warp > 0.0 {
+            *weft * (value / *warp)
+        } else {
+            value
+        };
+    }
+    *warp = value;
+}
+
 /// A logarithmic scale from the value at 0 to that at 100.
 struct Logarithmic([f32; 2]);
 
@@ -134,6 +153,11 @@ impl Logarithmic {
     fn place(&self, value: f32) -> f32 {
         let [start, end] = self.0;
         100.0 * (value / start).ln() / (end / start).ln()
+    }
+
+    /// The value at a place, 0 at the lower end.
+    fn value_or_none(&self, place: f32) -> f32 {
+        if place > 0.0 { self.value(place) } else { 0.0 }
     }
 
     fn value(&self, place: f32) -> f32 {
@@ -164,6 +188,29 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_weft_keeps_its_ratio() {
+        let mut denim = ClothMaterial::DENIM;
+        let ratios = |material: &ClothMaterial| {
+            let weft = material.weft.unwrap_or_default();
+            [
+                weft.stretch_compliance / material.stretch_compliance,
+                weft.bend_rigidity / material.bend_rigidity,
+            ]
+        };
+        let before = ratios(&denim);
+        Quality::Stretchy.set(&mut denim, 30.0);
+        Quality::Stiff.set(&mut denim, 70.0);
+        for (now, before) in ratios(&denim).into_iter().zip(before) {
+            assert!((now / before - 1.0).abs() < 1.0e-5, "{now} {before}");
+        }
+        // Rigid and back.
+        Quality::Stretchy.set(&mut denim, 0.0);
+        assert_eq!(denim.weft.map(|weft| weft.stretch_compliance), Some(0.0));
+        Quality::Stretchy.set(&mut denim, 30.0);
+        assert_eq!(ratios(&denim)[0], 1.0);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::*;
 use crate::{
-    cloth::Cloth,
+    cloth::{Cloth, ClothWeft},
     plugin::{DrapePlugins, draw::ShowClothGizmos, state::ClothStats},
     solver::ClothSettings,
 };
@@ -242,7 +242,10 @@ fn showing_a_value_does_not_change_it() {
         stretch_compliance: 0.123_456_79,
         shear_compliance: f32::INFINITY,
         bend_rigidity: 3.3e-9,
-        weft: None,
+        weft: Some(ClothWeft {
+            stretch_compliance: 77.0,
+            bend_rigidity: 0.0,
+        }),
         stretch_damping: 0.0,
         damping: 0.999,
         friction: 7.0,

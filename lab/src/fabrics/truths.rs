@@ -1,0 +1,268 @@
+//! Closed forms that a sheet of any surface has to follow, and what it does.
+
+use bevy::math::Vec3;
+use bevy_drape::cloth::{ClothGrain, ClothMaterial, ClothWeft};
+
+use super::{play::Play, surfaces::Made};
+use crate::shared::{modes::hanging_period, sheet::GRAVITY};
+
+/// What is measured, and what it should be.
+pub struct Found {
+    pub particles: usize,
+    pub value: f64,
+    pub expected: f64,
+}
+
+/// A quantity with a closed form.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Truth {
+    /// The frequency (Hz) of a square membrane of cotton, 1 m wide and stretched by 1 %: ½ √(2 N ⁄ ρ a²).
+    Membrane,
+    /// The frequency (Hz) of a rigid hanging sheet of 2 m in this mode, from 0: j₀ ⁄ 4π √(g ⁄ L).
+    Hanging(usize),
+    /// The sag (m) of a strip of 2 m between two clamps: ∛(3 α ρ g L⁴ ⁄ 64) for a grid, ¾ of what is in the root for a mesh, which
+    /// cannot draw in.
+    Taut,
+    /// What a clamped strip droops by, over its length, at this Γ: 10 times.
+    Clamped(f64, f64),
+    /// The sag (m) of a woven sheet that hangs by a side at this angle (degrees) to its warp.
+    Woven(f32),
+}
+
+impl Truth {
+    pub const ALL: [Self; 10] = [
+        Self::Membrane,
+        Self::Hanging(0),
+        Self::Hanging(1),
+        Self::Hanging(2),
+        Self::Taut,
+        Self::Clamped(1.0, 0.1235),
+        Self::Clamped(10.0, 0.7002),
+        Self::Woven(0.0),
+        Self::Woven(45.0),
+        Self::Woven(90.0),
+    ];
+
+    pub fn name(self) -> String {
+        match self {
+            Self::Membrane => "membrane, Hz".into(),
+            Self::Hanging(mode) => format!("hanging sheet, mode {}, Hz", mode + 1),
+            Self::Taut => "taut strip's sag, m".into(),
+            Self::Clamped(gamma, _) => format!("clamped strip, gamma {gamma:.0}, of length"),
+            Self::Woven(degrees) => format!("woven sheet at {degrees:.0} degrees, m"),
+        }
+    }
+
+    /// Whether a surface has it: a grid cannot be cut at an angle.
+    pub fn is_of(self, made: Made) -> bool {
+        made != Made::Grid || self != Self::Woven(45.0)
+    }
+
+    pub fn find(self, made: Made, side: u32) -> Found {
+        match self {
+            Self::Membrane => membrane(made, side),
+            Self::Hanging(mode) => hanging(made, mode),
+            Self::Taut => taut(made, side),
+            Self::Clamped(gamma, drop) => clamped(made, gamma, drop),
+            Self::Woven(degrees) => woven(made, degrees),
+        }
+    }
+}
+
+fn stiffness(compliance: f32) -> f64 {
+    1.0 / f64::from(compliance)
+}
+
+/// Free of bending, and of damping where it swings.
+fn limp(damping: f32) -> ClothMaterial {
+    ClothMaterial {
+        bend_rigidity: 0.0,
+        damping,
+        ..ClothMaterial::COTTON
+    }
+}
+
+fn membrane(made: Made, side: u32) -> Found {
+    const STRAIN: f64 = 0.01;
+    let material = limp(0.0);
+    let (surface, _) = made.surface([side, side], 1.0 / (side - 1) as f32);
+    let [stretch, shear] = [material.stretch_compliance, material.shear_compliance].map(stiffness);
+    let pull = match made {
+        Made::Grid => STRAIN * (stretch + 2.0 * shear),
+        _ => STRAIN * 1.5 * stretch,
+    };
+    let density = f64::from(material.areal_density);
+    let expected = 0.5 * (2.0 * pull / density / (1.0 + STRAIN)).sqrt();
+    let wave = |at: Vec3| {
+        let half = |along: f32| (std::f64::consts::PI * f64::from(along)).sin();
+        half(at.x) * half(-at.y)
+    };
+    let shape: Vec<f64> = surface
+        .rest_positions()
+        .iter()
+        .map(|at| wave(*at))
+        .collect();
+    let stretched = 1.0 + STRAIN as f32;
+    let place = |at: Vec3| {
+        Vec3::new(
+            at.x * stretched,
+            at.y * stretched,
+            (1.0e-3 * wave(at)) as f32,
+        )
+    };
+    let is_border = |at: Vec3| (at.x - 0.5).abs().max((at.y + 0.5).abs()) > 0.5 - 1.0e-4;
+    let mut play = Play::new(&surface, &material, side, place, is_border);
+    Found {
+        particles: surface.len(),
+        value: 1.0 / play.period(&shape, 1.0 / expected),
+        expected,
+    }
+}
+
+/// Zeros of the Bessel function J₀.
+const ROOTS: [f64; 3] = [2.404_825_6, 5.520_078_1, 8.653_727_9];
+
+/// J₀ by its power series, for the small arguments that are needed.
+fn bessel(x: f64) -> f64 {
+    let mut term = 1.0;
+    let mut sum = 1.0;
+    for k in 1..40 {
+        term *= -(x * x / 4.0) / f64::from(k * k);
+        sum += term;
+    }
+    sum
+}
+
+fn hanging(made: Made, mode: usize) -> Found {
+    const LENGTH: f64 = 2.0;
+    const ROWS: u32 = 65;
+    /// Pieces into which its length is cut to place it without stretch.
+    const PIECES: usize = 4000;
+    let material = ClothMaterial {
+        stretch_compliance: 0.0,
+        shear_compliance: f32::INFINITY,
+        ..limp(0.0)
+    };
+    let (surface, _) = made.surface([9, ROWS], LENGTH as f32 / (ROWS - 1) as f32);
+    let expected = 1.0 / hanging_period(LENGTH, mode);
+    let amplitude = 0.01 * LENGTH * (ROOTS[0] / ROOTS[mode]).powi(2);
+    let shape_at = |y: f64| bessel(ROOTS[mode] * (1.0 + y / LENGTH).max(0.0).sqrt());
+    let piece = LENGTH / PIECES as f64;
+    let mut heights = vec![0.0];
+    for at in 0..PIECES {
+        let ends = [at, at + 1].map(|at| shape_at(-piece * at as f64));
+        let across = amplitude * (ends[1] - ends[0]);
+        heights.push(heights[at] - (piece * piece - across * across).sqrt());
+    }
+    let place = |at: Vec3| {
+        let along = (f64::from(-at.y) / piece).clamp(0.0, PIECES as f64);
+        let first = (along as usize).min(PIECES - 1);
+        let height =
+            heights[first] + (heights[first + 1] - heights[first]) * (along - first as f64);
+        let z = amplitude * shape_at(at.y.into());
+        Vec3::new(at.x, height as f32, z as f32)
+    };
+    let rest = surface.rest_positions().iter();
+    let shape: Vec<f64> = rest.map(|at| shape_at(at.y.into())).collect();
+    let mut play = Play::new(&surface, &material, ROWS, place, |at| at.y > -1.0e-4);
+    Found {
+        particles: surface.len(),
+        value: 1.0 / play.period(&shape, 1.0 / expected),
+        expected,
+    }
+}
+
+/// Lying: what was down is towards the eye.
+fn lying(at: Vec3) -> Vec3 {
+    Vec3::new(at.x, 0.0, -at.y)
+}
+
+fn taut(made: Made, columns: u32) -> Found {
+    const LENGTH: f64 = 2.0;
+    let material = ClothMaterial {
+        shear_compliance: f32::INFINITY,
+        ..limp(0.05)
+    };
+    let spacing = LENGTH as f32 / (columns - 1) as f32;
+    let (surface, _) = made.surface([columns, 5], spacing);
+    let drawn_in = if made == Made::Grid { 1.0 } else { 0.75 };
+    let weight = f64::from(material.stretch_compliance * material.areal_density) * GRAVITY;
+    let expected = (3.0 * weight * drawn_in * LENGTH.powi(4) / 64.0).cbrt();
+    let is_end = |at: Vec3| (at.x - 1.0).abs() > 1.0 - 1.0e-4;
+    let mut play = Play::new(&surface, &material, columns, lying, is_end);
+    play.settle(768);
+    Found {
+        particles: surface.len(),
+        value: -play.height(|at| (at.x - 1.0).abs() < 0.6 * spacing),
+        expected,
+    }
+}
+
+fn clamped(made: Made, gamma: f64, expected: f64) -> Found {
+    const COLUMNS: u32 = 26;
+    let material = ClothMaterial {
+        stretch_compliance: 0.0,
+        shear_compliance: f32::INFINITY,
+        damping: 0.1,
+        ..ClothMaterial::COTTON
+    };
+    let weight = f64::from(material.areal_density) * GRAVITY;
+    let length = (gamma * f64::from(material.bend_rigidity) / weight).cbrt();
+    // Level halfway between the two columns that are held.
+    let spacing = (length / (f64::from(COLUMNS) - 1.5)) as f32;
+    let (surface, _) = made.surface([COLUMNS, 7], spacing);
+    let is_held = |at: Vec3| at.x < 1.4 * spacing;
+    let mut play = Play::new(&surface, &material, COLUMNS, lying, is_held);
+    play.settle(512);
+    let end = (COLUMNS as f32 - 1.01) * spacing;
+    Found {
+        particles: surface.len(),
+        value: -play.height(|at| at.x > end) / length,
+        expected,
+    }
+}
+
+/// Hung by its top row, the warp at an angle from what is down; α ρ g L²/2 with the compliance in that direction. A grid of which
+/// the weft carries hangs by its first column.
+fn woven(made: Made, degrees: f32) -> Found {
+    const SIDE: u32 = 17;
+    const SPACING: f32 = 0.05;
+    const COMPLIANCES: [f64; 2] = [2.0e-3, 8.0e-3];
+    let [warp, weft] = COMPLIANCES;
+    let length = f64::from(SIDE - 1) * f64::from(SPACING);
+    let material = ClothMaterial {
+        stretch_compliance: warp as f32,
+        shear_compliance: f32::INFINITY,
+        weft: Some(ClothWeft {
+            stretch_compliance: weft as f32,
+            bend_rigidity: 0.0,
+        }),
+        ..limp(0.05)
+    };
+    let (surface, mesh) = made.surface([SIDE, SIDE], SPACING);
+    let grain = ClothGrain::along(Vec3::NEG_Y).turned(degrees.to_radians());
+    let surface = grain.apply(surface, &mesh).expect("a grain");
+    // A grid's columns are its warp, so it is turned itself.
+    let is_turned = made == Made::Grid && degrees > 45.0;
+    let upright = |at: Vec3| {
+        if is_turned {
+            Vec3::new(at.y, -at.x, 0.0)
+        } else {
+            at
+        }
+    };
+    let is_top = |at: Vec3| upright(at).y > -1.0e-4;
+    let mut play = Play::new(&surface, &material, SIDE, upright, is_top);
+    play.settle(384);
+    let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+    let t = (weft / warp).powf(0.25);
+    let soft = cosine * cosine / t + t * sine * sine;
+    let compliance = (warp * weft).sqrt() * soft * soft;
+    let end = f64::from(SPACING) * (f64::from(SIDE) - 1.01);
+    let height = play.height(|at| f64::from(-upright(at).y) > end);
+    Found {
+        particles: surface.len(),
+        value: -height - length,
+        expected: compliance * f64::from(material.areal_density) * GRAVITY * length * length / 2.0,
+    }
+}
