@@ -37,8 +37,8 @@ use crate as library;
 /// Most games need only this: `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{
-        Cloth, ClothBackstop, ClothError, ClothGrain, ClothMaterial, ClothPaint, ClothParticles,
-        ClothPlane, ClothShape, ClothSkin, ClothWeft, Corner, Pin, Pins, Surface,
+        Cloth, ClothBackstop, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothPaint,
+        ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothWeft, Corner, Pin, Pins, Surface,
     };
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,

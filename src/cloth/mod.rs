@@ -1,5 +1,6 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
+mod density;
 mod error;
 mod grain;
 mod grid;
@@ -16,6 +17,7 @@ mod spring;
 mod springs;
 mod surface;
 
+pub use density::ClothDensity;
 pub use error::ClothError;
 pub use grain::ClothGrain;
 #[doc(hidden)]
@@ -39,7 +41,7 @@ pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttr
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
-pub(crate) use particles::{Earlier, Load, StepKind};
+pub(crate) use particles::{DensityFactors, Earlier, Load, StepKind};
 pub(crate) use presence::ClothPresence;
 pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};

@@ -7,6 +7,7 @@ mod clones;
 mod components;
 mod crammed;
 mod damping;
+mod density;
 mod drawing;
 mod embedded;
 mod envelope;

@@ -172,7 +172,9 @@ fn a_leaning_pole_is_not_circled() {
             };
             let place = Transform::from_rotation(rotation);
             let mut app = app();
-            let cloth = (cloth, Pins::new([pin]), material, place);
+            // Triangles have no texture for denim's warp to follow.
+            let grain = ClothGrain::along(Vec3::Z);
+            let cloth = (cloth, Pins::new([pin]), material, grain, place);
             let cloth = app.world_mut().spawn(cloth).id();
             tick(&mut app, 1);
             change::<ClothParticles>(&mut app, cloth, |particles| {

@@ -49,7 +49,7 @@ impl Play {
             damping: material.damping,
             ..TickStep::default()
         };
-        let needed = solver.needed(&particles, along as usize, step.seconds, None);
+        let needed = solver.needed(&particles, along as usize, step.seconds, step.order);
         Self {
             rest,
             particles,

@@ -1,6 +1,7 @@
 //! The particles of a cloth, as a structure of arrays.
 
 mod body;
+mod density;
 mod extent;
 mod load;
 mod loads;
@@ -26,6 +27,7 @@ use super::{
     surface::Surface,
 };
 
+pub(crate) use density::DensityFactors;
 pub(crate) use load::Load;
 pub(crate) use past::{Earlier, Past, StepKind};
 
@@ -88,7 +90,8 @@ impl ClothParticles {
         {
             particles.blocks[slot.block].set_position(slot.lane, position);
         }
-        particles.assign_masses(surface, material, &Pins::none())?;
+        let factors = DensityFactors::default();
+        particles.assign_masses(surface, material, &factors, &Pins::none())?;
         Ok(particles)
     }
 

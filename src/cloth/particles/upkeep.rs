@@ -3,7 +3,7 @@
 use bevy::math::{DVec3, Isometry3d, Vec3};
 
 use super::{
-    AFTER_A_JUMP, ClothParticles,
+    AFTER_A_JUMP, ClothParticles, DensityFactors,
     past::{Earlier, Past, StepKind},
     validity::is_valid,
 };
@@ -25,7 +25,7 @@ pub(crate) struct Survey {
 }
 
 impl ClothParticles {
-    /// Sets the inverse masses from the surface's areas, the material's density and the pins.
+    /// Sets the inverse masses from the surface's areas, the material's density times these factors, and the pins.
     ///
     /// # Errors
     /// A particle mass outside 10⁻¹⁵ to 10¹⁵ kg; a pin that names no particle. Nothing changes then.
@@ -33,16 +33,38 @@ impl ClothParticles {
         &mut self,
         surface: &Surface,
         material: &ClothMaterial,
+        factors: &DensityFactors,
         pins: &Pins,
     ) -> Result<(), ClothError> {
         pins.validate(surface)?;
-        Self::check_mass(surface, material)?;
-        for (&area, slot) in surface.areas().iter().zip(self.layout.slots()) {
-            let mass = material.areal_density * area;
+        factors.check(surface, material)?;
+        for (index, slot) in self.layout.slots().enumerate() {
+            let mass = factors.mass(index, surface, material);
             self.blocks[slot.block].set_inverse_mass(slot.lane, 1.0 / mass);
         }
         pins.for_each(surface, |index| self.pin(index));
         self.past.forget(AFTER_A_JUMP);
+        Ok(())
+    }
+
+    /// Sets the inverse masses of free particles alone. Their motion goes on.
+    ///
+    /// # Errors
+    /// A particle mass outside 10⁻¹⁵ to 10¹⁵ kg. Nothing changes then.
+    pub(crate) fn weigh(
+        &mut self,
+        surface: &Surface,
+        material: &ClothMaterial,
+        factors: &DensityFactors,
+    ) -> Result<(), ClothError> {
+        factors.check(surface, material)?;
+        for (index, slot) in self.layout.slots().enumerate() {
+            let block = &mut self.blocks[slot.block];
+            if block.inverse_mass(slot.lane) > 0.0 {
+                let mass = factors.mass(index, surface, material);
+                block.set_inverse_mass(slot.lane, 1.0 / mass);
+            }
+        }
         Ok(())
     }
 
@@ -70,21 +92,6 @@ impl ClothParticles {
         let slot = self.layout.slot_of(index);
         self.blocks[slot.block].set_inverse_mass(slot.lane, 0.0);
         self.past.forget(AFTER_A_JUMP);
-    }
-
-    fn check_mass(surface: &Surface, material: &ClothMaterial) -> Result<(), ClothError> {
-        let smallest = surface
-            .areas()
-            .iter()
-            .copied()
-            .fold(f32::INFINITY, f32::min);
-        ClothError::check(
-            material.areal_density * smallest,
-            |mass| (1.0e-15..1.0e15).contains(&mass),
-            "the mass of a particle (kg)",
-            "from 10⁻¹⁵ to 10¹⁵",
-        )?;
-        Ok(())
     }
 
     /// Checks every particle once.
@@ -237,8 +244,9 @@ impl ClothParticles {
         index: usize,
         surface: &Surface,
         material: &ClothMaterial,
+        factors: &DensityFactors,
     ) {
-        let mass = material.areal_density * surface.area_of(index);
+        let mass = factors.mass(index, surface, material);
         let Slot { block, lane } = self.layout.slot_of(index);
         self.blocks[block].set_inverse_mass(lane, 1.0 / mass);
         self.past.forget(AFTER_A_JUMP);

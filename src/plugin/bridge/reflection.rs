@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothGrain, ClothSkin, Pins},
+    cloth::{Cloth, ClothDensity, ClothGrain, ClothSkin, Pins},
     contact::ClothCollider,
     plugin::authoring::{BoneColliderOf, ClothAttachments, ClothBones, ClothLod, GlobalClothLod},
 };
@@ -19,6 +19,7 @@ use crate::{
 pub(crate) fn register_lists(app: &mut App) {
     register::<Cloth>(app);
     register::<ClothCollider>(app);
+    register::<ClothDensity>(app);
     register::<ClothGrain>(app);
     register::<Pins>(app);
     register::<ClothAttachments>(app);

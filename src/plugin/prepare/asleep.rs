@@ -56,7 +56,12 @@ pub(super) fn sleeps_as_it_was(
         && is_in_same_pose(cloth, around)
         && cloth.fault.is_none()
         && built.grain() == cloth.game.grain()
-        && built.is_made_from(cloth.game.cloth.last_changed(), &inputs.material, pins)
+        && built.is_made_from(
+            cloth.game.cloth.last_changed(),
+            cloth.game.weighed(),
+            &inputs.material,
+            pins,
+        )
         && sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
         && (state.inputs.air).is_still(wind.as_ref(), cloth.game.pressure, field, || {
             ball(built, &cloth.particles, state.stretch.bound, &cloth.frame)

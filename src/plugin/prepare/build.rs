@@ -12,7 +12,10 @@ use super::{
     source::Sources,
 };
 use crate::{
-    cloth::{Cloth, ClothError, ClothGrain, ClothMaterial, ClothParticles, Pins, Surface},
+    cloth::{
+        Cloth, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothParticles, DensityFactors,
+        Pins, Surface,
+    },
     plugin::{
         authoring::ClothAttachment,
         state::{
@@ -33,9 +36,25 @@ pub(crate) struct BuildInputs<'a> {
     pub material: &'a ClothMaterial,
     /// That of a mesh with a weft.
     pub grain: Option<&'a ClothGrain>,
+    /// Its density, and when that was last changed.
+    pub density: Option<(&'a ClothDensity, Tick)>,
     pub pins: &'a Pins,
     pub attachments: &'a [ClothAttachment],
     pub scale: Vec3,
+}
+
+impl BuildInputs<'_> {
+    /// When its density was last changed.
+    fn weighed(&self) -> Option<Tick> {
+        self.density.map(|(_, changed)| changed)
+    }
+
+    fn factors(&self, surface: &Surface) -> Result<DensityFactors, ClothError> {
+        self.density.map_or_else(
+            || Ok(DensityFactors::default()),
+            |(density, _)| density.factors(surface),
+        )
+    }
 }
 
 /// The result of building.
@@ -69,6 +88,7 @@ pub(crate) fn build(
         source: wanted.source,
         material: *wanted.material,
         grain: wanted.grain.cloned(),
+        weighed: wanted.weighed(),
         pins: wanted.pins.clone(),
         scale: wanted.scale,
         particles: [particles.columns(), particles.rows()],
@@ -137,16 +157,17 @@ fn build_new(
     let shared = parts.get(&recipe, material, || sources.surface(&recipe))?;
     let surface = &shared.surface;
     pins.validate(surface)?;
+    let factors = wanted.factors(surface)?;
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
     // not.
     let (build, new) = if state.resumes {
         // The particles are those of a snapshot, with its pins and attachments.
         check_count(particles, surface)?;
         (Build::Kept, None)
-    } else if let Some(resampled) = resampled(wanted, &shared, particles, built)? {
+    } else if let Some(resampled) = resampled(wanted, &shared, &factors, particles, built)? {
         (Build::Resampled, Some(resampled))
     } else if built.from.is_some() || particles.is_empty() {
-        (Build::New, Some(at_rest(wanted, surface)?))
+        (Build::New, Some(at_rest(wanted, surface, &factors)?))
     } else {
         check_count(particles, surface)?;
         (Build::New, Some((**particles).clone()))
@@ -164,6 +185,8 @@ fn build_new(
         unevenness: cloth.unevenness,
         changed: wanted.changed,
         material: *material,
+        weighed: wanted.weighed(),
+        factors,
         pins: pins.clone(),
     });
     Ok(build)
@@ -207,6 +230,7 @@ fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothSt
 fn resampled(
     wanted: &BuildInputs,
     shared: &Shared,
+    factors: &DensityFactors,
     particles: &ClothParticles,
     built: &ClothBuilt,
 ) -> Result<Option<ClothParticles>, ClothError> {
@@ -219,7 +243,7 @@ fn resampled(
         return Ok(None);
     }
     let mut new = ClothParticles::at_rest(surface, wanted.material)?;
-    new.assign_masses(surface, wanted.material, wanted.pins)?;
+    new.assign_masses(surface, wanted.material, factors, wanted.pins)?;
     // Attached particles will be pinned where they are.
     for attachment in wanted.attachments {
         if attachment.pin.validate(surface).is_ok() {
@@ -251,9 +275,13 @@ fn scale_of(wanted: &BuildInputs) -> Vec3 {
 }
 
 /// The particles of a new cloth.
-fn at_rest(wanted: &BuildInputs, surface: &Surface) -> Result<ClothParticles, ClothError> {
+fn at_rest(
+    wanted: &BuildInputs,
+    surface: &Surface,
+    factors: &DensityFactors,
+) -> Result<ClothParticles, ClothError> {
     let mut particles = ClothParticles::at_rest(surface, wanted.material)?;
-    particles.assign_masses(surface, wanted.material, wanted.pins)?;
+    particles.assign_masses(surface, wanted.material, factors, wanted.pins)?;
     // Attached particles will be pinned where they are.
     let mut is_held = vec![false; surface.len()];
     for attachment in wanted.attachments {
@@ -283,12 +311,19 @@ fn follow_changes(
     };
     let (was, were_pinned) = (&from.material, &from.pins);
     let are_others_pinned = were_pinned != pins;
-    if was == material && !are_others_pinned {
+    let is_weighed_otherwise = from.weighed != wanted.weighed();
+    if was == material && !are_others_pinned && !is_weighed_otherwise {
         return Ok(());
     }
     material.validate()?;
+    let surface = &built.shared.surface;
+    if is_weighed_otherwise {
+        from.factors = wanted.factors(surface)?;
+        particles.weigh(surface, material, &from.factors)?;
+        from.weighed = wanted.weighed();
+    }
     if was.areal_density != material.areal_density || are_others_pinned {
-        particles.assign_masses(&built.shared.surface, material, pins)?;
+        particles.assign_masses(surface, material, &from.factors, pins)?;
         // They are pinned again with the offsets that they have.
         for attached in &state.attachments.attached {
             particles.pin(attached.particle as usize);

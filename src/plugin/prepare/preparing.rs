@@ -1,7 +1,7 @@
 //! The data from which a cloth is prepared.
 
 use bevy::ecs::{
-    change_detection::Ref,
+    change_detection::{DetectChanges, Ref, Tick},
     entity::Entity,
     query::{QueryData, With, Without},
     system::{Query, Res, SystemParam},
@@ -9,7 +9,9 @@ use bevy::ecs::{
 
 use super::{attach::Targets, roots::Roots, skin::Skins, source::Sources};
 use crate::{
-    cloth::{Cloth, ClothGrain, ClothMaterial, ClothParticles, ClothShape, ClothSkin, Pins},
+    cloth::{
+        Cloth, ClothDensity, ClothGrain, ClothMaterial, ClothParticles, ClothShape, ClothSkin, Pins,
+    },
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::{
@@ -32,6 +34,7 @@ pub(crate) struct GameQuery {
     pub cloth: Ref<'static, Cloth>,
     pub material: Option<&'static ClothMaterial>,
     pub grain: Option<&'static ClothGrain>,
+    pub density: Option<Ref<'static, ClothDensity>>,
     pub pins: Option<&'static Pins>,
     pub attachments: Option<&'static ClothAttachments>,
     pub skin: Option<Ref<'static, ClothSkin>>,
@@ -49,6 +52,11 @@ pub(crate) struct GameQuery {
 static BY_TEXTURE: ClothGrain = ClothGrain::by_texture();
 
 impl GameQueryItem<'_, '_> {
+    /// When the density was last changed, if it has one.
+    pub fn weighed(&self) -> Option<Tick> {
+        self.density.as_ref().map(|density| density.last_changed())
+    }
+
     /// The grain, if the cloth is a mesh whose material has a weft.
     pub fn grain(&self) -> Option<&ClothGrain> {
         self.material?.weft?;

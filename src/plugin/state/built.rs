@@ -10,7 +10,10 @@ use bevy::{
 
 use super::{notices::Noticed, pose::SkinLimits, shared::Shared, source::Source};
 use crate::{
-    cloth::{ClothError, ClothGrain, ClothMaterial, ClothParticles, Pins, Springs, Surface},
+    cloth::{
+        ClothError, ClothGrain, ClothMaterial, ClothParticles, DensityFactors, Pins, Springs,
+        Surface,
+    },
     hierarchy::QuadTree,
     solver::{Solver, Tethers, material_stretch},
 };
@@ -64,6 +67,9 @@ pub(crate) struct BuiltFrom {
     /// When the `Cloth` was last changed.
     pub changed: Tick,
     pub material: ClothMaterial,
+    /// When its `ClothDensity` was last changed, if it has one, and what that gave.
+    pub weighed: Option<Tick>,
+    pub factors: DensityFactors,
     pub pins: Pins,
 }
 
@@ -74,6 +80,7 @@ pub(crate) struct FailedBuild {
     pub source: Option<Source>,
     pub material: ClothMaterial,
     pub grain: Option<ClothGrain>,
+    pub weighed: Option<Tick>,
     pub pins: Pins,
     pub scale: Vec3,
     /// Its columns and rows.
@@ -112,15 +119,20 @@ impl ClothBuilt {
         self.shared.recipe.as_ref()?.grain.as_ref()
     }
 
-    /// Whether it was made from a `Cloth` that was changed then, and from this material and these pins.
+    /// Whether it was made from a `Cloth` and a `ClothDensity` that were changed then, and from this material and these
+    /// pins.
     pub(crate) fn is_made_from(
         &self,
         changed: Tick,
+        weighed: Option<Tick>,
         material: &ClothMaterial,
         pins: &Pins,
     ) -> bool {
         self.from.as_ref().is_some_and(|from| {
-            from.changed == changed && from.material == *material && from.pins == *pins
+            from.changed == changed
+                && from.weighed == weighed
+                && from.material == *material
+                && from.pins == *pins
         })
     }
 
@@ -130,11 +142,17 @@ impl ClothBuilt {
         of: impl Iterator<Item = usize> + Clone,
         particles: &mut ClothParticles,
     ) {
-        let Some(BuiltFrom { material, pins, .. }) = &self.from else {
+        let Some(from) = &self.from else {
             return;
         };
+        let BuiltFrom {
+            material,
+            factors,
+            pins,
+            ..
+        } = from;
         for index in of.clone() {
-            particles.assign_mass(index, self.surface(), material);
+            particles.assign_mass(index, self.surface(), material, factors);
         }
         let given: std::collections::HashSet<usize> = of.collect();
         if !given.is_empty() {
@@ -148,7 +166,10 @@ impl ClothBuilt {
 
     /// Gives pinned particles the masses that the material gives them.
     pub(crate) fn release_pins(&self, particles: &mut ClothParticles) {
-        let Some(BuiltFrom { material, .. }) = &self.from else {
+        let Some(BuiltFrom {
+            material, factors, ..
+        }) = &self.from
+        else {
             return;
         };
         if !self.matches(particles) {
@@ -156,7 +177,7 @@ impl ClothBuilt {
         }
         for index in 0..particles.len() {
             if particles.inverse_mass(index) == Some(0.0) {
-                particles.assign_mass(index, self.surface(), material);
+                particles.assign_mass(index, self.surface(), material, factors);
             }
         }
     }

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::*;
 use crate::{
-    cloth::{Cloth, ClothMaterial, Pins, Spring, SpringKind, Surface},
+    cloth::{Cloth, ClothMaterial, DensityFactors, Pins, Spring, SpringKind, Surface},
     solver::step::TimeOrder,
 };
 
@@ -47,7 +47,7 @@ fn cloth(material: &ClothMaterial, pins: &Pins) -> (ClothParticles, Springs) {
     let surface = Surface::of_grid(&grid);
     let mut particles = ClothParticles::at_rest(&surface, material).expect("a valid material");
     particles
-        .assign_masses(&surface, material, pins)
+        .assign_masses(&surface, material, &DensityFactors::default(), pins)
         .expect("valid pins");
     (particles, Springs::of_grid(&grid, material))
 }

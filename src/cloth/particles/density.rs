@@ -1,0 +1,35 @@
+//! The masses that a material gives to particles.
+
+use crate::cloth::{error::ClothError, material::ClothMaterial, surface::Surface};
+
+/// Factors of a cloth's areal density, one a particle; empty if all are 1.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(crate) struct DensityFactors(pub Vec<f32>);
+
+impl DensityFactors {
+    /// The mass of a particle (kg).
+    pub fn mass(&self, index: usize, surface: &Surface, material: &ClothMaterial) -> f32 {
+        let factor = self.0.get(index).copied().unwrap_or(1.0);
+        factor * material.areal_density * surface.area_of(index)
+    }
+
+    /// Whether all masses are in their range.
+    ///
+    /// # Errors
+    /// A particle mass outside 10⁻¹⁵ to 10¹⁵ kg.
+    pub fn check(&self, surface: &Surface, material: &ClothMaterial) -> Result<(), ClothError> {
+        let masses = (0..surface.len()).map(|index| self.mass(index, surface, material));
+        let ends = masses.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], mass| {
+            [least.min(mass), most.max(mass)]
+        });
+        for mass in ends {
+            ClothError::check(
+                mass,
+                |mass| (1.0e-15..1.0e15).contains(&mass),
+                "the mass of a particle (kg)",
+                "from 10⁻¹⁵ to 10¹⁵",
+            )?;
+        }
+        Ok(())
+    }
+}
