@@ -26,8 +26,8 @@ use super::error::ClothError;
 ///
 /// A woven cloth differs along its two sets of yarns. [`weft`](Self::weft) holds what differs across: along the rows
 /// of a grid, or across a mesh's [grain](crate::cloth::ClothGrain). The other values are then those along the warp:
-/// down the columns of a grid, or along the grain. On a mesh, the stiffer direction counts as at most a hundred times as
-/// stiff as the other, and its shear stiffness is at least √(a b) × 3⁄8, with the stiffnesses a and b of both.
+/// down the columns of a grid, or along the grain. A mesh takes the stiffer direction as at most a hundred times as stiff as
+/// the other. With the stiffnesses a and b of both, its shear stiffness is at least √(a b) × 3⁄8.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ pub struct ClothMaterial {
     /// Flexural rigidity (N·m): the moment that holds a strip bent to a curvature of 1/m, per metre of its width. Zero
     /// or more, finite. Zero bends freely and costs nothing. With a [`weft`](Self::weft), that of a strip along the warp.
     pub bend_rigidity: f32,
-    /// What differs along the weft; `None` for a cloth that is alike in both directions.
+    /// The values that differ along the weft. `None` is a cloth that is alike in both directions.
     pub weft: Option<ClothWeft>,
     /// Damping along springs, the internal loss of the material: the time (s) in which a released stretch decays to
     /// 1/e. It is the τ of a Kelvin-Voigt solid, zero or more and finite. The damping ratio of an oscillation of

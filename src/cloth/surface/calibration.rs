@@ -58,13 +58,7 @@ pub(super) fn calibrate(
     let softness: Vec<f64> = (0..links.len()).map(softness).collect();
     let corrected = areas.iter().zip(&softness);
     let mut corrected: Vec<f64> = corrected.map(|(area, soft)| area / soft.powi(3)).collect();
-    let turns: Vec<Vec<DVec2>> = (0..rest.len())
-        .map(|particle| {
-            let neighbours = graph.of(particle as u32).iter();
-            let turn = |near: &(u32, f32)| frames[particle].angle_to(&frames[near.0 as usize]);
-            neighbours.map(turn).collect()
-        })
-        .collect();
+    let turns = turns(&graph, &frames);
     for _ in 0..PASSES {
         let star = |particle: usize| {
             let mut star = Springs::NONE;
@@ -118,6 +112,16 @@ pub(super) fn calibrate(
     for (link, corrected) in links.iter_mut().zip(corrected) {
         link.slenderness = (square(link) / corrected) as f32;
     }
+}
+
+/// The angle of each neighbour's frame in that of each particle.
+fn turns(graph: &Graph, frames: &[Frame]) -> Vec<Vec<DVec2>> {
+    let of_particle = |(particle, frame): (usize, &Frame)| {
+        let neighbours = graph.of(particle as u32).iter();
+        let turn = |near: &(u32, f32)| frame.angle_to(&frames[near.0 as usize]);
+        neighbours.map(turn).collect()
+    };
+    frames.iter().enumerate().map(of_particle).collect()
 }
 
 /// Two axes of a tangent plane and its normal.

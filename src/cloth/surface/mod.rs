@@ -136,11 +136,6 @@ impl Surface {
         self.areas[particle]
     }
 
-    /// Each particle's share of the surface's area (m²).
-    pub(crate) fn areas(&self) -> &[f32] {
-        &self.areas
-    }
-
     /// Total area (m²).
     pub fn area(&self) -> f32 {
         self.extent.area
