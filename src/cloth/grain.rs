@@ -57,10 +57,13 @@ impl ClothGrain {
         }
     }
 
-    /// Turned on the surface by an angle (rad).
+    /// Turned on the surface by an angle (rad). A uniform one may be negative: half a turn more is the same direction.
     #[must_use]
     pub fn turned(mut self, turn: impl Into<ClothPaint>) -> Self {
-        self.turn = turn.into();
+        self.turn = match turn.into() {
+            ClothPaint::Uniform(angle) => angle.rem_euclid(std::f32::consts::PI).into(),
+            painted => painted,
+        };
         self
     }
 

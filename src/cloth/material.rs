@@ -16,8 +16,8 @@ use super::error::ClothError;
 ///
 /// Cloth resists bending like an elastic plate, by its flexural rigidity D. The moment D w ⁄ r holds a strip of width w
 /// bent to the radius r. Textile laboratories measure D by bending a sample (KES-F, in gf·cm²/cm: one is 9.81·10⁻⁵ N·m)
-/// or by letting it hang over an edge (Peirce 1930, Cusick 1965). D means the same at any resolution and width, and in
-/// all directions. Poisson's ratio in bending is 0, so that free edges do not curl.
+/// or by letting it hang over an edge (Peirce 1930, Cusick 1965). D means the same at any resolution and width. Without a
+/// [`weft`](Self::weft), it is the same in all directions. Poisson's ratio in bending is 0, so that free edges do not curl.
 ///
 /// A mesh has no rows. Its stretch springs run along all edges, and each represents the area of the faces beside it.
 /// They stretch alike in all directions, and also resist shear, like an isotropic sheet with a Poisson's ratio of a
@@ -27,7 +27,8 @@ use super::error::ClothError;
 /// A woven cloth differs along its two sets of yarns. [`weft`](Self::weft) holds what differs across: along the rows
 /// of a grid, or across a mesh's [grain](crate::cloth::ClothGrain). The other values are then those along the warp:
 /// down the columns of a grid, or along the grain. A mesh takes the stiffer direction as at most a hundred times as stiff as
-/// the other. With the stiffnesses a and b of both, its shear stiffness is at least √(a b) × 3⁄8.
+/// the other, in stretch and in bending. A strip of it stretches like one of a grid, shear springs included. With the
+/// stiffnesses a and b of both, its shear stiffness is at least √(a b) × 3⁄8.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
@@ -60,16 +61,25 @@ pub struct ClothMaterial {
     pub friction: f32,
 }
 
-/// Values of a [`ClothMaterial`] along its weft: the rows of a grid, or across the grain of a mesh.
-#[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
+/// Values of a [`ClothMaterial`] along its weft: the rows of a grid, or across the grain of a mesh. The default is cotton's.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothWeft {
     /// Compliance (m/N), zero or more.
     pub stretch_compliance: f32,
-    /// Flexural rigidity (N·m), zero or more, finite. Twist has √(D_warp D_weft), as in an orthotropic plate by Huber
-    /// (1923).
+    /// Flexural rigidity (N·m), zero or more, finite. Twist has the geometric mean of warp and weft, as in an orthotropic
+    /// plate by Huber (1923).
     pub bend_rigidity: f32,
+}
+
+impl Default for ClothWeft {
+    fn default() -> Self {
+        Self {
+            stretch_compliance: ClothMaterial::COTTON.stretch_compliance,
+            bend_rigidity: ClothMaterial::COTTON.bend_rigidity,
+        }
+    }
 }
 
 impl Default for ClothMaterial {
@@ -78,14 +88,14 @@ impl Default for ClothMaterial {
     }
 }
 
-/// Those named in the table are from Wang, O'Brien and Ramamoorthi 2011, Data-driven elastic models for cloth: density,
-/// stiffness along u and v and in shear at the smallest strain, and the range of bending rigidities, whose largest is
-/// taken for the warp and whose smallest for the weft.
+/// Denim, trousers, polyester and the knits are materials of Wang, O'Brien and Ramamoorthi 2011, Data-driven elastic models
+/// for cloth, by their published files. Stretch and shear are those at the smallest strain, bending that at the smallest
+/// curvature. The direction u of a file is taken for the weft, v for the warp.
 ///
 /// | preset | measured | estimated |
 /// |---|---|---|
-/// | [`DENIM`](Self::DENIM), [`TROUSERS`](Self::TROUSERS), [`POLYESTER`](Self::POLYESTER) | density, stretch, shear, bending (Wang et al.) | friction, damping |
-/// | [`INTERLOCK_KNIT`](Self::INTERLOCK_KNIT), [`RIB_KNIT`](Self::RIB_KNIT) | density, stretch, bending (Wang et al.) | friction, damping; shear, of which springs have at most a quarter |
+/// | [`DENIM`](Self::DENIM), [`TROUSERS`](Self::TROUSERS), [`POLYESTER`](Self::POLYESTER) | density, stretch, shear, bending | friction, damping |
+/// | [`INTERLOCK_KNIT`](Self::INTERLOCK_KNIT), [`RIB_KNIT`](Self::RIB_KNIT) | density, stretch, bending | friction, damping; shear is a quarter of the measured one, as springs allow no more |
 /// | [`COTTON`](Self::COTTON), [`SILK`](Self::SILK) | bending (KES-F) | density, stretch, shear, friction, damping |
 /// | [`LEATHER`](Self::LEATHER) | drape (Memon et al.) | all else |
 /// | [`RUBBER`](Self::RUBBER) | modulus of natural rubber, for bending | all else |
@@ -120,47 +130,55 @@ impl ClothMaterial {
         areal_density: 0.324,
         damping: 0.02,
         friction: 0.5,
-        ..Self::measured([1014.0, 205.0], 53.0, [1.21e-4, 2.0e-5])
+        ..Self::measured([1013.9, 205.4], 53.4, [9.70e-5, 6.42e-5])
     };
     /// A cotton twill, as in trousers.
     pub const TROUSERS: Self = Self {
         areal_density: 0.220,
         damping: 0.02,
         friction: 0.5,
-        ..Self::measured([2035.0, 2017.0], 105.0, [2.28e-4, 1.08e-4])
+        ..Self::measured([2035.0, 2016.6], 104.8, [1.254e-4, 1.254e-4])
     };
     /// A polyester weave, as in a tablecloth: easy to shear.
     pub const POLYESTER: Self = Self {
         areal_density: 0.128,
         damping: 0.01,
         friction: 0.3,
-        ..Self::measured([2027.0, 2002.0], 19.0, [6.6e-5, 1.0e-5])
+        ..Self::measured([2027.5, 2002.1], 19.2, [3.13e-5, 5.17e-5])
     };
-    /// A double knit, as in a T-shirt: it gives thirty times as much as a weave.
+    /// A double knit, as in a T-shirt: it gives sixty times as much as polyester along its warp.
     pub const INTERLOCK_KNIT: Self = Self {
         areal_density: 0.187,
         damping: 0.03,
         friction: 0.5,
-        ..Self::measured([34.0, 17.0], 9.0, [3.9e-5, 7.0e-6])
+        ..Self::measured([34.5, 16.6], 9.2, [1.43e-5, 2.32e-5])
     };
     /// A ribbed knit, as in cuffs and jumpers.
     pub const RIB_KNIT: Self = Self {
         areal_density: 0.276,
         damping: 0.03,
         friction: 0.6,
-        ..Self::measured([65.0, 43.0], 20.0, [9.8e-5, 2.5e-5])
+        ..Self::measured([65.2, 42.9], 20.8, [3.22e-5, 4.62e-5])
     };
 
-    /// Of these stiffnesses along warp and weft and in shear (N/m), and of these rigidities (N·m). Springs across rows and
-    /// columns add their stiffness to that of both.
-    const fn measured(stretch: [f32; 2], shear: f32, bend: [f32; 2]) -> Self {
+    /// Strips along warp and weft have these stiffnesses, shear has that one (N/m), and bending these rigidities (N·m).
+    /// Shear springs add to the stiffness of a strip, so the others get less: `a = stiff − s b ⁄ (b + s)`, solved by
+    /// iteration.
+    const fn measured([warp, weft]: [f32; 2], shear: f32, bend: [f32; 2]) -> Self {
+        let (mut along, mut across) = (warp, weft);
+        let mut round = 0;
+        while round < 30 {
+            along = warp - shear * across / (across + shear);
+            across = weft - shear * along / (along + shear);
+            round += 1;
+        }
         Self {
             areal_density: 0.0,
-            stretch_compliance: 1.0 / (stretch[0] - shear),
+            stretch_compliance: 1.0 / along,
             shear_compliance: 1.0 / shear,
             bend_rigidity: bend[0],
             weft: Some(ClothWeft {
-                stretch_compliance: 1.0 / (stretch[1] - shear),
+                stretch_compliance: 1.0 / across,
                 bend_rigidity: bend[1],
             }),
             stretch_damping: 0.0,
@@ -293,9 +311,24 @@ impl ClothMaterial {
         [self.weft.map_or(warp, |weft| weft.stretch_compliance), warp]
     }
 
-    /// The same for a mesh, which has neither rows nor columns.
+    /// Whether it differs along its weft.
+    pub(crate) fn is_woven(&self) -> bool {
+        let differs = |[weft, warp]: [f32; 2]| weft != warp;
+        differs(self.stretch_compliances()) || differs(self.bend_rigidities())
+    }
+
+    /// The stretch compliances of a mesh (m/N). Where warp and weft differ, they are those of strips of a grid: shear springs,
+    /// which a mesh need not have, add to both.
     pub(crate) fn woven_stretch(&self) -> Woven {
-        Woven::of(self.stretch_compliances())
+        let compliances = self.stretch_compliances();
+        if !self.is_woven() {
+            return Woven::of(compliances);
+        }
+        let [weft, warp] = compliances.map(|compliance| 1.0 / f64::from(compliance));
+        let shear = f64::from(self.shear_compliance);
+        // Rigid ones stay infinite; 1 ⁄ (1 ⁄ s + 1 ⁄ b) is s b ⁄ (s + b).
+        let strip = |along: f64, beside: f64| 1.0 / (along + 1.0 / (shear + 1.0 / beside));
+        Woven::of([strip(weft, warp), strip(warp, weft)].map(|compliance| compliance as f32))
     }
 
     /// Flexural rigidities of a mesh (N·m).
@@ -341,6 +374,27 @@ impl Woven {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Strips of a grid, and of a mesh, are as stiff as those that were measured.
+    #[test]
+    fn measured_presets_have_what_was_measured() {
+        for (material, [warp, weft]) in [
+            (ClothMaterial::DENIM, [1013.9_f32, 205.4]),
+            (ClothMaterial::TROUSERS, [2035.0, 2016.6]),
+            (ClothMaterial::POLYESTER, [2027.5, 2002.1]),
+            (ClothMaterial::INTERLOCK_KNIT, [34.5, 16.6]),
+            (ClothMaterial::RIB_KNIT, [65.2, 42.9]),
+        ] {
+            let Woven { mean, ratio } = material.woven_stretch();
+            let found = [1.0 / (mean / ratio.powi(2)), 1.0 / (mean * ratio.powi(2))];
+            for (found, measured) in found.into_iter().zip([warp, weft]) {
+                assert!(
+                    (found / measured - 1.0).abs() < 1.0e-4,
+                    "{found} {measured}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn presets_are_valid_and_each_bad_value_is_named() {

@@ -113,7 +113,7 @@ fn material(warp: f32, weft: f32, shear: f32) -> ClothMaterial {
     }
 }
 
-/// A grid is a lattice: C₁₁ = 1/α + 1/α_shear in each direction, C₁₂ = 1/α_shear. A strip gives `1 ⁄ (C₁₁ − C₁₂²/C₂₂)`.
+/// A grid is a lattice: `C₁₁ = 1/α + 1/α_shear` in each direction, `C₁₂ = 1/α_shear`. A strip gives `1 ⁄ (C₁₁ − C₁₂²/C₂₂)`.
 #[test]
 fn strips_along_the_yarns_of_a_grid_give_what_they_should() {
     for (warp, weft) in [(1.0e-3, 7.0e-3), (1.0e-2, 1.0e-3)] {
@@ -148,7 +148,7 @@ fn strips_along_the_yarns_of_a_grid_give_what_they_should() {
     }
 }
 
-/// A strip of a mesh cut at φ from the warp gives `√(α_warp α_weft) (cos²φ ⁄ t + t sin²φ)²` with t⁴ = α_weft ⁄ α_warp, whatever
+/// A strip of a mesh cut at φ from the warp gives `√(α_warp α_weft) (cos²φ ⁄ t + t sin²φ)²` with `t⁴ = α_weft ⁄ α_warp`, whatever
 /// its triangles. Where edges have three directions, the calibration makes all of it right; else it is off by up to a
 /// tenth, as without a weft.
 #[test]
@@ -238,7 +238,7 @@ fn what_hangs_gives_along_the_yarns_that_carry_it() {
                 let place = particles.position(*index).expect("it exists");
                 (place - places[*index]).dot(down)
             };
-            // In the middle half: free sides of a mesh, which has a Poisson's ratio, draw in at the clamped end.
+            // A mesh has a Poisson's ratio: it is clamped at its top, where it cannot draw in, which is a few per cent.
             let sags: f32 = ends.iter().map(sag).sum::<f32>() / ends.len() as f32;
             let is_along_warp = (down == Vec3::NEG_Y) != name.ends_with('x');
             let compliance = if is_along_warp { warp } else { weft };

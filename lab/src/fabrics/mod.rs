@@ -1,6 +1,6 @@
 //! Closed forms of sheets, strips and membranes, for a grid and for meshes of all kinds, at default settings.
 //!
-//! What holds of a grid has to hold of an artist's mesh. Where it does not, this is how far it is off.
+//! A mesh has to be as true as a grid. Where it is not, this is how far it is off.
 
 mod play;
 mod surfaces;
@@ -18,12 +18,12 @@ use crate::{
 /// How far a grid, and a mesh of a grid's triangles, may be off.
 const GRID_WITHIN: f64 = 0.02;
 const REGULAR_WITHIN: f64 = 0.04;
-/// What clamped strips may be off by, as a part of their length.
+/// The error of clamped strips that is allowed, as a part of their length.
 const DROP_WITHIN: f64 = 0.015;
 
 pub struct Fabrics;
 
-/// One truth, and what a surface made of it.
+/// One truth, and the value of a surface.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     truth: String,
@@ -36,7 +36,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// What it is off by, as a fraction of the truth; of a strip that droops, of its length.
+    /// Its error, as a fraction of the truth; of a strip that droops, of its length.
     fn off(&self) -> f64 {
         let difference = self.value - self.expected;
         if self.is_drop() {
@@ -158,7 +158,7 @@ impl Experiment for Fabrics {
     }
 }
 
-/// What each surface is off by, truth by truth, at the resolution at which it is off most.
+/// The error of each surface, truth by truth, at the resolution at which it is off most.
 fn chart(rows: &[Row]) -> Chart {
     let truths = distinct(rows.iter().map(|row| row.truth.clone()));
     let panel = Panel::new(

@@ -5,7 +5,7 @@ use bevy_drape::cloth::{Cloth, Surface, TriangleMesh};
 
 use crate::{measure::Random, meshes};
 
-/// What a rectangle is made of.
+/// The structure of a rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Made {
     Grid,

@@ -6,7 +6,7 @@ use bevy_drape::cloth::{ClothGrain, ClothMaterial, ClothWeft};
 use super::{play::Play, surfaces::Made};
 use crate::shared::{modes::hanging_period, sheet::GRAVITY};
 
-/// What is measured, and what it should be.
+/// A measured value, and the expected one.
 pub struct Found {
     pub particles: usize,
     pub value: f64,
@@ -22,7 +22,7 @@ pub enum Truth {
     Hanging(usize),
     /// The sag (m) of a strip of 2 m between two clamps: ∛(3 α ρ g L⁴ ⁄ 64).
     Taut,
-    /// What a clamped strip droops by, over its length, at this Γ: 10 times.
+    /// The drop of a clamped strip over its length at this Γ, with that of the elastica.
     Clamped(f64, f64),
     /// The sag (m) of a woven sheet that hangs by a side at this angle (degrees) to its warp.
     Woven(f32),

@@ -72,7 +72,8 @@ impl Surface {
         let of_face = |face: &[u32; 3]| {
             let corners = sorted(*face);
             let at = triangles.partition_point(|(known, _)| *known < corners);
-            let triangle = triangles.get(at).map_or(0, |(_, index)| *index);
+            let found = triangles.get(at).filter(|(known, _)| *known == corners);
+            let (_, triangle) = *found.ok_or(ClothError::GrainNeedsUvs)?;
             self.along_v(mesh, mesh.triangles[triangle])
                 .ok_or(ClothError::FoldedUvs { triangle })
         };
@@ -86,8 +87,8 @@ impl Surface {
         let (b_place, c_place) = (place(b)? - place(a)?, place(c)? - place(a)?);
         let [b, c]: [Vec2; 2] = [b, c].map(|vertex| mesh.uvs[vertex] - mesh.uvs[a]);
         let area = b.perp_dot(c);
-        let is_folded = !(area.abs() > FOLDED * b.length_squared().max(c.length_squared()));
-        if is_folded {
+        let size = b.length_squared().max(c.length_squared());
+        if area.is_nan() || area.abs() <= FOLDED * size {
             return None;
         }
         (area.signum() * (b.x * c_place - c.x * b_place)).try_normalize()

@@ -55,7 +55,7 @@ pub(super) fn sleeps_as_it_was(
         && !around.roots.jumps(cloth.entity)
         && is_in_same_pose(cloth, around)
         && cloth.fault.is_none()
-        && built.grain() == cloth.game.grain()
+        && built.has_grain(cloth.game.grain())
         && built.is_made_from(
             cloth.game.cloth.last_changed(),
             cloth.game.weighed(),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::change_detection::{Mut, Tick},
+    ecs::change_detection::{DetectChangesMut, Mut, Tick},
     math::Vec3,
 };
 
@@ -34,8 +34,8 @@ pub(crate) struct BuildInputs<'a> {
     /// Its mesh, if it is made from one.
     pub source: Option<Source>,
     pub material: &'a ClothMaterial,
-    /// That of a mesh with a weft.
-    pub grain: Option<&'a ClothGrain>,
+    /// The grain of a mesh with a weft, and when it was last changed.
+    pub grain: Option<(&'a ClothGrain, Option<Tick>)>,
     /// Its density, and when that was last changed.
     pub density: Option<(&'a ClothDensity, Tick)>,
     pub pins: &'a Pins,
@@ -47,6 +47,11 @@ impl BuildInputs<'_> {
     /// When its density was last changed.
     fn weighed(&self) -> Option<Tick> {
         self.density.map(|(_, changed)| changed)
+    }
+
+    /// When its grain was last changed.
+    fn grained(&self) -> Option<Tick> {
+        self.grain.and_then(|(_, changed)| changed)
     }
 
     fn factors(&self, surface: &Surface) -> Result<DensityFactors, ClothError> {
@@ -78,7 +83,7 @@ pub(crate) fn build(
     state: &mut ClothState,
 ) -> Result<Build, ClothError> {
     let is_built = is_built(wanted, built) && !particles.is_empty();
-    if is_built && built.grain() == wanted.grain {
+    if is_built && built.has_grain(wanted.grain) {
         follow_changes(wanted, parts, particles, built, state)?;
         return Ok(Build::Kept);
     }
@@ -87,7 +92,7 @@ pub(crate) fn build(
         changed: wanted.changed,
         source: wanted.source,
         material: *wanted.material,
-        grain: wanted.grain.cloned(),
+        grained: wanted.grain.map(|(_, changed)| changed),
         weighed: wanted.weighed(),
         pins: wanted.pins.clone(),
         scale: wanted.scale,
@@ -152,7 +157,7 @@ fn build_new(
         shape: cloth.shape.clone(),
         scale: scale_of(wanted),
         source: wanted.source,
-        grain: wanted.grain.cloned(),
+        grain: wanted.grain.map(|(grain, _)| grain.clone()),
     };
     let shared = parts.get(&recipe, material, || sources.surface(&recipe))?;
     let surface = &shared.surface;
@@ -185,6 +190,7 @@ fn build_new(
         unevenness: cloth.unevenness,
         changed: wanted.changed,
         material: *material,
+        grained: wanted.grained(),
         weighed: wanted.weighed(),
         factors,
         pins: pins.clone(),
@@ -202,16 +208,21 @@ fn follow_grain(
     state: &mut ClothState,
 ) -> Result<Build, ClothError> {
     wanted.material.validate()?;
+    wanted.pins.validate(built.surface())?;
     let Some(known) = &built.shared.recipe else {
         return Ok(Build::Kept);
     };
     let recipe = Recipe {
-        grain: wanted.grain.cloned(),
+        grain: wanted.grain.map(|(grain, _)| grain.clone()),
         ..known.clone()
     };
     let shared = parts.get(&recipe, wanted.material, || sources.surface(&recipe))?;
-    take_springs(built, shared, state);
+    // What may fail comes first: then the springs can be taken.
     follow_changes(wanted, parts, particles, built, state)?;
+    take_springs(built, shared, state);
+    if let Some(from) = &mut built.from {
+        from.grained = wanted.grained();
+    }
     Ok(Build::Kept)
 }
 
@@ -318,8 +329,16 @@ fn follow_changes(
     material.validate()?;
     let surface = &built.shared.surface;
     if is_weighed_otherwise {
-        from.factors = wanted.factors(surface)?;
-        particles.weigh(surface, material, &from.factors)?;
+        let factors = wanted.factors(surface)?;
+        pins.validate(surface)?;
+        // The same as before leaves masses that the game has set.
+        if factors != from.factors {
+            // Their motion goes on: nothing that rests on where they are has to be looked at again.
+            let particles = particles.bypass_change_detection();
+            particles.weigh(surface, material, &factors)?;
+            built.masses = particles.free_masses();
+            from.factors = factors;
+        }
         from.weighed = wanted.weighed();
     }
     if was.areal_density != material.areal_density || are_others_pinned {

@@ -33,7 +33,7 @@ pub(super) static NO_PINS: Pins = Pins::none();
 pub(crate) struct GameQuery {
     pub cloth: Ref<'static, Cloth>,
     pub material: Option<&'static ClothMaterial>,
-    pub grain: Option<&'static ClothGrain>,
+    pub grain: Option<Ref<'static, ClothGrain>>,
     pub density: Option<Ref<'static, ClothDensity>>,
     pub pins: Option<&'static Pins>,
     pub attachments: Option<&'static ClothAttachments>,
@@ -54,16 +54,19 @@ static BY_TEXTURE: ClothGrain = ClothGrain::by_texture();
 impl GameQueryItem<'_, '_> {
     /// When the density was last changed, if it has one.
     pub fn weighed(&self) -> Option<Tick> {
-        self.density.as_ref().map(|density| density.last_changed())
+        self.density.as_ref().map(DetectChanges::last_changed)
     }
 
-    /// The grain, if the cloth is a mesh whose material has a weft.
-    pub fn grain(&self) -> Option<&ClothGrain> {
-        self.material?.weft?;
-        match self.cloth.shape {
-            ClothShape::Grid(_) => None,
-            _ => Some(self.grain.unwrap_or(&BY_TEXTURE)),
+    /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft.
+    pub fn grain(&self) -> Option<(&ClothGrain, Option<Tick>)> {
+        let is_grid = matches!(self.cloth.shape, ClothShape::Grid(_));
+        if is_grid || !self.material?.is_woven() {
+            return None;
         }
+        let own = self.grain.as_ref();
+        Some(own.map_or((&BY_TEXTURE, None), |grain| {
+            (&**grain, Some(grain.last_changed()))
+        }))
     }
 }
 

@@ -67,6 +67,8 @@ pub(crate) struct BuiltFrom {
     /// When the `Cloth` was last changed.
     pub changed: Tick,
     pub material: ClothMaterial,
+    /// When its `ClothGrain` was last changed, if it has one.
+    pub grained: Option<Tick>,
     /// When its `ClothDensity` was last changed, if it has one, and what that gave.
     pub weighed: Option<Tick>,
     pub factors: DensityFactors,
@@ -79,7 +81,7 @@ pub(crate) struct FailedBuild {
     pub changed: Tick,
     pub source: Option<Source>,
     pub material: ClothMaterial,
-    pub grain: Option<ClothGrain>,
+    pub grained: Option<Option<Tick>>,
     pub weighed: Option<Tick>,
     pub pins: Pins,
     pub scale: Vec3,
@@ -114,9 +116,17 @@ impl ClothBuilt {
         self.shared.recipe.as_ref().and_then(|recipe| recipe.source)
     }
 
-    /// The grain of a mesh with a weft.
-    pub(crate) fn grain(&self) -> Option<&ClothGrain> {
-        self.shared.recipe.as_ref()?.grain.as_ref()
+    /// Whether it was made with this grain, which was last changed then. Values are compared only where the game wrote them.
+    pub(crate) fn has_grain(&self, wanted: Option<(&ClothGrain, Option<Tick>)>) -> bool {
+        let recipe = self.shared.recipe.as_ref();
+        let known = recipe.and_then(|recipe| recipe.grain.as_ref());
+        let grained = self.from.as_ref().and_then(|from| from.grained);
+        match (known, wanted) {
+            (Some(known), Some((grain, changed))) => {
+                changed.is_some() && changed == grained || known == grain
+            }
+            (known, wanted) => known.is_none() && wanted.is_none(),
+        }
     }
 
     /// Whether it was made from a `Cloth` and a `ClothDensity` that were changed then, and from this material and these

@@ -69,7 +69,7 @@ pub(crate) struct Recipe {
     pub scale: Vec3,
     /// The mesh, if it is made from an asset.
     pub source: Option<Source>,
-    /// That of a mesh with a weft.
+    /// The grain of a mesh with a weft.
     pub grain: Option<ClothGrain>,
 }
 

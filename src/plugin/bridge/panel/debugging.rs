@@ -341,7 +341,7 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
 fn show_weft(ui: &mut Ui, material: &mut ClothMaterial) {
     let mut is_woven = material.weft.is_some();
     ui.checkbox(&mut is_woven, "has a weft").on_hover_text(
-        "Whether it stretches and bends otherwise along its rows, or across the grain of a mesh",
+        "Whether it stretches and bends differently along its rows, or across the grain of a mesh",
     );
     let same = ClothWeft {
         stretch_compliance: material.stretch_compliance,

@@ -303,7 +303,7 @@ fn woven_meshes_are_as_stiff_as_the_plate_in_all_directions() {
             let expected = 0.5 * rigidity * f64::from(surface.area());
             let ratio = mesh.energy(&heights) / expected;
             println!("jitter {jitter}, grain {grain}°, {degrees}°: {ratio:.4}");
-            // What a border does not know is a 14th of the area, as in the test above; there the smallest curvature counts.
+            // A border knows less, as in the test above: there the smallest curvature counts.
             assert!((0.9..1.01).contains(&ratio), "{degrees}: {ratio}");
         }
     }
