@@ -189,14 +189,16 @@ fn press_gizmo_keys(
 
 fn press_cloth_keys(
     keys: Res<ButtonInput<KeyCode>>,
+    mut commands: Commands,
     mut cloths: Query<(
+        Entity,
         &mut SearchMethod,
         &mut NarrowPhase,
         &mut ClothMaterial,
         &mut ClothParticles,
     )>,
 ) {
-    for (mut method, mut narrow_phase, mut material, mut particles) in &mut cloths {
+    for (cloth, mut method, mut narrow_phase, mut material, mut particles) in &mut cloths {
         if keys.just_pressed(KeyCode::KeyB) {
             *method = next(SearchMethod::ALL, *method);
         }
@@ -205,6 +207,9 @@ fn press_cloth_keys(
         }
         if keys.just_pressed(KeyCode::KeyM) {
             *material = next(ClothMaterial::PRESETS.map(|(_, each)| each), *material);
+            // Some have a warp and a weft. A mesh without a texture has no direction for them.
+            let grain = ClothGrain::along(Vec3::NEG_Y);
+            commands.entity(cloth).insert_if_new(grain);
         }
         if keys.just_pressed(KeyCode::KeyR) {
             *particles = ClothParticles::default();

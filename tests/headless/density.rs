@@ -180,7 +180,7 @@ fn a_density_that_cannot_be() {
         |app, entity| {
             tick(app, 3);
             change::<ClothDensity>(app, entity, |density| {
-                density.paint = ClothPaint::from(f32::NAN)
+                density.paint = ClothPaint::from(f32::NAN);
             });
         },
         |error| matches!(error, ClothError::Quantity { .. }),
