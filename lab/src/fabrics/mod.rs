@@ -122,7 +122,7 @@ impl Experiment for Fabrics {
                 let worst = own.max_by(|a, b| a.off().abs().total_cmp(&b.off().abs()));
                 let worst = worst.map_or((0.0, ""), |row| (row.off(), &row.truth));
                 format!(
-                    "A {} is off by {:+.1} % at most, in “{}”.",
+                    "{}: off by {:+.1} % at most, in “{}”.",
                     made.name(),
                     100.0 * worst.0,
                     worst.1
@@ -163,7 +163,7 @@ fn chart(rows: &[Row]) -> Chart {
     let truths = distinct(rows.iter().map(|row| row.truth.clone()));
     let panel = Panel::new(
         "",
-        Axis::linear("off by, %").between(-80.0, 80.0),
+        Axis::linear("error, %; -100 is a mode that does not swing").between(-110.0, 60.0),
         Axis::of_names("", truths.iter().rev().cloned()),
     );
     let panel = Made::ALL
@@ -176,7 +176,7 @@ fn chart(rows: &[Row]) -> Chart {
                     .filter(|row| row.is_of(made) && row.truth == *truth);
                 let worst = own.max_by(|a, b| a.off().abs().total_cmp(&b.off().abs()))?;
                 let beside = 0.12 * (2.0 - style as f64);
-                Some([100.0 * worst.off().clamp(-0.8, 0.8), at as f64 + beside])
+                Some([100.0 * worst.off(), at as f64 + beside])
             });
             let points: Vec<[f64; 2]> = points.collect();
             panel.with(Series::new(
