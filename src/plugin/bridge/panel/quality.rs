@@ -12,8 +12,8 @@ pub(super) enum Quality {
     Damped,
 }
 
-/// Ends of the scales, which exceed rubber's stretch and leather's bending.
-const STRETCH: Logarithmic = Logarithmic([1.0e-6, 1.0e-2]);
+/// Ends of the scales, which exceed the knits' stretch and canvas' bending.
+const STRETCH: Logarithmic = Logarithmic([1.0e-6, 1.0]);
 const BEND: Logarithmic = Logarithmic([1.0e-7, 1.0e-2]);
 const DENSITY: Logarithmic = Logarithmic([0.02, 5.0]);
 /// The maximum damping D of the scale.
