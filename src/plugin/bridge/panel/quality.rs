@@ -13,7 +13,7 @@ pub(super) enum Quality {
 }
 
 /// Ends of the scales, which exceed the knits' stretch and canvas' bending.
-const STRETCH: Logarithmic = Logarithmic([1.0e-6, 1.0]);
+const STRETCH: Logarithmic = Logarithmic([1.0e-7, 1.0e-1]);
 const BEND: Logarithmic = Logarithmic([1.0e-7, 1.0e-2]);
 const DENSITY: Logarithmic = Logarithmic([0.02, 5.0]);
 /// The maximum damping D of the scale.
@@ -103,7 +103,7 @@ impl Quality {
             Self::Stretchy => format!(
                 "How much the cloth gives when pulled.\n\
                  Stretch compliance: {stretch_compliance} m/N. A square patch, pulled by 1 N, grows by {} mm.\n\
-                 0 % is rigid, 1 % is 0.000001 m/N, 100 % is {} m/N.",
+                 0 % is rigid, 1 % is 0.0000001 m/N, 100 % is {} m/N.",
                 1.0e3 * stretch_compliance,
                 STRETCH.0[1]
             ),
