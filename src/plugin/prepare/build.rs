@@ -217,7 +217,7 @@ fn follow_grain(
         ..known.clone()
     };
     let shared = parts.get(&recipe, wanted.material, || sources.surface(&recipe))?;
-    // What may fail comes first: then the springs can be taken.
+    // A change that fails leaves the springs as they are.
     follow_changes(wanted, parts, particles, built, state)?;
     take_springs(built, shared, state);
     if let Some(from) = &mut built.from {
