@@ -1,13 +1,15 @@
 //! Compares the features of two patches: vertices with faces, and edges with edges.
 
+use std::ops::Range;
+
 use bevy::math::{Vec3, Vec3A};
 
 use super::{
     bounds::Bounds,
     intersections::passes,
-    lanes::{Eight, Points, edge_to_edges, vertex_to_faces},
+    lanes::{Groups, Hits, Points, near_edges, near_faces},
     motion::Motion,
-    pair::{Nearest, TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
+    pair::{TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
     participant::Participant,
     patch_pair::{Candidate, PatchPair, Place},
     sheet::Sheet,
@@ -29,17 +31,20 @@ const MOST_AHEAD: f32 = 0.5;
 /// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
 const ENOUGH: f32 = 2.0;
 
+/// Units of work for a feature that is compared with eight others.
+const WORK_OF_EIGHT: usize = 3;
+
 /// Units of work for an edge and a face that may cross, in f64.
 const CROSSING: usize = 3;
 
-/// Compares two patches, and lists their near features. `culled` is scratch: its contents do not matter.
+/// Compares two patches, and lists their near features.
 pub(super) fn compare(
     pair: &mut PatchPair,
     cloths: &[Participant],
     motion: &Motion,
     place: &Place,
     candidates: &mut Vec<Candidate>,
-    culled: &mut [Vec<u32>; 2],
+    scratch: &mut Comparison,
     work: &mut usize,
 ) {
     let Place {
@@ -61,30 +66,78 @@ pub(super) fn compare(
         pair.slack = apart;
         return;
     }
+    for side in &sides {
+        scratch.gather(side);
+    }
     let is_one_cloth = a.cloth == b.cloth;
-    let longest = pair.of.map(|patch| {
-        let cloth = motion.patches[patch as usize].cloth as usize;
-        cloths[cloth].sheet.surface().spacing().longest
-    });
-    let longest = longest[0].max(longest[1]);
+    let [longest, other] = [0, 1].map(|side| sides[side].sheet.surface().spacing().longest);
+    let longest = longest.max(other);
     let tolerance = ROUNDING * (LONGEST * listed + thickness + longest);
+    scratch.hits.least = f32::INFINITY;
+    scratch.hits.compared = 0;
     let mut features = Features {
         sides: &sides,
+        points: &scratch.points,
+        hits: &mut scratch.hits,
         is_one_cloth,
         is_one_patch: pair.of[0] == pair.of[1],
         thickness,
         tolerance,
         listed: listed + tolerance,
-        least: f32::INFINITY,
         candidates,
-        culled,
-        tests: 0,
     };
-    features.compare();
-    *work = work.saturating_sub(features.tests / 2);
+    features.vertices_with_faces([0, 1]);
+    if !features.is_one_patch {
+        features.vertices_with_faces([1, 0]);
+    }
+    features.edges_with_edges();
+    *work = work.saturating_sub(WORK_OF_EIGHT * scratch.hits.compared);
     // Edges have a smaller thickness. But all that are not listed are apart by more than `listed`.
-    let apart = features.least.sqrt() - thickness - tolerance;
+    let apart = scratch.hits.least.sqrt() - thickness - tolerance;
     pair.slack = apart.max(listed).min(LONGEST * listed);
+}
+
+/// The features of compared patches at the beginning of the sub-step, eight at a time.
+#[derive(Debug, Default, Clone)]
+pub(super) struct Comparison {
+    points: Vec<Points>,
+    is_known: Vec<bool>,
+    /// The patches that are known.
+    known: Vec<u32>,
+    /// The positions of a patch's particles (m).
+    places: Vec<Vec3A>,
+    hits: Hits,
+}
+
+impl Comparison {
+    /// Begins with no features.
+    pub fn clear(&mut self, motion: &Motion) {
+        let groups = motion.firsts.last().map_or(0, |last| last[3]);
+        self.points.resize(groups as usize, Points::default());
+        for patch in self.known.drain(..) {
+            if let Some(is_known) = self.is_known.get_mut(patch as usize) {
+                *is_known = false;
+            }
+        }
+        self.is_known.resize(motion.patches.len(), false);
+    }
+
+    fn gather(&mut self, side: &Side) {
+        let is_known = &mut self.is_known[side.index as usize];
+        if std::mem::replace(is_known, true) {
+            return;
+        }
+        self.known.push(side.index);
+        self.places.clear();
+        self.places.extend(side.all());
+        let groups = side.sheet.groups(side.sheet.groups_of(side.patch));
+        for (points, corners) in self.points[side.groups.clone()].iter_mut().zip(groups) {
+            for l in 0..8 {
+                let place = self.places[usize::from(corners[l])];
+                (points[0][l], points[1][l], points[2][l]) = (place.x, place.y, place.z);
+            }
+        }
+    }
 }
 
 /// Distance of two patches along a line (m), less than 0 if they overlap there. Places are taken from `origin`, which is
@@ -142,8 +195,12 @@ const ROUNDING: f32 = 1.0e-3;
 /// A patch in a comparison.
 struct Side<'a> {
     sheet: &'a Sheet,
+    /// Its index among the patches of all cloths, and of its cloth.
+    index: u32,
     patch: u32,
     first_particle: u32,
+    /// The places of its features among those of all patches.
+    groups: Range<usize>,
     /// Its particles, and the positions of its cloth's at the beginning of the sub-step (m).
     particles: &'a [u32],
     places: &'a [Vec3A],
@@ -151,15 +208,18 @@ struct Side<'a> {
 }
 
 impl<'a> Side<'a> {
-    fn of(motion: &'a Motion, cloths: &'a [Participant], patch: u32) -> Self {
-        let state = &motion.patches[patch as usize];
-        let [first_particle, first_patch, _] = motion.firsts[state.cloth as usize];
+    fn of(motion: &'a Motion, cloths: &'a [Participant], index: u32) -> Self {
+        let state = &motion.patches[index as usize];
+        let [first_particle, first_patch, _, first_group] = motion.firsts[state.cloth as usize];
         let sheet = &**cloths[state.cloth as usize].sheet;
-        let patch = patch - first_patch;
+        let patch = index - first_patch;
+        let groups = sheet.groups_of(patch);
         Self {
             sheet,
+            index,
             patch,
             first_particle,
+            groups: (first_group + groups.start) as usize..(first_group + groups.end) as usize,
             particles: sheet.particles_of(patch),
             places: &motion.start[first_particle as usize..],
             bounds: state.bounds_at_start(),
@@ -185,23 +245,28 @@ impl<'a> Side<'a> {
         feature.iter().fold(Bounds::EMPTY, add)
     }
 
-    /// The points of up to eight features; the last one fills the rest.
-    fn points<const N: usize>(&self, features: &[[u16; N]], of: &[u32]) -> [Points; N] {
-        let mut points = [[[0.0; 8]; 3]; N];
-        for l in 0..8 {
-            let feature = features[of[l.min(of.len() - 1)] as usize];
-            for (point, local) in points.iter_mut().zip(feature) {
-                let place = self.place(local);
-                (point[0][l], point[1][l], point[2][l]) = (place.x, place.y, place.z);
-            }
-        }
-        points
+    /// Its vertices, faces and edges.
+    fn features<'b>(&self, points: &'b [Points]) -> (Groups<'b, 1>, Groups<'b, 3>, Groups<'b, 2>) {
+        let counts = [
+            usize::from(self.sheet.owned_of(self.patch)),
+            self.sheet.faces_of(self.patch).len(),
+            self.sheet.edges_of(self.patch).len(),
+        ];
+        let (vertices, points) = points[self.groups.clone()].split_at(1);
+        let (faces, edges) = points.split_at(3 * counts[1].div_ceil(8));
+        (
+            Groups::of(vertices, counts[0], self.bounds),
+            Groups::of(faces, counts[1], self.bounds),
+            Groups::of(edges, counts[2], self.bounds),
+        )
     }
 }
 
 /// The features of two patches in a comparison.
 struct Features<'a> {
     sides: &'a [Side<'a>; 2],
+    points: &'a [Points],
+    hits: &'a mut Hits,
     is_one_cloth: bool,
     is_one_patch: bool,
     thickness: f32,
@@ -209,153 +274,61 @@ struct Features<'a> {
     tolerance: f32,
     /// How far apart features are that are listed (m).
     listed: f32,
-    /// The least squared distance of others (m²).
-    least: f32,
     candidates: &'a mut Vec<Candidate>,
-    /// The features of each side that are near the other patch's box.
-    culled: &'a mut [Vec<u32>; 2],
-    /// Number of boxes of features, and of pairs of features, that were compared.
-    tests: usize,
 }
 
 impl Features<'_> {
-    fn compare(&mut self) {
-        self.vertices_with_faces([0, 1]);
-        if !self.is_one_patch {
-            self.vertices_with_faces([1, 0]);
-        }
-        self.edges_with_edges();
-    }
-
-    /// Culls the features of a side, from their bounds: keeps those that are near enough to the other patch to be listed.
-    fn cull(&mut self, side: usize, features: impl Iterator<Item = Bounds>) {
-        let far = self.listed + self.thickness;
-        let other = &self.sides[1 - side].bounds;
-        let near = &mut self.culled[side];
-        near.clear();
-        for (index, bounds) in features.enumerate() {
-            let square = bounds.distance_squared(other);
-            self.tests += 1;
-            if square > far * far {
-                self.least = self.least.min(square);
-            } else {
-                near.push(index as u32);
-            }
-        }
-    }
-
-    /// Takes the squared distances of a feature from eight others (m²): calls `list` with those of the first `count` that
-    /// are to be listed, and their distances, at least (m). The rest repeats the last one.
-    fn sort(
-        &mut self,
-        squares: Eight,
-        count: usize,
-        thickness: f32,
-        mut list: impl FnMut(&mut Self, usize, f32),
-    ) {
-        let far = (self.listed + thickness).powi(2);
-        let mut are_far = true;
-        for square in squares {
-            let is_far = square > far;
-            let least = if is_far { square } else { f32::INFINITY };
-            self.least = if least < self.least {
-                least
-            } else {
-                self.least
-            };
-            are_far &= is_far;
-        }
-        if are_far {
-            return;
-        }
-        for (l, &square) in squares.iter().enumerate().take(count) {
-            // Not `square <= far`: NaN is listed.
-            if square > far {
+    fn vertices_with_faces(&mut self, of: [usize; 2]) {
+        let [own, other] = of.map(|side| &self.sides[side]);
+        let (vertices, faces) = (own.features(self.points).0, other.features(self.points).1);
+        self.hits.of.clear();
+        let far = (self.listed + self.thickness).powi(2);
+        near_faces(&vertices, &faces, far, self.hits);
+        let faces = other.sheet.faces_of(other.patch);
+        for hit in &self.hits.of {
+            let vertex = own.particles[hit.first];
+            let corners = faces[hit.second].map(|corner| other.particle(corner));
+            if self.is_one_cloth && corners.contains(&vertex) {
                 continue;
             }
-            list(self, l, square.sqrt() - self.tolerance);
+            let thickness = self.allowed(self.thickness, |rest| {
+                let at_rest = |particle: u32| rest[particle as usize];
+                vertex_to_face(at_rest(vertex), corners.map(at_rest))
+            });
+            let [a, b, c] = corners.map(|corner| other.first_particle + corner);
+            let particles = [own.first_particle + vertex, a, b, c];
+            let distance = hit.square.sqrt() - self.tolerance;
+            let near = Candidate::new(particles, VERTEX_AND_FACE, thickness, distance);
+            self.candidates.push(near);
         }
-    }
-
-    fn vertices_with_faces(&mut self, [own_side, other_side]: [usize; 2]) {
-        let sides = self.sides;
-        let [own, other] = [&sides[own_side], &sides[other_side]];
-        let vertices = 0..own.sheet.owned_of(own.patch);
-        self.cull(own_side, vertices.map(|local| own.bounds([local])));
-        if self.culled[own_side].is_empty() {
-            return;
-        }
-        let faces = other.sheet.faces_of(other.patch);
-        self.cull(other_side, faces.iter().map(|face| other.bounds(*face)));
-        let near = std::mem::take(self.culled);
-        self.tests += near[0].len() * near[1].len();
-        for indices in near[other_side].chunks(8) {
-            let points = other.points(faces, indices);
-            for &index in &near[own_side] {
-                let vertex = own.particles[index as usize];
-                let place = own.places[vertex as usize];
-                let squares = vertex_to_faces(place, &points);
-                self.sort(
-                    squares,
-                    indices.len(),
-                    self.thickness,
-                    |features, l, distance| {
-                        let face = faces[indices[l] as usize];
-                        let corners = face.map(|corner| other.particle(corner));
-                        if features.is_one_cloth && corners.contains(&vertex) {
-                            return;
-                        }
-                        let thickness = features.allowed(features.thickness, |rest| {
-                            let at_rest = |particle: u32| rest[particle as usize];
-                            vertex_to_face(at_rest(vertex), corners.map(at_rest))
-                        });
-                        let [a, b, c] = corners.map(|corner| other.first_particle + corner);
-                        let particles = [own.first_particle + vertex, a, b, c];
-                        features.list(particles, VERTEX_AND_FACE, thickness, distance);
-                    },
-                );
-            }
-        }
-        *self.culled = near;
     }
 
     fn edges_with_edges(&mut self) {
         let [own, other] = self.sides;
-        let edges = [own, other].map(|side| side.sheet.edges_of(side.patch));
-        self.cull(0, edges[0].iter().map(|edge| own.bounds(*edge)));
-        if self.culled[0].is_empty() {
-            return;
-        }
-        self.cull(1, edges[1].iter().map(|edge| other.bounds(*edge)));
-        let near = std::mem::take(self.culled);
-        self.tests += near[0].len() * near[1].len();
+        let [edges, others] = [own, other].map(|side| side.features(self.points).2);
         let wanted = EDGES * self.thickness;
-        for indices in near[1].chunks(8) {
-            let points = other.points(edges[1], indices);
-            for &index in &near[0] {
-                let first = edges[0][index as usize];
-                let squares = edge_to_edges(first.map(|end| own.place(end)), &points);
-                self.sort(squares, indices.len(), wanted, |features, l, distance| {
-                    let ends = first.map(|end| own.particle(end));
-                    let second = edges[1][indices[l] as usize];
-                    let others = second.map(|end| other.particle(end));
-                    let is_known = features.is_one_patch && indices[l] <= index;
-                    let is_joined =
-                        features.is_one_cloth && ends.iter().any(|end| others.contains(end));
-                    if is_known || is_joined {
-                        return;
-                    }
-                    let thickness = features.allowed(wanted, |rest| {
-                        let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
-                        edge_to_edge(at_rest(ends), at_rest(others))
-                    });
-                    let [p, q] = ends.map(|end| own.first_particle + end);
-                    let [r, s] = others.map(|end| other.first_particle + end);
-                    features.list([p, q, r, s], TWO_EDGES, thickness, distance);
-                });
+        self.hits.of.clear();
+        let far = (self.listed + wanted).powi(2);
+        near_edges(&edges, &others, far, self.hits);
+        let [edges, others] = [own, other].map(|side| side.sheet.edges_of(side.patch));
+        for hit in &self.hits.of {
+            let ends = edges[hit.first].map(|end| own.particle(end));
+            let other_ends = others[hit.second].map(|end| other.particle(end));
+            let is_known = self.is_one_patch && hit.second <= hit.first;
+            let is_joined = self.is_one_cloth && ends.iter().any(|end| other_ends.contains(end));
+            if is_known || is_joined {
+                continue;
             }
+            let thickness = self.allowed(wanted, |rest| {
+                let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
+                edge_to_edge(at_rest(ends), at_rest(other_ends))
+            });
+            let [p, q] = ends.map(|end| own.first_particle + end);
+            let [r, s] = other_ends.map(|end| other.first_particle + end);
+            let distance = hit.square.sqrt() - self.tolerance;
+            let near = Candidate::new([p, q, r, s], TWO_EDGES, thickness, distance);
+            self.candidates.push(near);
         }
-        *self.culled = near;
     }
 
     /// Distance at which two features touch, from their squared distance at rest if they are of one cloth.
@@ -367,15 +340,5 @@ impl Features<'_> {
         } else {
             thickness
         }
-    }
-
-    fn list(&mut self, particles: [u32; 4], split: usize, thickness: f32, distance: f32) {
-        self.candidates.push(Candidate {
-            particles,
-            split: split as u32,
-            thickness,
-            nearest: Nearest::default(),
-            apart: distance - thickness,
-        });
     }
 }

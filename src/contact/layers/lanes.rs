@@ -1,12 +1,13 @@
-//! Squared distances of one feature from eight others at once.
+//! Finds near features of two patches: distances of one feature from eight others at once.
 //!
 //! Rounded a little differently than those of [`Nearest`](super::pair::Nearest): good enough to tell which pairs to
 //! list, not for their contact.
 
 use std::ops::{Add, Mul, Sub};
 
-use bevy::math::Vec3A;
 use multiversion::multiversion;
+
+use super::bounds::Bounds;
 
 /// Eight numbers.
 #[derive(Debug, Clone, Copy)]
@@ -65,13 +66,37 @@ impl Lanes {
     #[inline(always)]
     fn min(mut self, other: Self) -> Self {
         for l in 0..8 {
-            self.0[l] = if other.0[l] < self.0[l] {
-                other.0[l]
-            } else {
-                self.0[l]
-            };
+            let is_less = other.0[l] < self.0[l];
+            self.0[l] = if is_less { other.0[l] } else { self.0[l] };
         }
         self
+    }
+
+    #[inline(always)]
+    fn max(mut self, other: Self) -> Self {
+        for l in 0..8 {
+            let is_more = other.0[l] > self.0[l];
+            self.0[l] = if is_more { other.0[l] } else { self.0[l] };
+        }
+        self
+    }
+
+    /// These where they are greater than `far`, infinity elsewhere, also for NaN.
+    #[inline(always)]
+    fn beyond(mut self, far: f32) -> Self {
+        for l in 0..8 {
+            let is_far = self.0[l] > far;
+            self.0[l] = if is_far { self.0[l] } else { f32::INFINITY };
+        }
+        self
+    }
+
+    /// Whether all are greater than `far`.
+    #[inline(always)]
+    fn are_beyond(&self, far: f32) -> bool {
+        self.0
+            .iter()
+            .fold(true, |all, number| all & (*number > far))
     }
 
     /// These where `of` is not negative, `others` elsewhere.
@@ -93,11 +118,6 @@ type Vectors = [Lanes; 3];
 #[inline(always)]
 fn vectors(points: &Points) -> Vectors {
     points.map(Lanes)
-}
-
-#[inline(always)]
-fn splat(point: Vec3A) -> Vectors {
-    [point.x, point.y, point.z].map(Lanes::all)
 }
 
 #[inline(always)]
@@ -126,13 +146,136 @@ fn from_segment(from: &Vectors, along: &Vectors, square: Lanes, product: Lanes) 
     dot(&rest, &rest)
 }
 
-/// Squared distances of a vertex from eight faces (m²).
+/// The features of a patch, in groups of eight; the last one fills the last group.
+pub(super) struct Groups<'a, const N: usize> {
+    pub points: &'a [[Points; N]],
+    pub count: usize,
+    /// A box around them.
+    pub bounds: Bounds,
+}
+
+impl<'a, const N: usize> Groups<'a, N> {
+    pub fn of(points: &'a [Points], count: usize, bounds: Bounds) -> Self {
+        Self {
+            points: points.as_chunks().0,
+            count,
+            bounds,
+        }
+    }
+}
+
+/// Two near features, by their places in their patches, and their squared distance (m²).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hit {
+    pub first: usize,
+    pub second: usize,
+    pub square: f32,
+}
+
+/// Near features of two patches.
+#[derive(Debug, Default, Clone)]
+pub(super) struct Hits {
+    pub of: Vec<Hit>,
+    /// Lower bound of the squared distances of all others (m²).
+    pub least: f32,
+    /// Number of features that were compared with eight others.
+    pub compared: usize,
+}
+
+/// Squared distances of eight features from a box (m²), at least.
+#[inline(always)]
+fn box_squares<const N: usize>(features: &[Points; N], bounds: &Bounds) -> Lanes {
+    let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
+    let mut squares = Lanes::all(0.0);
+    for axis in 0..3 {
+        let (mut least, mut most) = (Lanes(features[0][axis]), Lanes(features[0][axis]));
+        for points in &features[1..] {
+            least = least.min(Lanes(points[axis]));
+            most = most.max(Lanes(points[axis]));
+        }
+        let above = least - Lanes::all(high[axis]);
+        let gap = above.max(Lanes::all(low[axis]) - most).max(Lanes::all(0.0));
+        squares = squares + gap * gap;
+    }
+    squares
+}
+
+/// Squared distances of a vertex from eight faces, or of an edge from eight others (m²).
+#[inline(always)]
+fn squares<const N: usize, const M: usize>(feature: &[Vectors; N], others: &[Points; M]) -> Lanes {
+    if N == 1 {
+        vertex_to_faces(&feature[0], [&others[0], &others[1], &others[2]])
+    } else {
+        edge_to_edges([&feature[0], &feature[1]], [&others[0], &others[1]])
+    }
+}
+
+/// Finds the features that are no farther apart than the square root of `far`, also those at NaN. Features that are farther
+/// from the box of all others are not compared.
+#[inline(always)]
+fn near<const N: usize, const M: usize>(
+    own: &Groups<N>,
+    other: &Groups<M>,
+    far: f32,
+    hits: &mut Hits,
+) {
+    let mut least = Lanes::all(hits.least);
+    for (from_second, others) in (0..).step_by(8).zip(other.points) {
+        let from_own = box_squares(others, &own.bounds);
+        if from_own.are_beyond(far) {
+            least = least.min(from_own);
+            continue;
+        }
+        for (from_first, group) in (0..).step_by(8).zip(own.points) {
+            let from_other = box_squares(group, &other.bounds);
+            least = least.min(from_other.beyond(far));
+            for l in 0..(own.count - from_first).min(8) {
+                if from_other.0[l] > far {
+                    continue;
+                }
+                let feature = group.map(|point| point.map(|axis| Lanes::all(axis[l])));
+                let squares = squares(&feature, others);
+                hits.compared += 1;
+                least = least.min(squares.beyond(far));
+                if squares.are_beyond(far) {
+                    continue;
+                }
+                for m in 0..(other.count - from_second).min(8) {
+                    let square = squares.0[m];
+                    if square > far {
+                        continue;
+                    }
+                    // Also for NaN.
+                    hits.of.push(Hit {
+                        first: from_first + l,
+                        second: from_second + m,
+                        square,
+                    });
+                }
+            }
+        }
+    }
+    hits.least = least.0.into_iter().fold(f32::INFINITY, f32::min);
+}
+
+/// Finds the faces that are no farther from vertices than the square root of `far`.
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
-pub(super) fn vertex_to_faces(vertex: Vec3A, faces: &[Points; 3]) -> Eight {
-    let vertex = splat(vertex);
-    let [a, b, c] = [vectors(&faces[0]), vectors(&faces[1]), vectors(&faces[2])];
+pub(super) fn near_faces(vertices: &Groups<1>, faces: &Groups<3>, far: f32, hits: &mut Hits) {
+    near(vertices, faces, far, hits);
+}
+
+/// Finds the edges that are no farther from others than the square root of `far`.
+#[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
+pub(super) fn near_edges(edges: &Groups<2>, others: &Groups<2>, far: f32, hits: &mut Hits) {
+    near(edges, others, far, hits);
+}
+
+/// Squared distances of a vertex from eight faces (m²).
+#[inline(always)]
+fn vertex_to_faces(vertex: &Vectors, faces: [&Points; 3]) -> Lanes {
+    let [a, b, c] = faces.map(vectors);
     let (ab, ac, bc) = (minus(&b, &a), minus(&c, &a), minus(&c, &b));
-    let (from_a, from_b) = (minus(&vertex, &a), minus(&vertex, &b));
+    let (from_a, from_b) = (minus(vertex, &a), minus(vertex, &b));
     let (d00, d01, d11) = (dot(&ab, &ab), dot(&ab, &ac), dot(&ac, &ac));
     let (d20, d21) = (dot(&from_a, &ab), dot(&from_a, &ac));
     let area = d00 * d11 - d01 * d01;
@@ -146,15 +289,15 @@ pub(super) fn vertex_to_faces(vertex: Vec3A, faces: &[Points; 3]) -> Eight {
         .min(from_segment(&from_b, &bc, dot(&bc, &bc), dot(&from_b, &bc)));
     let inside = v.min(w).min(area - v - w);
     // A face without an area is its edges.
-    plane.where_positive(inside, edges).min(edges).0
+    plane.where_positive(inside, edges).min(edges)
 }
 
 /// Squared distances of an edge from eight others (m²).
-#[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
-pub(super) fn edge_to_edges([p, q]: [Vec3A; 2], edges: &[Points; 2]) -> Eight {
-    let (p, along) = (splat(p), splat(q - p));
-    let (r, s) = (vectors(&edges[0]), vectors(&edges[1]));
-    let (other, from) = (minus(&s, &r), minus(&p, &r));
+#[inline(always)]
+fn edge_to_edges([p, q]: [&Vectors; 2], edges: [&Points; 2]) -> Lanes {
+    let along = minus(q, p);
+    let [r, s] = edges.map(vectors);
+    let (other, from) = (minus(&s, &r), minus(p, &r));
     let (a, e, b) = (
         dot(&along, &along),
         dot(&other, &other),
@@ -173,5 +316,5 @@ pub(super) fn edge_to_edges([p, q]: [Vec3A; 2], edges: &[Points; 2]) -> Eight {
         from[1] + along[1] * first - other[1] * second,
         from[2] + along[2] * first - other[2] * second,
     ];
-    dot(&rest, &rest).0
+    dot(&rest, &rest)
 }

@@ -131,9 +131,9 @@ impl Members {
     }
 
     /// Puts their positions among those of all particles.
-    pub fn put(&self, motion: &mut Motion) {
+    pub fn put(&self, cloths: &[Participant], motion: &mut Motion) {
         for (member, state) in self.of.iter().zip(&self.states) {
-            motion.end[member.particle as usize] = state.place;
+            motion.put(cloths, member.particle, state.place);
         }
     }
 

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //!   cloth → patches of a few faces (sheet)
+//!   neighbouring patches whose tangents differ much (folds)                         → near pairs of patches
 //!   boxes with clearance around patches, trees searched from the top down (near_patches) → near pairs of patches
 //!   features of near pairs, culled by boxes, compared eight at a time (compare, lanes) → slack, listed features
 //!   the pair's own motion since then (motion): used > until?                        → look again (near_features)
@@ -17,7 +18,7 @@
 //! 2. Of two patches whose boxes overlap, features that are not listed were farther apart than a thickness by at least
 //!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
 //!    less, they are a thickness apart.
-//! 3. Two patches of a grid whose [tangents](tangents) differ little are apart, however they moved.
+//! 3. Neighbouring patches of a grid whose [tangents](tangents) differ little are apart, however they [folded](folds).
 //! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
 //!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
 //!    it has not passed, or it is stopped.
@@ -31,6 +32,7 @@ mod bounds;
 mod certificate;
 mod circumstances;
 mod compare;
+mod folds;
 mod inside;
 mod intersections;
 mod lanes;
@@ -171,8 +173,12 @@ impl MutualContact {
             if !begins {
                 self.tighten();
             }
-            self.near.restart(begins);
             self.motion.reset(cloths);
+            let among = Meets {
+                cloths,
+                meets: &meets,
+            };
+            self.near.restart(begins, &among, self.motion.patches.len());
             self.boxes.reset(cloths, self.motion.patches.len());
             self.mean_pushes.clear(cloths);
             self.contacts.clear();
@@ -323,8 +329,8 @@ impl MutualContact {
             if !has_moved {
                 break;
             }
-            self.members.put(&mut self.motion);
-            self.motion.measure(cloths);
+            self.members.put(cloths, &mut self.motion);
+            self.motion.measure_changed(cloths);
             self.last.free = f32::NEG_INFINITY;
         }
         true
@@ -345,13 +351,18 @@ impl MutualContact {
             counts,
             ..
         } = self;
-        let (have_left, clearance) = boxes.renew(cloths, motion, last.reserve);
-        if have_left {
-            let among = Meets { cloths, meets };
-            near.renew(boxes, &among, motion, &mut counts.work);
-        }
+        let (has_left, clearance) = boxes.renew(cloths, motion, last.reserve);
+        let among = Meets { cloths, meets };
+        let unfolded = near.renew(
+            boxes,
+            has_left,
+            &among,
+            motion,
+            last.reserve,
+            &mut counts.work,
+        );
         let slack = near.look(cloths, motion, last.reserve, counts)?;
-        Some(slack.min(2.0 * clearance))
+        Some(slack.min(unfolded).min(2.0 * clearance))
     }
 
     /// Lists the contacts. A `first` list of a sub-step has members of its own.

@@ -13,6 +13,7 @@
 use bevy::math::{Vec3A, Vec4};
 
 use super::{bounds::Bounds, participant::Participant};
+use crate::cloth::LANES;
 
 /// A patch at the beginning and at the end of a sub-step.
 #[derive(Debug, Default, Clone, Copy)]
@@ -26,6 +27,8 @@ pub(super) struct PatchMotion {
     /// Deviations of particles from earlier references in all, and from this one at the beginning and at the end (m).
     pub earlier: f32,
     deviation: [f32; 2],
+    /// Whether its particles were put elsewhere since it was measured.
+    is_changed: bool,
 }
 
 impl PatchMotion {
@@ -37,11 +40,6 @@ impl PatchMotion {
     /// Zero of [`used`](Self::used) for a comparison at the beginning of the sub-step (m).
     pub fn used_before(&self) -> f32 {
         self.earlier - self.deviation[0]
-    }
-
-    /// Zero of [`used`](Self::used) for a comparison at the end of the sub-step (m).
-    pub fn used_to_end(&self) -> f32 {
-        self.earlier - self.deviation[1]
     }
 
     /// Upper bound of all that its particles had moved against each other before the sub-step (m).
@@ -70,8 +68,8 @@ impl PatchMotion {
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Motion {
-    /// The first particle, patch, and particle of a patch of each cloth; and one more.
-    pub firsts: Vec<[u32; 3]>,
+    /// The first particle, patch, particle of a patch, and points of eight features of each cloth; and one more.
+    pub firsts: Vec<[u32; 4]>,
     /// Positions at the beginning of the sub-step, up to which layers are apart, and at its end (m).
     pub start: Vec<Vec3A>,
     pub end: Vec<Vec3A>,
@@ -81,6 +79,14 @@ pub(super) struct Motion {
     pub ends: Vec<Vec4>,
     /// Offsets of each patch's particles at its reference (m).
     offsets: Vec<Vec3A>,
+    /// Upper bounds of the approach of any two particles, in earlier sub-steps and in this one (m).
+    pub approached: f32,
+    pub approach: f32,
+    /// The patches whose particles were put elsewhere, and how far at most (m).
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    changed: Vec<u32>,
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    put_by: f32,
     /// The motion that all had in common, in all and in the sub-step (m).
     pub drift: Vec3A,
     pub drifted: Vec3A,
@@ -91,7 +97,7 @@ impl Motion {
     pub fn reset(&mut self, cloths: &[Participant]) {
         self.firsts.clear();
         self.patches.clear();
-        let mut next = [0; 3];
+        let mut next = [0; 4];
         for (index, cloth) in cloths.iter().enumerate() {
             self.firsts.push(next);
             let patches = cloth.sheet.patch_count() as u32;
@@ -99,6 +105,7 @@ impl Motion {
             next[0] += cloth.particles.len() as u32;
             next[1] += patches;
             next[2] += particles.sum::<u32>();
+            next[3] += cloth.sheet.group_count();
             self.patches.resize(
                 next[1] as usize,
                 PatchMotion {
@@ -109,6 +116,7 @@ impl Motion {
         }
         self.firsts.push(next);
         (self.drift, self.drifted) = (Vec3A::ZERO, Vec3A::ZERO);
+        (self.approached, self.approach) = (0.0, 0.0);
         self.read(cloths);
         self.start.clone_from(&self.end);
         self.offsets.clear();
@@ -133,49 +141,90 @@ impl Motion {
         (cloth, (particle - self.firsts[cloth][0]) as usize)
     }
 
+    /// The cloth of two patches, and their indices there, if both are of one.
+    pub fn of_one_cloth(&self, of: [u32; 2]) -> Option<(usize, [u32; 2])> {
+        let [a, b] = of.map(|patch| self.patches[patch as usize].cloth as usize);
+        (a == b).then(|| (a, of.map(|patch| patch - self.firsts[a][1])))
+    }
+
     /// Reads the particles' positions at the end of the sub-step.
     pub fn read(&mut self, cloths: &[Participant]) {
         self.end.clear();
         for cloth in cloths {
-            let places = cloth.particles.positions();
-            self.end
-                .extend(places.map(|place| Vec3A::from(cloth.point(place))));
+            let layout = cloth.particles.layout();
+            let strip = layout.strip as usize;
+            for row in cloth.particles.blocks().chunks_exact(strip) {
+                let mut left = layout.columns as usize;
+                for lane in 0..LANES {
+                    let blocks = &row[..left.min(strip)];
+                    let places = blocks.iter().map(|block| cloth.point(block.position(lane)));
+                    self.end.extend(places.map(Vec3A::from));
+                    left -= blocks.len();
+                }
+            }
         }
     }
 
-    /// Measures the motion that all have in common.
+    /// Measures the motion that all have in common, and how much nearer any two may have come.
     pub fn measure_drift(&mut self) {
         let each = self.end.iter().zip(&self.start);
         let sum = each.map(|(end, start)| *end - *start).sum::<Vec3A>();
         let drifted = sum / self.end.len().max(1) as f32;
         self.drift += drifted - self.drifted;
         self.drifted = drifted;
+        let each = self.end.iter().zip(&self.start);
+        let squares = each.map(|(end, start)| (*end - *start - drifted).length_squared());
+        self.approach = 2.0 * squares.fold(0.0, f32::max).sqrt();
+    }
+
+    /// Puts a particle elsewhere at the end of the sub-step.
+    pub fn put(&mut self, cloths: &[Participant], particle: u32, place: Vec3A) {
+        let by = place - std::mem::replace(&mut self.end[particle as usize], place);
+        if by == Vec3A::ZERO {
+            return;
+        }
+        self.put_by = self.put_by.max(by.length());
+        let (cloth, local) = self.cloth_of(particle);
+        for patch in cloths[cloth].sheet.patches_of(local) {
+            let patch = self.firsts[cloth][1] + patch;
+            if !std::mem::replace(&mut self.patches[patch as usize].is_changed, true) {
+                self.changed.push(patch);
+            }
+        }
+    }
+
+    /// Measures the patches whose particles were put elsewhere.
+    pub fn measure_changed(&mut self, cloths: &[Participant]) {
+        self.approach += 2.0 * std::mem::take(&mut self.put_by);
+        let changed = std::mem::take(&mut self.changed);
+        for &patch in &changed {
+            self.patches[patch as usize].is_changed = false;
+            self.measure_patch(cloths, patch as usize);
+        }
+        self.changed = changed;
+        self.changed.clear();
     }
 
     /// Measures each patch at the end of the sub-step.
     pub fn measure(&mut self, cloths: &[Participant]) {
-        let mut offsets = self.offsets.iter();
-        let mut patches = self.patches.iter_mut();
-        self.ends.clear();
-        for (cloth, first) in cloths.iter().zip(&self.firsts) {
-            let places = &self.end[first[0] as usize..];
-            for patch in 0..cloth.sheet.patch_count() as u32 {
-                let particles = cloth.sheet.particles_of(patch);
-                let Some(state) = patches.next() else { return };
-                let sum = particles
-                    .iter()
-                    .map(|&particle| places[particle as usize])
-                    .sum::<Vec3A>();
-                state.end = sum / particles.len() as f32;
-                let mut square = 0.0_f32;
-                for (&particle, offset) in particles.iter().zip(&mut offsets) {
-                    let moved = places[particle as usize] - state.end - *offset;
-                    square = square.max(moved.length_squared());
-                }
-                state.deviation[1] = square.sqrt();
-                self.ends.push(state.end.extend(state.used()));
-            }
-        }
+        self.ends.resize(self.patches.len(), Vec4::ZERO);
+        (0..self.patches.len()).for_each(|patch| self.measure_patch(cloths, patch));
+    }
+
+    fn measure_patch(&mut self, cloths: &[Participant], index: usize) {
+        let state = &mut self.patches[index];
+        let [first_particle, first_patch, first_offset, _] = self.firsts[state.cloth as usize];
+        let sheet = &cloths[state.cloth as usize].sheet;
+        let particles = sheet.particles_of(index as u32 - first_patch);
+        let first = (first_offset + sheet.first_of(index as u32 - first_patch)) as usize;
+        let places = &self.end[first_particle as usize..];
+        let each = particles.iter().map(|&particle| places[particle as usize]);
+        state.end = each.clone().sum::<Vec3A>() / particles.len() as f32;
+        let squares = each
+            .zip(&self.offsets[first..])
+            .map(|(place, offset)| (place - state.end - *offset).length_squared());
+        state.deviation[1] = squares.fold(0.0, f32::max).sqrt();
+        self.ends[index] = state.end.extend(state.used());
     }
 
     /// Ends the sub-step: the next one begins where it ended. Patches that deviate from their references by more than
@@ -183,6 +232,8 @@ impl Motion {
     pub fn pass(&mut self, cloths: &[Participant], most: f32) {
         std::mem::swap(&mut self.start, &mut self.end);
         self.drifted = Vec3A::ZERO;
+        self.approached += self.approach;
+        self.approach = 0.0;
         for (index, patch) in self.patches.iter_mut().enumerate() {
             patch.start = patch.end;
             patch.deviation[0] = patch.deviation[1];
@@ -190,7 +241,7 @@ impl Motion {
             if patch.deviation[0] <= most {
                 continue;
             }
-            let [first_particle, first_patch, first_offset] = self.firsts[patch.cloth as usize];
+            let [first_particle, first_patch, first_offset, _] = self.firsts[patch.cloth as usize];
             let (sheet, own) = (
                 &cloths[patch.cloth as usize].sheet,
                 index as u32 - first_patch,

@@ -12,11 +12,12 @@
 //! their listed features are measured that may touch, or all are compared if the slack is used up.
 
 use super::{
-    compare::{compare, cross},
+    compare::{Comparison, compare, cross},
+    folds::Folds,
     motion::Motion,
     near_patches::{Meets, PatchBoxes},
     participant::Participant,
-    patch_pair::{Candidate, PatchPair, Place, measure, unfolded_by},
+    patch_pair::{Candidate, PatchPair, Place, measure},
     work::{Counts, MOST_LISTED},
 };
 
@@ -27,6 +28,7 @@ const SOON: f32 = 0.5;
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NearFeatures {
+    folds: Folds,
     pairs: Vec<PatchPair>,
     candidates: Vec<Candidate>,
     /// Number of candidates that belong to pairs of patches.
@@ -37,9 +39,8 @@ pub(super) struct NearFeatures {
     soon: Vec<u32>,
     #[cfg_attr(feature = "serialize", serde(skip))]
     spare: Vec<Candidate>,
-    /// Scratch of comparisons.
     #[cfg_attr(feature = "serialize", serde(skip))]
-    culled: [Vec<u32>; 2],
+    comparison: Comparison,
     /// Whether the contacts have changed.
     pub has_changed: bool,
     /// Whether this is the first look at cloths that may be inside each other.
@@ -59,7 +60,13 @@ impl NearFeatures {
 
     /// Clears all, to look at the same patches anew. If they `begin`, any may be inside each other, otherwise those that
     /// still were.
-    pub fn restart(&mut self, begins: bool) {
+    pub fn restart(
+        &mut self,
+        begins: bool,
+        among: &Meets<impl Fn(usize, usize) -> bool>,
+        patches: usize,
+    ) {
+        self.folds.reset(among, patches);
         self.begins = begins;
         self.were_tangled.clear();
         if !begins {
@@ -103,29 +110,59 @@ impl NearFeatures {
         }
     }
 
-    /// Drops the pairs of patches whose boxes are apart, and adds those whose boxes have begun to overlap.
+    /// Adds neighbours that have folded. If any patch `has_left` its box, drops the pairs whose boxes are apart, and adds
+    /// those whose boxes have begun to overlap. Returns the approach of any two particles before others fold (m).
     pub fn renew(
         &mut self,
         boxes: &mut PatchBoxes,
+        has_left: bool,
         among: &Meets<impl Fn(usize, usize) -> bool>,
         motion: &Motion,
+        reserve: f32,
         work: &mut usize,
-    ) {
-        let (listed, has_changed) = (&mut self.listed, &mut self.has_changed);
-        self.pairs.retain(|pair| {
-            let is_near = boxes.overlap(pair.of);
-            if !is_near {
+    ) -> f32 {
+        let Self {
+            pairs,
+            folds,
+            were_tangled,
+            ..
+        } = self;
+        let mut found = |of: [u32; 2]| {
+            let is_tangled = were_tangled.binary_search(&in_order(of)).is_ok();
+            pairs.push(PatchPair::new(of, is_tangled));
+        };
+        let unfolded = folds.renew(among.cloths, motion, reserve, &mut found);
+        if has_left {
+            boxes.search(among, motion, work, &mut found);
+            self.retain(|folds, pair| {
+                let is_near = boxes.overlap(pair.of);
+                if !is_near {
+                    folds.forget(among.cloths, motion, pair.of);
+                }
+                is_near
+            });
+        }
+        self.were_tangled.clear();
+        unfolded
+    }
+
+    /// Drops all pairs of patches but these.
+    fn retain(&mut self, mut is_kept: impl FnMut(&mut Folds, &PatchPair) -> bool) {
+        let Self {
+            pairs,
+            folds,
+            listed,
+            has_changed,
+            ..
+        } = self;
+        pairs.retain(|pair| {
+            let is_kept = is_kept(folds, pair);
+            if !is_kept {
                 *listed -= pair.count as usize;
                 *has_changed |= pair.has_contacts();
             }
-            is_near
+            is_kept
         });
-        let (pairs, were_tangled) = (&mut self.pairs, &self.were_tangled);
-        boxes.search(among, motion, work, |of| {
-            let is_tangled = were_tangled.binary_search(&in_order(of)).is_ok();
-            pairs.push(PatchPair::new(of, is_tangled));
-        });
-        self.were_tangled.clear();
     }
 
     /// Measures what is used from zero again: sums of years would round.
@@ -138,6 +175,8 @@ impl NearFeatures {
         for patch in &mut motion.patches {
             patch.earlier = 0.0;
         }
+        self.folds.begin_tick(motion.approached);
+        motion.approached = 0.0;
     }
 
     /// Looks at the patches that have used up what they may, but for a `reserve` (m). Returns the approach of any two
@@ -151,16 +190,13 @@ impl NearFeatures {
     ) -> Option<f32> {
         let mut left = self.find_due(motion, reserve);
         let due = std::mem::take(&mut self.due);
+        self.comparison.clear(motion);
+        let mut are_apart = false;
         for &index in &due {
             let pair = &mut self.pairs[index as usize];
             let had_contacts = pair.has_contacts();
-            if let Some(apart) = unfolded_by(pair, cloths, motion)
-                && apart > reserve
-            {
-                self.listed -= pair.count as usize;
-                pair.stay_unfolded(apart, motion);
-                self.has_changed |= had_contacts;
-                left = left.min(apart);
+            if self.folds.keep_apart(cloths, motion, pair.of) {
+                are_apart = true;
                 continue;
             }
             let used_before = pair.used_at_start(motion);
@@ -182,7 +218,7 @@ impl NearFeatures {
                     motion,
                     &place,
                     &mut self.candidates,
-                    &mut self.culled,
+                    &mut self.comparison,
                     &mut counts.work,
                 );
                 pair.count = (self.candidates.len() - first) as u32;
@@ -208,6 +244,15 @@ impl NearFeatures {
             }
         }
         self.due = due;
+        if are_apart {
+            self.retain(|folds, pair| {
+                let is_apart = folds.keep_apart(cloths, motion, pair.of);
+                if is_apart {
+                    folds.forget(cloths, motion, pair.of);
+                }
+                !is_apart
+            });
+        }
         if self.candidates.len() > 2 * self.listed + 64 {
             self.compact();
         }

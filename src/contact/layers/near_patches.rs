@@ -1,5 +1,7 @@
-//! Pairs of patches that are near each other: a box around each patch leaves it clearance to move, and a patch that leaves
-//! its box gets another one, for which the trees are searched from the top down.
+//! Pairs of patches that are near each other, but for [neighbours](super::folds).
+//!
+//! A box around each patch leaves it clearance to move. A patch that leaves its box gets another one, for which the trees
+//! are searched from the top down.
 
 use bevy::math::Vec3A;
 
@@ -30,7 +32,7 @@ pub(super) struct Meets<'a, F> {
 }
 
 impl<F: Fn(usize, usize) -> bool> Meets<'_, F> {
-    fn of(&self, a: usize, b: usize) -> bool {
+    pub fn of(&self, a: usize, b: usize) -> bool {
         let [first, second] = [a, b].map(|cloth| &self.cloths[cloth]);
         if a == b {
             first.settings.with_itself && !first.is_fixed
@@ -151,7 +153,11 @@ impl PatchBoxes {
                         Some(had) => (patch <= second, had),
                         None => (true, self.boxes[second as usize]),
                     };
-                    if is_first && !had.overlaps(&had_second) {
+                    let is_neighbour = other == own
+                        && cloth
+                            .sheet
+                            .are_neighbours([patch, second].map(|of| of - first));
+                    if is_first && !had.overlaps(&had_second) && !is_neighbour {
                         found([patch.min(second), patch.max(second)]);
                     }
                 }

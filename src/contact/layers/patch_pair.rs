@@ -50,6 +50,19 @@ pub(super) struct Candidate {
     pub apart: f32,
 }
 
+impl Candidate {
+    /// Two features that are at least so far apart (m).
+    pub fn new(particles: [u32; 4], split: usize, thickness: f32, distance: f32) -> Self {
+        Self {
+            particles,
+            split: split as u32,
+            thickness,
+            nearest: Nearest::default(),
+            apart: distance - thickness,
+        }
+    }
+}
+
 impl PatchPair {
     pub fn new(of: [u32; 2], is_tangled: bool) -> Self {
         Self {
@@ -72,16 +85,6 @@ impl PatchPair {
 
     pub fn candidates(&self) -> Range<usize> {
         self.first as usize..(self.first + self.count) as usize
-    }
-
-    /// Starts anew at the end of the sub-step, at which all their features are `apart` (m).
-    pub fn stay_unfolded(&mut self, apart: f32, motion: &Motion) {
-        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
-        self.between = a.end - b.end;
-        self.since = a.used_to_end() + b.used_to_end();
-        (self.slack, self.until) = (apart, apart);
-        (self.count, self.contacts) = (0, 0);
-        self.is_tangled = false;
     }
 
     /// Whether they are inside each other, as they may begin.
@@ -111,24 +114,6 @@ impl PatchPair {
         (a.start - b.start - self.between).length() + a.used_at_start() + b.used_at_start()
             - self.since
     }
-}
-
-/// By how much the features of two patches of a grid are farther apart than the thickness at the end of the sub-step
-/// (m), from the tangents around them. It does not matter how they got there: a sheet that is unfolded has not passed
-/// through itself.
-pub(super) fn unfolded_by(
-    pair: &PatchPair,
-    cloths: &[Participant],
-    motion: &Motion,
-) -> Option<f32> {
-    let [a, b] = pair
-        .of
-        .map(|patch| motion.patches[patch as usize].cloth as usize);
-    let [first_particle, first_patch, _] = motion.firsts[a];
-    let of = pair.of.map(|patch| patch - first_patch);
-    let cloth = (a == b).then(|| &cloths[a])?;
-    let places = &motion.end[first_particle as usize..];
-    Some(cloth.sheet.unfolded(of, places)? - cloth.settings.thickness)
 }
 
 /// Two patches that are looked at, at the beginning of the sub-step.

@@ -2,24 +2,15 @@
 
 use std::{ops::Range, sync::Arc};
 
-use bevy::{
-    math::{Vec2, Vec3A},
-    platform::collections::HashSet,
-};
+use bevy::{math::Vec3A, platform::collections::HashSet};
 
 use super::tangents::Tangents;
-use crate::{
-    cloth::{ClothGrid, Surface},
-    hierarchy::QuadTree,
-};
+use crate::{cloth::Surface, hierarchy::QuadTree};
 
-/// Largest number of rows and columns whose tangents are compared.
-const LARGEST: usize = 9;
+/// Number of rows and of columns of a grid that a patch owns.
+const OF_GRID: u32 = 2;
 
-/// Largest number of rows or columns that a patch owns: with those of its faces, two in a row have [`LARGEST`].
-const LONGEST: u32 = 4;
-
-/// Largest number of particles that a patch owns.
+/// Largest number of particles that a patch of a mesh owns.
 const OWNED: u32 = 8;
 
 /// A surface in patches of a few faces, and a tree over them, for contact of cloth with cloth. It depends only on the
@@ -34,6 +25,15 @@ pub(crate) struct Sheet {
     faces: Vec<[u16; 3]>,
     edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
+    /// The patches with features of each particle, and where they begin among these; and one more.
+    patches_with: Vec<u32>,
+    first_with: Vec<u32>,
+    /// The corners of eight features each, by their places among the particles of their patch: of owned vertices, faces, and
+    /// edges. The last feature fills the rest of its eight.
+    groups: Vec<[u16; 8]>,
+    /// For a grid, the number of rows and columns of patches, and these row by row.
+    size: [u32; 2],
+    blocks: Vec<u32>,
     closest: f32,
 }
 
@@ -44,8 +44,10 @@ struct Patch {
     particles: Range<u32>,
     faces: Range<u32>,
     edges: Range<u32>,
-    /// For a grid, its first row and column, and the last of its features.
-    rectangle: [[u32; 2]; 2],
+    /// The first of its groups of eight features, among those of all patches.
+    first_group: u32,
+    /// For a grid, its row and column among patches.
+    block: [u32; 2],
 }
 
 /// A node of the tree over patches: its children, or its patch.
@@ -84,6 +86,15 @@ impl Sheet {
         if tree.is_empty() {
             return sheet;
         }
+        let mut seen = HashSet::new();
+        if let Some(grid) = surface.as_grid() {
+            sheet.size = [grid.rows(), grid.columns()].map(|of| of.div_ceil(OF_GRID));
+            sheet.blocks = vec![0; (sheet.size[0] * sheet.size[1]) as usize];
+            let [rows, columns] = sheet.size;
+            sheet.add_blocks([0..rows, 0..columns], &mut seen);
+            sheet.find_patches();
+            return sheet;
+        }
         let mut leaves = vec![0; tree.len()];
         for index in (0..tree.len()).rev() {
             let children = tree.node(index as u32);
@@ -93,9 +104,29 @@ impl Sheet {
                 .map(|&child| leaves[child as usize]);
             leaves[index] = below.sum::<u32>().max(1);
         }
-        let mut seen = HashSet::new();
         sheet.add(tree, 0, &leaves, &mut seen);
+        sheet.find_patches();
         sheet
+    }
+
+    /// Finds the patches with features of each particle.
+    fn find_patches(&mut self) {
+        self.first_with = vec![0; self.surface.len() + 1];
+        for &particle in &self.particles {
+            self.first_with[particle as usize + 1] += 1;
+        }
+        for particle in 0..self.surface.len() {
+            self.first_with[particle + 1] += self.first_with[particle];
+        }
+        let mut next = self.first_with.clone();
+        self.patches_with = vec![0; self.particles.len()];
+        for (index, patch) in (0..).zip(&self.patches) {
+            for place in patch.particles.clone() {
+                let next = &mut next[self.particles[place as usize] as usize];
+                self.patches_with[*next as usize] = index;
+                *next += 1;
+            }
+        }
     }
 
     /// Adds a node of the tree and all below it. Returns its index.
@@ -117,8 +148,8 @@ impl Sheet {
         if leaves[of as usize] <= OWNED {
             collect(tree, of, &mut owned);
         }
-        if !owned.is_empty() && !self.is_long(&owned) {
-            self.add_patch(&owned, seen);
+        if !owned.is_empty() {
+            self.add_patch(&owned, [0; 2], seen);
         } else {
             for &child in tree.node(of).children() {
                 node.children[node.child_count as usize] = self.add(tree, child, leaves, seen);
@@ -129,7 +160,50 @@ impl Sheet {
         index as u32
     }
 
-    fn add_patch(&mut self, owned: &[u32], seen: &mut HashSet<[u32; 2]>) {
+    /// Adds a node of these rows and columns of patches of a grid, and all below it. Returns its index.
+    fn add_blocks(&mut self, of: [Range<u32>; 2], seen: &mut HashSet<[u32; 2]>) -> u32 {
+        let index = self.nodes.len();
+        let mut node = Node {
+            children: [0; 4],
+            child_count: 0,
+            patch: self.patches.len() as u32,
+        };
+        self.nodes.push(node);
+        if of.iter().all(|of| of.len() == 1) {
+            let block = [of[0].start, of[1].start];
+            self.blocks[(block[0] * self.size[1] + block[1]) as usize] = node.patch;
+            let owned = self.owned_by(block);
+            self.add_patch(&owned, block, seen);
+            return index as u32;
+        }
+        let [rows, columns] = of.map(|Range { start, end }| {
+            let middle = (start + end).div_ceil(2);
+            [start..middle, middle..end]
+        });
+        for rows in rows {
+            for columns in columns.clone().into_iter().filter(|of| !of.is_empty()) {
+                if !rows.is_empty() {
+                    node.children[node.child_count as usize] =
+                        self.add_blocks([rows.clone(), columns], seen);
+                    node.child_count += 1;
+                }
+            }
+        }
+        self.nodes[index] = node;
+        index as u32
+    }
+
+    /// The particles that a patch of a grid owns.
+    fn owned_by(&self, block: [u32; 2]) -> Vec<u32> {
+        let grid = self.surface.as_grid();
+        let [rows, columns] = grid.map_or([0; 2], |grid| [grid.rows(), grid.columns()]);
+        let range = |at: u32, end: u32| OF_GRID * at..(OF_GRID * (at + 1)).min(end);
+        range(block[0], rows)
+            .flat_map(|row| range(block[1], columns).map(move |column| row * columns + column))
+            .collect()
+    }
+
+    fn add_patch(&mut self, owned: &[u32], block: [u32; 2], seen: &mut HashSet<[u32; 2]>) {
         let from = [self.particles.len(), self.faces.len(), self.edges.len()];
         self.particles.extend(owned);
         for &particle in owned {
@@ -153,37 +227,19 @@ impl Sheet {
             }
         }
         let range = |from: usize, to: usize| from as u32..to as u32;
-        let rectangle = self.rectangle(&self.particles[from[0]..]);
+        let first_group = self.groups.len() as u32;
+        let vertices: Vec<[u16; 1]> = (0..owned.len() as u16).map(|vertex| [vertex]).collect();
+        put(&vertices, &mut self.groups);
+        put(&self.faces[from[1]..], &mut self.groups);
+        put(&self.edges[from[2]..], &mut self.groups);
         self.patches.push(Patch {
             owned: owned.len() as u32,
             particles: range(from[0], self.particles.len()),
             faces: range(from[1], self.faces.len()),
             edges: range(from[2], self.edges.len()),
-            rectangle,
+            first_group,
+            block,
         });
-    }
-
-    /// The first row and column of these particles of a grid, and the last.
-    fn rectangle(&self, particles: &[u32]) -> [[u32; 2]; 2] {
-        let columns = self.surface.as_grid().map_or(1, ClothGrid::columns);
-        let cells = particles
-            .iter()
-            .map(|particle| [particle / columns, particle % columns]);
-        cells.fold([[u32::MAX; 2], [0; 2]], |[low, high], at| {
-            [0, 1].map(|end| {
-                [0, 1].map(|axis| match end {
-                    0 => low[axis].min(at[axis]),
-                    _ => high[axis].max(at[axis]),
-                })
-            })
-        })
-    }
-
-    /// Whether a patch of a grid would be so long that the tangents of it and its neighbour are not compared.
-    fn is_long(&self, owned: &[u32]) -> bool {
-        let [low, high] = self.rectangle(owned);
-        let is_long = |axis: usize| high[axis] - low[axis] >= LONGEST;
-        self.surface.as_grid().is_some() && (is_long(0) || is_long(1))
     }
 
     /// The surface.
@@ -206,39 +262,83 @@ impl Sheet {
         self.patches.len()
     }
 
-    /// A lower bound of the distance between two patches of a grid (m), from its tangents at these positions; `None` for
-    /// a mesh, and for patches that are far from each other at rest.
-    pub(super) fn unfolded(&self, of: [u32; 2], places: &[Vec3A]) -> Option<f32> {
-        let grid = self.surface.as_grid()?;
-        let [a, b] = of.map(|patch| self.patches[patch as usize].rectangle);
-        let last = [0, 1].map(|axis| a[1][axis].max(b[1][axis]) as usize);
-        // Two rows and columns, at least, have tangents.
-        let first = |axis: usize| a[0][axis].min(b[0][axis]) as usize;
-        let low = [0, 1].map(|axis| first(axis).min(last[axis].saturating_sub(1)));
-        let size = [0, 1].map(|axis| last[axis] - low[axis] + 1);
-        if size.iter().any(|&size| size > LARGEST) {
-            return None;
-        }
-        let gap = |axis: usize| {
-            a[0][axis]
-                .max(b[0][axis])
-                .saturating_sub(a[1][axis].min(b[1][axis]))
-        };
-        let spacing = grid.spacing();
-        let apart = spacing * Vec2::new(gap(1) as f32, gap(0) as f32);
-        let columns = grid.columns() as usize;
-        let rows = (0..size[0]).map(|row| {
-            let first = (low[0] + row) * columns + low[1];
-            &places[first..first + size[1]]
+    /// Number of rows and columns of windows of 2 × 2 patches of a grid, or fewer where there are no more.
+    fn windows(&self) -> [u32; 2] {
+        self.size.map(|of| of.saturating_sub(1).max(1).min(of))
+    }
+
+    /// Number of windows.
+    pub(super) fn window_count(&self) -> usize {
+        let [rows, columns] = self.windows();
+        (rows * columns) as usize
+    }
+
+    /// The patches in a window, row by row.
+    pub(super) fn patches_in(&self, window: usize) -> impl Iterator<Item = u32> {
+        let [rows, columns] = self.range_of(window);
+        let blocks = rows.flat_map(move |row| columns.clone().map(move |column| [row, column]));
+        blocks.map(|[row, column]| self.blocks[(row * self.size[1] + column) as usize])
+    }
+
+    /// The rows and columns of patches in a window.
+    fn range_of(&self, window: usize) -> [Range<u32>; 2] {
+        let columns = self.windows()[1];
+        let at = [window as u32 / columns, window as u32 % columns];
+        [0, 1].map(|axis| at[axis]..(at[axis] + 2).min(self.size[axis]))
+    }
+
+    /// The windows in which two patches are.
+    pub(super) fn windows_of(&self, of: [u32; 2]) -> impl Iterator<Item = usize> {
+        let [a, b] = of.map(|patch| self.patches[patch as usize].block);
+        let windows = self.windows();
+        let [rows, columns] = [0, 1].map(|axis| {
+            let first = a[axis].max(b[axis]).saturating_sub(1);
+            first..(a[axis].min(b[axis]) + 1).min(windows[axis])
         });
-        let tangents = Tangents::of(rows, spacing);
-        Some(tangents.unfolded() * apart.length().max(self.closest))
+        rows.flat_map(move |row| columns.clone().map(move |column| (row, column)))
+            .map(move |(row, column)| (row * windows[1] + column) as usize)
+    }
+
+    /// Whether some window has both patches.
+    pub(super) fn are_neighbours(&self, of: [u32; 2]) -> bool {
+        self.windows_of(of).next().is_some()
+    }
+
+    /// Which neighbour the second patch is of the first, before which it does not come: 0 to 5.
+    pub(super) fn neighbour(&self, of: [u32; 2]) -> u32 {
+        let [a, b] = of.map(|patch| self.patches[patch as usize].block);
+        3 * (b[0] - a[0]) + b[1] + 1 - a[1]
+    }
+
+    /// A lower bound of the distance between any two features without a common particle in a window (m), from its tangents at
+    /// these positions.
+    pub(super) fn unfolded(&self, window: usize, places: &[Vec3A]) -> f32 {
+        let Some(grid) = self.surface.as_grid() else {
+            return f32::NEG_INFINITY;
+        };
+        let size = [grid.rows(), grid.columns()];
+        let blocks = self.range_of(window);
+        // Two rows and columns, at least, have tangents.
+        let [rows, columns] = [0, 1].map(|axis| {
+            let last = (OF_GRID * blocks[axis].end).min(size[axis] - 1);
+            let first = (OF_GRID * blocks[axis].start).min(last.saturating_sub(1));
+            first as usize..last as usize + 1
+        });
+        let stride = size[1] as usize;
+        let rows = rows.map(|row| &places[row * stride..][columns.clone()]);
+        Tangents::of(rows, grid.spacing()).unfolded() * self.closest
     }
 
     /// The particles of a patch's features.
     pub(super) fn particles_of(&self, patch: u32) -> &[u32] {
         let Range { start, end } = self.patches[patch as usize].particles;
         &self.particles[start as usize..end as usize]
+    }
+
+    /// The patches with features of a particle.
+    pub(super) fn patches_of(&self, particle: usize) -> &[u32] {
+        let [start, end] = [0, 1].map(|at| self.first_with[particle + at] as usize);
+        &self.patches_with[start..end]
     }
 
     /// The place of a patch's first particle among those of all patches.
@@ -249,6 +349,24 @@ impl Sheet {
     /// The number of a patch's particles that it owns: the first ones.
     pub(super) fn owned_of(&self, patch: u32) -> u16 {
         self.patches[patch as usize].owned as u16
+    }
+
+    /// The places of a patch's points of eight features among those of all patches: of its owned vertices, its faces, and
+    /// its edges.
+    pub(super) fn groups_of(&self, patch: u32) -> Range<u32> {
+        let next = self.patches.get(patch as usize + 1);
+        self.patches[patch as usize].first_group
+            ..next.map_or(self.group_count(), |next| next.first_group)
+    }
+
+    /// Number of points of eight features of all patches.
+    pub(super) fn group_count(&self) -> u32 {
+        self.groups.len() as u32
+    }
+
+    /// The corners of eight features each, by their places among the particles of their patch.
+    pub(super) fn groups(&self, of: Range<u32>) -> &[[u16; 8]] {
+        &self.groups[of.start as usize..of.end as usize]
     }
 
     /// The faces of a patch, by the places of their corners among its particles.
@@ -272,5 +390,14 @@ fn collect(tree: &QuadTree, of: u32, particles: &mut Vec<u32>) {
     }
     for &child in node.children() {
         collect(tree, child, particles);
+    }
+}
+
+/// Puts features into groups of eight, corner by corner. The last feature fills the last group.
+fn put<const N: usize>(features: &[[u16; N]], groups: &mut Vec<[u16; 8]>) {
+    for eight in features.chunks(8) {
+        groups.extend(
+            (0..N).map(|corner| std::array::from_fn(|l| eight[l.min(eight.len() - 1)][corner])),
+        );
     }
 }

@@ -4,7 +4,8 @@ use bevy::math::{Vec3, Vec3A};
 
 use super::thrown::Draw;
 use crate::contact::layers::{
-    lanes::{Points, edge_to_edges, vertex_to_faces},
+    bounds::Bounds,
+    lanes::{Groups, Hits, Points, near_edges, near_faces},
     pair::{Nearest, TWO_EDGES, VERTEX_AND_FACE},
 };
 
@@ -13,6 +14,15 @@ fn points<const N: usize>(features: &[[Vec3A; N]; 8]) -> [Points; N] {
     std::array::from_fn(|point| {
         std::array::from_fn(|axis| std::array::from_fn(|l| features[l][point][axis]))
     })
+}
+
+/// The first `count` features of a group.
+fn group<const N: usize>(points: &[Points; N], count: usize) -> Groups<'_, N> {
+    let bounds = Bounds {
+        min: Vec3A::NEG_INFINITY,
+        max: Vec3A::INFINITY,
+    };
+    Groups::of(points, count, bounds)
 }
 
 /// A feature of some size around the middle: sometimes flat, parallel to x, a line or a point.
@@ -41,13 +51,24 @@ fn they_are_those_of_nearest_points() {
         let faces: [[Vec3A; 3]; 8] = std::array::from_fn(|_| feature(&mut draw));
         let edge = feature::<2>(&mut draw);
         let edges: [[Vec3A; 2]; 8] = std::array::from_fn(|_| feature(&mut draw));
-        let squares = vertex_to_faces(vertex, &points(&faces));
-        let edge_squares = edge_to_edges(edge, &points(&edges));
+        let (mut squares, mut edge_squares) = (Hits::default(), Hits::default());
+        near_faces(
+            &group(&points(&[[vertex]; 8]), 1),
+            &group(&points(&faces), 8),
+            f32::INFINITY,
+            &mut squares,
+        );
+        near_edges(
+            &group(&points(&[edge; 8]), 1),
+            &group(&points(&edges), 8),
+            f32::INFINITY,
+            &mut edge_squares,
+        );
         for l in 0..8 {
             let [a, b, c] = faces[l];
             let truth = Nearest::of(VERTEX_AND_FACE, [vertex, a, b, c]).distance;
             let longest = (a - b).length().max((b - c).length()).max((c - a).length());
-            let off = (squares[l].sqrt() - truth).abs();
+            let off = (squares.of[l].square.sqrt() - truth).abs();
             assert!(
                 off <= 1.0e-3 * (truth + longest),
                 "{vertex} {:?}: {truth}, {off}",
@@ -56,7 +77,7 @@ fn they_are_those_of_nearest_points() {
             let [r, s] = edges[l];
             let truth = Nearest::of(TWO_EDGES, [edge[0], edge[1], r, s]).distance;
             let longest = (edge[0] - edge[1]).length().max((r - s).length());
-            let off = (edge_squares[l].sqrt() - truth).abs();
+            let off = (edge_squares.of[l].square.sqrt() - truth).abs();
             assert!(
                 off <= 1.0e-3 * (truth + longest),
                 "{edge:?} {:?}: {truth}, {off}",
