@@ -10,7 +10,7 @@
 
 use bevy::math::Vec3A;
 
-use super::{members::Members, pair::NearPair};
+use super::{members::Members, pair::NearPair, work::Counts};
 
 /// Smallest gap left between features, as a fraction of the thickness and of the distance at the beginning of the
 /// sub-step.
@@ -49,10 +49,16 @@ struct Sum {
 }
 
 impl Zones {
-    /// Stops pairs from passing through each other. Returns whether any had to be stopped. Subtracts
-    /// the tests from `work`.
-    pub fn certify(&mut self, pairs: &[NearPair], members: &mut Members, work: &mut usize) -> bool {
+    /// Stops pairs from passing through each other. Returns whether any had to be stopped. Counts the tests, and
+    /// whether all pairs are certain.
+    pub fn certify(
+        &mut self,
+        pairs: &[NearPair],
+        members: &mut Members,
+        counts: &mut Counts,
+    ) -> bool {
         let (mut has_zones, mut has_moved) = (false, false);
+        counts.is_certain = false;
         self.retest_in.clear();
         self.retest_in.resize(members.len(), 0);
         for round in 0..PUSHES + ZONES {
@@ -84,8 +90,9 @@ impl Zones {
                 tests += 2 * members.len();
                 self.move_as_one(members, round + 1);
             }
-            *work = work.saturating_sub(pairs.len() / 2 + 2 * tests);
-            if is_certain || *work == 0 {
+            counts.take(pairs.len() / 2 + 2 * tests);
+            counts.is_certain = is_certain;
+            if is_certain || counts.work == 0 {
                 break;
             }
         }

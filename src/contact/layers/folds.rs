@@ -13,6 +13,10 @@
 
 use super::{motion::Motion, near_patches::Meets, participant::Participant};
 
+/// Smallest slack of an unfolded window, as a fraction of the thickness. With less, the motion of all would soon use it up;
+/// pairs of patches have their own.
+const LEAST: f32 = 0.5;
+
 /// In place of the approach that a window stays unfolded for: it is folded, or is not yet measured.
 const FOLDED: f32 = f32::NEG_INFINITY;
 const UNKNOWN: f32 = f32::MIN;
@@ -80,7 +84,7 @@ impl Folds {
                     let unfolded = cloth.sheet.unfolded(window - first, places);
                     let slack = unfolded - cloth.settings.thickness;
                     // False for NaN.
-                    if slack > reserve {
+                    if slack > reserve.max(LEAST * cloth.settings.thickness) {
                         *until = approached + slack;
                     } else if *until != FOLDED {
                         *until = FOLDED;

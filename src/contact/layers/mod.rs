@@ -216,7 +216,8 @@ impl MutualContact {
         pile.max(fast).clamp(1.0, MOST_SUBSTEPS) as u32
     }
 
-    /// Number of sub-steps of the tick in which nothing was kept apart, because there was too much work.
+    /// Number of sub-steps of the tick in which nothing was kept apart, because there was too much work, or layers may have
+    /// passed through each other, because pins force them to.
     pub fn lost(&self) -> u32 {
         self.counts.lost
     }
@@ -276,6 +277,7 @@ impl MutualContact {
             self.counts.lost += 1;
             return pushed + held;
         }
+        self.counts.lost += u32::from(!self.counts.is_certain);
         let thinnest = thinnest(cloths);
         let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
         self.counts.motion = self.counts.motion.max(0.5 * pace / thinnest);
@@ -302,6 +304,7 @@ impl MutualContact {
         meets: impl Fn(usize, usize) -> bool,
         dt: f32,
     ) -> bool {
+        self.counts.is_certain = true;
         for round in 0..ROUNDS {
             let Some(free) = self.look(cloths, &meets) else {
                 return false;
@@ -324,8 +327,8 @@ impl MutualContact {
                 self.counts.touched = self.counts.touched.max(each);
                 has_moved = touched > 0;
             }
-            let (members, work) = (&mut self.members, &mut self.counts.work);
-            has_moved |= self.zones.certify(&self.contacts, members, work);
+            let (members, counts) = (&mut self.members, &mut self.counts);
+            has_moved |= self.zones.certify(&self.contacts, members, counts);
             if !has_moved {
                 break;
             }

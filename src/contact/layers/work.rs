@@ -1,7 +1,7 @@
 //! The limits of a tick's work.
 
-/// Work limits of a tick for each particle, and in total. A unit takes some 5 ns: two pairs of features compared, or a node
-/// visited. A sheet that runs into itself at 20 m/s needs less (`cargo run -p lab -- self`).
+/// Work limits of a tick for each particle, and in total. A unit takes some 5 ns: a third of a feature compared with
+/// eight others, or a node visited. A sheet that runs into itself at 20 m/s needs less (`cargo run -p lab -- self`).
 const MOST_WORK: usize = 1 << 17;
 const LEAST_WORK_OF_ALL: usize = 1 << 22;
 const MOST_WORK_OF_ALL: usize = 1 << 28;
@@ -27,9 +27,11 @@ pub(super) struct Counts {
     pub compared: u32,
     /// Work left in the tick.
     pub work: usize,
+    /// Whether no pair of the sub-step can have passed through each other. Pairs that pins force together may.
+    pub is_certain: bool,
     /// Whether there was too much work: nothing is kept apart for the rest of the tick.
     pub is_lost: bool,
-    /// Number of sub-steps of the tick in which that was so.
+    /// Number of sub-steps of the tick in which that was so, or a pair was not certain.
     pub lost: u32,
 }
 

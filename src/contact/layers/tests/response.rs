@@ -122,3 +122,35 @@ fn layers_slide_from_the_angle_of_friction_on() {
         }
     }
 }
+
+/// A sheet that is moved through another by pins: it is said if both are held, and pushes the other along if that is free.
+#[test]
+fn what_pins_force_through_is_said() {
+    for is_free in [true, false] {
+        let sheets =
+            [0.0, 0.02].map(|height| Sheeted::new(7, 0.3, move |at| at + Vec3::Y * height));
+        let mut scene = Scene::new(sheets.into(), 0.01);
+        scene.step.acceleration = Vec3::ZERO;
+        for (index, cloth) in scene.cloths.iter_mut().enumerate() {
+            for particle in 0..cloth.particles.len() {
+                if index == 1 || !is_free {
+                    let held = cloth.particles.set_inverse_mass(particle, 0.0);
+                    held.expect("it exists");
+                }
+            }
+        }
+        let (mut lost, by) = (0, Vec3::Y * -0.0005);
+        for _ in 0..6 {
+            scene.tick(|index, particles, _| {
+                for particle in (0..particles.len()).filter(|_| index == 1) {
+                    let at = particles.position(particle).expect("it exists");
+                    let set = particles.set_position(particle, at + by);
+                    set.expect("finite");
+                }
+            });
+            lost += scene.contact.lost();
+        }
+        assert_eq!(lost == 0, is_free, "{lost} sub-steps");
+        assert!(!is_free || scene.worst == 0);
+    }
+}
