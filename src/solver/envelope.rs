@@ -31,8 +31,8 @@ pub enum ClothLimit {
     /// may pass through.
     SmallFastCollider,
     /// Layers are so fast, so thick or so crowded that their contact would be too much work: nothing keeps them apart for
-    /// the rest of the tick and the next eight. For each particle, a tick compares at most some 260,000 pairs of
-    /// features and lists 512; for all particles, at most some 540 million.
+    /// the rest of the tick and the next eight. For each particle, a tick compares at most some 350,000 pairs of
+    /// features and lists 512; for all particles, at most some 715 million. Or pins force layers through each other.
     Layers,
     /// The cloth began deep inside a collider, where the nearest ways out lead apart. Each piece of it is let out on one
     /// side, or left alone where another collider or a pin inside bars the way.
