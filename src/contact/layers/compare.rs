@@ -31,6 +31,9 @@ const MOST_AHEAD: f32 = 0.5;
 /// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
 const ENOUGH: f32 = 2.0;
 
+/// Units of work for the features of two patches that are gathered, and culled by boxes.
+const WORK_OF_GATHERING: usize = 16;
+
 /// Units of work for a feature that is compared with eight others.
 const WORK_OF_EIGHT: usize = 3;
 
@@ -66,6 +69,7 @@ pub(super) fn compare(
         pair.slack = apart;
         return;
     }
+    *work = work.saturating_sub(WORK_OF_GATHERING);
     for side in &sides {
         scratch.gather(side);
     }
@@ -98,7 +102,7 @@ pub(super) fn compare(
 }
 
 /// The features of compared patches at the beginning of the sub-step, eight at a time.
-#[derive(Debug, Default, Clone)]
+#[derive(Debug, Default)]
 pub(super) struct Comparison {
     points: Vec<Points>,
     is_known: Vec<bool>,
@@ -107,6 +111,13 @@ pub(super) struct Comparison {
     /// The positions of a patch's particles (m).
     places: Vec<Vec3A>,
     hits: Hits,
+}
+
+/// Without its contents: they do not matter to a snapshot.
+impl Clone for Comparison {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl Comparison {
@@ -252,6 +263,7 @@ impl<'a> Side<'a> {
             self.sheet.faces_of(self.patch).len(),
             self.sheet.edges_of(self.patch).len(),
         ];
+        // A patch owns no more than eight vertices.
         let (vertices, points) = points[self.groups.clone()].split_at(1);
         let (faces, edges) = points.split_at(3 * counts[1].div_ceil(8));
         (

@@ -13,8 +13,8 @@
 
 use super::{motion::Motion, near_patches::Meets, participant::Participant};
 
-/// Smallest slack of an unfolded window, as a fraction of the thickness. With less, the motion of all would soon use it up;
-/// pairs of patches have their own.
+/// Smallest slack of an unfolded window, as a fraction of the thickness or of a flat one's slack. With less, the motion of
+/// all would soon use it up; a pair of patches has a slack of its own.
 const LEAST: f32 = 0.5;
 
 /// In place of the approach that a window stays unfolded for: it is folded, or is not yet measured.
@@ -30,7 +30,7 @@ pub(super) struct Folds {
     /// [How near](Motion::approached) particles may have come to each other before a window may be folded (m), or [`FOLDED`]; ∞ for
     /// one that does not matter.
     until: Vec<f32>,
-    /// Of each patch, with which neighbours it is a pair.
+    /// Of each patch, with which neighbours it is a pair: a bit for [each](super::sheet::Sheet::neighbour).
     pairs: Vec<u8>,
     /// The windows of a cloth that have just folded.
     #[cfg_attr(feature = "serialize", serde(skip))]
@@ -77,14 +77,16 @@ impl Folds {
             let [first_particle, first_patch, ..] = motion.firsts[index];
             let places = &motion.end[first_particle as usize..];
             let first = self.firsts[index];
+            let thickness = cloth.settings.thickness;
+            let least = LEAST * thickness.min(cloth.sheet.closest() - thickness);
             self.folded.clear();
             for window in first..self.firsts[index + 1] {
                 let until = &mut self.until[window];
-                if *until - approached < reserve {
+                if *until - approached <= reserve {
                     let unfolded = cloth.sheet.unfolded(window - first, places);
-                    let slack = unfolded - cloth.settings.thickness;
+                    let slack = unfolded - thickness;
                     // False for NaN.
-                    if slack > reserve.max(LEAST * cloth.settings.thickness) {
+                    if slack > least {
                         *until = approached + slack;
                     } else if *until != FOLDED {
                         *until = FOLDED;
@@ -137,11 +139,9 @@ impl Folds {
         windows.any(|window| self.until[first + window] != FOLDED)
     }
 
-    /// Forgets a pair.
+    /// Forgets a pair of neighbours.
     pub fn forget(&mut self, cloths: &[Participant], motion: &Motion, pair: [u32; 2]) {
-        if let Some((cloth, of)) = motion.of_one_cloth(pair)
-            && cloths[cloth].sheet.windows_of(of).next().is_some()
-        {
+        if let Some((cloth, of)) = motion.of_one_cloth(pair) {
             self.pairs[pair[0] as usize] &= !(1 << cloths[cloth].sheet.neighbour(of));
         }
     }

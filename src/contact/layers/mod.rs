@@ -18,7 +18,7 @@
 //! 2. Of two patches whose boxes overlap, features that are not listed were farther apart than a thickness by at least
 //!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
 //!    less, they are a thickness apart.
-//! 3. Neighbouring patches of a grid whose [tangents](tangents) differ little are apart, however they [folded](folds).
+//! 3. Neighbouring patches of a grid whose [tangents](tangents) differ little are apart, whatever their motion was ([folds]).
 //! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
 //!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
 //!    it has not passed, or it is stopped.
@@ -216,8 +216,8 @@ impl MutualContact {
         pile.max(fast).clamp(1.0, MOST_SUBSTEPS) as u32
     }
 
-    /// Number of sub-steps of the tick in which nothing was kept apart, because there was too much work, or layers may have
-    /// passed through each other, because pins force them to.
+    /// Number of sub-steps of the tick in which layers may have passed through each other: there was too much work, or
+    /// pairs could not be parted, as when pins force them together.
     pub fn lost(&self) -> u32 {
         self.counts.lost
     }

@@ -28,6 +28,7 @@ pub(super) struct PatchMotion {
     pub earlier: f32,
     deviation: [f32; 2],
     /// Whether its particles were put elsewhere since it was measured.
+    #[cfg_attr(feature = "serialize", serde(skip))]
     is_changed: bool,
 }
 
@@ -147,6 +148,12 @@ impl Motion {
         (a == b).then(|| (a, of.map(|patch| patch - self.firsts[a][1])))
     }
 
+    /// Whether two patches are [neighbours](super::folds) in a grid.
+    pub fn are_neighbours(&self, cloths: &[Participant], of: [u32; 2]) -> bool {
+        let of = self.of_one_cloth(of);
+        of.is_some_and(|(cloth, of)| cloths[cloth].sheet.are_neighbours(of))
+    }
+
     /// Reads the particles' positions at the end of the sub-step.
     pub fn read(&mut self, cloths: &[Participant]) {
         self.end.clear();
@@ -169,6 +176,8 @@ impl Motion {
     pub fn measure_drift(&mut self) {
         let each = self.end.iter().zip(&self.start);
         let sum = each.map(|(end, start)| *end - *start).sum::<Vec3A>();
+        // One particle that is not finite leaves the others without a common motion.
+        let sum = if sum.is_finite() { sum } else { Vec3A::ZERO };
         let drifted = sum / self.end.len().max(1) as f32;
         self.drift += drifted - self.drifted;
         self.drifted = drifted;

@@ -134,12 +134,9 @@ impl NearFeatures {
         let unfolded = folds.renew(among.cloths, motion, reserve, &mut found);
         if has_left {
             boxes.search(among, motion, work, &mut found);
-            self.retain(|folds, pair| {
-                let is_near = boxes.overlap(pair.of);
-                if !is_near {
-                    folds.forget(among.cloths, motion, pair.of);
-                }
-                is_near
+            // Neighbours stay while they are folded: only a fold makes them a pair.
+            self.retain(|_, pair| {
+                boxes.overlap(pair.of) || motion.are_neighbours(among.cloths, pair.of)
             });
         }
         self.were_tangled.clear();

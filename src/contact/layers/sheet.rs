@@ -129,6 +129,17 @@ impl Sheet {
         }
     }
 
+    /// Adds a node without children: of the next patch. Returns its index, too.
+    fn add_node(&mut self) -> (usize, Node) {
+        let node = Node {
+            children: [0; 4],
+            child_count: 0,
+            patch: self.patches.len() as u32,
+        };
+        self.nodes.push(node);
+        (self.nodes.len() - 1, node)
+    }
+
     /// Adds a node of the tree and all below it. Returns its index.
     fn add(
         &mut self,
@@ -137,13 +148,7 @@ impl Sheet {
         leaves: &[u32],
         seen: &mut HashSet<[u32; 2]>,
     ) -> u32 {
-        let index = self.nodes.len();
-        let mut node = Node {
-            children: [0; 4],
-            child_count: 0,
-            patch: self.patches.len() as u32,
-        };
-        self.nodes.push(node);
+        let (index, mut node) = self.add_node();
         let mut owned = Vec::new();
         if leaves[of as usize] <= OWNED {
             collect(tree, of, &mut owned);
@@ -162,13 +167,7 @@ impl Sheet {
 
     /// Adds a node of these rows and columns of patches of a grid, and all below it. Returns its index.
     fn add_blocks(&mut self, of: [Range<u32>; 2], seen: &mut HashSet<[u32; 2]>) -> u32 {
-        let index = self.nodes.len();
-        let mut node = Node {
-            children: [0; 4],
-            child_count: 0,
-            patch: self.patches.len() as u32,
-        };
-        self.nodes.push(node);
+        let (index, mut node) = self.add_node();
         if of.iter().all(|of| of.len() == 1) {
             let block = [of[0].start, of[1].start];
             self.blocks[(block[0] * self.size[1] + block[1]) as usize] = node.patch;
@@ -318,11 +317,9 @@ impl Sheet {
         };
         let size = [grid.rows(), grid.columns()];
         let blocks = self.range_of(window);
-        // Two rows and columns, at least, have tangents.
         let [rows, columns] = [0, 1].map(|axis| {
             let last = (OF_GRID * blocks[axis].end).min(size[axis] - 1);
-            let first = (OF_GRID * blocks[axis].start).min(last.saturating_sub(1));
-            first as usize..last as usize + 1
+            (OF_GRID * blocks[axis].start) as usize..last as usize + 1
         });
         let stride = size[1] as usize;
         let rows = rows.map(|row| &places[row * stride..][columns.clone()]);

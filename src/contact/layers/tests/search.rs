@@ -209,8 +209,16 @@ fn no_pair_is_lost() {
 #[test]
 fn no_pair_is_lost_on_the_way() {
     let thickness = 0.03;
-    for (is_mesh, speed) in [(false, 1.0), (false, 4.0), (true, 1.0), (true, 4.0)] {
-        let mut cloths = vec![Sheeted::of_kind(9, 1.0, is_mesh, |at| at)];
+    for (side, is_mesh, speed, is_turned) in [
+        (9, false, 1.0, false),
+        (9, false, 4.0, true),
+        (8, false, 4.0, false),
+        (7, false, 1.0, true),
+        (5, false, 1.0, true),
+        (9, true, 1.0, false),
+        (9, true, 4.0, true),
+    ] {
+        let mut cloths = vec![Sheeted::of_kind(side, 1.0, is_mesh, |at| at)];
         let brute = Brute::new(&cloths[0]);
         let rest: Vec<Vec3> = cloths[0].particles.positions().collect();
         let mut contact = MutualContact::default();
@@ -219,6 +227,11 @@ fn no_pair_is_lost_on_the_way() {
             let time = speed * step as f32 / 60.0;
             // A roll that closes, flaps on it, and a drift of all.
             let bent = |at: Vec3| {
+                let at = if is_turned {
+                    Vec3::new(at.z, at.y, at.x)
+                } else {
+                    at
+                };
                 let turns = (9.0 * time).clamp(0.01, 14.0);
                 let angle = turns * at.z;
                 let radius = (1.0 + 0.1 * at.z) / turns;
@@ -253,7 +266,7 @@ fn no_pair_is_lost_on_the_way() {
                     met += 1;
                     assert!(
                         known.contains(&feature),
-                        "step {step} at {speed}, mesh {is_mesh}: {feature:?}, {apart} m apart"
+                        "step {step} at {speed} of {side}², mesh {is_mesh}: {feature:?}, {apart} m apart"
                     );
                 },
             );
