@@ -30,9 +30,10 @@ pub enum ClothLimit {
     /// A ball or capsule thinner than half a spacing approaches the cloth by more than 6 of its radii in a sub-step: it
     /// may pass through.
     SmallFastCollider,
-    /// Layers are so fast, so thick or so crowded that their contact would be too much work: nothing keeps them apart for
-    /// the rest of the tick and the next eight. For each particle, a tick compares at most some 350,000 pairs of
-    /// features and lists 512; for all particles, at most some 715 million. Or pins force layers through each other.
+    /// Layers may have passed through each other, in one of two cases. Pins force them through each other. Or they are so
+    /// fast, so thick or so crowded that contact would be too much work. Then nothing keeps them apart for the rest of
+    /// the tick and the next eight. For each particle, a tick compares at most some 350,000 pairs of features and lists
+    /// 512; for all particles, at most some 715 million.
     Layers,
     /// The cloth began deep inside a collider, where the nearest ways out lead apart. Each piece of it is let out on one
     /// side, or left alone where another collider or a pin inside bars the way.
@@ -138,7 +139,7 @@ impl fmt::Display for ClothLimit {
             Self::Damping => "damped too much",
             Self::SmallFastCollider => "hit by too small and fast a collider",
             Self::Embedded => "inside of a collider that appeared in it",
-            Self::Layers => "too fast, too thick or too crowded for its layers to be kept apart",
+            Self::Layers => "too fast, too thick, too crowded or too firmly pinned for its layers to be kept apart",
         })
     }
 }

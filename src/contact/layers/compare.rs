@@ -141,7 +141,7 @@ impl Comparison {
         self.known.push(side.index);
         self.places.clear();
         self.places.extend(side.all());
-        let groups = side.sheet.groups(side.sheet.groups_of(side.patch));
+        let groups = side.sheet.groups_of(side.patch);
         for (points, corners) in self.points[side.groups.clone()].iter_mut().zip(groups) {
             for l in 0..8 {
                 let place = self.places[usize::from(corners[l])];
@@ -224,7 +224,7 @@ impl<'a> Side<'a> {
         let [first_particle, first_patch, _, first_group] = motion.firsts[state.cloth as usize];
         let sheet = &**cloths[state.cloth as usize].sheet;
         let patch = index - first_patch;
-        let groups = sheet.groups_of(patch);
+        let groups = sheet.group_range(patch);
         Self {
             sheet,
             index,
@@ -294,8 +294,8 @@ impl Features<'_> {
         let [own, other] = of.map(|side| &self.sides[side]);
         let (vertices, faces) = (own.features(self.points).0, other.features(self.points).1);
         self.hits.of.clear();
-        let far = (self.listed + self.thickness).powi(2);
-        near_faces(&vertices, &faces, far, self.hits);
+        let reach_squared = (self.listed + self.thickness).powi(2);
+        near_faces(&vertices, &faces, reach_squared, self.hits);
         let faces = other.sheet.faces_of(other.patch);
         for hit in &self.hits.of {
             let vertex = own.particles[hit.first];
@@ -320,8 +320,8 @@ impl Features<'_> {
         let [edges, others] = [own, other].map(|side| side.features(self.points).2);
         let wanted = EDGES * self.thickness;
         self.hits.of.clear();
-        let far = (self.listed + wanted).powi(2);
-        near_edges(&edges, &others, far, self.hits);
+        let reach_squared = (self.listed + wanted).powi(2);
+        near_edges(&edges, &others, reach_squared, self.hits);
         let [edges, others] = [own, other].map(|side| side.sheet.edges_of(side.patch));
         for hit in &self.hits.of {
             let ends = edges[hit.first].map(|end| own.particle(end));

@@ -30,7 +30,7 @@ pub(super) struct Folds {
     /// [How near](Motion::approached) particles may have come to each other before a window may be folded (m), or [`FOLDED`]; ∞ for
     /// one that does not matter.
     until: Vec<f32>,
-    /// Of each patch, with which neighbours it is a pair: a bit for [each](super::sheet::Sheet::neighbour).
+    /// Of each patch, with which neighbours it is a pair: a bit for [each](super::windows::Windows::neighbour).
     pairs: Vec<u8>,
     /// The windows of a cloth that have just folded.
     #[cfg_attr(feature = "serialize", serde(skip))]
@@ -49,7 +49,7 @@ impl Folds {
             } else {
                 f32::INFINITY
             };
-            let windows = self.until.len() + cloth.sheet.window_count();
+            let windows = self.until.len() + cloth.sheet.windows().count();
             self.until.resize(windows, until);
         }
         self.firsts.push(self.until.len());
@@ -99,8 +99,8 @@ impl Folds {
             }
             let folded = std::mem::take(&mut self.folded);
             for &window in &folded {
-                for (at, a) in cloth.sheet.patches_in(window).enumerate() {
-                    for b in cloth.sheet.patches_in(window).skip(at) {
+                for (at, a) in cloth.sheet.windows().patches_in(window).enumerate() {
+                    for b in cloth.sheet.windows().patches_in(window).skip(at) {
                         self.pair(cloth, first, [a, b], first_patch, &mut found);
                     }
                 }
@@ -119,8 +119,8 @@ impl Folds {
         first_patch: u32,
         found: &mut impl FnMut([u32; 2]),
     ) {
-        let mut windows = cloth.sheet.windows_of(of);
-        let bit = 1 << cloth.sheet.neighbour(of);
+        let mut windows = cloth.sheet.windows().with(of);
+        let bit = 1 << cloth.sheet.windows().neighbour(of);
         let (until, pairs) = (&self.until, &mut self.pairs[(first_patch + of[0]) as usize]);
         let is_folded = |window: usize| until[first_window + window] == FOLDED;
         if *pairs & bit == 0 && windows.all(is_folded) {
@@ -135,14 +135,14 @@ impl Folds {
             return false;
         };
         let first = self.firsts[cloth];
-        let mut windows = cloths[cloth].sheet.windows_of(of);
+        let mut windows = cloths[cloth].sheet.windows().with(of);
         windows.any(|window| self.until[first + window] != FOLDED)
     }
 
     /// Forgets a pair of neighbours.
     pub fn forget(&mut self, cloths: &[Participant], motion: &Motion, pair: [u32; 2]) {
         if let Some((cloth, of)) = motion.of_one_cloth(pair) {
-            self.pairs[pair[0] as usize] &= !(1 << cloths[cloth].sheet.neighbour(of));
+            self.pairs[pair[0] as usize] &= !(1 << cloths[cloth].sheet.windows().neighbour(of));
         }
     }
 }

@@ -210,39 +210,39 @@ fn squares<const N: usize, const M: usize>(feature: &[Vectors; N], others: &[Poi
     }
 }
 
-/// Finds the features that are no farther apart than the square root of `far`, also those at NaN. Features that are farther
+/// Finds the features that are no farther apart than the square root of `reach_squared`, also those at NaN. Features that are farther
 /// from the box of all others are not compared.
 #[inline(always)]
 fn near<const N: usize, const M: usize>(
     own: &Groups<N>,
     other: &Groups<M>,
-    far: f32,
+    reach_squared: f32,
     hits: &mut Hits,
 ) {
     let mut least = Lanes::all(hits.least);
     for (from_second, others) in (0..).step_by(8).zip(other.points) {
         let from_own = box_squares(others, &own.bounds);
-        if from_own.are_beyond(far) {
+        if from_own.are_beyond(reach_squared) {
             least = least.min(from_own);
             continue;
         }
         for (from_first, group) in (0..).step_by(8).zip(own.points) {
             let from_other = box_squares(group, &other.bounds);
-            least = least.min(from_other.beyond(far));
+            least = least.min(from_other.beyond(reach_squared));
             for l in 0..(own.count - from_first).min(8) {
-                if from_other.0[l] > far {
+                if from_other.0[l] > reach_squared {
                     continue;
                 }
                 let feature = group.map(|point| point.map(|axis| Lanes::all(axis[l])));
                 let squares = squares(&feature, others);
                 hits.compared += 1;
-                least = least.min(squares.beyond(far));
-                if squares.are_beyond(far) {
+                least = least.min(squares.beyond(reach_squared));
+                if squares.are_beyond(reach_squared) {
                     continue;
                 }
                 for m in 0..(other.count - from_second).min(8) {
                     let square = squares.0[m];
-                    if square > far {
+                    if square > reach_squared {
                         continue;
                     }
                     // Also for NaN.
@@ -258,16 +258,26 @@ fn near<const N: usize, const M: usize>(
     hits.least = least.0.into_iter().fold(f32::INFINITY, f32::min);
 }
 
-/// Finds the faces that are no farther from vertices than the square root of `far`.
+/// Finds the faces that are no farther from vertices than the square root of `reach_squared`.
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
-pub(super) fn near_faces(vertices: &Groups<1>, faces: &Groups<3>, far: f32, hits: &mut Hits) {
-    near(vertices, faces, far, hits);
+pub(super) fn near_faces(
+    vertices: &Groups<1>,
+    faces: &Groups<3>,
+    reach_squared: f32,
+    hits: &mut Hits,
+) {
+    near(vertices, faces, reach_squared, hits);
 }
 
-/// Finds the edges that are no farther from others than the square root of `far`.
+/// Finds the edges that are no farther from others than the square root of `reach_squared`.
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
-pub(super) fn near_edges(edges: &Groups<2>, others: &Groups<2>, far: f32, hits: &mut Hits) {
-    near(edges, others, far, hits);
+pub(super) fn near_edges(
+    edges: &Groups<2>,
+    others: &Groups<2>,
+    reach_squared: f32,
+    hits: &mut Hits,
+) {
+    near(edges, others, reach_squared, hits);
 }
 
 /// Squared distances of a vertex from eight faces (m²).

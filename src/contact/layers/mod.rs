@@ -4,8 +4,8 @@
 //!
 //! ```text
 //!   cloth → patches of a few faces (sheet)
-//!   neighbouring patches whose tangents differ much (folds)                         → near pairs of patches
-//!   boxes with clearance around patches, trees searched from the top down (near_patches) → near pairs of patches
+//!   neighbouring patches whose tangents differ much (windows, folds)                → near pairs of patches
+//!   boxes with clearance around other patches, searched from the top down (near_patches)   → near pairs of patches
 //!   features of near pairs, culled by boxes, compared eight at a time (compare, lanes) → slack, listed features
 //!   the pair's own motion since then (motion): used > until?                        → look again (near_features)
 //!   listed pairs that may touch in this sub-step                                    → contacts: push, certify
@@ -32,6 +32,7 @@ mod bounds;
 mod certificate;
 mod circumstances;
 mod compare;
+mod contacts;
 mod folds;
 mod inside;
 mod intersections;
@@ -51,18 +52,18 @@ mod sheet;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod windows;
 mod work;
 
-use certificate::{LEFT_OF_THICKNESS, Zones};
+use certificate::Zones;
 use circumstances::Circumstances;
+use contacts::Contacts;
 use mean_pushes::MeanPushes;
-use members::{Members, NOBODY};
+use members::Members;
 use motion::Motion;
 use near_features::NearFeatures;
 use near_patches::{Meets, PatchBoxes};
 use origin::Origin;
-use pair::{NearPair, VERTEX_AND_FACE};
-use patch_pair::Candidate;
 use response::push;
 use work::Counts;
 
@@ -104,9 +105,7 @@ pub(crate) struct MutualContact {
     motion: Motion,
     boxes: PatchBoxes,
     near: NearFeatures,
-    /// The pairs that may touch in the sub-step.
-    contacts: Vec<NearPair>,
-    overlapping: Vec<u32>,
+    contacts: Contacts,
     members: Members,
     zones: Zones,
     /// The pushes that hold particles between tests.
@@ -163,7 +162,7 @@ impl MutualContact {
             }
             // Something else has moved them.
             self.motion.read(cloths);
-            self.motion.measure_drift();
+            self.motion.measure_all();
             self.motion.measure(cloths);
             self.motion.pass(cloths, REFERENCE * thinnest(cloths));
             // Both ends of the sub-step are here.
@@ -181,7 +180,7 @@ impl MutualContact {
             self.near.restart(begins, &among, self.motion.patches.len());
             self.boxes.reset(cloths, self.motion.patches.len());
             self.mean_pushes.clear(cloths);
-            self.contacts.clear();
+            self.contacts.pairs.clear();
             (self.is_known, self.ticks_off) = (true, 0);
         }
         (self.last.wait, self.last.waited) = (0, 0);
@@ -259,13 +258,13 @@ impl MutualContact {
         } else {
             (0.0, self.last.passed.approach(cloths))
         };
-        let has_none = self.contacts.is_empty() && !self.near.has_changed;
+        let has_none = self.contacts.pairs.is_empty() && !self.near.has_changed;
         if (is_waiting || has_none) && approach <= self.last.free {
             return held;
         }
         self.last.wait = 0;
         self.motion.read(cloths);
-        self.motion.measure_drift();
+        self.motion.measure_all();
         self.motion.measure(cloths);
         let is_apart = self.keep_apart(cloths, &meets, dt);
         let pushed = self.members.farthest_push();
@@ -283,7 +282,7 @@ impl MutualContact {
         self.counts.motion = self.counts.motion.max(0.5 * pace / thinnest);
         self.motion.pass(cloths, REFERENCE * thinnest);
         self.last.reserve = 0.0;
-        if !self.contacts.is_empty() {
+        if !self.contacts.pairs.is_empty() {
             let most = HELD * thinnest;
             self.last.free = self.last.free.min(most);
             if self.members.are_resting(RESTING_SPEED * dt) {
@@ -314,21 +313,32 @@ impl MutualContact {
                 self.members
                     .gather(cloths, &self.motion, &self.before_colliders);
             } else if self.near.has_changed {
-                self.list(cloths, round == 0);
+                if round == 0 {
+                    self.members.clear(self.motion.end.len());
+                }
+                self.contacts.list(
+                    &mut self.near,
+                    cloths,
+                    &self.motion,
+                    &mut self.members,
+                    &self.before_colliders,
+                );
+                self.contacts
+                    .leave_out_implied(&self.members, &mut self.counts);
             } else {
                 break;
             }
-            self.counts.take(WORK_OF_CONTACT * self.contacts.len());
+            let (contacts, members) = (&mut self.contacts, &mut self.members);
+            self.counts.take(WORK_OF_CONTACT * contacts.pairs.len());
             let mut has_moved = false;
             if round == 0 {
-                let (overlapping, members) = (&mut self.overlapping, &mut self.members);
-                let touched = push(&self.contacts, overlapping, members, dt);
+                let touched = push(contacts, members, dt);
                 let each = touched as f32 / members.len().max(1) as f32;
                 self.counts.touched = self.counts.touched.max(each);
                 has_moved = touched > 0;
             }
-            let (members, counts) = (&mut self.members, &mut self.counts);
-            has_moved |= self.zones.certify(&self.contacts, members, counts);
+            let (zones, counts) = (&mut self.zones, &mut self.counts);
+            has_moved |= zones.certify(&contacts.pairs, members, counts);
             if !has_moved {
                 break;
             }
@@ -368,86 +378,11 @@ impl MutualContact {
         Some(slack.min(unfolded).min(2.0 * clearance))
     }
 
-    /// Lists the contacts. A `first` list of a sub-step has members of its own.
-    fn list(&mut self, cloths: &[Participant], is_first: bool) {
-        let Self {
-            near,
-            motion,
-            members,
-            contacts,
-            before_colliders,
-            ..
-        } = self;
-        if is_first {
-            members.clear(motion.end.len());
-        }
-        members.last_of.fill(NOBODY);
-        contacts.clear();
-        near.has_changed = false;
-        let add = |candidate: &Candidate, of: [u32; 2], near: f32| {
-            let particles = candidate.particles;
-            let members_of =
-                particles.map(|particle| members.of(particle, cloths, motion, before_colliders));
-            let split = candidate.split as usize;
-            let nearest = candidate.nearest;
-            let [a, b] = of.map(|cloth| cloths[cloth as usize].settings.friction);
-            let mut before = NOBODY;
-            if split == VERTEX_AND_FACE {
-                let last = &mut members.last_of[members_of[0] as usize];
-                before = std::mem::replace(last, contacts.len() as u32);
-            }
-            contacts.push(NearPair {
-                members: members_of,
-                split,
-                thickness: candidate.thickness,
-                friction: (a * b).sqrt(),
-                distance: nearest.distance,
-                normal: nearest.normal,
-                weights: nearest.weights,
-                is_pushed: split == VERTEX_AND_FACE || !nearest.is_at_border(),
-                before,
-                may_pass: candidate.nearest.distance
-                    <= near + LEFT_OF_THICKNESS * candidate.thickness,
-            });
-        };
-        near.contacts(motion, add);
-        self.leave_out_implied();
-    }
-
-    /// Marks the faces from which a nearer face already keeps a vertex away: the nearest point is on an edge of both.
-    fn leave_out_implied(&mut self) {
-        for index in 0..self.contacts.len() {
-            let pair = &self.contacts[index];
-            if pair.split != VERTEX_AND_FACE || pair.weights.iter().all(|&weight| weight != 0.0) {
-                continue;
-            }
-            let mut next = self.members.last_of[pair.members[0] as usize];
-            let mut is_implied = false;
-            while next != NOBODY && !is_implied && self.counts.work > 0 {
-                let other = &self.contacts[next as usize];
-                let is_nearer = other.distance < pair.distance
-                    || (other.distance == pair.distance && (next as usize) < index);
-                let has = |corner: usize| {
-                    pair.weights[corner] == 0.0
-                        || other.members[1..].contains(&pair.members[corner])
-                };
-                self.counts.take(1);
-                is_implied = next as usize != index
-                    && other.thickness >= pair.thickness
-                    && is_nearer
-                    && (1..4).all(has);
-                next = other.before;
-            }
-            self.contacts[index].is_pushed &= !is_implied;
-        }
-        self.contacts.retain(|pair| pair.is_pushed || pair.may_pass);
-    }
-
     /// Keeps nothing apart for the rest of the tick and some more.
     fn lose(&mut self) {
         (self.counts.is_lost, self.ticks_off) = (true, TICKS_OFF);
         self.near.clear();
-        self.contacts.clear();
+        self.contacts.pairs.clear();
     }
 }
 

@@ -151,7 +151,7 @@ impl Motion {
     /// Whether two patches are [neighbours](super::folds) in a grid.
     pub fn are_neighbours(&self, cloths: &[Participant], of: [u32; 2]) -> bool {
         let of = self.of_one_cloth(of);
-        of.is_some_and(|(cloth, of)| cloths[cloth].sheet.are_neighbours(of))
+        of.is_some_and(|(cloth, of)| cloths[cloth].sheet.windows().are_neighbours(of))
     }
 
     /// Reads the particles' positions at the end of the sub-step.
@@ -173,7 +173,7 @@ impl Motion {
     }
 
     /// Measures the motion that all have in common, and how much nearer any two may have come.
-    pub fn measure_drift(&mut self) {
+    pub fn measure_all(&mut self) {
         let each = self.end.iter().zip(&self.start);
         let sum = each.map(|(end, start)| *end - *start).sum::<Vec3A>();
         // One particle that is not finite leaves the others without a common motion.

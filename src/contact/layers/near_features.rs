@@ -187,7 +187,9 @@ impl NearFeatures {
     ) -> Option<f32> {
         let mut left = self.find_due(motion, reserve);
         let due = std::mem::take(&mut self.due);
-        self.comparison.clear(motion);
+        if !due.is_empty() {
+            self.comparison.clear(motion);
+        }
         let mut are_apart = false;
         for &index in &due {
             let pair = &mut self.pairs[index as usize];

@@ -153,11 +153,12 @@ impl PatchBoxes {
                         Some(had) => (patch <= second, had),
                         None => (true, self.boxes[second as usize]),
                     };
-                    let is_neighbour = other == own
-                        && cloth
-                            .sheet
-                            .are_neighbours([patch, second].map(|of| of - first));
-                    if is_first && !had.overlaps(&had_second) && !is_neighbour {
+                    // Only a fold makes neighbours a pair.
+                    let are_neighbours = || {
+                        let windows = cloth.sheet.windows();
+                        other == own && windows.are_neighbours([patch - first, node.patch])
+                    };
+                    if is_first && !had.overlaps(&had_second) && !are_neighbours() {
                         found([patch.min(second), patch.max(second)]);
                     }
                 }

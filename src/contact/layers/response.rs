@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3A;
 
-use super::{members::Members, pair::NearPair};
+use super::{contacts::Contacts, members::Members, pair::NearPair};
 
 /// Number of times that overlapping pairs are pushed in a sub-step: the weight of a pile has to reach the floor through
 /// its layers. With 1, ten sheets shake each other by so much that friction does not hold them.
@@ -33,12 +33,8 @@ const APART: usize = 4;
 const LEAST_FREE: f32 = 0.01;
 
 /// Pushes near pairs apart. Lists those that overlap by more than layers at rest. Returns how many touched.
-pub(super) fn push(
-    pairs: &[NearPair],
-    overlapping: &mut Vec<u32>,
-    members: &mut Members,
-    dt: f32,
-) -> u32 {
+pub(super) fn push(contacts: &mut Contacts, members: &mut Members, dt: f32) -> u32 {
+    let Contacts { pairs, overlapping } = contacts;
     overlapping.clear();
     let mut touched = 0;
     let part = pairs.len().div_ceil(APART);

@@ -4,11 +4,8 @@ use std::{ops::Range, sync::Arc};
 
 use bevy::{math::Vec3A, platform::collections::HashSet};
 
-use super::tangents::Tangents;
+use super::{tangents::Tangents, windows::Windows};
 use crate::{cloth::Surface, hierarchy::QuadTree};
-
-/// Number of rows and of columns of a grid that a patch owns.
-const OF_GRID: u32 = 2;
 
 /// Largest number of particles that a patch of a mesh owns.
 const OWNED: u32 = 8;
@@ -31,9 +28,7 @@ pub(crate) struct Sheet {
     /// The corners of eight features each, by their places among the particles of their patch: of owned vertices, faces, and
     /// edges. The last feature fills the rest of its eight.
     groups: Vec<[u16; 8]>,
-    /// For a grid, the number of rows and columns of patches, and these row by row.
-    size: [u32; 2],
-    blocks: Vec<u32>,
+    windows: Windows,
     closest: f32,
 }
 
@@ -46,8 +41,6 @@ struct Patch {
     edges: Range<u32>,
     /// The first of its groups of eight features, among those of all patches.
     first_group: u32,
-    /// For a grid, its row and column among patches.
-    block: [u32; 2],
 }
 
 /// A node of the tree over patches: its children, or its patch.
@@ -88,23 +81,19 @@ impl Sheet {
         }
         let mut seen = HashSet::new();
         if let Some(grid) = surface.as_grid() {
-            sheet.size = [grid.rows(), grid.columns()].map(|of| of.div_ceil(OF_GRID));
-            sheet.blocks = vec![0; (sheet.size[0] * sheet.size[1]) as usize];
-            let [rows, columns] = sheet.size;
-            sheet.add_blocks([0..rows, 0..columns], &mut seen);
-            sheet.find_patches();
-            return sheet;
+            sheet.windows = Windows::new([grid.rows(), grid.columns()]);
+            let [rows, columns] = sheet.windows.size();
+            sheet.add_of_grid([0..rows, 0..columns], &mut seen);
+        } else {
+            let mut leaves = vec![0; tree.len()];
+            for index in (0..tree.len()).rev() {
+                let node = tree.node(index as u32);
+                let below = node.children().iter();
+                let below = below.map(|&child| leaves[child as usize]).sum::<u32>();
+                leaves[index] = below.max(1);
+            }
+            sheet.add_of_mesh(tree, 0, &leaves, &mut seen);
         }
-        let mut leaves = vec![0; tree.len()];
-        for index in (0..tree.len()).rev() {
-            let children = tree.node(index as u32);
-            let below = children
-                .children()
-                .iter()
-                .map(|&child| leaves[child as usize]);
-            leaves[index] = below.sum::<u32>().max(1);
-        }
-        sheet.add(tree, 0, &leaves, &mut seen);
         sheet.find_patches();
         sheet
     }
@@ -140,8 +129,8 @@ impl Sheet {
         (self.nodes.len() - 1, node)
     }
 
-    /// Adds a node of the tree and all below it. Returns its index.
-    fn add(
+    /// Adds a node of a mesh's tree and all below it. Returns its index.
+    fn add_of_mesh(
         &mut self,
         tree: &QuadTree,
         of: u32,
@@ -154,10 +143,11 @@ impl Sheet {
             collect(tree, of, &mut owned);
         }
         if !owned.is_empty() {
-            self.add_patch(&owned, [0; 2], seen);
+            self.add_patch(&owned, seen);
         } else {
             for &child in tree.node(of).children() {
-                node.children[node.child_count as usize] = self.add(tree, child, leaves, seen);
+                node.children[node.child_count as usize] =
+                    self.add_of_mesh(tree, child, leaves, seen);
                 node.child_count += 1;
             }
             self.nodes[index] = node;
@@ -165,44 +155,28 @@ impl Sheet {
         index as u32
     }
 
-    /// Adds a node of these rows and columns of patches of a grid, and all below it. Returns its index.
-    fn add_blocks(&mut self, of: [Range<u32>; 2], seen: &mut HashSet<[u32; 2]>) -> u32 {
+    /// Adds a node of these rows and columns of patches of a grid, and all below it. Returns its index. The grid's own
+    /// tree has other patches than windows need.
+    fn add_of_grid(&mut self, of: [Range<u32>; 2], seen: &mut HashSet<[u32; 2]>) -> u32 {
         let (index, mut node) = self.add_node();
-        if of.iter().all(|of| of.len() == 1) {
-            let block = [of[0].start, of[1].start];
-            self.blocks[(block[0] * self.size[1] + block[1]) as usize] = node.patch;
-            let owned = self.owned_by(block);
-            self.add_patch(&owned, block, seen);
+        let [rows, columns] = of;
+        if rows.len() == 1 && columns.len() == 1 {
+            let owned: Vec<u32> = self.windows.put([rows.start, columns.start]).collect();
+            self.add_patch(&owned, seen);
             return index as u32;
         }
-        let [rows, columns] = of.map(|Range { start, end }| {
-            let middle = (start + end).div_ceil(2);
-            [start..middle, middle..end]
-        });
-        for rows in rows {
-            for columns in columns.clone().into_iter().filter(|of| !of.is_empty()) {
-                if !rows.is_empty() {
-                    node.children[node.child_count as usize] =
-                        self.add_blocks([rows.clone(), columns], seen);
-                    node.child_count += 1;
-                }
+        for rows in halves(&rows) {
+            for columns in halves(&columns) {
+                let child = self.add_of_grid([rows.clone(), columns], seen);
+                node.children[node.child_count as usize] = child;
+                node.child_count += 1;
             }
         }
         self.nodes[index] = node;
         index as u32
     }
 
-    /// The particles that a patch of a grid owns.
-    fn owned_by(&self, block: [u32; 2]) -> Vec<u32> {
-        let grid = self.surface.as_grid();
-        let [rows, columns] = grid.map_or([0; 2], |grid| [grid.rows(), grid.columns()]);
-        let range = |at: u32, end: u32| OF_GRID * at..(OF_GRID * (at + 1)).min(end);
-        range(block[0], rows)
-            .flat_map(|row| range(block[1], columns).map(move |column| row * columns + column))
-            .collect()
-    }
-
-    fn add_patch(&mut self, owned: &[u32], block: [u32; 2], seen: &mut HashSet<[u32; 2]>) {
+    fn add_patch(&mut self, owned: &[u32], seen: &mut HashSet<[u32; 2]>) {
         let from = [self.particles.len(), self.faces.len(), self.edges.len()];
         self.particles.extend(owned);
         for &particle in owned {
@@ -228,16 +202,15 @@ impl Sheet {
         let range = |from: usize, to: usize| from as u32..to as u32;
         let first_group = self.groups.len() as u32;
         let vertices: Vec<[u16; 1]> = (0..owned.len() as u16).map(|vertex| [vertex]).collect();
-        put(&vertices, &mut self.groups);
-        put(&self.faces[from[1]..], &mut self.groups);
-        put(&self.edges[from[2]..], &mut self.groups);
+        group(&vertices, &mut self.groups);
+        group(&self.faces[from[1]..], &mut self.groups);
+        group(&self.edges[from[2]..], &mut self.groups);
         self.patches.push(Patch {
             owned: owned.len() as u32,
             particles: range(from[0], self.particles.len()),
             faces: range(from[1], self.faces.len()),
             edges: range(from[2], self.edges.len()),
             first_group,
-            block,
         });
     }
 
@@ -261,52 +234,9 @@ impl Sheet {
         self.patches.len()
     }
 
-    /// Number of rows and columns of windows of 2 × 2 patches of a grid, or fewer where there are no more.
-    fn windows(&self) -> [u32; 2] {
-        self.size.map(|of| of.saturating_sub(1).max(1).min(of))
-    }
-
-    /// Number of windows.
-    pub(super) fn window_count(&self) -> usize {
-        let [rows, columns] = self.windows();
-        (rows * columns) as usize
-    }
-
-    /// The patches in a window, row by row.
-    pub(super) fn patches_in(&self, window: usize) -> impl Iterator<Item = u32> {
-        let [rows, columns] = self.range_of(window);
-        let blocks = rows.flat_map(move |row| columns.clone().map(move |column| [row, column]));
-        blocks.map(|[row, column]| self.blocks[(row * self.size[1] + column) as usize])
-    }
-
-    /// The rows and columns of patches in a window.
-    fn range_of(&self, window: usize) -> [Range<u32>; 2] {
-        let columns = self.windows()[1];
-        let at = [window as u32 / columns, window as u32 % columns];
-        [0, 1].map(|axis| at[axis]..(at[axis] + 2).min(self.size[axis]))
-    }
-
-    /// The windows in which two patches are.
-    pub(super) fn windows_of(&self, of: [u32; 2]) -> impl Iterator<Item = usize> {
-        let [a, b] = of.map(|patch| self.patches[patch as usize].block);
-        let windows = self.windows();
-        let [rows, columns] = [0, 1].map(|axis| {
-            let first = a[axis].max(b[axis]).saturating_sub(1);
-            first..(a[axis].min(b[axis]) + 1).min(windows[axis])
-        });
-        rows.flat_map(move |row| columns.clone().map(move |column| (row, column)))
-            .map(move |(row, column)| (row * windows[1] + column) as usize)
-    }
-
-    /// Whether some window has both patches.
-    pub(super) fn are_neighbours(&self, of: [u32; 2]) -> bool {
-        self.windows_of(of).next().is_some()
-    }
-
-    /// Which neighbour the second patch is of the first, before which it does not come: 0 to 5.
-    pub(super) fn neighbour(&self, of: [u32; 2]) -> u32 {
-        let [a, b] = of.map(|patch| self.patches[patch as usize].block);
-        3 * (b[0] - a[0]) + b[1] + 1 - a[1]
+    /// The windows of a grid; none for a mesh.
+    pub(super) fn windows(&self) -> &Windows {
+        &self.windows
     }
 
     /// A lower bound of the distance between any two features without a common particle in a window (m), from its tangents at
@@ -315,13 +245,8 @@ impl Sheet {
         let Some(grid) = self.surface.as_grid() else {
             return f32::NEG_INFINITY;
         };
-        let size = [grid.rows(), grid.columns()];
-        let blocks = self.range_of(window);
-        let [rows, columns] = [0, 1].map(|axis| {
-            let last = (OF_GRID * blocks[axis].end).min(size[axis] - 1);
-            (OF_GRID * blocks[axis].start) as usize..last as usize + 1
-        });
-        let stride = size[1] as usize;
+        let [rows, columns] = self.windows.particles_in(window);
+        let stride = grid.columns() as usize;
         let rows = rows.map(|row| &places[row * stride..][columns.clone()]);
         Tangents::of(rows, grid.spacing()).unfolded() * self.closest
     }
@@ -348,22 +273,22 @@ impl Sheet {
         self.patches[patch as usize].owned as u16
     }
 
-    /// The places of a patch's points of eight features among those of all patches: of its owned vertices, its faces, and
-    /// its edges.
-    pub(super) fn groups_of(&self, patch: u32) -> Range<u32> {
+    /// The places of a patch's groups of eight among those of all patches.
+    pub(super) fn group_range(&self, patch: u32) -> Range<u32> {
         let next = self.patches.get(patch as usize + 1);
         self.patches[patch as usize].first_group
             ..next.map_or(self.group_count(), |next| next.first_group)
     }
 
-    /// Number of points of eight features of all patches.
+    /// Number of groups of eight of all patches.
     pub(super) fn group_count(&self) -> u32 {
         self.groups.len() as u32
     }
 
-    /// The corners of eight features each, by their places among the particles of their patch.
-    pub(super) fn groups(&self, of: Range<u32>) -> &[[u16; 8]] {
-        &self.groups[of.start as usize..of.end as usize]
+    /// The groups of eight of a patch: the corners of eight features each, by their places among its particles.
+    pub(super) fn groups_of(&self, patch: u32) -> &[[u16; 8]] {
+        let Range { start, end } = self.group_range(patch);
+        &self.groups[start as usize..end as usize]
     }
 
     /// The faces of a patch, by the places of their corners among its particles.
@@ -390,8 +315,15 @@ fn collect(tree: &QuadTree, of: u32, particles: &mut Vec<u32>) {
     }
 }
 
+/// The two halves of a range; one if it cannot be halved.
+fn halves(of: &Range<u32>) -> impl Iterator<Item = Range<u32>> + use<> {
+    let middle = (of.start + of.end).div_ceil(2);
+    let halves = [of.start..middle, middle..of.end];
+    halves.into_iter().filter(|half| !half.is_empty())
+}
+
 /// Puts features into groups of eight, corner by corner. The last feature fills the last group.
-fn put<const N: usize>(features: &[[u16; N]], groups: &mut Vec<[u16; 8]>) {
+fn group<const N: usize>(features: &[[u16; N]], groups: &mut Vec<[u16; 8]>) {
     for eight in features.chunks(8) {
         groups.extend(
             (0..N).map(|corner| std::array::from_fn(|l| eight[l.min(eight.len() - 1)][corner])),

@@ -2,6 +2,7 @@
 
 mod hold;
 mod lanes;
+mod motion;
 mod response;
 mod scenes;
 mod search;

@@ -123,9 +123,9 @@ fn layers_slide_from_the_angle_of_friction_on() {
     }
 }
 
-/// A sheet that is moved through another by pins: it is said if both are held, and pushes the other along if that is free.
+/// Pins move a sheet through another. If both are held, the sub-steps count as lost; a free one is pushed along.
 #[test]
-fn what_pins_force_through_is_said() {
+fn layers_that_pins_force_through_each_other_count_as_lost() {
     for is_free in [true, false] {
         let sheets =
             [0.0, 0.02].map(|height| Sheeted::new(7, 0.3, move |at| at + Vec3::Y * height));

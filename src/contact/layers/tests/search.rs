@@ -250,7 +250,7 @@ fn no_pair_is_lost_on_the_way() {
             }
             contact.counts.work = usize::MAX;
             contact.motion.read(&of);
-            contact.motion.measure_drift();
+            contact.motion.measure_all();
             contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
             let mut known = HashSet::new();
@@ -321,7 +321,7 @@ fn long_sheets_are_proved_flat() {
         let bent = surface.rest_positions().iter();
         let bent = bent.map(|at| Vec3A::from(*at + 0.01 * (7.0 * at.x).sin() * Vec3::Y));
         let places: Vec<Vec3A> = bent.collect();
-        for window in 0..sheet.window_count() {
+        for window in 0..sheet.windows().count() {
             let bound = sheet.unfolded(window, &places);
             assert!(bound > 0.01, "{columns} × {rows}, {window}: {bound}");
         }
@@ -333,7 +333,10 @@ fn long_sheets_are_proved_flat() {
             let others = sheet.particles_of(b);
             let own = sheet.particles_of(a);
             let are_joined = own.iter().any(|each| others.contains(each));
-            assert!(!are_joined || sheet.are_neighbours([a, b]), "{a} and {b}");
+            assert!(
+                !are_joined || sheet.windows().are_neighbours([a, b]),
+                "{a} and {b}"
+            );
         }
     }
 }
@@ -363,10 +366,15 @@ fn what_is_hardly_bent_keeps_its_points_apart() {
                 })
                 .collect::<Vec<_>>()
             };
-            for window in 0..cloth.sheet.window_count() {
+            for window in 0..cloth.sheet.windows().count() {
                 let bound = cloth.sheet.unfolded(window, &places);
                 has_bound += usize::from(bound > 0.0);
-                let all: Vec<_> = cloth.sheet.patches_in(window).map(points).collect();
+                let all: Vec<_> = cloth
+                    .sheet
+                    .windows()
+                    .patches_in(window)
+                    .map(points)
+                    .collect();
                 let pairs = (0..all.len()).flat_map(|a| (a..all.len()).map(move |b| [a, b]));
                 for [first, second] in pairs.map(|of| of.map(|at| &all[at])) {
                     for (at, of) in first {

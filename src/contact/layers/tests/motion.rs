@@ -1,0 +1,56 @@
+//! What particles have moved is bounded, and known of each patch.
+
+use bevy::math::{Vec3, Vec3A};
+
+use super::{Sheeted, participants, settings, thrown::Draw};
+use crate::contact::layers::motion::Motion;
+
+/// Particles that move at random, and some of which are put elsewhere twice: no two come nearer than the bound says, and each
+/// patch is as if all had been measured.
+#[test]
+fn particles_come_no_nearer_than_their_bound() {
+    let mut draw = Draw(5);
+    for is_mesh in [false, true] {
+        let mut cloths = vec![Sheeted::of_kind(7, 0.6, is_mesh, |at| at)];
+        let mut motion = Motion::default();
+        motion.reset(&participants(&mut cloths, settings(0.01)));
+        for _ in 0..30 {
+            let common = draw.vector();
+            for index in 0..cloths[0].particles.len() {
+                let at = cloths[0].particles.position(index).expect("it exists");
+                let at = at + common + 0.02 * draw.vector();
+                let set = cloths[0].particles.set_position(index, at);
+                set.expect("finite");
+            }
+            let of = participants(&mut cloths, settings(0.01));
+            motion.read(&of);
+            motion.measure_all();
+            motion.measure(&of);
+            for _ in 0..2 {
+                for _ in 0..5 {
+                    let particle = (24.5 * (draw.next() + 1.0)) as u32 % 49;
+                    let place = motion.end[particle as usize];
+                    let by = Vec3A::from(Vec3::splat(0.03) * draw.vector());
+                    motion.put(&of, particle, place + by);
+                }
+                motion.measure_changed(&of);
+            }
+            let ends = motion.ends.clone();
+            motion.measure(&of);
+            assert_eq!(ends, motion.ends);
+            for i in 0..motion.end.len() {
+                for j in 0..i {
+                    let nearer = motion.start[i].distance(motion.start[j])
+                        - motion.end[i].distance(motion.end[j]);
+                    // Positions up to 30 m from the origin.
+                    assert!(nearer <= motion.approach + 30.0 * 8.0 * f32::EPSILON);
+                }
+            }
+            motion.pass(&of, 0.0005);
+            for (index, place) in motion.start.iter().enumerate() {
+                let set = cloths[0].particles.set_position(index, (*place).into());
+                set.expect("finite");
+            }
+        }
+    }
+}
