@@ -17,7 +17,7 @@ pub(super) struct Windows {
 }
 
 impl Windows {
-    /// Over so many rows and columns of particles, without patches.
+    /// Covers so many rows and columns of particles; no patch is in it yet.
     pub fn new(particles: [u32; 2]) -> Self {
         let size = particles.map(|of| of.div_ceil(OWNED));
         Self {
