@@ -44,17 +44,21 @@ pub mod prelude {
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,
     };
     pub use crate::hierarchy::SearchMethod;
+    #[cfg(feature = "picking")]
+    pub use crate::plugin::ClothPickingPlugin;
     #[cfg(feature = "mesh")]
     pub use crate::plugin::ClothRenderMesh;
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
+    #[cfg(feature = "bake")]
+    pub use crate::plugin::{BakeError, ClothBake};
     pub use crate::plugin::{
         ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothBuilt,
-        ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGravity, ClothInertia,
-        ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothSnapshot,
-        ClothStats, ClothSystems, ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped,
-        ClothWind, ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
-        SnapshotError, shift_cloths,
+        ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGrab, ClothGravity, ClothHit,
+        ClothInertia, ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
+        ClothRayCast, ClothSnapshot, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
+        ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
+        ClothWorldSnapshot, DrapePlugins, GlobalClothLod, SnapshotError, shift_cloths,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

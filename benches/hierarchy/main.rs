@@ -5,6 +5,7 @@
 
 mod ecs;
 mod parry;
+mod rays;
 mod scene;
 
 use std::{hint::black_box, time::Instant};
@@ -42,6 +43,7 @@ fn main() {
     many_balls(256);
     many_balls(64);
     nothing_near();
+    rays::rays();
 }
 
 /// Rebuild and query for one ball, against parry's tree and a scan over the columns.

@@ -18,6 +18,7 @@
 //!
 //! | Key | Action |
 //! |---|---|
+//! | Left drag on a cloth | pull it |
 //! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | Up, Down | faster, slower ball |
 //! | Space | pause, resume |

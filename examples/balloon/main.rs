@@ -10,6 +10,7 @@
 //!
 //! | Key | Action |
 //! |---|---|
+//! | Left drag on a cloth | pull it |
 //! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | Up, Down | more, less gas |
 //! | Right, Left | more, less wind |

@@ -15,6 +15,7 @@
 //!
 //! | Key | Action |
 //! |---|---|
+//! | Left drag on a cloth | pull it |
 //! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | W | run, stand still |
 //! | J | jump |

@@ -10,6 +10,7 @@
 //!
 //! | Key | Action |
 //! |---|---|
+//! | Left drag on a cloth | pull it |
 //! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | Up, Down | stronger, weaker wind |
 //! | D | level of detail on, off |

@@ -11,6 +11,7 @@
 //!
 //! | Key | Action |
 //! |---|---|
+//! | Left drag on a cloth | pull it |
 //! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | O | open, close the curtain |
 //! | Up, Down | faster, slower walker |

@@ -10,6 +10,7 @@
 //!
 //! | Key | Action |
 //! |---|---|
+//! | Left drag on a cloth | pull it |
 //! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | T | spin, stand still |
 //! | Up, Down | spin faster, slower |

@@ -14,6 +14,7 @@
 //!
 //! | Key | Action |
 //! |---|---|
+//! | Left drag on a cloth | pull it |
 //! | Left drag, right drag, wheel | orbit, pan, zoom |
 //! | Space | pause, resume |
 //! | N | single step while paused |

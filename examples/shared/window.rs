@@ -23,7 +23,8 @@ use super::{
 };
 
 /// The keys of every example, as they stand in the panel.
-const KEYS: [(&str, &str); 10] = [
+const KEYS: [(&str, &str); 11] = [
+    ("Drag on cloth", "pull it"),
     ("Mouse", "orbit, pan, zoom"),
     ("Space", "pause, resume"),
     ("N", "single step while paused"),
@@ -59,6 +60,8 @@ pub fn run(example: Example, grid: Grid) -> ExitCode {
         ..default()
     };
     app.add_plugins((ClothPanelPlugin, PreparingPlugin, PanOrbitCameraPlugin))
+        // Whatever is in front of a cloth hides it from the mouse.
+        .add_plugins((ClothPickingPlugin::default(), MeshPickingPlugin))
         .insert_resource(panel)
         .add_systems(PreStartup, keep_egui_off_the_scene)
         .add_systems(Startup, spawn_cameras)
@@ -66,7 +69,7 @@ pub fn run(example: Example, grid: Grid) -> ExitCode {
             Update,
             (
                 draw_beside_panel,
-                free_mouse_for_panel,
+                free_mouse,
                 press_clock_keys,
                 press_gizmo_keys,
                 press_cloth_keys,
@@ -139,9 +142,14 @@ fn draw_beside_panel(
     }
 }
 
-fn free_mouse_for_panel(mut cameras: Query<&mut PanOrbitCamera>, egui: Res<EguiWantsInput>) {
+/// The camera stays while the mouse is the panel's, or pulls at cloth.
+fn free_mouse(
+    mut cameras: Query<&mut PanOrbitCamera>,
+    egui: Res<EguiWantsInput>,
+    hands: Query<(), With<ClothGrab>>,
+) {
     for mut camera in &mut cameras {
-        camera.enabled = !egui.wants_any_pointer_input();
+        camera.enabled = !egui.wants_any_pointer_input() && hands.is_empty();
     }
 }
 

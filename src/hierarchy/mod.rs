@@ -118,6 +118,7 @@ mod brute;
 mod method;
 mod probe;
 mod query;
+mod ray;
 mod rule;
 mod scan;
 mod search_buffers;
@@ -135,6 +136,7 @@ pub use method::{SearchMethod, SearchReason};
 #[doc(hidden)]
 pub use probe::{Core, Probe};
 pub use query::{NodeState, TopDownQuery};
+pub(crate) use ray::RayQuery;
 pub use rule::BoundRule;
 pub use tree::{Node, QuadTree};
 pub use volume::{BoundingVolume, KDop, NodeVolume, Obb};

@@ -5,7 +5,7 @@
 //!   authoring   what a game writes            state   what the plugin keeps
 //!
 //!   FixedUpdate:   prepare → search → step → write_back          PostUpdate:   draw
-//!                                 bridge: rapier, egui, snapshots, reflection, diagnostics, origins
+//!                                 bridge: rapier, egui, picking, snapshots, reflection, diagnostics, origins
 //! ```
 //!
 //! A stage imports from those before it. `simulation` adds the systems in their order.
@@ -31,17 +31,22 @@ use bevy::{
 };
 
 pub use authoring::{
-    ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothGravity,
-    ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothTarget, ClothTeleport,
-    ClothWind, ClothWindShape, ClothWindZone, GlobalClothLod,
+    ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothGrab,
+    ClothGravity, ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothTarget,
+    ClothTeleport, ClothWind, ClothWindShape, ClothWindZone, GlobalClothLod,
 };
 #[cfg(feature = "mesh")]
 pub use authoring::{ClothMesh, ClothSkeleton};
 #[cfg(feature = "egui")]
 #[doc(hidden)]
 pub use bridge::ClothColliderSpeed;
+#[cfg(feature = "picking")]
+pub use bridge::ClothPickingPlugin;
+#[cfg(feature = "bake")]
+pub use bridge::{BakeError, ClothBake};
 pub use bridge::{
-    ClothDiagnosticsPlugin, ClothSnapshot, ClothWorldSnapshot, SnapshotError, shift_cloths,
+    ClothDiagnosticsPlugin, ClothHit, ClothRayCast, ClothSnapshot, ClothWorldSnapshot,
+    SnapshotError, shift_cloths,
 };
 #[cfg(feature = "egui")]
 pub use bridge::{ClothPanel, ClothPanelPlugin};

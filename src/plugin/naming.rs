@@ -12,6 +12,7 @@ use bevy::{
 pub(crate) enum Part {
     Cloth,
     Collider,
+    Grab,
     #[cfg(feature = "mesh")]
     RenderMesh,
     WindZone,
@@ -30,6 +31,7 @@ impl NamedItem<'_, '_> {
         let part = match part {
             Part::Cloth => "cloth",
             Part::Collider => "cloth collider",
+            Part::Grab => "cloth grab",
             #[cfg(feature = "mesh")]
             Part::RenderMesh => "cloth render mesh",
             Part::WindZone => "cloth wind zone",

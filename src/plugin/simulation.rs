@@ -16,7 +16,10 @@ use bevy::{
         lifecycle::{Add, Insert, Remove},
         observer::On,
         query::{Allow, With},
-        schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
+        schedule::{
+            IntoScheduleConfigs, ScheduleLabel,
+            common_conditions::{any_with_component, resource_exists},
+        },
         system::{Commands, Query},
         world::World,
     },
@@ -29,16 +32,16 @@ use bevy::{
 use super::prepare::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
     authoring::{
-        ClothAir, ClothBody, ClothGravity, ClothInertia, ClothOrder, ClothPush, ClothTeleport,
-        ClothWind, ClothWindZone, give_order,
+        ClothAir, ClothBody, ClothGrab, ClothGravity, ClothInertia, ClothOrder, ClothPush,
+        ClothTeleport, ClothWind, ClothWindZone, give_order,
     },
     bridge::register_lists,
     frame::ClothFrame,
     naming::Part,
     prepare::{
         ChangedColliders, ColliderMotion, ColliderTree, Islands, Teleporting, choose_levels,
-        find_islands, follow_roots, forget_collider, note_enabled, note_removals, prepare_cloths,
-        prepare_colliders, prepare_wind,
+        find_islands, follow_roots, forget_collider, hold_cloths, let_go, note_enabled,
+        note_removals, prepare_cloths, prepare_colliders, prepare_wind,
     },
     search::{query_collisions, rebuild_hierarchies},
     sets::ClothSystems,
@@ -156,6 +159,7 @@ fn add_resources_and_observers(app: &mut App) {
         .add_observer(clear_removed_collider)
         .add_observer(reset_motion)
         .add_observer(remove_bone_colliders)
+        .add_observer(let_go)
         .add_observer(forget_collider)
         .add_observer(note_enabled)
         .add_systems(Last, note_removals)
@@ -187,6 +191,7 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 give_order,
                 note_removals,
                 follow_roots,
+                hold_cloths.run_if(any_with_component::<ClothGrab>),
                 prepare_colliders,
                 prepare_wind,
                 levels,

@@ -14,9 +14,9 @@ use bevy::{
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles},
     prelude::{
-        ClothAttachments, ClothBody, ClothCollider, ClothGravity, ClothInertia, ClothLod,
-        ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings, ClothSkin, DrapePlugins, Pin,
-        Pins,
+        ClothAttachments, ClothBody, ClothCollider, ClothGrab, ClothGravity, ClothInertia,
+        ClothLod, ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings, ClothSkin,
+        DrapePlugins, Pin, Pins,
     },
 };
 use stats_alloc::Region;
@@ -171,6 +171,23 @@ pub fn what_is_pushed_allocates_nothing() {
         let allocations = with_a_ball(is_body);
         assert_eq!(allocations, 0, "pushed back: {is_body}");
     }
+}
+
+/// A hand that pulls at a hanging sheet, farther than it reaches.
+pub fn a_hand_allocates_nothing() {
+    let mut app = app_on_one_thread(());
+    let cloth = app.world_mut().spawn(Cloth::new(20, 20, 0.05)).id();
+    let grab = ClothGrab {
+        cloth,
+        particle: 210,
+        ..default()
+    };
+    let hand = app.world_mut().spawn(grab).id();
+    let allocations = in_ticks(app, |world, count| {
+        let mut grab = world.get_mut::<ClothGrab>(hand).expect("a hand");
+        grab.target = Vec3::new(0.5, -0.5, 0.3 * (count % 7) as f32);
+    });
+    assert_eq!(allocations, 0);
 }
 
 /// A sheet that lies folded on the floor, awake.

@@ -1,6 +1,7 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
 mod attach;
+mod bake;
 mod cape;
 mod characters;
 mod clones;
@@ -17,6 +18,7 @@ mod frame;
 mod fuzz;
 mod given;
 mod gizmos;
+mod grab;
 mod heavy;
 mod held;
 mod hidden;
@@ -34,6 +36,7 @@ mod notices;
 mod order;
 mod origin;
 mod parents;
+mod picking;
 mod pole;
 mod push_back;
 mod push_rapier;
@@ -60,3 +63,10 @@ mod touch;
 mod uneven;
 mod wind;
 mod woven;
+
+#[path = "../shared/meshes.rs"]
+#[expect(dead_code, reason = "no regular mesh is needed here")]
+mod shared_meshes;
+
+/// `shared_meshes` calls the crate by this name.
+use bevy_drape as library;

@@ -237,10 +237,7 @@ fn what_is_wrong_is_named() {
 
     app.world_mut().despawn(cloth);
     tick(&mut app, 2);
-    assert_eq!(
-        fault(&app, fine),
-        Some(ClothError::NoDrivingCloth { cloth })
-    );
+    assert_eq!(fault(&app, fine), Some(ClothError::NoSuchCloth { cloth }));
     app.world_mut().entity_mut(fine).remove::<ClothRenderMesh>();
     tick(&mut app, 1);
     assert_eq!(fault(&app, fine), None);

@@ -11,7 +11,7 @@ impl MapEntities for ClothError {
         match self {
             Self::NoTarget { target: entity, .. }
             | Self::NoTransform { entity, .. }
-            | Self::NoDrivingCloth { cloth: entity }
+            | Self::NoSuchCloth { cloth: entity }
             | Self::Joint { entity, .. } => {
                 *entity = mapper.get_mapped(*entity);
             }

@@ -227,9 +227,9 @@ pub enum ClothError {
         /// Number of particles that the mesh gives.
         particles: usize,
     },
-    /// The cloth that drives a mesh does not exist, or is not a cloth.
-    #[error("the mesh is driven by {cloth}, which does not exist or is not a cloth")]
-    NoDrivingCloth {
+    /// The cloth that drives a mesh, or that a hand holds, does not exist, or is not a cloth.
+    #[error("{cloth} does not exist or is not a cloth")]
+    NoSuchCloth {
         /// The missing cloth.
         cloth: Entity,
     },

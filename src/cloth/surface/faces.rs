@@ -1,5 +1,7 @@
 //! Triangles, each owned by one particle.
 
+use std::ops::Range;
+
 /// Triangles, sorted by their owner: a search finds particles, and these their faces.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Faces {
@@ -40,7 +42,12 @@ impl Faces {
 
     /// The faces of a particle.
     pub fn of(&self, particle: u32) -> &[[u32; 3]] {
+        &self.all[self.range_of(particle)]
+    }
+
+    /// The indices of a particle's faces.
+    pub fn range_of(&self, particle: u32) -> Range<usize> {
         let particle = particle as usize;
-        &self.all[self.first[particle] as usize..self.first[particle + 1] as usize]
+        self.first[particle] as usize..self.first[particle + 1] as usize
     }
 }

@@ -17,7 +17,7 @@ pub(super) struct Windows {
 }
 
 impl Windows {
-    /// Covers so many rows and columns of particles; no patch is in it yet.
+    /// The windows of a grid with these columns and rows, without patches.
     pub fn new(particles: [u32; 2]) -> Self {
         let size = particles.map(|of| of.div_ceil(OWNED));
         Self {

@@ -1,6 +1,7 @@
 //! The query against brute force on random states, for every volume, rule and shape.
 
 mod misses;
+mod rays;
 mod states;
 mod surfaces;
 

@@ -94,7 +94,7 @@ fn moebius() -> Surface {
 }
 
 /// Each with how many particles it has.
-fn all() -> Vec<(&'static str, Surface, usize)> {
+pub fn all() -> Vec<(&'static str, Surface, usize)> {
     vec![
         (
             "irregular",
@@ -110,7 +110,7 @@ fn all() -> Vec<(&'static str, Surface, usize)> {
 }
 
 /// A surface in a random state of its own, with a collider near it.
-fn scene(surface: &Surface, state: &State) -> Scene {
+pub fn scene(surface: &Surface, state: &State) -> Scene {
     let material = ClothMaterial::COTTON;
     let springs = Springs::of_surface(surface, &material);
     let mut particles = ClothParticles::at_rest(surface, &material).expect("a valid material");

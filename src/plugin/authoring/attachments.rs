@@ -109,6 +109,24 @@ impl ClothAttachments {
         Self(attachments.into_iter().map(attach).collect())
     }
 
+    /// Attaches the particles of one more pin to an entity.
+    pub fn attach(&mut self, pin: Pin, target: impl Into<ClothTarget>) {
+        let target = target.into();
+        self.0.push(ClothAttachment { pin, target });
+    }
+
+    /// Detaches everything that is attached to an entity, given as it was then: a peg is taken off.
+    pub fn detach(&mut self, target: impl Into<ClothTarget>) {
+        let target = target.into();
+        self.0.retain(|each| each.target != target);
+    }
+
+    /// Whether anything is attached to an entity, given by its ID.
+    pub(crate) fn has_target(&self, target: Entity) -> bool {
+        let target = ClothTarget::Entity(target);
+        self.0.iter().any(|each| each.target == target)
+    }
+
     /// The attachments.
     pub(crate) fn as_slice(&self) -> &[ClothAttachment] {
         &self.0

@@ -6,6 +6,7 @@
 mod attachments;
 mod body;
 mod bones;
+mod grab;
 mod gravity;
 mod inertia;
 mod lod;
@@ -22,6 +23,8 @@ pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTelep
 pub use body::{ClothBody, ClothPush};
 pub(crate) use bones::{BoneColliderOf, BoneColliders};
 pub use bones::{ClothBone, ClothBones};
+pub use grab::ClothGrab;
+pub(crate) use grab::ClothGrip;
 pub use gravity::ClothGravity;
 pub use inertia::ClothInertia;
 pub(crate) use inertia::{Carried, RootMotion};

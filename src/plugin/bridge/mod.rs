@@ -1,28 +1,38 @@
-//! Ways to and from the rest of the world: rapier, egui, snapshots, reflection, diagnostics, and floating origins.
+//! Ways to and from the rest of the world: rapier, egui, picking, snapshots, reflection, diagnostics, and floating origins.
 //!
-//! In: any of the components. Out: colliders, bodies and velocities of rapier, widgets, snapshots, diagnostics. No stage imports
+//! In: any of the components. Out: colliders, bodies and velocities of rapier, widgets, hits of rays, snapshots, diagnostics. No stage imports
 //! from here.
 
+#[cfg(feature = "bake")]
+mod bake;
 mod diagnostics;
 mod origin;
 #[cfg(feature = "egui")]
 mod panel;
+#[cfg(feature = "picking")]
+mod picking;
 #[cfg(feature = "rapier")]
 mod rapier;
 #[cfg(feature = "rapier")]
 mod rapier_body;
+mod ray_cast;
 mod reflection;
 mod snapshot;
 
+#[cfg(feature = "bake")]
+pub use bake::{BakeError, ClothBake};
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use origin::shift_cloths;
 #[cfg(feature = "egui")]
 pub use panel::ClothColliderSpeed;
 #[cfg(feature = "egui")]
 pub use panel::{ClothPanel, ClothPanelPlugin};
+#[cfg(feature = "picking")]
+pub use picking::ClothPickingPlugin;
 #[cfg(feature = "rapier")]
 pub use rapier::{ClothRapierPlugin, RapierClothCollider};
 #[cfg(feature = "rapier")]
 pub use rapier_body::ClothPushBack;
+pub use ray_cast::{ClothHit, ClothRayCast};
 pub(crate) use reflection::register_lists;
 pub use snapshot::{ClothSnapshot, ClothWorldSnapshot, SnapshotError};

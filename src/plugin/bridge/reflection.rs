@@ -12,7 +12,9 @@ use bevy::{
 use crate::{
     cloth::{Cloth, ClothDensity, ClothGrain, ClothSkin, Pins},
     contact::ClothCollider,
-    plugin::authoring::{BoneColliderOf, ClothAttachments, ClothBones, ClothLod, GlobalClothLod},
+    plugin::authoring::{
+        BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, GlobalClothLod,
+    },
 };
 
 /// Registers all components with lists that scenes and inspectors write.
@@ -24,6 +26,7 @@ pub(crate) fn register_lists(app: &mut App) {
     register::<Pins>(app);
     register::<ClothAttachments>(app);
     register::<ClothBones>(app);
+    register::<ClothGrab>(app);
     register::<ClothSkin>(app);
     register::<ClothLod>(app);
     register::<GlobalClothLod>(app);

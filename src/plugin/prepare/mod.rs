@@ -15,6 +15,7 @@ mod colliders;
 mod cost;
 mod drag;
 mod freeze;
+mod grabs;
 mod inputs;
 mod islands;
 mod levels;
@@ -34,6 +35,7 @@ pub(crate) use colliders::{
     note_removals, prepare_colliders,
 };
 pub(crate) use drag::FAR;
+pub(crate) use grabs::{hold_cloths, let_go};
 pub(crate) use islands::{Island, Islands, find_islands};
 pub(crate) use levels::choose_levels;
 pub(crate) use roots::{Teleporting, follow_roots};

@@ -179,7 +179,7 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
     let [columns, rows] = [2 + random.below(8) as u32, 2 + random.below(8) as u32];
     let grid = || Cloth::new(columns, rows, 0.1);
     let ball = |radius| ClothCollider::ball(radius);
-    let entity = match random.below(12) {
+    let entity = match random.below(13) {
         0..=2 => world.spawn((grid(), place)).id(),
         3 => world
             .spawn((grid(), Pins::none(), ClothSelfCollision::default(), place))
@@ -214,6 +214,16 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
             .spawn((ClothCollider::cuboid(0.2, 0.1, random.number()), place))
             .id(),
         10 => world.spawn((ClothCollider::plane(), place)).id(),
+        11 => {
+            let cloth = random.pick(&pool.all).copied();
+            let grab = ClothGrab {
+                cloth: cloth.unwrap_or(Entity::PLACEHOLDER),
+                particle: random.below(30) as u32,
+                target: random.place(),
+                ..default()
+            };
+            world.spawn(grab).id()
+        }
         _ => world.spawn((ClothWindZone::default(), place)).id(),
     };
     pool.all.push(entity);

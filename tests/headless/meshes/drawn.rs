@@ -7,7 +7,7 @@ use super::sheets::*;
 use crate::{mesh::vertices, support::*};
 
 /// Two halves of a sheet with a seam in its middle: vertices 4 columns wide on either side, each with its own.
-fn seamed() -> (Mesh, Vec<[usize; 2]>) {
+pub fn seamed() -> (Mesh, Vec<[usize; 2]>) {
     let (left, triangles) = sheet(4, 6);
     let count = left.len() as u32;
     let right = left.iter().map(|place| *place + Vec3::X * 0.3);

@@ -1,7 +1,7 @@
 //! Any triangle mesh is cloth.
 
 mod alike;
-mod drawn;
+pub mod drawn;
 mod life;
 mod pins;
 mod refused;

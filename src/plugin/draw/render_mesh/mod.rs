@@ -220,7 +220,7 @@ fn bind(
             }
             // It gets its components with the next tick.
             _ if cloths.contains(cloth) => continue,
-            _ => Err(ClothError::NoDrivingCloth { cloth }),
+            _ => Err(ClothError::NoSuchCloth { cloth }),
         };
         // A mesh that is being loaded is no fault.
         let outcome = match outcome {

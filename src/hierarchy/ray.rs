@@ -1,0 +1,112 @@
+//! Which face a ray hits first: a top-down query with the ray as its probe.
+
+use bevy::math::{DVec3, Ray3d, Vec3, bounding::BoundingSphere};
+
+use super::{
+    bounds::NodeBounds,
+    probe::{Core, Probe, ROUNDING},
+    query::TopDownQuery,
+    rule::BoundRule,
+    tree::QuadTree,
+    volume::BoundingVolume,
+};
+use crate::cloth::{ClothParticles, Surface};
+
+/// Where a ray hits a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RayHit {
+    /// Index of the face in [`Surface::triangles`].
+    pub face: usize,
+    /// Barycentric weights of its corners.
+    pub weights: [f32; 3],
+    /// Along the ray (m).
+    pub distance: f32,
+}
+
+/// Memory of a search for a ray, which is reused.
+#[derive(Debug, Default)]
+pub(crate) struct RayQuery {
+    bounds: NodeBounds,
+    query: TopDownQuery,
+}
+
+impl RayQuery {
+    /// The first face that `ray` hits within `max_distance` (m), from either side, in the cloth's frame. `stretch` is
+    /// [`Stretch::bound`](crate::solver::Stretch) of the particles. No hit is missed: every point of a face is within
+    /// reach of the particle that owns it, and no particle within reach of the ray is missed.
+    pub fn cast(
+        &mut self,
+        surface: &Surface,
+        tree: &QuadTree,
+        particles: &ClothParticles,
+        stretch: f32,
+        ray: Ray3d,
+        max_distance: f32,
+    ) -> Option<RayHit> {
+        let reach = surface.face_reach() * (1.0 + stretch) * ROUNDING;
+        let mut around = tree.root_sphere(particles, stretch);
+        if !around.radius().is_finite() {
+            // Pieces that no spring joins.
+            around = particles.bounding_sphere();
+        }
+        let around = BoundingSphere::new(around.center, around.radius() + reach);
+        let ends = chord(&around, ray, max_distance)?;
+        let spheres = (BoundingVolume::Sphere, BoundRule::RestShape);
+        self.bounds
+            .rebuild(spheres, tree, particles, stretch)
+            .ok()?;
+        self.query.clear();
+        let probe = Probe {
+            core: Core::Segment(ends.map(|distance| ray.get_point(distance))),
+            radius: reach,
+            particle_radius: 0.0,
+        };
+        self.query.search(tree, &self.bounds, particles, &probe);
+        let faces = surface.faces();
+        let candidates = self.query.candidates().iter();
+        let hits = candidates
+            .flat_map(|&owner| faces.range_of(owner))
+            .filter_map(|face| {
+                let corners =
+                    faces.all()[face].map(|corner| particles.position_at(corner as usize));
+                let (weights, distance) = hit(ray, corners)?;
+                (distance <= max_distance).then_some(RayHit {
+                    face,
+                    weights,
+                    distance,
+                })
+            });
+        hits.min_by(|a, b| (a.distance.total_cmp(&b.distance)).then(a.face.cmp(&b.face)))
+    }
+}
+
+/// The distances between which a ray is in a sphere, up to the largest, if it is.
+fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32; 2]> {
+    let offset = Vec3::from(around.center) - ray.origin;
+    let middle = offset.dot(*ray.direction);
+    let off = offset.distance_squared(middle * *ray.direction);
+    // More than all roundings, which are relative to the offset.
+    let radius = around.radius() * ROUNDING + offset.length() * (ROUNDING - 1.0);
+    let half = (radius * radius - off).sqrt();
+    let (from, to) = ((middle - half).max(0.0), (middle + half).min(max_distance));
+    // False for NaN.
+    (half >= 0.0 && from <= to).then_some([from, to])
+}
+
+/// The weights of the corners where a ray hits their triangle, and the distance (m). By the volumes of the tetrahedra
+/// that the ray spans with each edge: two triangles get the same one for the edge that they share, up to its sign, so no
+/// ray passes between them (Plücker's test; Woop, Benthin and Wald 2013).
+fn hit(ray: Ray3d, corners: [Vec3; 3]) -> Option<([f32; 3], f32)> {
+    let direction = ray.direction.as_dvec3();
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3() - ray.origin.as_dvec3());
+    let volumes = [b.cross(c), c.cross(a), a.cross(b)].map(|normal| direction.dot(normal));
+    let is_through = volumes.iter().all(|v| *v >= 0.0) || volumes.iter().all(|v| *v <= 0.0);
+    let sum = volumes.iter().sum::<f64>();
+    if !is_through || sum == 0.0 {
+        return None;
+    }
+    let weights = DVec3::from(volumes) / sum;
+    let place = a * weights.x + b * weights.y + c * weights.z;
+    let distance = place.dot(direction) as f32;
+    (distance >= 0.0).then_some((weights.to_array().map(|weight| weight as f32), distance))
+}

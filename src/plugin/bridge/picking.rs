@@ -1,0 +1,198 @@
+//! Bevy's picking: pointers hit cloth, and drag it.
+
+use bevy::{
+    app::{App, Plugin, PreUpdate},
+    camera::{
+        Camera,
+        visibility::{RenderLayers, ViewVisibility},
+    },
+    ecs::{
+        component::Component,
+        entity::Entity,
+        message::{MessageReader, MessageWriter},
+        observer::On,
+        query::With,
+        resource::Resource,
+        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
+        system::{Commands, Query, Res},
+    },
+    log::error,
+    picking::{
+        Pickable, PickingSystems,
+        backend::{
+            HitData, PointerHits,
+            ray::{RayId, RayMap},
+        },
+        events::{Pointer, Press},
+        pointer::{PointerAction, PointerButton, PointerInput},
+    },
+};
+
+use super::ray_cast::ClothRayCast;
+use crate::{cloth::Cloth, plugin::authoring::ClothGrab};
+
+/// Lets Bevy's pointers hit cloth, so that observers of `Pointer<Click>` and its like work on cloths. Dragging a cloth
+/// moves it by a [`ClothGrab`].
+///
+/// Needs Bevy's picking, which `DefaultPlugins` include with the feature `bevy_picking`. Add Bevy's `MeshPickingPlugin`, too, if
+/// other meshes are to hide cloth from pointers. A `Pickable::IGNORE` beside a `Cloth` keeps pointers off it. The extra
+/// data of a hit are a [`ClothHit`](crate::plugin::ClothHit).
+///
+/// ```no_run
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// App::new().add_plugins((DefaultPlugins, DrapePlugins::default(), ClothPickingPlugin::default()));
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct ClothPickingPlugin {
+    /// The button that drags cloth, the primary one by default. `None`: no button does.
+    pub button: Option<PointerButton>,
+}
+
+impl Default for ClothPickingPlugin {
+    fn default() -> Self {
+        Self {
+            button: Some(PointerButton::Primary),
+        }
+    }
+}
+
+impl Plugin for ClothPickingPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            PreUpdate,
+            point_at_cloths
+                .in_set(PickingSystems::Backend)
+                .run_if(resource_exists::<RayMap>),
+        );
+        if let Some(button) = self.button {
+            app.insert_resource(GrabButton(button))
+                .add_observer(take_pressed)
+                .add_systems(
+                    PreUpdate,
+                    (drag, let_go_of_released)
+                        .chain()
+                        .after(PickingSystems::Last)
+                        .run_if(resource_exists::<RayMap>),
+                );
+        }
+    }
+
+    fn finish(&self, app: &mut App) {
+        if !app.world().contains_resource::<RayMap>() {
+            error!(
+                "pointers hit no cloth: add Bevy's `DefaultPickingPlugins`, which `DefaultPlugins` include with Bevy's feature `bevy_picking`"
+            );
+        }
+    }
+}
+
+/// The button that drags cloth.
+#[derive(Resource)]
+struct GrabButton(PointerButton);
+
+/// A hand that follows a pointer.
+#[derive(Component)]
+struct PointerHand {
+    ray: RayId,
+    /// From the origin of the ray (m).
+    distance: f32,
+}
+
+/// The picking backend: which cloth each pointer is over.
+fn point_at_cloths(
+    rays: Res<RayMap>,
+    cameras: Query<(&Camera, Option<&RenderLayers>)>,
+    cloths: Query<(
+        Option<&ViewVisibility>,
+        Option<&RenderLayers>,
+        Option<&Pickable>,
+    )>,
+    mut ray_cast: ClothRayCast,
+    mut hits: MessageWriter<PointerHits>,
+) {
+    for (id, &ray) in rays.iter() {
+        let Ok((camera, layers)) = cameras.get(id.camera) else {
+            continue;
+        };
+        let layers = layers.cloned().unwrap_or_default();
+        let is_seen = |cloth: Entity| {
+            cloths.get(cloth).is_ok_and(|(visibility, own, pickable)| {
+                visibility.is_none_or(|visibility| visibility.get())
+                    && own.cloned().unwrap_or_default().intersects(&layers)
+                    && pickable.is_none_or(|pickable| pickable.is_hoverable)
+            })
+        };
+        if let Some(hit) = ray_cast.cast_where(ray, f32::INFINITY, is_seen) {
+            let (point, normal) = (Some(hit.point), Some(hit.normal));
+            let data = HitData::new_with_extra(id.camera, hit.distance, point, normal, hit);
+            let order = camera.order as f32;
+            hits.write(PointerHits::new(id.pointer, vec![(hit.cloth, data)], order));
+        }
+    }
+}
+
+/// Takes hold of a cloth where a pointer presses it.
+fn take_pressed(
+    press: On<Pointer<Press>>,
+    button: Res<GrabButton>,
+    cloths: Query<(), With<Cloth>>,
+    rays: Res<RayMap>,
+    mut ray_cast: ClothRayCast,
+    mut commands: Commands,
+) {
+    let cloth = press.entity;
+    if press.button != button.0 || !cloths.contains(cloth) {
+        return;
+    }
+    let id = RayId::new(press.hit.camera, press.pointer_id);
+    // Another backend may have found it, too, without saying where.
+    let hit = rays
+        .map
+        .get(&id)
+        .and_then(|&ray| ray_cast.cast_where(ray, f32::INFINITY, |entity| entity == cloth));
+    if let Some(hit) = hit {
+        let hand = PointerHand {
+            ray: id,
+            distance: hit.distance,
+        };
+        commands.spawn((hit.grab(), hand));
+    }
+}
+
+/// Moves hands with their pointers, at the distance at which they took hold.
+fn drag(mut hands: Query<(&PointerHand, &mut ClothGrab)>, rays: Res<RayMap>) {
+    for (hand, mut grab) in &mut hands {
+        // A pointer outside of the camera's picture has none.
+        if let Some(ray) = rays.map.get(&hand.ray) {
+            grab.target = ray.get_point(hand.distance);
+        }
+    }
+}
+
+/// Lets go where a pointer's button is released, or where the plugin has let go.
+fn let_go_of_released(
+    hands: Query<(Entity, &PointerHand, Option<&ClothGrab>)>,
+    button: Res<GrabButton>,
+    mut inputs: MessageReader<PointerInput>,
+    mut commands: Commands,
+) {
+    let mut despawn = |hand: Entity| commands.entity(hand).try_despawn();
+    for (hand, _, grab) in &hands {
+        if grab.is_none() {
+            despawn(hand);
+        }
+    }
+    for input in inputs.read() {
+        let lets_go = match input.action {
+            PointerAction::Release(released) => released == button.0,
+            PointerAction::Cancel => true,
+            _ => false,
+        };
+        let of_pointer = hands
+            .iter()
+            .filter(|(_, hand, _)| lets_go && hand.ray.pointer == input.pointer_id);
+        of_pointer.for_each(|(hand, ..)| despawn(hand));
+    }
+}

@@ -1,0 +1,142 @@
+//! Rays that hit cloth.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        system::{Local, Query, SystemParam},
+    },
+    math::{Dir3, Ray3d, Vec3},
+};
+
+use crate::{
+    cloth::ClothParticles,
+    hierarchy::RayQuery,
+    plugin::{
+        authoring::ClothGrab,
+        frame::ClothFrame,
+        state::{ClothBuilt, ClothState},
+    },
+};
+
+/// Casts rays at cloth, through its tree of bounding volumes: for a mouse, a bullet, a line of sight. It needs neither a
+/// mesh nor a window.
+///
+/// Cloth is where it was at the end of the last tick. Both of its sides are hit. A cloth that has not been simulated
+/// yet is not hit.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// fn shoot(mut rays: ClothRayCast) {
+///     let ray = Ray3d::new(Vec3::new(0.0, 1.0, 5.0), Dir3::NEG_Z);
+///     if let Some(hit) = rays.cast(ray, 100.0) {
+///         info!("{} is hit at {}, {} m away", hit.cloth, hit.point, hit.distance);
+///     }
+/// }
+/// # bevy::ecs::system::assert_is_system(shoot);
+/// ```
+#[derive(SystemParam)]
+pub struct ClothRayCast<'w, 's> {
+    cloths: Query<'w, 's, Hittable>,
+    query: Local<'s, RayQuery>,
+}
+
+type Hittable = (
+    Entity,
+    &'static ClothBuilt,
+    &'static ClothParticles,
+    &'static ClothFrame,
+    &'static ClothState,
+);
+
+/// Where a ray hits a cloth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClothHit {
+    /// The cloth.
+    pub cloth: Entity,
+    /// Index of the face in [`Surface::triangles`](crate::cloth::Surface::triangles).
+    pub face: usize,
+    /// Indices of the particles at the corners of the face.
+    pub particles: [u32; 3],
+    /// Barycentric coordinates of the point: one weight for each corner, together 1.
+    pub weights: [f32; 3],
+    /// The point, in the world (m).
+    pub point: Vec3,
+    /// Unit normal of the face, towards the origin of the ray.
+    pub normal: Vec3,
+    /// Distance from the origin of the ray (m).
+    pub distance: f32,
+}
+
+impl ClothHit {
+    /// A hand that takes hold of the cloth here.
+    pub fn grab(&self) -> ClothGrab {
+        ClothGrab {
+            cloth: self.cloth,
+            particle: self.particle(),
+            target: self.point,
+            ..ClothGrab::default()
+        }
+    }
+
+    /// Index of the particle at the nearest corner.
+    pub fn particle(&self) -> u32 {
+        let nearest = (0..3).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]));
+        self.particles[nearest.unwrap_or(0)]
+    }
+}
+
+impl ClothRayCast<'_, '_> {
+    /// The first hit of a ray, in the world, at most `max_distance` away (m). There is none if an input is not a number.
+    pub fn cast(&mut self, ray: Ray3d, max_distance: f32) -> Option<ClothHit> {
+        self.cast_where(ray, max_distance, |_| true)
+    }
+
+    /// The same, among the cloths for which `includes` returns true.
+    pub fn cast_where(
+        &mut self,
+        ray: Ray3d,
+        max_distance: f32,
+        includes: impl Fn(Entity) -> bool,
+    ) -> Option<ClothHit> {
+        let mut first: Option<ClothHit> = None;
+        for (entity, built, particles, frame, state) in &self.cloths {
+            if !(built.matches(particles) && includes(entity)) {
+                continue;
+            }
+            let farthest = first.map_or(max_distance, |hit| hit.distance);
+            let to_cloth = frame.isometry().inverse();
+            let Ok(direction) = Dir3::new(to_cloth.rotation * *ray.direction) else {
+                continue;
+            };
+            let own = Ray3d::new(to_cloth * ray.origin, direction);
+            let (surface, tree) = (built.surface(), built.tree());
+            let stretch = state.stretch.bound;
+            let found = (self.query).cast(surface, tree, particles, stretch, own, farthest);
+            let Some(found) = found else { continue };
+            let face = surface.triangles()[found.face];
+            let [a, b, c] = face.map(|particle| particles.position_at(particle as usize));
+            let normal = (b - a).cross(c - a).normalize_or(-*direction);
+            let normal = if normal.dot(*direction) > 0.0 {
+                -normal
+            } else {
+                normal
+            };
+            let [u, v, w] = found.weights;
+            let is_nearer = first.is_none_or(|first| found.distance < first.distance);
+            if is_nearer {
+                first = Some(ClothHit {
+                    cloth: entity,
+                    face: found.face,
+                    particles: face,
+                    weights: found.weights,
+                    point: frame.to_world(a * u + b * v + c * w),
+                    normal: frame.isometry().rotation * normal,
+                    distance: found.distance,
+                });
+            }
+        }
+        first
+    }
+}

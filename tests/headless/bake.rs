@@ -1,0 +1,220 @@
+//! Cloth that is recorded as a glTF file, and read back.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    mesh::{Indices, PrimitiveTopology, VertexAttributeValues},
+    prelude::*,
+};
+use bevy_drape::prelude::*;
+use gltf::{Gltf, animation::util::ReadOutputs};
+
+use crate::{
+    meshes::{drawn::seamed, sheets::*},
+    support::*,
+};
+
+/// A drawn mesh: positions, normals, texture coordinates and corners.
+#[derive(Clone, PartialEq, Debug)]
+struct Drawn {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    uvs: Vec<[f32; 2]>,
+    indices: Vec<u32>,
+}
+
+impl Drawn {
+    fn of(mesh: &Mesh) -> Self {
+        let vectors = |of| {
+            let values = mesh
+                .attribute(of)
+                .and_then(VertexAttributeValues::as_float3);
+            let values = values.expect("vectors").iter();
+            values.map(|value| Vec3::from(*value)).collect()
+        };
+        let Some(VertexAttributeValues::Float32x2(uvs)) = mesh.attribute(Mesh::ATTRIBUTE_UV_0)
+        else {
+            panic!("it has texture coordinates");
+        };
+        Self {
+            positions: vectors(Mesh::ATTRIBUTE_POSITION),
+            normals: vectors(Mesh::ATTRIBUTE_NORMAL),
+            uvs: uvs.clone(),
+            indices: mesh
+                .indices()
+                .expect("corners")
+                .iter()
+                .map(|at| at as u32)
+                .collect(),
+        }
+    }
+}
+
+/// Frames of a cloth in the wind, as they were drawn, and their file.
+fn bake(spawn: fn(&mut App) -> Entity, frames: usize) -> (Vec<Drawn>, Vec<u8>) {
+    let mut app = app_that_draws(FixedUpdate);
+    app.insert_resource(ClothWind::gusty(Vec3::new(6.0, 0.0, 2.0)));
+    let cloth = spawn(&mut app);
+    tick(&mut app, 2);
+    let (mut bake, mut drawn) = (ClothBake::default(), Vec::new());
+    for _ in 0..frames {
+        tick(&mut app, 1);
+        let mesh = app.world().get::<Mesh3d>(cloth).expect("it is drawn");
+        let meshes = app.world().resource::<Assets<Mesh>>();
+        let mesh = meshes.get(mesh).expect("it is there");
+        bake.record(mesh).expect("a mesh");
+        drawn.push(Drawn::of(mesh));
+    }
+    assert_eq!(bake.frames(), frames);
+    let file = bake.to_glb("banner", TICK).expect("some frames");
+    (drawn, file)
+}
+
+/// A file as it is read, at a time: its base and its targets, each by its weight.
+fn at_frame(file: &[u8], frame: usize) -> Drawn {
+    let Gltf { document, blob } = Gltf::from_slice(file).expect("a valid file");
+    let blob = blob.expect("its numbers");
+    let mesh = document.meshes().next().expect("a mesh");
+    assert_eq!(mesh.name(), Some("banner"));
+    let primitive = mesh.primitives().next().expect("a primitive");
+    let reader = primitive.reader(|_| Some(&blob));
+    let animation = document.animations().next().expect("an animation");
+    let channel = animation.channels().next().expect("a channel");
+    let reading = channel.reader(|_| Some(&blob));
+    let times: Vec<f32> = reading.read_inputs().expect("times").collect();
+    assert!((times[frame] - frame as f32 * TICK).abs() < 1.0e-6);
+    let Some(ReadOutputs::MorphTargetWeights(weights)) = reading.read_outputs() else {
+        panic!("it moves weights");
+    };
+    let weights: Vec<f32> = weights.into_f32().collect();
+    let targets: Vec<_> = reader.read_morph_targets().collect();
+    assert_eq!(weights.len(), times.len() * targets.len());
+    let mut drawn = Drawn {
+        positions: reader
+            .read_positions()
+            .expect("places")
+            .map(Vec3::from)
+            .collect(),
+        normals: reader
+            .read_normals()
+            .expect("normals")
+            .map(Vec3::from)
+            .collect(),
+        uvs: reader
+            .read_tex_coords(0)
+            .expect("a texture")
+            .into_f32()
+            .collect(),
+        indices: reader.read_indices().expect("corners").into_u32().collect(),
+    };
+    let own = &weights[frame * targets.len()..][..targets.len()];
+    for ((positions, normals, _), weight) in targets.into_iter().zip(own) {
+        let moved = positions.expect("moved places").zip(&mut drawn.positions);
+        moved.for_each(|(by, place)| *place += *weight * Vec3::from(by));
+        let turned = normals.expect("turned normals").zip(&mut drawn.normals);
+        turned.for_each(|(by, normal)| *normal += *weight * Vec3::from(by));
+    }
+    drawn
+}
+
+/// What is read back is what was drawn: a grid, and a mesh with a seam. A difference and a sum are rounded once each, at
+/// some metres by 2·10⁻⁷ each.
+#[test]
+fn a_file_plays_what_was_drawn() {
+    let banner = |app: &mut App| {
+        let cloth = (Cloth::new(12, 8, 0.1), Pins::new([Pin::Column(0)]));
+        app.world_mut().spawn(cloth).id()
+    };
+    let seam = |app: &mut App| {
+        let handle = add(app, seamed().0);
+        spawn(app, &handle, by_its_edge())
+    };
+    for (drawn, file) in [bake(banner, 40), bake(seam, 40)] {
+        let moved = drawn[0].positions.iter().zip(&drawn[39].positions);
+        let moved = moved.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(moved > 0.05, "{moved}");
+        for (frame, drawn) in drawn.iter().enumerate() {
+            let read = at_frame(&file, frame);
+            assert_eq!((&read.uvs, &read.indices), (&drawn.uvs, &drawn.indices));
+            let both = |of: fn(&Drawn) -> &Vec<Vec3>| {
+                let each = of(&read).iter().zip(of(drawn));
+                assert_eq!(of(&read).len(), of(drawn).len());
+                each.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+            };
+            let off = both(|drawn| &drawn.positions).max(both(|drawn| &drawn.normals));
+            assert!(off < 1.0e-6, "frame {frame}: {off}");
+        }
+        // Whole chunks of four bytes, as the header says.
+        let length = u32::from_le_bytes(file[8..12].try_into().expect("four bytes"));
+        assert_eq!((length as usize, length % 4), (file.len(), 0));
+    }
+}
+
+/// Meshes that cannot be recorded, and recordings that cannot be written, are refused by name, and change nothing.
+#[test]
+fn bad_recordings_are_refused() {
+    let triangle = |places: Vec<[f32; 3]>| {
+        let normals = vec![[0.0, 0.0, 1.0]; places.len()];
+        Mesh::new(
+            PrimitiveTopology::TriangleList,
+            RenderAssetUsages::default(),
+        )
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+        .with_inserted_indices(Indices::U32(vec![0, 1, 2]))
+    };
+    let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let good = triangle(corners.clone());
+    let mut bake = ClothBake::default();
+    assert_eq!(bake.to_glb("x", 0.1), Err(BakeError::Frames { frames: 0 }));
+    let bare = Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    );
+    assert_eq!(bake.record(&bare), Err(BakeError::Unreadable));
+    let mut without_corners = good.clone();
+    without_corners.remove_indices();
+    assert_eq!(bake.record(&without_corners), Err(BakeError::Unreadable));
+    assert_eq!(bake.frames(), 0);
+    bake.record(&good).expect("a triangle");
+    assert_eq!(bake.to_glb("x", 0.1), Err(BakeError::Frames { frames: 1 }));
+    let mut more = corners.clone();
+    more.push([1.0; 3]);
+    let other = BakeError::OtherMesh {
+        expected: 3,
+        found: 4,
+    };
+    assert_eq!(bake.record(&triangle(more)), Err(other));
+    let mut broken = corners.clone();
+    broken[1][2] = f32::NAN;
+    assert_eq!(
+        bake.record(&triangle(broken)),
+        Err(BakeError::NotFinite { vertex: 1 })
+    );
+    assert_eq!(bake.frames(), 1);
+    bake.record(&good).expect("the same triangle");
+    for seconds in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let refused = bake.to_glb("x", seconds);
+        assert!(
+            matches!(refused, Err(BakeError::Interval { .. })),
+            "{seconds}"
+        );
+    }
+    // Any name is a valid string in the file.
+    let file = bake.to_glb("a \"flag\"\n\\", 0.1).expect("two frames");
+    let read = Gltf::from_slice(&file).expect("a valid file");
+    let name = read
+        .document
+        .nodes()
+        .next()
+        .expect("a node")
+        .name()
+        .map(str::to_owned);
+    assert_eq!(name.as_deref(), Some("a \"flag\"\n\\"));
+    (2..257).for_each(|_| bake.record(&good).expect("the same triangle"));
+    assert!(bake.to_glb("x", 0.1).is_ok());
+    bake.record(&good).expect("one more");
+    assert_eq!(
+        bake.to_glb("x", 0.1),
+        Err(BakeError::Frames { frames: 258 })
+    );
+}
