@@ -1,4 +1,4 @@
-//! What a ray costs.
+//! The cost of a ray.
 
 use std::{hint::black_box, time::Duration};
 

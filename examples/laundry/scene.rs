@@ -16,12 +16,16 @@ const POSTS: f32 = 3.6;
 /// How fast a peg falls (m/s²).
 const GRAVITY: f32 = 9.81;
 
-/// A piece of laundry: its name, where its left edge is along the line (m), its width and height (m), and its density (kg/m²).
+/// A piece of laundry.
 struct Piece {
     name: &'static str,
+    /// Where its left edge is along the line (m).
     left: f32,
+    /// Width and height (m).
     size: Vec2,
+    /// kg/m².
     density: f32,
+    /// Number of pegs that hold it.
     pegs: u32,
 }
 
@@ -61,8 +65,9 @@ pub fn build(app: &mut App) {
         ("H", "hang everything up again"),
     ]))
     // A light breeze, from behind and from the left.
-    .insert_resource(ClothWind::gusty(Vec3::new(1.2, 0.0, 2.2)))
-    .add_observer(click_peg)
+    .insert_resource(ClothWind::gusty(Vec3::new(0.4, 0.0, 1.1)))
+    .add_observer(press_peg)
+    .add_observer(show_hand)
     .add_systems(Startup, (spawn_line, hang_up))
     .add_systems(FixedUpdate, drop_pegs)
     .add_systems(
@@ -71,7 +76,7 @@ pub fn build(app: &mut App) {
     );
 }
 
-/// Whatever hangs on the line.
+/// Cloths and pegs on the line.
 #[derive(Component)]
 struct Laundry;
 
@@ -102,7 +107,7 @@ fn hang_up(mut shop: Workshop) {
         hand_towel(&mut shop),
     ];
     let wood = shop.rough(Color::srgb(0.72, 0.50, 0.28), 0.6);
-    let half = shop.mesh(Cuboid::new(0.012, 0.075, 0.008));
+    let half = shop.mesh(Cuboid::new(0.02, 0.09, 0.009));
     for (piece, fabric) in PIECES.iter().zip(fabrics) {
         let spacing = PIECES[0].size.x / (shop.grid.0.max(8) - 1) as f32;
         let [columns, rows] = piece
@@ -177,14 +182,26 @@ pub fn take_off(
         .insert(Dropped::default());
 }
 
-/// The click is on one of the halves, and goes on to the peg.
-fn click_peg(
+/// The press is on one of the halves, and goes on to the peg.
+fn press_peg(
     press: On<Pointer<Press>>,
     pegs: Query<&Peg>,
     mut cloths: Query<&mut ClothAttachments>,
     mut commands: Commands,
 ) {
     take_off(press.entity, &pegs, &mut cloths, &mut commands);
+}
+
+/// A hand is a small ball.
+fn show_hand(added: On<Add, ClothGrab>, mut shop: Workshop) {
+    let ball = shop.mesh(Sphere::new(0.028).mesh().uv(32, 16));
+    let skin = shop.rough(Color::srgb(0.86, 0.62, 0.50), 0.7);
+    shop.commands.entity(added.entity).insert((
+        ball,
+        skin,
+        TransformInterpolation,
+        Pickable::IGNORE,
+    ));
 }
 
 fn drop_pegs(mut pegs: Query<(&mut Dropped, &mut Transform)>, time: Res<Time>) {

@@ -60,7 +60,7 @@ pub fn run(example: Example, grid: Grid) -> ExitCode {
         ..default()
     };
     app.add_plugins((ClothPanelPlugin, PreparingPlugin, PanOrbitCameraPlugin))
-        // Whatever is in front of a cloth hides it from the mouse.
+        // Meshes in front of a cloth hide it from the mouse.
         .add_plugins((ClothPickingPlugin::default(), MeshPickingPlugin))
         .insert_resource(panel)
         .add_systems(PreStartup, keep_egui_off_the_scene)

@@ -93,9 +93,9 @@ fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32;
     (half >= 0.0 && from <= to).then_some([from, to])
 }
 
-/// The weights of the corners where a ray hits their triangle, and the distance (m). By the volumes of the tetrahedra
-/// that the ray spans with each edge: two triangles get the same one for the edge that they share, up to its sign, so no
-/// ray passes between them (Plücker's test; Woop, Benthin and Wald 2013).
+/// The weights of the corners where a ray hits their triangle, and the distance (m). They are the volumes of the tetrahedra
+/// that the ray spans with each edge (Plücker's test; Woop, Benthin and Wald 2013). Two triangles get the same volume, up
+/// to its sign, for the edge that they share. So no ray passes between them.
 fn hit(ray: Ray3d, corners: [Vec3; 3]) -> Option<([f32; 3], f32)> {
     let direction = ray.direction.as_dvec3();
     let [a, b, c] = corners.map(|corner| corner.as_dvec3() - ray.origin.as_dvec3());

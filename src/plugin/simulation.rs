@@ -173,6 +173,10 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     let levels = choose_levels.ambiguous_with(TransformSystems::Propagate);
     #[cfg(feature = "mesh")]
     let levels = levels.ambiguous_with(VisibilitySystems::VisibilityPropagate);
+    // A hand may be drawn where it was a frame ago, too.
+    let hands = hold_cloths
+        .run_if(any_with_component::<ClothGrab>)
+        .ambiguous_with(TransformSystems::Propagate);
     app.configure_sets(
         schedule,
         (
@@ -191,7 +195,7 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 give_order,
                 note_removals,
                 follow_roots,
-                hold_cloths.run_if(any_with_component::<ClothGrab>),
+                hands,
                 prepare_colliders,
                 prepare_wind,
                 levels,

@@ -56,16 +56,17 @@ fn bake(spawn: fn(&mut App) -> Entity, frames: usize) -> (Vec<Drawn>, Vec<u8>) {
     let cloth = spawn(&mut app);
     tick(&mut app, 2);
     let (mut bake, mut drawn) = (ClothBake::default(), Vec::new());
-    for _ in 0..frames {
+    for frame in 0..frames {
         tick(&mut app, 1);
         let mesh = app.world().get::<Mesh3d>(cloth).expect("it is drawn");
         let meshes = app.world().resource::<Assets<Mesh>>();
         let mesh = meshes.get(mesh).expect("it is there");
-        bake.record(mesh).expect("a mesh");
+        bake.record(mesh, 7.0 + frame as f32 * TICK)
+            .expect("a mesh");
         drawn.push(Drawn::of(mesh));
     }
     assert_eq!(bake.frames(), frames);
-    let file = bake.to_glb("banner", TICK).expect("some frames");
+    let file = bake.to_glb("banner").expect("some frames");
     (drawn, file)
 }
 
@@ -76,6 +77,7 @@ fn at_frame(file: &[u8], frame: usize) -> Drawn {
     let mesh = document.meshes().next().expect("a mesh");
     assert_eq!(mesh.name(), Some("banner"));
     let primitive = mesh.primitives().next().expect("a primitive");
+    assert!(primitive.material().double_sided());
     let reader = primitive.reader(|_| Some(&blob));
     let animation = document.animations().next().expect("an animation");
     let channel = animation.channels().next().expect("a channel");
@@ -116,7 +118,7 @@ fn at_frame(file: &[u8], frame: usize) -> Drawn {
     drawn
 }
 
-/// What is read back is what was drawn: a grid, and a mesh with a seam. A difference and a sum are rounded once each, at
+/// A file read back holds the drawn vertices: of a grid, and of a mesh with a seam. A difference and a sum are rounded once each, at
 /// some metres by 2·10⁻⁷ each.
 #[test]
 fn a_file_plays_what_was_drawn() {
@@ -165,42 +167,50 @@ fn bad_recordings_are_refused() {
     let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let good = triangle(corners.clone());
     let mut bake = ClothBake::default();
-    assert_eq!(bake.to_glb("x", 0.1), Err(BakeError::Frames { frames: 0 }));
-    let bare = Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::default(),
-    );
-    assert_eq!(bake.record(&bare), Err(BakeError::Unreadable));
-    let mut without_corners = good.clone();
-    without_corners.remove_indices();
-    assert_eq!(bake.record(&without_corners), Err(BakeError::Unreadable));
-    assert_eq!(bake.frames(), 0);
-    bake.record(&good).expect("a triangle");
-    assert_eq!(bake.to_glb("x", 0.1), Err(BakeError::Frames { frames: 1 }));
-    let mut more = corners.clone();
-    more.push([1.0; 3]);
-    let other = BakeError::OtherMesh {
-        expected: 3,
-        found: 4,
-    };
-    assert_eq!(bake.record(&triangle(more)), Err(other));
-    let mut broken = corners.clone();
-    broken[1][2] = f32::NAN;
-    assert_eq!(
-        bake.record(&triangle(broken)),
-        Err(BakeError::NotFinite { vertex: 1 })
-    );
-    assert_eq!(bake.frames(), 1);
-    bake.record(&good).expect("the same triangle");
-    for seconds in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        let refused = bake.to_glb("x", seconds);
-        assert!(
-            matches!(refused, Err(BakeError::Interval { .. })),
-            "{seconds}"
+    let frames = |frames| Err(BakeError::Frames { frames });
+    assert_eq!(bake.to_glb("x"), frames(0));
+    type Spoil = fn(&mut Mesh);
+    let spoilt: [Spoil; 7] = [
+        |mesh| drop(mesh.remove_attribute(Mesh::ATTRIBUTE_POSITION)),
+        |mesh| drop(mesh.remove_attribute(Mesh::ATTRIBUTE_NORMAL)),
+        |mesh| mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 0.0, 1.0]; 2]),
+        |mesh| drop(mesh.remove_indices()),
+        |mesh| mesh.insert_indices(Indices::U32(vec![0, 1, 3])),
+        |mesh| mesh.insert_indices(Indices::U32(vec![0, 1])),
+        |mesh| mesh.insert_indices(Indices::U32(Vec::new())),
+    ];
+    for (number, spoil) in spoilt.into_iter().enumerate() {
+        let mut mesh = good.clone();
+        spoil(&mut mesh);
+        assert_eq!(
+            bake.record(&mesh, 0.0),
+            Err(BakeError::Unreadable),
+            "{number}"
         );
     }
+    assert_eq!(bake.frames(), 0);
+    bake.record(&good, 1.0).expect("a triangle");
+    assert_eq!(bake.to_glb("x"), frames(1));
+    let mut more = corners.clone();
+    more.push([1.0; 3]);
+    assert_eq!(bake.record(&triangle(more), 2.0), Err(BakeError::OtherMesh));
+    let mut turned = good.clone();
+    turned.insert_indices(Indices::U32(vec![0, 2, 1]));
+    assert_eq!(bake.record(&turned, 2.0), Err(BakeError::OtherMesh));
+    for bad in [f32::NAN, f32::INFINITY, -1.0e13] {
+        let mut broken = corners.clone();
+        broken[1][2] = bad;
+        let refused = BakeError::NotFinite { vertex: 1 };
+        assert_eq!(bake.record(&triangle(broken), 2.0), Err(refused));
+    }
+    for bad in [1.0, 0.0, f32::NAN, f32::INFINITY] {
+        let refused = bake.record(&good, bad);
+        assert!(matches!(refused, Err(BakeError::Time { .. })), "{bad}");
+    }
+    assert_eq!(bake.frames(), 1);
+    bake.record(&good, 2.0).expect("the same triangle");
     // Any name is a valid string in the file.
-    let file = bake.to_glb("a \"flag\"\n\\", 0.1).expect("two frames");
+    let file = bake.to_glb("a \"flag\"\n\\").expect("two frames");
     let read = Gltf::from_slice(&file).expect("a valid file");
     let name = read
         .document
@@ -210,11 +220,11 @@ fn bad_recordings_are_refused() {
         .name()
         .map(str::to_owned);
     assert_eq!(name.as_deref(), Some("a \"flag\"\n\\"));
-    (2..257).for_each(|_| bake.record(&good).expect("the same triangle"));
-    assert!(bake.to_glb("x", 0.1).is_ok());
-    bake.record(&good).expect("one more");
-    assert_eq!(
-        bake.to_glb("x", 0.1),
-        Err(BakeError::Frames { frames: 258 })
-    );
+    for frame in 2..257 {
+        bake.record(&good, 1.0 + frame as f32)
+            .expect("the same triangle");
+    }
+    assert!(bake.to_glb("x").is_ok());
+    bake.record(&good, 1.0e3).expect("one more");
+    assert_eq!(bake.to_glb("x"), frames(258));
 }

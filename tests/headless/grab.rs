@@ -1,6 +1,9 @@
 //! Rays that hit cloth, and hands that hold it.
 
-use bevy::{ecs::system::SystemState, prelude::*};
+use bevy::{
+    ecs::{entity_disabling::Disabled, system::SystemState},
+    prelude::*,
+};
 use bevy_drape::{plugin::ClothBuilt, prelude::*};
 
 use crate::{shared_meshes::irregular, support::*};
@@ -85,14 +88,28 @@ fn a_ray_finds_the_nearest_cloth() {
         .map(|(&of, w)| w * place(&app, near, of as usize))
         .sum();
     assert!(point.distance(hit.point) < 2.0e-6);
-    let nearest = |a: &&u32, b: &&u32| {
-        let [a, b] = [a, b].map(|of| place(&app, near, **of as usize).distance(point));
-        a.total_cmp(&b)
-    };
     let built = app.world().get::<ClothBuilt>(near).expect("it is built");
     assert_eq!(built.surface().triangles()[hit.face], hit.particles);
-    assert!(hit.particles.contains(&hit.particle()));
-    assert_eq!(hit.particles.iter().min_by(nearest), Some(&hit.particle()));
+    // Rays anywhere else, each with its nearest particle of the sheet.
+    for step in 0..400 {
+        let (across, up) = (
+            (step % 20) as f32 / 13.0 - 0.4,
+            (step / 20) as f32 / 26.0 + 1.6,
+        );
+        let Some(hit) = cast(
+            &mut app,
+            Ray3d::new(Vec3::new(across, up, 4.0), Dir3::NEG_Z),
+        ) else {
+            continue;
+        };
+        let far = |particle: u32| place(&app, hit.cloth, particle as usize).distance(hit.point);
+        let nearest = hit
+            .particles
+            .into_iter()
+            .map(far)
+            .fold(f32::INFINITY, f32::min);
+        assert_eq!(far(hit.particle), nearest);
+    }
     // From behind, the other one is nearer.
     let behind = Ray3d::new(Vec3::new(0.35, 2.1, -9.0), Dir3::Z);
     let hit = cast(&mut app, behind).expect("both");
@@ -107,7 +124,7 @@ fn a_ray_finds_the_nearest_cloth() {
     assert_eq!(rays.cast(ray, 1.0), None);
 }
 
-/// What is held is where the hand is, to the last rounding, and the rest hangs from it; let go, all is as before.
+/// The particle is where the hand is, to the last rounding, and the rest hangs from it. Let go, all is as before.
 #[test]
 fn a_hand_takes_cloth_along_and_lets_go() {
     let mut app = app();
@@ -140,7 +157,8 @@ fn a_hand_takes_cloth_along_and_lets_go() {
     let held = app.world().get::<ClothAttachments>(cloth);
     assert!(held.is_some_and(|held| held.iter().len() == 0));
     tick(&mut app, 256);
-    assert!(place(&app, cloth, middle).distance(start) < 0.01);
+    // It still swings a little.
+    assert!(place(&app, cloth, middle).distance(start) < 0.05);
 }
 
 /// A hand that pulls away stops where cloth from the pin to it is taut: its length at rest, straight on a flat sheet, and
@@ -180,7 +198,8 @@ fn a_hand_pulls_no_farther_than_the_cloth_reaches() {
             assert!(along.dot(wanted) > 0.999, "{name}: {along} {wanted}");
             let stretch = stats(&app, cloth).stretch.structural;
             println!("{name}, {direction}: stretched by {:.1} %", 100.0 * stretch);
-            assert!(stretch < 0.12, "{name}: {stretch}");
+            // Irregular meshes are less stiff around a single particle.
+            assert!(stretch < 0.2, "{name}: {stretch}");
         }
     }
 }
@@ -202,6 +221,10 @@ fn two_hands_pull_a_sheet_taut() {
         aim(&mut app, hand, 5.0 * direction);
     }
     tick(&mut app, 128);
+    for entity in [cloth, hands[0], hands[1]] {
+        assert_eq!(app.world().get::<ClothFault>(entity), None);
+    }
+    assert_eq!(pinned(&app, cloth), held);
     let [a, b] = held.map(|particle| place(&app, cloth, particle));
     let length = at_rest(&app, cloth, held);
     let ratio = a.distance(b) / length;
@@ -258,11 +281,11 @@ fn attachments_of_the_game_stay() {
     assert_eq!(app.world().get::<ClothAttachments>(cloth), Some(&own));
 }
 
-/// A hand lets go of a cloth that jumps, changes or goes, and of nothing else.
+/// A hand lets go of a cloth that jumps, changes or goes, and the cloth of the hand.
 #[test]
 fn a_hand_lets_go_of_what_is_not_there_any_more() {
     type Change = fn(&mut App, Entity);
-    let changes: [(&str, Change); 5] = [
+    let changes: [(&str, Change); 7] = [
         ("teleport", |app, cloth| {
             let away = Transform::from_xyz(30.0, 0.0, 0.0);
             app.world_mut()
@@ -274,17 +297,24 @@ fn a_hand_lets_go_of_what_is_not_there_any_more() {
                 .entity_mut(cloth)
                 .insert(Cloth::new(12, 7, 0.05));
         }),
+        ("as many particles", |app, cloth| {
+            app.world_mut()
+                .entity_mut(cloth)
+                .insert(Cloth::new(20, 5, 0.05));
+        }),
+        ("a smaller grid", |app, cloth| {
+            app.world_mut()
+                .entity_mut(cloth)
+                .insert(Cloth::new(3, 3, 0.05));
+        }),
+        ("disabled", |app, cloth| {
+            app.world_mut().entity_mut(cloth).insert(Disabled);
+        }),
         ("no cloth", |app, cloth| {
             app.world_mut().entity_mut(cloth).remove::<Cloth>();
         }),
         ("despawned", |app, cloth| {
             app.world_mut().despawn(cloth);
-        }),
-        ("another cloth", |app, cloth| {
-            let mut hands = app.world_mut().query::<&mut ClothGrab>();
-            let mut grab = hands.single_mut(app.world_mut()).expect("one hand");
-            assert_eq!(grab.cloth, cloth);
-            grab.cloth = Entity::PLACEHOLDER;
         }),
     ];
     for (name, change) in changes {
@@ -298,13 +328,107 @@ fn a_hand_lets_go_of_what_is_not_there_any_more() {
         tick(&mut app, 3);
         assert!(app.world().get::<ClothGrab>(hand).is_none(), "{name}");
         assert!(app.world().get::<ClothFault>(hand).is_none(), "{name}");
-        let Ok(entity) = app.world().get_entity(cloth) else {
+        app.world_mut().despawn(hand);
+        let Ok(mut entity) = app.world_mut().get_entity_mut(cloth) else {
             continue;
         };
-        assert!(!entity.contains::<ClothFault>(), "{name}");
-        if entity.contains::<Cloth>() {
+        entity.remove::<Disabled>();
+        tick(&mut app, 2);
+        let log = app.world().get::<ClothFault>(cloth);
+        assert!(log.is_none(), "{name}: {log:?}");
+        if app.world().entity(cloth).contains::<Cloth>() {
             assert!(!pinned(&app, cloth).contains(&55), "{name}");
+            let held = app.world().get::<ClothAttachments>(cloth);
+            assert!(held.is_none_or(|held| held.iter().len() == 0), "{name}");
             assert!(stats(&app, cloth).stretch.structural < 0.1, "{name}");
+        }
+    }
+}
+
+/// A hand that is told of another particle or another cloth takes hold of that, and lets the first one go.
+#[test]
+fn a_hand_takes_hold_anew() {
+    let mut app = app();
+    let cloths = [0.0, 2.0].map(|x| {
+        let cloth = (Cloth::new(10, 10, 0.05), Transform::from_xyz(x, 0.0, 0.0));
+        app.world_mut().spawn(cloth).id()
+    });
+    tick(&mut app, 4);
+    let before = pinned(&app, cloths[0]);
+    let hand = take(&mut app, cloths[0], 55);
+    tick(&mut app, 2);
+    let to = place(&app, cloths[0], 77);
+    change::<ClothGrab>(&mut app, hand, |grab| {
+        (grab.particle, grab.target) = (77, to)
+    });
+    tick(&mut app, 3);
+    let held = pinned(&app, cloths[0]);
+    assert!(held.contains(&77) && !held.contains(&55));
+    let to = place(&app, cloths[1], 33);
+    change::<ClothGrab>(&mut app, hand, |grab| {
+        (grab.cloth, grab.particle, grab.target) = (cloths[1], 33, to);
+    });
+    tick(&mut app, 3);
+    assert_eq!(pinned(&app, cloths[0]), before);
+    assert!(pinned(&app, cloths[1]).contains(&33));
+    assert!(place(&app, cloths[1], 33).distance(to) < 1.0e-6);
+}
+
+/// A particle goes from one hand to the next: the second one waits until the first lets go.
+#[test]
+fn a_particle_is_handed_over() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::new(10, 10, 0.05)).id();
+    tick(&mut app, 4);
+    let first = take(&mut app, cloth, 55);
+    tick(&mut app, 2);
+    let second = take(&mut app, cloth, 55);
+    tick(&mut app, 2);
+    let at = place(&app, cloth, 55);
+    app.world_mut().despawn(first);
+    tick(&mut app, 3);
+    assert!(pinned(&app, cloth).contains(&55));
+    // It fell for a tick at most.
+    assert!(place(&app, cloth, 55).distance(at) < 0.01);
+    app.world_mut().despawn(second);
+    tick(&mut app, 2);
+    assert!(!pinned(&app, cloth).contains(&55));
+}
+
+/// Hands and cloths that are despawned or disabled by systems in the middle of a tick leave nothing behind.
+#[test]
+fn hands_and_cloths_may_go_in_the_middle_of_a_tick() {
+    for order in 0..4 {
+        let mut app = app();
+        let cloth = app.world_mut().spawn(Cloth::new(10, 10, 0.05)).id();
+        tick(&mut app, 2);
+        let target = place(&app, cloth, 55);
+        let grab = ClothGrab {
+            cloth,
+            particle: 55,
+            target,
+            ..default()
+        };
+        let hand = app.world_mut().spawn(grab).id();
+        let goes = move |mut commands: Commands, mut done: Local<bool>| {
+            if !std::mem::replace(&mut *done, true) {
+                let entity = if order % 2 == 0 { hand } else { cloth };
+                commands.entity(entity).despawn();
+            }
+        };
+        // Its commands wait beside those of the plugin.
+        if order < 2 {
+            app.add_systems(
+                FixedUpdate,
+                goes.before_ignore_deferred(ClothSystems::Prepare),
+            );
+        } else {
+            app.add_systems(FixedUpdate, goes.ambiguous_with(ClothSystems::Prepare));
+        }
+        tick(&mut app, 4);
+        if order % 2 == 0 {
+            assert!(app.world().get::<ClothFault>(cloth).is_none(), "{order}");
+            assert!(!pinned(&app, cloth).contains(&55), "{order}");
         }
     }
 }
@@ -314,9 +438,10 @@ fn a_hand_lets_go_of_what_is_not_there_any_more() {
 #[test]
 fn bad_hands_have_faults() {
     type Spoil = fn(&mut ClothGrab);
-    let spoilt: [(&str, Spoil); 5] = [
+    let spoilt: [(&str, Spoil); 6] = [
         ("target", |grab| grab.target.y = f32::NAN),
         ("target", |grab| grab.target.x = f32::INFINITY),
+        ("target", |grab| grab.target.z = 1.0e13),
         ("stretch", |grab| grab.stretch = f32::NAN),
         ("speed", |grab| grab.speed = -0.1),
         ("100", |grab| grab.particle = 100),
@@ -340,6 +465,20 @@ fn bad_hands_have_faults() {
         assert!(pinned(&app, cloth).contains(&55), "{name}");
     }
     let mut app = app();
+    // Neither below another entity, nor on the cloth itself.
+    let cloth = app.world_mut().spawn(Cloth::new(10, 10, 0.05)).id();
+    tick(&mut app, 1);
+    let parent = app.world_mut().spawn(Transform::default()).id();
+    let child = take(&mut app, cloth, 55);
+    app.world_mut().entity_mut(child).insert(ChildOf(parent));
+    let own = ClothGrab { cloth, ..default() };
+    app.world_mut().entity_mut(cloth).insert(own);
+    tick(&mut app, 2);
+    for alone in [child, cloth] {
+        let fault = app.world().get::<ClothFault>(alone).expect("a fault");
+        assert_eq!(fault.error, ClothError::HandNotAlone);
+    }
+    assert!(!pinned(&app, cloth).contains(&55));
     let hand = app.world_mut().spawn(ClothGrab::default()).id();
     tick(&mut app, 2);
     let fault = app.world().get::<ClothFault>(hand).expect("a fault");
@@ -360,12 +499,13 @@ fn random_hands_hold_random_cloths() {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         (seed >> 33) % below
     };
-    let mut worst = 0.0_f32;
+    let mut worst = [0.0_f32; 2];
     for number in 0..100 {
         let mut app = app();
         let [columns, rows] = [0; 2].map(|_| 4 + random(20) as u32);
-        let cloth = match random(3) {
-            0 => {
+        let kind = usize::from(random(3) == 0);
+        let cloth = match kind {
+            1 => {
                 let mesh = irregular(0.05 * columns as f32, 0.05 * rows as f32, 0.05, 0.3);
                 Cloth::triangles(mesh.positions, mesh.triangles)
             }
@@ -394,7 +534,7 @@ fn random_hands_hold_random_cloths() {
                 target: at,
                 ..default()
             },
-            |hit| hit.grab(),
+            |hit| hit.grab().0,
         );
         let hand = app.world_mut().spawn(grab).id();
         for _ in 0..6 {
@@ -403,7 +543,7 @@ fn random_hands_hold_random_cloths() {
             for _ in 0..random(30) {
                 tick(&mut app, 1);
                 let stats = stats(&app, cloth);
-                worst = worst.max(stats.stretch.structural);
+                worst[kind] = worst[kind].max(stats.stretch.structural);
                 let all = particles(&app, cloth);
                 assert!(
                     all.positions().all(|place| place.length() < 20.0),
@@ -416,6 +556,54 @@ fn random_hands_hold_random_cloths() {
         tick(&mut app, 1);
         assert_eq!(pinned(&app, cloth), before, "{number}");
     }
-    println!("stretched by {:.0} % at most", 100.0 * worst);
-    assert!(worst < 1.0, "{worst}");
+    println!(
+        "grids were stretched by {} at most, meshes by {}",
+        worst[0], worst[1]
+    );
+    assert!(worst[0] < 0.2 && worst[1] < 1.0, "{worst:?}");
+}
+
+/// A hand holds on where the world's origin moves.
+#[test]
+fn a_hand_moves_with_the_origin() {
+    let mut app = app();
+    let cloth = Cloth::new(10, 10, 0.05);
+    let cloth = app.world_mut().spawn((cloth, Transform::default())).id();
+    tick(&mut app, 4);
+    let hand = take(&mut app, cloth, 45);
+    tick(&mut app, 2);
+    let (before, by) = (place(&app, cloth, 45), Vec3::new(64.0, 0.0, -32.0));
+    for moved in [cloth, hand] {
+        change::<Transform>(&mut app, moved, |place| place.translation += by);
+    }
+    shift_cloths(app.world_mut(), by).expect("a finite jump");
+    tick(&mut app, 8);
+    // A float at 64 m is exact to 4 µm.
+    assert!(place(&app, cloth, 45).distance(before + by) < 2.0e-5);
+    assert!(stats(&app, cloth).stretch.structural < 0.05);
+}
+
+/// Rolled back in the middle of a pull that reaches no farther, and pulled again, cloth moves alike to the last bit.
+#[test]
+fn a_pull_is_rolled_back() {
+    let mut app = app();
+    app.insert_resource(ClothWind::gusty(Vec3::new(2.0, 0.0, 3.0)));
+    let cloth = app.world_mut().spawn(Cloth::new(12, 12, 0.05)).id();
+    tick(&mut app, 8);
+    let hand = take(&mut app, cloth, 100);
+    let start = place(&app, cloth, 100);
+    let pull = |app: &mut App, ticks: std::ops::Range<u32>| {
+        for step in ticks {
+            aim(app, hand, start + Vec3::new(0.02, 0.01, 0.03) * step as f32);
+            tick(app, 1);
+        }
+    };
+    pull(&mut app, 0..20);
+    let saved = ClothWorldSnapshot::of(app.world_mut());
+    pull(&mut app, 20..40);
+    let after = particles(&app, cloth).clone();
+    saved.restore(app.world_mut()).expect("the same world");
+    assert_ne!(particles(&app, cloth), &after);
+    pull(&mut app, 20..40);
+    assert_eq!(particles(&app, cloth), &after);
 }

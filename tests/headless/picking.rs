@@ -1,7 +1,10 @@
 //! Bevy's pointers over cloth, without a window: rays instead of a camera's picture.
 
 use bevy::{
-    camera::{Camera, NormalizedRenderTarget},
+    camera::{
+        Camera, NormalizedRenderTarget,
+        visibility::{RenderLayers, ViewVisibility},
+    },
     picking::{
         InteractionPlugin, PickingPlugin, PickingSystems,
         backend::ray::{RayId, RayMap},
@@ -11,7 +14,7 @@ use bevy::{
 };
 use bevy_drape::prelude::*;
 
-use crate::support::*;
+use crate::{schedule::refuse_ambiguities, support::*};
 
 /// The ray of the only pointer, if it is over the camera's picture.
 #[derive(Resource)]
@@ -60,7 +63,16 @@ fn app_with_pointer(plugin: ClothPickingPlugin) -> (App, Entity) {
     (app, cloth)
 }
 
-fn point(app: &mut App, action: PointerAction) {
+/// Nothing of it runs in an order that Bevy picks.
+#[test]
+fn no_system_of_picking_is_ambiguous() {
+    let (mut app, _) = app_with_pointer(ClothPickingPlugin::default());
+    refuse_ambiguities(&mut app);
+    point(&mut app, PointerAction::Press(PointerButton::Primary));
+    assert_eq!(hands(&mut app), 1);
+}
+
+fn input(action: PointerAction) -> PointerInput {
     let location = Location {
         target: NormalizedRenderTarget::None {
             width: 100,
@@ -68,8 +80,11 @@ fn point(app: &mut App, action: PointerAction) {
         },
         position: Vec2::ZERO,
     };
-    let input = PointerInput::new(PointerId::Mouse, location, action);
-    app.world_mut().write_message(input);
+    PointerInput::new(PointerId::Mouse, location, action)
+}
+
+fn point(app: &mut App, action: PointerAction) {
+    app.world_mut().write_message(input(action));
     tick(app, 1);
 }
 
@@ -135,6 +150,60 @@ fn a_pointer_takes_nothing_else() {
     point(&mut app, PointerAction::Press(PointerButton::Primary));
     assert_eq!(hands(&mut app), 0);
     assert_eq!(app.world().resource::<Clicked>().0.len(), 1);
+}
+
+/// Released and pressed again in one frame, the pointer holds on by a new hand; pressed and released, by none.
+#[test]
+fn a_pointer_may_be_quick() {
+    let (mut app, _) = app_with_pointer(ClothPickingPlugin::default());
+    let [press, release] =
+        [PointerAction::Press, PointerAction::Release].map(|of| of(PointerButton::Primary));
+    let both = |app: &mut App, actions: [PointerAction; 2]| {
+        let [first, second] = actions;
+        app.world_mut().write_message(input(first));
+        point(app, second);
+        hands(app)
+    };
+    point(&mut app, press.clone());
+    assert_eq!(both(&mut app, [release.clone(), press.clone()]), 1);
+    point(&mut app, release.clone());
+    assert_eq!(hands(&mut app), 0);
+    assert_eq!(both(&mut app, [press, release]), 0);
+}
+
+/// A cloth that no camera shows, or that is in other layers than the camera, is not hit. One that lets pointers through does
+/// not hide the one behind it.
+#[test]
+fn pointers_hit_visible_cloth() {
+    let (mut app, cloth) = app_with_pointer(ClothPickingPlugin { button: None });
+    let clicks = |app: &mut App| {
+        point(app, PointerAction::Press(PointerButton::Primary));
+        point(app, PointerAction::Release(PointerButton::Primary));
+        std::mem::take(&mut app.world_mut().resource_mut::<Clicked>().0).len()
+    };
+    assert_eq!(clicks(&mut app), 1);
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert(ViewVisibility::HIDDEN);
+    assert_eq!(clicks(&mut app), 0);
+    app.world_mut().entity_mut(cloth).remove::<ViewVisibility>();
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert(RenderLayers::layer(3));
+    assert_eq!(clicks(&mut app), 0);
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert(RenderLayers::layer(0));
+    let through = Pickable {
+        should_block_lower: false,
+        is_hoverable: true,
+    };
+    let curtain = (Cloth::new(21, 21, 0.05), Transform::from_xyz(0.0, 0.0, 0.5));
+    let curtain = app.world_mut().spawn(curtain).observe(note).id();
+    tick(&mut app, 8);
+    assert_eq!(clicks(&mut app), 1);
+    app.world_mut().entity_mut(curtain).insert(through);
+    assert_eq!(clicks(&mut app), 2);
 }
 
 /// A hand whose cloth has gone goes too, and a cancelled touch lets go.

@@ -19,8 +19,13 @@ use bevy_drape::{
 use crate::{rapier::app_with_rapier, support::*};
 
 /// Has the next run of these schedules fail if two systems of them may run in either order with effect.
-fn refuse_ambiguities(app: &mut App) {
-    let schedules = [FixedUpdate.intern(), Update.intern(), PostUpdate.intern()];
+pub fn refuse_ambiguities(app: &mut App) {
+    let schedules = [
+        PreUpdate.intern(),
+        FixedUpdate.intern(),
+        Update.intern(),
+        PostUpdate.intern(),
+    ];
     for schedule in schedules {
         // A schedule is examined when it is built, and built again when it gets another system.
         app.add_systems(schedule, || {});

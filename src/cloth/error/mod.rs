@@ -233,6 +233,9 @@ pub enum ClothError {
         /// The missing cloth.
         cloth: Entity,
     },
+    /// A hand has a parent, or is the cloth that it holds.
+    #[error("a `ClothGrab` must be on an entity of its own, without a parent")]
+    HandNotAlone,
     /// A mesh driven by a cloth is too far from it.
     #[error(
         "vertex {vertex} of the mesh is {distance} m from the cloth at rest, which is only {farthest} m across: place the mesh on the cloth"

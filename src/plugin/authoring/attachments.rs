@@ -115,7 +115,7 @@ impl ClothAttachments {
         self.0.push(ClothAttachment { pin, target });
     }
 
-    /// Detaches everything that is attached to an entity, given as it was then: a peg is taken off.
+    /// Detaches all particles that are attached to this target. Give its ID or its `Name`, as when you attached them.
     pub fn detach(&mut self, target: impl Into<ClothTarget>) {
         let target = target.into();
         self.0.retain(|each| each.target != target);

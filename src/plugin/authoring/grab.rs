@@ -1,5 +1,7 @@
 //! Hands that hold cloth.
 
+use std::sync::Arc;
+
 use bevy::{
     ecs::{
         component::Component,
@@ -11,17 +13,20 @@ use bevy::{
     transform::components::Transform,
 };
 
-use crate::cloth::ClothError;
+use crate::cloth::{ClothError, Surface};
 
-/// A hand that holds a cloth. Spawn it where a ray [hits](crate::plugin::ClothHit::grab) the cloth, move its
+/// A hand that holds a particle of a cloth. Spawn it where a ray [hits](crate::plugin::ClothHit::grab) the cloth, move its
 /// [`target`](Self::target), and despawn it to let go.
 ///
-/// The plugin writes the entity's `Transform`, so it may have no parent. It follows the target, no faster than its speed, and pulls the cloth no
-/// farther from its pins than the cloth reaches. The particle that it holds follows the entity, with the offset from the
-/// target that it had at first. A particle that is pinned already stays where it is.
+/// The entity must have no parent. It takes hold where its target is. From then on the plugin writes its translation: it
+/// follows the target, no faster than its speed, and pulls the particle no farther from any pin than the cloth reaches.
+/// It slows down where it stretches the cloth beside the particle by more than 10 %, and stops at 30 %. A pin that moves
+/// away takes it along. The particle keeps its offset from the entity. While something else pins
+/// it, the hand waits.
 ///
-/// The particle is among the cloth's [`ClothAttachments`](crate::plugin::ClothAttachments) until the hand lets go. The
-/// plugin lets go, by removing the component, when the cloth teleports, gets another surface, or is no cloth any more.
+/// The particle is among the cloth's [`ClothAttachments`](crate::plugin::ClothAttachments) until the hand lets go. If
+/// [`cloth`](Self::cloth) or [`particle`](Self::particle) change, the hand takes hold anew. When the cloth teleports, gets
+/// another surface or is gone, the plugin removes the component, which lets go, too.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -54,21 +59,22 @@ pub struct ClothGrab {
     pub particle: u32,
     /// Where the hand is to be, in the world (m). It takes hold there.
     pub target: Vec3,
-    /// How far the cloth is stretched between the hand and its pins at most, as a fraction of its length.
+    /// Largest stretch of the cloth between the hand and a pin, as a fraction of its length at rest. That is straight
+    /// on a flat convex surface, and along the edges on any other.
     pub stretch: f32,
     /// Largest speed of the hand (m/s).
     pub speed: f32,
 }
 
 impl Default for ClothGrab {
-    /// Particle 0 of no cloth, a stretch of 2 %, 10 m/s.
+    /// Particle 0 of no cloth, a stretch of 2 %, 3 m/s.
     fn default() -> Self {
         Self {
             cloth: Entity::PLACEHOLDER,
             particle: 0,
             target: Vec3::ZERO,
             stretch: 0.02,
-            speed: 10.0,
+            speed: 3.0,
         }
     }
 }
@@ -88,28 +94,30 @@ impl ClothGrab {
         }
         for component in self.target.to_array() {
             let quantity = "the target of a grab (m)";
-            ClothError::check(component, f32::is_finite, quantity, "finite")?;
+            let is_near = |v: f32| v.abs() <= 1.0e12;
+            ClothError::check(component, is_near, quantity, "within 10¹² m of the origin")?;
         }
         Ok(())
     }
 }
 
-/// What a hand knows from the tick on in which it took hold.
+/// The hold of a hand, as of the tick in which it took hold.
 #[derive(Component, Reflect, Debug, Default)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug)]
 #[component(clone_behavior = Ignore)]
 pub(crate) struct ClothGrip {
-    /// The cloth, once it holds it.
+    /// The cloth, once the hand has taken hold.
     #[reflect(ignore)]
     pub cloth: Option<Entity>,
-    /// Whether the particle was free.
     #[reflect(ignore)]
-    pub is_holding: bool,
-    /// Distance of each particle of the cloth from the one that it holds, along the surface at rest (m).
+    pub particle: u32,
+    #[reflect(ignore)]
+    pub surface: Arc<Surface>,
+    /// Distance of each particle from the one that it holds, along the surface at rest (m).
     #[reflect(ignore)]
     pub lengths: Vec<f32>,
-    /// From the hand to the particle (m).
+    /// Where the particle is in the hand's own frame.
     #[reflect(ignore)]
     pub offset: Vec3,
 }

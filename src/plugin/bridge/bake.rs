@@ -10,21 +10,24 @@ use thiserror::Error;
 /// Morph targets that Bevy draws at most, one a frame but the first.
 const MAX_TARGETS: usize = 256;
 
+/// Farthest that a vertex may be (m): squares and differences are finite.
+const FARTHEST: f32 = 1.0e12;
+
 /// Numbers of the glTF 2.0 specification: types of components, uses of buffers, and marks of the file and its chunks.
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-const MAGIC: usize = 0x4654_6C67;
-const JSON_CHUNK: usize = 0x4E4F_534A;
-const BINARY_CHUNK: usize = 0x004E_4942;
+const MAGIC: u32 = 0x4654_6C67;
+const JSON_CHUNK: u32 = 0x4E4F_534A;
+const BINARY_CHUNK: u32 = 0x004E_4942;
 
 /// Records the mesh of a cloth frame by frame, for a file that plays its motion without simulating it: for cloth far away,
 /// or on weak machines (feature `bake`).
 ///
 /// It takes any mesh whose vertices move: that of a cloth, or one that a cloth drives by a
-/// [`ClothRenderMesh`](crate::plugin::ClothRenderMesh). Vertices are in the entity's own frame, so whoever plays the file moves the
-/// entity. Between frames they move in straight lines.
+/// [`ClothRenderMesh`](crate::plugin::ClothRenderMesh). Vertices are in the entity's own frame, and the motion of the entity is
+/// not recorded. Between frames vertices move in straight lines.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -34,11 +37,18 @@ const BINARY_CHUNK: usize = 0x004E_4942;
 /// struct Baking(ClothBake);
 ///
 /// /// In `Last`, once the mesh is written.
-/// fn record(cloth: Single<&Mesh3d, With<Cloth>>, meshes: Res<Assets<Mesh>>, mut baking: ResMut<Baking>) -> Result {
-///     let Some(mesh) = meshes.get(*cloth) else { return Ok(()) };
-///     baking.0.record(mesh)?;
-///     if baking.0.frames() == 128 {
-///         std::fs::write("flag.glb", baking.0.to_glb("flag", 1.0 / 64.0)?)?;
+/// fn record(
+///     cloth: Single<&Mesh3d, With<Cloth>>,
+///     meshes: Res<Assets<Mesh>>,
+///     time: Res<Time>,
+///     mut baking: ResMut<Baking>,
+/// ) -> Result {
+///     let bake = &mut baking.0;
+///     if let Some(mesh) = meshes.get(*cloth) && bake.frames() < 128 {
+///         bake.record(mesh, time.elapsed_secs())?;
+///         if bake.frames() == 128 {
+///             std::fs::write("flag.glb", bake.to_glb("flag")?)?;
+///         }
 ///     }
 ///     Ok(())
 /// }
@@ -52,9 +62,10 @@ pub struct ClothBake {
     frames: Vec<Frame>,
 }
 
-/// Positions (m) and normals of the vertices.
+/// Positions (m) and normals of the vertices at a time (s).
 #[derive(Debug, Clone)]
 struct Frame {
+    time: f32,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
@@ -63,22 +74,25 @@ struct Frame {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BakeError {
-    /// The mesh is no list of triangles with positions and normals, or only in the render world.
-    #[error("a mesh to record needs triangles, positions and normals in the main world")]
+    /// The mesh is no list of triangles with positions and normals, or it is only in the render world.
+    #[error(
+        "a mesh to record needs triangles, and a position and a normal for each vertex, in the main world"
+    )]
     Unreadable,
-    /// The mesh has not as many vertices as in the first frame.
-    #[error("the mesh has {found} vertices, and had {expected} in the first frame")]
-    OtherMesh {
-        /// Number of vertices of the first frame.
-        expected: usize,
-        /// Number of vertices found.
-        found: usize,
-    },
-    /// A vertex is not finite.
-    #[error("vertex {vertex} is not finite")]
+    /// The mesh has other vertices or triangles than in the first frame.
+    #[error("the mesh has other vertices or triangles than in the first frame")]
+    OtherMesh,
+    /// A vertex is not finite, or beyond 10¹² m.
+    #[error("vertex {vertex} is not finite or is beyond 10¹² m")]
     NotFinite {
         /// Index of the vertex.
         vertex: usize,
+    },
+    /// The time of a frame is not finite, or not later than that of the frame before.
+    #[error("the time of a frame must be finite and later than the one before, not {time} s")]
+    Time {
+        /// The time (s).
+        time: f32,
     },
     /// Fewer than two frames, or more than Bevy plays.
     #[error("{frames} frames were recorded: there must be 2 to 257")]
@@ -86,54 +100,59 @@ pub enum BakeError {
         /// Number of frames.
         frames: usize,
     },
-    /// The time from one frame to the next is not positive and finite.
-    #[error("the time from frame to frame must be positive and finite, not {seconds} s")]
-    Interval {
-        /// The time (s).
-        seconds: f32,
+    /// The file would be larger than glTF allows, which is 4 GB.
+    #[error("a file of {bytes} bytes exceeds the 4 GB of glTF: record fewer frames")]
+    TooLarge {
+        /// Size of the file.
+        bytes: usize,
     },
 }
 
 impl ClothBake {
-    /// Adds a frame: the vertices as they are now.
+    /// Adds a frame: the vertices as they are at this time (s).
     ///
     /// # Errors
-    /// [`BakeError::Unreadable`], [`BakeError::OtherMesh`] or [`BakeError::NotFinite`]; no frame is added then.
-    pub fn record(&mut self, mesh: &Mesh) -> Result<(), BakeError> {
+    /// [`BakeError::Unreadable`], [`BakeError::OtherMesh`], [`BakeError::NotFinite`] or [`BakeError::Time`]; no frame is
+    /// added then.
+    pub fn record(&mut self, mesh: &Mesh, time: f32) -> Result<(), BakeError> {
         let vectors = |of| -> Option<Vec<Vec3>> {
             let values = mesh.try_attribute(of).ok()?.as_float3()?;
             Some(values.iter().map(|value| Vec3::from(*value)).collect())
         };
-        let frame = vectors(Mesh::ATTRIBUTE_POSITION).zip(vectors(Mesh::ATTRIBUTE_NORMAL));
-        let Some((positions, normals)) = frame else {
+        let positions = vectors(Mesh::ATTRIBUTE_POSITION).ok_or(BakeError::Unreadable)?;
+        let normals = vectors(Mesh::ATTRIBUTE_NORMAL).ok_or(BakeError::Unreadable)?;
+        let indices = corners(mesh).ok_or(BakeError::Unreadable)?;
+        if positions.len() != normals.len() {
             return Err(BakeError::Unreadable);
-        };
-        let found = positions.len();
-        let both = positions.iter().zip(&normals);
-        if let Some(vertex) = both
-            .clone()
-            .position(|(a, b)| !(a.is_finite() && b.is_finite()))
-        {
+        }
+        let is_near = |at: &Vec3| at.abs().max_element() <= FARTHEST && at.is_finite();
+        let mut both = positions.iter().zip(&normals);
+        if let Some(vertex) = both.position(|(at, normal)| !(is_near(at) && is_near(normal))) {
             return Err(BakeError::NotFinite { vertex });
         }
-        match self.frames.first().map(|first| first.positions.len()) {
-            Some(expected) if expected != found => {
-                return Err(BakeError::OtherMesh { expected, found });
-            }
-            Some(_) => {}
-            None => {
-                let indices = mesh.try_indices().ok();
-                let indices = indices
-                    .filter(|_| mesh.primitive_topology() == PrimitiveTopology::TriangleList);
-                let indices = indices.ok_or(BakeError::Unreadable)?;
-                self.indices = indices.iter().map(|index| index as u32).collect();
-                self.uvs = match mesh.try_attribute(Mesh::ATTRIBUTE_UV_0) {
-                    Ok(VertexAttributeValues::Float32x2(uvs)) => uvs.clone(),
-                    _ => Vec::new(),
-                };
-            }
+        let last = self.frames.last();
+        if !time.is_finite() || last.is_some_and(|last| time <= last.time) {
+            return Err(BakeError::Time { time });
         }
-        self.frames.push(Frame { positions, normals });
+        if let Some(last) = last {
+            if last.positions.len() != positions.len() || self.indices != indices {
+                return Err(BakeError::OtherMesh);
+            }
+        } else {
+            self.indices = indices;
+            let uvs = mesh.try_attribute(Mesh::ATTRIBUTE_UV_0).ok();
+            self.uvs = match uvs {
+                Some(VertexAttributeValues::Float32x2(uvs)) if is_texture(uvs, positions.len()) => {
+                    uvs.clone()
+                }
+                _ => Vec::new(),
+            };
+        }
+        self.frames.push(Frame {
+            time,
+            positions,
+            normals,
+        });
         Ok(())
     }
 
@@ -142,63 +161,77 @@ impl ClothBake {
         self.frames.len()
     }
 
-    /// A binary glTF file: a node and a mesh of this name, and an animation `cloth` with `seconds` from frame to frame. It
-    /// holds 24 bytes for each vertex and frame.
+    /// A binary glTF file: a node and a mesh of this name, seen from both sides, and an animation `cloth` that begins at 0 s.
+    /// Each vertex takes 24 bytes a frame.
     ///
     /// # Errors
-    /// [`BakeError::Frames`] or [`BakeError::Interval`].
-    pub fn to_glb(&self, name: &str, seconds: f32) -> Result<Vec<u8>, BakeError> {
+    /// [`BakeError::Frames`] or [`BakeError::TooLarge`].
+    pub fn to_glb(&self, name: &str) -> Result<Vec<u8>, BakeError> {
         let frames = self.frames.len();
-        if !(seconds > 0.0 && seconds.is_finite()) {
-            return Err(BakeError::Interval { seconds });
-        }
-        let Some(first) = self.frames.first() else {
+        let [first, others @ ..] = &self.frames[..] else {
             return Err(BakeError::Frames { frames });
         };
-        if !(2..=MAX_TARGETS + 1).contains(&frames) {
+        let targets = others.len();
+        if !(1..=MAX_TARGETS).contains(&targets) {
             return Err(BakeError::Frames { frames });
         }
         let mut file = File::default();
-        let mut attributes = file.shape(&first.positions, &first.normals);
+        let mut attributes = file.add_shape(&first.positions, &first.normals);
         if !self.uvs.is_empty() {
-            attributes["TEXCOORD_0"] = file.add(&self.uvs, Some(ARRAY_BUFFER));
+            attributes["TEXCOORD_0"] = file.add_floats(&self.uvs, Some(ARRAY_BUFFER));
         }
         let indices = file.add_indices(&self.indices);
-        let targets: Vec<Value> = self.frames[1..]
-            .iter()
-            .map(|frame| {
-                let offsets = |of: &[Vec3], from: &[Vec3]| -> Vec<Vec3> {
-                    of.iter().zip(from).map(|(to, from)| *to - *from).collect()
-                };
-                let moved = offsets(&frame.positions, &first.positions);
-                file.shape(&moved, &offsets(&frame.normals, &first.normals))
-            })
-            .collect();
-        let times: Vec<[f32; 1]> = (0..frames).map(|frame| [frame as f32 * seconds]).collect();
-        // In each frame its own target counts alone; in the first, none.
-        let weight = |at: usize| {
-            [f32::from(u8::from(
-                at / targets.len() == at % targets.len() + 1,
-            ))]
+        let target = |frame: &Frame| {
+            let offsets = |of: &[Vec3], from: &[Vec3]| -> Vec<Vec3> {
+                of.iter().zip(from).map(|(to, from)| *to - *from).collect()
+            };
+            let moved = offsets(&frame.positions, &first.positions);
+            file.add_shape(&moved, &offsets(&frame.normals, &first.normals))
         };
-        let weights: Vec<[f32; 1]> = (0..frames * targets.len()).map(weight).collect();
+        let shapes: Vec<Value> = others.iter().map(target).collect();
+        let times = self.frames.iter().map(|frame| [frame.time - first.time]);
+        let times: Vec<[f32; 1]> = times.collect();
+        // In each frame its own target counts alone; in the first, none.
+        let weight = |at: usize| [f32::from(u8::from(at / targets == at % targets + 1))];
+        let weights: Vec<[f32; 1]> = (0..frames * targets).map(weight).collect();
         let sampler = json!({
-            "input": file.add(&times, None),
-            "output": file.add(&weights, None),
+            "input": file.add_floats(&times, None),
+            "output": file.add_floats(&weights, None),
             "interpolation": "LINEAR",
         });
-        let weights = vec![0.0; targets.len()];
-        let primitive = json!({"attributes": attributes, "indices": indices, "targets": targets});
+        let primitive = json!({
+            "attributes": attributes,
+            "indices": indices,
+            "material": 0,
+            "targets": shapes,
+        });
         let channel = json!({"sampler": 0, "target": {"node": 0, "path": "weights"}});
-        Ok(file.finish(json!({
+        file.finish(json!({
             "asset": {"version": "2.0", "generator": "bevy_drape"},
             "scene": 0,
             "scenes": [{"nodes": [0]}],
             "nodes": [{"name": name, "mesh": 0}],
-            "meshes": [{"name": name, "primitives": [primitive], "weights": weights}],
+            "materials": [{"doubleSided": true}],
+            "meshes": [{"name": name, "primitives": [primitive], "weights": vec![0.0; targets]}],
             "animations": [{"name": "cloth", "samplers": [sampler], "channels": [channel]}],
-        })))
+        }))
     }
+}
+
+/// The corners of a mesh's triangles, if it has any, and all of them exist.
+fn corners(mesh: &Mesh) -> Option<Vec<u32>> {
+    let is_list = mesh.primitive_topology() == PrimitiveTopology::TriangleList;
+    let indices = mesh.try_indices().ok().filter(|_| is_list)?;
+    let indices: Vec<u32> = indices.iter().map(|index| index as u32).collect();
+    let vertices = mesh.count_vertices() as u32;
+    let is_whole = !indices.is_empty() && indices.len().is_multiple_of(3);
+    let exist = indices.iter().all(|index| *index < vertices);
+    (is_whole && exist).then_some(indices)
+}
+
+/// Whether there are finite texture coordinates for each vertex.
+fn is_texture(uvs: &[[f32; 2]], vertices: usize) -> bool {
+    uvs.len() == vertices && uvs.as_flattened().iter().all(|at| at.is_finite())
 }
 
 /// A file's numbers, and where they are in it.
@@ -210,18 +243,18 @@ struct File {
 }
 
 impl File {
-    /// Adds positions and normals, and returns the names of both.
-    fn shape(&mut self, positions: &[Vec3], normals: &[Vec3]) -> Value {
+    /// Adds positions and normals, and returns the accessors of both.
+    fn add_shape(&mut self, positions: &[Vec3], normals: &[Vec3]) -> Value {
         let [positions, normals] =
             [positions, normals].map(|of| of.iter().map(Vec3::to_array).collect::<Vec<_>>());
         json!({
-            "POSITION": self.add(&positions, Some(ARRAY_BUFFER)),
-            "NORMAL": self.add(&normals, Some(ARRAY_BUFFER)),
+            "POSITION": self.add_floats(&positions, Some(ARRAY_BUFFER)),
+            "NORMAL": self.add_floats(&normals, Some(ARRAY_BUFFER)),
         })
     }
 
     /// Adds values of N numbers each, for this use if for any, and returns the index of their accessor.
-    fn add<const N: usize>(&mut self, values: &[[f32; N]], target: Option<u32>) -> Value {
+    fn add_floats<const N: usize>(&mut self, values: &[[f32; N]], target: Option<u32>) -> Value {
         let kind = ["", "SCALAR", "VEC2", "VEC3"][N];
         let fold = |start: f32, f: fn(f32, f32) -> f32| {
             let each = values.iter();
@@ -264,25 +297,24 @@ impl File {
     }
 
     /// The whole file: a header, the description and the numbers (glTF 2.0, section 4.4).
-    fn finish(self, mut description: Value) -> Vec<u8> {
+    fn finish(self, mut description: Value) -> Result<Vec<u8>, BakeError> {
         description["buffers"] = json!([{"byteLength": self.bytes.len()}]);
         description["bufferViews"] = json!(self.views);
         description["accessors"] = json!(self.accessors);
         let mut text = description.to_string().into_bytes();
         // Each chunk is a multiple of four bytes; numbers are.
         text.resize(text.len().next_multiple_of(4), b' ');
-        let mut file = Vec::new();
-        let mut put = |number: usize| file.extend((number as u32).to_le_bytes());
-        put(MAGIC);
-        put(2);
-        put(12 + 8 + text.len() + 8 + self.bytes.len());
-        put(text.len());
-        put(JSON_CHUNK);
+        let bytes = 12 + 8 + text.len() + 8 + self.bytes.len();
+        let size = u32::try_from(bytes).map_err(|_| BakeError::TooLarge { bytes })?;
+        let mut file = Vec::with_capacity(bytes);
+        let put = |file: &mut Vec<u8>, numbers: &[u32]| {
+            file.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        };
+        // Both chunks are smaller than the file.
+        put(&mut file, &[MAGIC, 2, size, text.len() as u32, JSON_CHUNK]);
         file.extend(text);
-        let mut put = |number: usize| file.extend((number as u32).to_le_bytes());
-        put(self.bytes.len());
-        put(BINARY_CHUNK);
+        put(&mut file, &[self.bytes.len() as u32, BINARY_CHUNK]);
         file.extend(self.bytes);
-        file
+        Ok(file)
     }
 }

@@ -17,7 +17,7 @@ use crate::plugin::draw::MeshDrawing;
 use crate::{
     cloth::ClothError,
     plugin::{
-        authoring::{ClothWindZone, PlacedZone, RootMotion},
+        authoring::{ClothGrab, ClothWindZone, PlacedZone, RootMotion},
         frame::{ClothFrame, Places, Shift, rigid},
         prepare::{ColliderMotion, Skins},
         state::{BroadPhaseBounds, ClothState, WindField},
@@ -28,8 +28,8 @@ use crate::{
 /// ticks, after you have added `by` (m) to the `Transform` of every entity without a parent. Nothing gains speed,
 /// deforms or rotates. Sleeping cloth sleeps on, and gusts and eddies stay where they were in the world.
 ///
-/// Only the plugin's remembered positions in the world change. Particles don't, because they are given in their cloth's
-/// frame. An entity that is within rounding of its shifted position counts as being exactly there.
+/// The plugin's remembered positions in the world change, and so do the targets of [`ClothGrab`]s. Particles don't,
+/// because they are given in their cloth's frame. An entity that is within rounding of its shifted position counts as being exactly there.
 ///
 /// # Errors
 /// [`ClothError::Quantity`] if `by` is not finite; nothing changes then.
@@ -82,6 +82,7 @@ fn shift(
     mut colliders: Query<(Entity, &mut ColliderMotion), Allow<Disabled>>,
     mut roots: Query<(Entity, &mut RootMotion), Allow<Disabled>>,
     zones: Query<&ClothWindZone, Allow<Disabled>>,
+    mut hands: Query<&mut ClothGrab, Allow<Disabled>>,
     mut field: ResMut<WindField>,
     places: Places,
     skins: Skins,
@@ -96,6 +97,9 @@ fn shift(
         motion.shift(shift, pose(entity));
     }
     field.shift(shift);
+    for mut hand in &mut hands {
+        hand.target += shift.0;
+    }
     let mut joints: Vec<Affine3A> = Vec::new();
     for mut cloth in &mut cloths {
         let own = place(cloth.entity);

@@ -7,11 +7,12 @@ use bevy::{
         visibility::{RenderLayers, ViewVisibility},
     },
     ecs::{
+        change_detection::{DetectChanges, Ref},
         component::Component,
         entity::Entity,
         message::{MessageReader, MessageWriter},
         observer::On,
-        query::With,
+        query::{Has, With},
         resource::Resource,
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
         system::{Commands, Query, Res},
@@ -34,9 +35,11 @@ use crate::{cloth::Cloth, plugin::authoring::ClothGrab};
 /// Lets Bevy's pointers hit cloth, so that observers of `Pointer<Click>` and its like work on cloths. Dragging a cloth
 /// moves it by a [`ClothGrab`].
 ///
-/// Needs Bevy's picking, which `DefaultPlugins` include with the feature `bevy_picking`. Add Bevy's `MeshPickingPlugin`, too, if
-/// other meshes are to hide cloth from pointers. A `Pickable::IGNORE` beside a `Cloth` keeps pointers off it. The extra
-/// data of a hit are a [`ClothHit`](crate::plugin::ClothHit).
+/// Needs Bevy's picking, which `DefaultPlugins` include with the feature `bevy_picking`. Add Bevy's `MeshPickingPlugin`,
+/// too, if other meshes are to hide cloth from pointers. A `Pickable::IGNORE` beside a `Cloth` keeps pointers off it.
+///
+/// The extra data of a hit are a [`ClothHit`](crate::plugin::ClothHit), unless the hit is that of another backend. Then
+/// a [`ClothRayCast`] along the pointer's ray finds it.
 ///
 /// ```no_run
 /// use bevy::prelude::*;
@@ -124,11 +127,25 @@ fn point_at_cloths(
                     && pickable.is_none_or(|pickable| pickable.is_hoverable)
             })
         };
-        if let Some(hit) = ray_cast.cast_where(ray, f32::INFINITY, is_seen) {
+        let mut picks: Vec<(Entity, HitData)> = Vec::new();
+        let mut next = |picks: &[(Entity, HitData)]| {
+            let is_new = |cloth| picks.iter().all(|(known, _)| *known != cloth);
+            ray_cast.cast_where(ray, f32::INFINITY, |cloth| is_new(cloth) && is_seen(cloth))
+        };
+        while let Some(hit) = next(&picks) {
             let (point, normal) = (Some(hit.point), Some(hit.normal));
             let data = HitData::new_with_extra(id.camera, hit.distance, point, normal, hit);
-            let order = camera.order as f32;
-            hits.write(PointerHits::new(id.pointer, vec![(hit.cloth, data)], order));
+            picks.push((hit.cloth, data));
+            let pickable = cloths
+                .get(hit.cloth)
+                .ok()
+                .and_then(|(.., pickable)| pickable);
+            if pickable.is_none_or(|pickable| pickable.should_block_lower) {
+                break;
+            }
+        }
+        if !picks.is_empty() {
+            hits.write(PointerHits::new(id.pointer, picks, camera.order as f32));
         }
     }
 }
@@ -143,7 +160,9 @@ fn take_pressed(
     mut commands: Commands,
 ) {
     let cloth = press.entity;
-    if press.button != button.0 || !cloths.contains(cloth) {
+    // A press goes on to the parents of what was pressed, too.
+    let is_own = press.original_event_target() == cloth;
+    if press.button != button.0 || !(is_own && cloths.contains(cloth)) {
         return;
     }
     let id = RayId::new(press.hit.camera, press.pointer_id);
@@ -173,26 +192,28 @@ fn drag(mut hands: Query<(&PointerHand, &mut ClothGrab)>, rays: Res<RayMap>) {
 
 /// Lets go where a pointer's button is released, or where the plugin has let go.
 fn let_go_of_released(
-    hands: Query<(Entity, &PointerHand, Option<&ClothGrab>)>,
+    hands: Query<(Entity, Ref<PointerHand>, Has<ClothGrab>)>,
     button: Res<GrabButton>,
     mut inputs: MessageReader<PointerInput>,
     mut commands: Commands,
 ) {
-    let mut despawn = |hand: Entity| commands.entity(hand).try_despawn();
-    for (hand, _, grab) in &hands {
-        if grab.is_none() {
-            despawn(hand);
+    let inputs: Vec<PointerInput> = inputs.read().cloned().collect();
+    for (entity, hand, is_holding) in &hands {
+        let mut lets_go = !is_holding;
+        let pointer = hand.ray.pointer;
+        for input in inputs.iter().filter(|input| input.pointer_id == pointer) {
+            match input.action {
+                PointerAction::Release(released) if released == button.0 => lets_go = true,
+                // The one by which it was spawned: what was released before was another.
+                PointerAction::Press(pressed) if pressed == button.0 => {
+                    lets_go &= !hand.is_added();
+                }
+                PointerAction::Cancel => lets_go = true,
+                _ => {}
+            }
         }
-    }
-    for input in inputs.read() {
-        let lets_go = match input.action {
-            PointerAction::Release(released) => released == button.0,
-            PointerAction::Cancel => true,
-            _ => false,
-        };
-        let of_pointer = hands
-            .iter()
-            .filter(|(_, hand, _)| lets_go && hand.ray.pointer == input.pointer_id);
-        of_pointer.for_each(|(hand, ..)| despawn(hand));
+        if lets_go {
+            commands.entity(entity).try_despawn();
+        }
     }
 }

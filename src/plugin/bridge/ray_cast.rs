@@ -6,6 +6,7 @@ use bevy::{
         system::{Local, Query, SystemParam},
     },
     math::{Dir3, Ray3d, Vec3},
+    transform::components::Transform,
 };
 
 use crate::{
@@ -21,8 +22,8 @@ use crate::{
 /// Casts rays at cloth, through its tree of bounding volumes: for a mouse, a bullet, a line of sight. It needs neither a
 /// mesh nor a window.
 ///
-/// Cloth is where it was at the end of the last tick. Both of its sides are hit. A cloth that has not been simulated
-/// yet is not hit.
+/// Cloth is where it was at the end of the last tick. A particle that the game has moved since then may be missed. Both
+/// sides of a cloth are hit. A cloth that has not been simulated yet is not hit.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -59,6 +60,8 @@ pub struct ClothHit {
     pub face: usize,
     /// Indices of the particles at the corners of the face.
     pub particles: [u32; 3],
+    /// The nearest of them.
+    pub particle: u32,
     /// Barycentric coordinates of the point: one weight for each corner, together 1.
     pub weights: [f32; 3],
     /// The point, in the world (m).
@@ -70,20 +73,15 @@ pub struct ClothHit {
 }
 
 impl ClothHit {
-    /// A hand that takes hold of the cloth here.
-    pub fn grab(&self) -> ClothGrab {
-        ClothGrab {
+    /// The components of a hand that takes hold of the cloth here.
+    pub fn grab(&self) -> (ClothGrab, Transform) {
+        let grab = ClothGrab {
             cloth: self.cloth,
-            particle: self.particle(),
+            particle: self.particle,
             target: self.point,
             ..ClothGrab::default()
-        }
-    }
-
-    /// Index of the particle at the nearest corner.
-    pub fn particle(&self) -> u32 {
-        let nearest = (0..3).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]));
-        self.particles[nearest.unwrap_or(0)]
+        };
+        (grab, Transform::from_translation(self.point))
     }
 }
 
@@ -124,14 +122,18 @@ impl ClothRayCast<'_, '_> {
                 normal
             };
             let [u, v, w] = found.weights;
+            let point = a * u + b * v + c * w;
+            let far = |corner: usize| [a, b, c][corner].distance_squared(point);
+            let nearest = (0..3).min_by(|&one, &other| far(one).total_cmp(&far(other)));
             let is_nearer = first.is_none_or(|first| found.distance < first.distance);
             if is_nearer {
                 first = Some(ClothHit {
                     cloth: entity,
                     face: found.face,
                     particles: face,
+                    particle: face[nearest.unwrap_or(0)],
                     weights: found.weights,
-                    point: frame.to_world(a * u + b * v + c * w),
+                    point: frame.to_world(point),
                     normal: frame.isometry().rotation * normal,
                     distance: found.distance,
                 });
