@@ -185,7 +185,7 @@ fn a_hand_pulls_no_farther_than_the_cloth_reaches() {
             tick(&mut app, 1);
             let start = place(&app, cloth, held);
             aim(&mut app, hand, start + 10.0 * direction);
-            tick(&mut app, 128);
+            tick(&mut app, 320);
             let length = at_rest(&app, cloth, [pin, held]);
             let found = place(&app, cloth, pin).distance(place(&app, cloth, held));
             assert!(
@@ -359,7 +359,7 @@ fn a_hand_takes_hold_anew() {
     tick(&mut app, 2);
     let to = place(&app, cloths[0], 77);
     change::<ClothGrab>(&mut app, hand, |grab| {
-        (grab.particle, grab.target) = (77, to)
+        (grab.particle, grab.target) = (77, to);
     });
     tick(&mut app, 3);
     let held = pinned(&app, cloths[0]);
@@ -452,7 +452,7 @@ fn bad_hands_have_faults() {
         tick(&mut app, 1);
         let hand = take(&mut app, cloth, 55);
         let good = app.world().get::<ClothGrab>(hand).expect("a hand").clone();
-        change::<ClothGrab>(&mut app, hand, |grab| spoil(grab));
+        change::<ClothGrab>(&mut app, hand, spoil);
         tick(&mut app, 2);
         let fault = app.world().get::<ClothFault>(hand);
         let text = fault.expect("a fault").error.to_string();
@@ -560,7 +560,8 @@ fn random_hands_hold_random_cloths() {
         "grids were stretched by {} at most, meshes by {}",
         worst[0], worst[1]
     );
-    assert!(worst[0] < 0.2 && worst[1] < 1.0, "{worst:?}");
+    // An irregular mesh is less stiff (the guide's limits): where it is flung, it gives for some ticks.
+    assert!(worst[0] < 0.1 && worst[1] < 1.5, "{worst:?}");
 }
 
 /// A hand holds on where the world's origin moves.

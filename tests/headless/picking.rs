@@ -164,9 +164,9 @@ fn a_pointer_may_be_quick() {
         point(app, second);
         hands(app)
     };
-    point(&mut app, press.clone());
-    assert_eq!(both(&mut app, [release.clone(), press.clone()]), 1);
-    point(&mut app, release.clone());
+    point(&mut app, press);
+    assert_eq!(both(&mut app, [release, press]), 1);
+    point(&mut app, release);
     assert_eq!(hands(&mut app), 0);
     assert_eq!(both(&mut app, [press, release]), 0);
 }
