@@ -52,7 +52,7 @@ const BINARY_CHUNK: u32 = 0x004E_4942;
 ///     }
 ///     Ok(())
 /// }
-/// # bevy::ecs::system::assert_is_system(record);
+/// # App::new().add_systems(Last, record);
 /// ```
 #[derive(Debug, Default, Clone)]
 pub struct ClothBake {
