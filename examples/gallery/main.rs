@@ -76,10 +76,6 @@ const ENTRIES: &[Entry] = &[
         pictures: &[("hammock.png", "cloth that carries a body")],
     },
     Entry {
-        name: "laundry",
-        pictures: &[("laundry.png", "a hand pulls at a sheet")],
-    },
-    Entry {
         name: "meshes",
         pictures: &[
             ("ridge_tent.png", "a tent from a glTF file"),
@@ -98,6 +94,10 @@ const ENTRIES: &[Entry] = &[
     Entry {
         name: "volumes",
         pictures: &[("volumes.png", "six bounding volumes")],
+    },
+    Entry {
+        name: "laundry",
+        pictures: &[("laundry.png", "a hand pulls at a sheet")],
     },
 ];
 
