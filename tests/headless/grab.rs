@@ -271,7 +271,7 @@ fn attachments_of_the_game_stay() {
     app.world_mut().entity_mut(cloth).insert(own.clone());
     tick(&mut app, 2);
     assert_eq!(pinned(&app, cloth), held);
-    // What is pinned by the game is not a hand's to let go.
+    // A hand does not let go of the game's pins.
     let other = take(&mut app, cloth, 50);
     tick(&mut app, 2);
     app.world_mut().entity_mut(other).remove::<ClothGrab>();

@@ -21,8 +21,8 @@ use crate::cloth::{ClothError, Surface};
 /// The entity must have no parent. It takes hold where its target is. From then on the plugin writes its translation: it
 /// follows the target, no faster than its speed, and pulls the particle no farther from any pin than the cloth reaches.
 /// It slows down where it stretches the cloth beside the particle by more than 10 %, and stops at 30 %. A pin that moves
-/// away takes it along. The particle keeps its offset from the entity. While something else pins
-/// it, the hand waits.
+/// away takes it along. The particle keeps its offset from the entity. While something else pins the particle, the hand
+/// moves without it.
 ///
 /// The particle is among the cloth's [`ClothAttachments`](crate::plugin::ClothAttachments) until the hand lets go. If
 /// [`cloth`](Self::cloth) or [`particle`](Self::particle) change, the hand takes hold anew. When the cloth teleports, gets

@@ -59,14 +59,14 @@ pub(crate) struct GrabbedQuery {
     attachments: Option<&'static ClothAttachments>,
 }
 
-/// Particles that do not yield to a hand, as of this tick: hands in their order, and what holds one of them.
+/// Memory of [`hold_cloths`], which is reused from tick to tick.
 #[derive(Debug, Default)]
 pub(crate) struct Holds {
-    /// Cloth, particle, and the hand that holds it.
+    /// Cloth and particle of each hand, and the hand, sorted.
     order: Vec<(Entity, u32, Entity)>,
-    /// Where each of them that has been moved holds its particle now, in the world (m).
+    /// Cloth and particle of each hand that has moved in this tick, and the particle's new place in the world (m).
     moved: Vec<(Entity, u32, Vec3)>,
-    /// Place of each pin of one cloth, and how far from there the particle may be, in the world (m).
+    /// Place of each pin of one cloth in the world, and how far from there the held particle may be (m).
     reaches: Vec<(Vec3, f32)>,
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn hold_cloths(
         .iter()
         .map(|hand| (hand.grab.cloth, hand.grab.particle, hand.entity));
     holds.order.extend(order);
-    // The same one, whichever hand was spawned first.
+    // Hands of one cloth move in the same order, whichever was spawned first.
     holds.order.sort_unstable();
     for index in 0..holds.order.len() {
         let (wanted, _, entity) = holds.order[index];
@@ -245,7 +245,7 @@ impl HandQueryItem<'_, '_> {
             .ok_or_else(|| unusable(hand))
     }
 
-    /// Fraction of its speed at which it moves, by the largest stretch beside its particle: a heavy cloth slows it down.
+    /// Fraction of its speed at which it moves. It slows down while the springs at its particle are stretched.
     fn ease(&self, cloth: &GrabbedQueryItem) -> f32 {
         let place = |particle: u32| cloth.particles.position_at(particle as usize);
         let at = place(self.grab.particle);

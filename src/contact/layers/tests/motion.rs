@@ -1,4 +1,4 @@
-//! What particles have moved is bounded, and known of each patch.
+//! Bounds of the motion of particles and patches.
 
 use bevy::math::{Vec3, Vec3A};
 
