@@ -38,7 +38,8 @@ use crate as library;
 pub mod prelude {
     pub use crate::cloth::{
         Cloth, ClothBackstop, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothPaint,
-        ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothWeft, Corner, Pin, Pins, Surface,
+        ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothTearing, ClothTears, ClothWeft,
+        Corner, Pin, Pins, Surface,
     };
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,
@@ -53,11 +54,11 @@ pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{BakeError, ClothBake};
     pub use crate::plugin::{
-        ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothBuilt,
-        ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGrab, ClothGravity, ClothHit,
-        ClothInertia, ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
+        ClothAir, ClothAttachment, ClothAttachments, ClothBlade, ClothBody, ClothBone, ClothBones,
+        ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGrab, ClothGravity,
+        ClothHit, ClothInertia, ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
         ClothRayCast, ClothSnapshot, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
-        ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
+        ClothTorn, ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
         ClothWorldSnapshot, DrapePlugins, GlobalClothLod, SnapshotError, shift_cloths,
     };
     #[cfg(feature = "gizmos")]

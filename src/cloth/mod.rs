@@ -1,5 +1,6 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
+mod cut;
 mod density;
 mod error;
 mod grain;
@@ -16,6 +17,8 @@ mod skin;
 mod spring;
 mod springs;
 mod surface;
+mod tearing;
+mod tears;
 
 pub use density::ClothDensity;
 pub use error::ClothError;
@@ -37,7 +40,10 @@ pub use springs::Springs;
 #[doc(hidden)]
 pub use surface::SurfaceBinding;
 pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttribute};
+pub use tearing::ClothTearing;
+pub use tears::ClothTears;
 
+pub(crate) use cut::Cut;
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
@@ -48,3 +54,4 @@ pub(crate) use springs::{Compliances, SpringList, SpringStorage};
 #[cfg(feature = "mesh")]
 pub(crate) use surface::skin_of_asset;
 pub(crate) use surface::{Fan, Fans, Flat, Graph, ShortestPaths};
+pub(crate) use tearing::TearSearch;

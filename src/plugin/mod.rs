@@ -45,7 +45,7 @@ pub use bridge::ClothPickingPlugin;
 #[cfg(feature = "bake")]
 pub use bridge::{BakeError, ClothBake};
 pub use bridge::{
-    ClothDiagnosticsPlugin, ClothHit, ClothRayCast, ClothSnapshot, ClothWorldSnapshot,
+    ClothBlade, ClothDiagnosticsPlugin, ClothHit, ClothRayCast, ClothSnapshot, ClothWorldSnapshot,
     SnapshotError, shift_cloths,
 };
 #[cfg(feature = "egui")]
@@ -65,7 +65,7 @@ pub use state::{
     ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothScratch, ClothSearch, ClothState,
     ClothStats, ClothTouchStarted, ClothTouchStopped,
 };
-pub use write_back::ClothLimitExceeded;
+pub use write_back::{ClothLimitExceeded, ClothTorn};
 
 /// Everything that a game needs: the simulation, its diagnostics and, with their features, the mesh, the gizmos and the
 /// bridge to rapier. Add it after Bevy's own plugins.

@@ -52,12 +52,13 @@ use super::{
     },
     step::{integrate, push_bodies},
     write_back::{
-        ClothLimitExceeded, log_faults, make_bone_colliders, remove_bone_colliders, report_limits,
-        report_lost, send_stopped_messages, send_touch_messages,
+        ClothLimitExceeded, ClothTorn, log_faults, make_bone_colliders, remove_bone_colliders,
+        report_limits, report_lost, report_tears, send_stopped_messages, send_touch_messages,
+        tear_cloths,
     },
 };
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence},
+    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, ClothTearing, ClothTears},
     contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothPressure, ClothSettings},
@@ -131,7 +132,8 @@ fn register_types(app: &mut App) {
         .register_type::<ClothWindZone>()
         .register_type::<ClothOrder>()
         .register_type::<ClothAir>()
-        .register_type::<ClothPressure>();
+        .register_type::<ClothPressure>()
+        .register_type::<ClothTearing>();
     register_lists(app);
 }
 
@@ -143,6 +145,7 @@ fn add_resources_and_observers(app: &mut App) {
         .add_message::<ClothTouchStarted>()
         .add_message::<ClothTouchStopped>()
         .add_message::<ClothLimitExceeded>()
+        .add_message::<ClothTorn>()
         .insert_resource(ClothPresence::Simulated)
         .init_resource::<SharedParts>()
         .init_resource::<Notices>()
@@ -177,6 +180,12 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     let hands = hold_cloths
         .run_if(any_with_component::<ClothGrab>)
         .ambiguous_with(TransformSystems::Propagate);
+    let tears = (
+        report_tears,
+        tear_cloths.run_if(any_with_component::<ClothTearing>),
+    )
+        .chain()
+        .run_if(any_with_component::<ClothTears>);
     app.configure_sets(
         schedule,
         (
@@ -215,7 +224,13 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 .chain()
                 .in_set(ClothSystems::Integrate),
             make_bone_colliders.in_set(ClothSystems::WriteBack),
-            (report_lost, send_touch_messages, report_limits, log_faults)
+            (
+                report_lost,
+                send_touch_messages,
+                report_limits,
+                tears,
+                log_faults,
+            )
                 .chain()
                 .in_set(ClothSystems::WriteBack),
         ),

@@ -370,6 +370,12 @@ pub enum ClothError {
         #[reflect(ignore)]
         rule: &'static str,
     },
+    /// A tear runs along no edge of the cloth.
+    #[error("no edge of the cloth joins the particles {edge:?}, along which it is torn")]
+    NoSuchEdge {
+        /// Indices of its ends in the whole cloth.
+        edge: [u32; 2],
+    },
     /// The target of an attached pin does not exist or has no transform.
     #[error("{pin} is attached to {target}, which does not exist or has no transform")]
     NoTarget {

@@ -141,6 +141,25 @@ impl ClothParticles {
         Some(new)
     }
 
+    /// The particles of a surface that was torn otherwise: each one takes place, motion and mass of its parent, and of the mass
+    /// the share of its area.
+    pub(crate) fn torn(&self, from: &Surface, to: &Surface, parents: &[u32]) -> Self {
+        let mut new = Self {
+            substep: self.substep,
+            past: self.past.of_parents(self.layout, to.layout(), parents),
+            ..Self::of_layout(to.layout())
+        };
+        for ((index, parent), slot) in parents.iter().enumerate().zip(new.layout.slots()) {
+            let (parent, old) = (*parent as usize, self.layout.slot_of(*parent as usize));
+            let (was, block) = (&self.blocks[old.block], &mut new.blocks[slot.block]);
+            block.set_position(slot.lane, was.position(old.lane));
+            block.set_displacement(slot.lane, was.displacement(old.lane));
+            let share = from.area_of(parent) / to.area_of(index);
+            block.set_inverse_mass(slot.lane, was.inverse_mass(old.lane) * share);
+        }
+        new
+    }
+
     fn of_layout(layout: Layout) -> Self {
         Self {
             layout,

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::lanes::{Block, LANES, Lanes};
+use crate::cloth::lanes::{Block, LANES, Lanes, Layout};
 
 /// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the later one, then of
 /// the earlier one.
@@ -172,6 +172,25 @@ impl Past {
             for axis in 0..3 {
                 earlier[from + axis][lane] = is[axis];
             }
+        }
+    }
+
+    /// The same for other particles, each with the past of its parent.
+    pub fn of_parents(&self, from: Layout, to: Layout, parents: &[u32]) -> Self {
+        let mut blocks = Vec::new();
+        if !self.blocks.is_empty() {
+            blocks.resize(to.blocks(), Earlier::NONE);
+            for (parent, slot) in parents.iter().zip(to.slots()) {
+                let old = from.slot_of(*parent as usize);
+                for axis in 0..6 {
+                    blocks[slot.block].0[axis][slot.lane] =
+                        self.blocks[old.block].0[axis][old.lane];
+                }
+            }
+        }
+        Self {
+            blocks,
+            ..self.clone()
         }
     }
 

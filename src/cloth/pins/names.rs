@@ -16,7 +16,7 @@ impl Pin {
     /// particle has the position, colour or attribute.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         let pin = || format!("{self:?}");
-        let is_inside = match (self, surface.as_grid()) {
+        let is_inside = match (self, surface.rest_grid()) {
             (Self::Index(index), _) => *index < surface.len(),
             (Self::Vertex(vertex), _) => surface.particle_of_vertex(*vertex).is_some(),
             (Self::Top | Self::AtRest(_), _) | (Self::Corner(_) | Self::Where(_), Some(_)) => true,
@@ -62,8 +62,20 @@ impl Pin {
         })
     }
 
-    /// Calls `pinned` with the index of each particle of `surface` that the pin names. The pin must be valid for it.
+    /// Calls `pinned` with the index of each particle of `surface` that the pin names, possibly more than once. The pin
+    /// must be valid for it. Where the surface is torn, all parts of a particle have its name, but for its index.
     pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
+        if let Self::Index(index) = self {
+            return pinned(*index);
+        }
+        self.for_each_whole(surface, |index| {
+            pinned(index);
+            let parts = surface.copies().filter(|(_, of)| *of as usize == index);
+            parts.for_each(|(part, _)| pinned(part as usize));
+        });
+    }
+
+    fn for_each_whole(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
         let places = || {
             surface
                 .rest_positions()
@@ -106,7 +118,7 @@ impl Pin {
                 found.for_each(|(index, _)| pinned(index));
             }
             _ => {
-                if let Some(grid) = surface.as_grid() {
+                if let Some(grid) = surface.rest_grid() {
                     self.for_each_cell(
                         grid,
                         |row, column| pinned(grid.index(row, column) as usize),

@@ -49,6 +49,7 @@ impl Skinning {
                 });
             }
         }
+        surface.share_with_copies(&mut particles);
         let particles: Vec<Bound> = particles
             .into_iter()
             .map(Option::unwrap_or_default)

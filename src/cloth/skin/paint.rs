@@ -184,6 +184,7 @@ fn of_vertices(surface: &Surface, values: &[f32]) -> Result<Vec<f32>, ClothError
             *known = if *known > *value { *known } else { *value };
         }
     }
+    surface.share_with_copies(&mut of_particles);
     Ok(of_particles)
 }
 

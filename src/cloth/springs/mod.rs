@@ -188,32 +188,23 @@ impl Springs {
         if let Some(grid) = surface.as_grid() {
             return Self::of_grid(grid, material);
         }
-        let woven = material.woven_stretch();
-        let stiffness = |compliance: f32| 1.0 / compliance;
-        let shear = stiffness(material.shear_compliance) - stiffness(woven.mean);
-        // Rigid stretch leaves nothing to add, not even to rigid shear.
-        let shear = if woven.mean > 0.0 {
-            shear.max(0.0)
-        } else {
-            0.0
+        let compliance = compliances(surface, material);
+        let woven_links = match surface.rest_grid() {
+            Some(_) => None,
+            None => surface.woven_links(material.woven_stretch().ratio),
         };
-        let across = stiffness(shear);
-        let compliance = |kind| match kind {
-            SpringKind::Structural => woven.mean,
-            SpringKind::Shear | SpringKind::Bend => across,
-        };
-        let woven_links = surface.woven_links(woven.ratio);
         let all_links = woven_links.as_deref().unwrap_or(surface.links());
         let mut list = SpringList::default();
         // Springs along edges come last: the stiffest springs are solved last.
-        let [_, places] = [SpringKind::Bend, SpringKind::Structural].map(|kind| {
-            let links = all_links.iter().filter(|link| link.kind == kind);
+        let [_, places] = [false, true].map(|is_along| {
+            let links = all_links.iter();
             let springs: Vec<Spring> = links
+                .filter(|link| (link.kind == SpringKind::Structural) == is_along)
                 .map(|link| Spring {
-                    kind,
+                    kind: link.kind,
                     ends: link.ends,
                     rest_length: link.rest_length,
-                    compliance: compliance(kind) * link.slenderness,
+                    compliance: compliance(link) * link.slenderness,
                 })
                 .filter(|spring| spring.compliance.is_finite())
                 .collect();
@@ -306,6 +297,35 @@ impl Springs {
     /// The storage, for the solver.
     pub(crate) fn storage(&self) -> &SpringStorage {
         &self.storage
+    }
+}
+
+/// The compliance of a square patch in the direction of each spring (m/N).
+fn compliances(surface: &Surface, material: &ClothMaterial) -> impl Fn(&Link) -> f32 {
+    let woven = material.woven_stretch();
+    // The springs of a torn grid are those of the grid.
+    let [along_rows, along_columns] = match surface.rest_grid() {
+        Some(_) => material.stretch_compliances(),
+        None => [woven.mean; 2],
+    };
+    let stiffness = |compliance: f32| 1.0 / compliance;
+    let added = stiffness(material.shear_compliance) - stiffness(woven.mean);
+    let across = match surface.rest_grid() {
+        Some(_) => material.shear_compliance,
+        // Rigid stretch leaves nothing to add, not even to rigid shear.
+        None if woven.mean > 0.0 => stiffness(added.max(0.0)),
+        None => f32::INFINITY,
+    };
+    move |link| match link.kind {
+        SpringKind::Structural => {
+            let [a, b] = link.ends.map(|end| surface.origin_of(end));
+            if a.abs_diff(b) == 1 {
+                along_rows
+            } else {
+                along_columns
+            }
+        }
+        SpringKind::Shear | SpringKind::Bend => across,
     }
 }
 

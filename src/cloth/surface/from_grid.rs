@@ -41,6 +41,7 @@ impl Surface {
                 pieces: 1,
             },
             grid: Some(*grid),
+            torn: None,
             derived: Derived::default(),
         }
     }

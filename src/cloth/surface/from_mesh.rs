@@ -274,6 +274,7 @@ impl Welded {
                 pieces,
             },
             grid: None,
+            torn: None,
             derived: Derived {
                 uvs: OnceLock::from(uvs),
                 faces: OnceLock::from(faces),

@@ -116,6 +116,29 @@ impl Graph {
         order
     }
 
+    /// The connected piece of each particle, numbered from 0.
+    pub fn pieces_of(&self) -> Vec<u32> {
+        let mut pieces = vec![u32::MAX; self.len()];
+        let (mut next, mut queue) = (0, Vec::new());
+        for start in 0..self.len() as u32 {
+            if pieces[start as usize] != u32::MAX {
+                continue;
+            }
+            queue.push(start);
+            pieces[start as usize] = next;
+            while let Some(particle) = queue.pop() {
+                for &(neighbour, _) in self.of(particle) {
+                    if pieces[neighbour as usize] == u32::MAX {
+                        pieces[neighbour as usize] = next;
+                        queue.push(neighbour);
+                    }
+                }
+            }
+            next += 1;
+        }
+        pieces
+    }
+
     /// Number of connected pieces of the particles in an `order`: a piece begins at each particle without an earlier
     /// neighbour.
     pub fn pieces(&self, order: &[u32]) -> usize {

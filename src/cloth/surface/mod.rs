@@ -22,6 +22,7 @@ mod paths;
 mod springs;
 #[cfg(test)]
 mod tests;
+mod torn;
 mod triangles;
 mod weld;
 mod woven;
@@ -31,6 +32,7 @@ use std::{fmt, sync::OnceLock};
 use bevy::math::{Vec2, Vec3};
 
 use super::{grid::ClothGrid, lanes::Layout, spring::SpringKind};
+use torn::{Incidence, Torn};
 
 pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
@@ -70,6 +72,7 @@ pub struct Surface {
     spacing: Spacing,
     extent: Extent,
     grid: Option<ClothGrid>,
+    torn: Option<Box<Torn>>,
     derived: Derived,
 }
 
@@ -82,6 +85,8 @@ struct Derived {
     graph: OnceLock<Graph>,
     chains: OnceLock<Chains>,
     flat: OnceLock<Option<Flat>>,
+    incidence: OnceLock<Incidence>,
+    along_warp: OnceLock<Vec<f32>>,
 }
 
 /// Rest lengths of the stretch springs (m).
@@ -152,11 +157,13 @@ impl Surface {
         self.faces().all()
     }
 
-    /// Number of vertices that the surface was made from.
+    /// Number of vertices that the surface was made from, before it was torn.
     pub fn vertices(&self) -> usize {
-        self.particle_of_vertex
-            .as_ref()
-            .map_or(self.len(), Vec::len)
+        match (&self.particle_of_vertex, &self.torn) {
+            (Some(particles), _) => particles.len(),
+            (None, Some(torn)) => torn.whole_len(),
+            (None, None) => self.len(),
+        }
     }
 
     /// The particle of a vertex that the surface was made from. `None` if no triangle with an area uses the vertex.
@@ -186,6 +193,11 @@ impl Surface {
     /// Whether the surface encloses a volume: it is a mesh with two faces at each edge.
     pub fn is_closed(&self) -> bool {
         !self.is_border.is_empty() && !self.is_border.contains(&true)
+    }
+
+    /// Number of connected pieces.
+    pub fn pieces(&self) -> usize {
+        self.extent.pieces
     }
 
     /// Number of particles across its narrow side.
@@ -240,6 +252,34 @@ impl Surface {
             let grid = self.grid.as_ref();
             grid.map_or_else(Vec::new, grid::uvs)
         })
+    }
+
+    /// Calls `visit` with each edge that has a spring along it: its ends, its length at rest (m), and the square of the cosine of
+    /// its angle with the warp, 1 without a grain. Diagonals of a grid are left out.
+    pub(crate) fn for_each_thread(&self, mut visit: impl FnMut([u32; 2], f32, f32)) {
+        if let Some(grid) = &self.grid {
+            let (columns, spacing) = (grid.columns(), grid.spacing());
+            for index in 0..self.len() as u32 {
+                if (index + 1) % columns > 0 {
+                    visit([index, index + 1], spacing.x, 0.0);
+                }
+                if ((index + columns) as usize) < self.len() {
+                    visit([index, index + columns], spacing.y, 1.0);
+                }
+            }
+            return;
+        }
+        let threads = self
+            .links
+            .iter()
+            .filter(|link| link.kind == SpringKind::Structural);
+        if self.grain.is_empty() {
+            return threads.for_each(|link| visit(link.ends, link.rest_length, 1.0));
+        }
+        let along_warp = self.derived.along_warp.get_or_init(|| self.along_warp());
+        for (link, along_warp) in threads.zip(along_warp) {
+            visit(link.ends, link.rest_length, *along_warp);
+        }
     }
 
     /// Its faces, by their owners.
@@ -321,6 +361,7 @@ impl Default for Surface {
             spacing: Spacing::default(),
             extent: Extent::default(),
             grid: None,
+            torn: None,
             derived: Derived::default(),
         }
     }

@@ -57,14 +57,22 @@ pub(super) fn for_each_link(
     };
     for sides in sides.chunk_by(|a, b| a.ends == b.ends) {
         visit(SpringKind::Structural, sides[0].ends, sides);
-        for (index, one) in sides.iter().enumerate() {
-            for other in &sides[index + 1..] {
-                let (a, b) = (one.opposite, other.opposite);
-                let ends = [a.min(b), a.max(b)];
-                // Two faces on top of each other have nothing across.
-                if distance(ends) > SMALLEST_AREA * distance(one.ends) {
-                    visit(SpringKind::Bend, ends, &[*one, *other]);
-                }
+        for_each_pair(sides, rest, |one, other| {
+            let (a, b) = (one.opposite, other.opposite);
+            visit(SpringKind::Bend, [a.min(b), a.max(b)], &[*one, *other]);
+        });
+    }
+}
+
+/// Calls `visit` with each two faces at an edge that have a spring across it.
+pub(super) fn for_each_pair(sides: &[Side], rest: &[Vec3], mut visit: impl FnMut(&Side, &Side)) {
+    let distance = |a: u32, b: u32| rest[a as usize].distance(rest[b as usize]);
+    for (index, one) in sides.iter().enumerate() {
+        for other in &sides[index + 1..] {
+            // Two faces on top of each other have nothing across.
+            let [a, b] = one.ends;
+            if distance(one.opposite, other.opposite) > SMALLEST_AREA * distance(a, b) {
+                visit(one, other);
             }
         }
     }

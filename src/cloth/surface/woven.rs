@@ -99,6 +99,22 @@ impl Surface {
         self.grain.get(face).copied()
     }
 
+    /// The square of the cosine between each edge of a mesh and the warp beside it, in the order of its links.
+    pub(super) fn along_warp(&self) -> Vec<f32> {
+        let threads = self
+            .links
+            .iter()
+            .filter(|link| link.kind == SpringKind::Structural);
+        let of_link = |link: &Link| {
+            let [a, b] = link.ends.map(|end| self.rest[end as usize]);
+            let direction = (b - a).normalize_or_zero();
+            let beside = self.incidence().at(link.ends).first();
+            let cosine = beside.map_or(1.0, |side| self.grain[side.face as usize].dot(direction));
+            (cosine * cosine).min(1.0)
+        };
+        threads.map(of_link).collect()
+    }
+
     /// The springs of a mesh whose weft is t⁴ times as compliant as its warp; `None` if they are the usual
     /// [links](Self::links). See [`calibrate`].
     pub(crate) fn woven_links(&self, ratio: f32) -> Option<Vec<Link>> {

@@ -1,10 +1,11 @@
-//! Ways to and from the rest of the world: rapier, egui, picking, snapshots, reflection, diagnostics, and floating origins.
+//! Ways to and from the rest of the world: rapier, egui, picking, blades, snapshots, reflection, diagnostics, and floating origins.
 //!
-//! In: any of the components. Out: colliders, bodies and velocities of rapier, widgets, hits of rays, snapshots, diagnostics. No stage imports
+//! In: any of the components. Out: colliders, bodies and velocities of rapier, widgets, hits of rays, cuts, snapshots, diagnostics. No stage imports
 //! from here.
 
 #[cfg(feature = "bake")]
 mod bake;
+mod blade;
 mod diagnostics;
 mod origin;
 #[cfg(feature = "egui")]
@@ -21,6 +22,7 @@ mod snapshot;
 
 #[cfg(feature = "bake")]
 pub use bake::{BakeError, ClothBake};
+pub use blade::ClothBlade;
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use origin::shift_cloths;
 #[cfg(feature = "egui")]

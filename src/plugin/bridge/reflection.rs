@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothDensity, ClothGrain, ClothSkin, Pins},
+    cloth::{Cloth, ClothDensity, ClothGrain, ClothSkin, ClothTears, Pins},
     contact::ClothCollider,
     plugin::authoring::{
         BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, GlobalClothLod,
@@ -23,6 +23,7 @@ pub(crate) fn register_lists(app: &mut App) {
     register::<ClothCollider>(app);
     register::<ClothDensity>(app);
     register::<ClothGrain>(app);
+    register::<ClothTears>(app);
     register::<Pins>(app);
     register::<ClothAttachments>(app);
     register::<ClothBones>(app);

@@ -56,6 +56,7 @@ pub(super) fn sleeps_as_it_was(
         && is_in_same_pose(cloth, around)
         && cloth.fault.is_none()
         && built.has_grain(cloth.game.grain())
+        && built.is_torn_by(cloth.game.tears())
         && built.is_made_from(
             cloth.game.cloth.last_changed(),
             cloth.game.weighed(),

@@ -10,11 +10,12 @@ use bevy::{
 use super::{
     resample::{is_same_rectangle, resample},
     source::Sources,
+    tears::follow_tears,
 };
 use crate::{
     cloth::{
-        Cloth, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothParticles, DensityFactors,
-        Pins, Surface,
+        Cloth, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothParticles, ClothTears,
+        DensityFactors, Pins, Surface,
     },
     plugin::{
         authoring::ClothAttachment,
@@ -38,6 +39,8 @@ pub(crate) struct BuildInputs<'a> {
     pub grain: Option<(&'a ClothGrain, Option<Tick>)>,
     /// Its density, and when that was last changed.
     pub density: Option<(&'a ClothDensity, Tick)>,
+    /// Its tears, and when they were last changed.
+    pub tears: Option<(&'a ClothTears, Tick)>,
     pub pins: &'a Pins,
     pub attachments: &'a [ClothAttachment],
     pub scale: Vec3,
@@ -54,7 +57,17 @@ impl BuildInputs<'_> {
         self.grain.and_then(|(_, changed)| changed)
     }
 
-    fn factors(&self, surface: &Surface) -> Result<DensityFactors, ClothError> {
+    /// When its tears were last changed.
+    pub(super) fn torn(&self) -> Option<Tick> {
+        self.tears.map(|(_, changed)| changed)
+    }
+
+    pub(super) fn tears(&self) -> ClothTears {
+        self.tears
+            .map_or_else(ClothTears::none, |(tears, _)| tears.clone())
+    }
+
+    pub(super) fn factors(&self, surface: &Surface) -> Result<DensityFactors, ClothError> {
         self.density.map_or_else(
             || Ok(DensityFactors::default()),
             |(density, _)| density.factors(surface),
@@ -67,7 +80,7 @@ impl BuildInputs<'_> {
 pub(crate) enum Build {
     /// The particles are those of the last tick.
     Kept,
-    /// Of another resolution, at the places of the last tick.
+    /// Of another resolution, or torn, at the places of the last tick.
     Resampled,
     /// New particles.
     New,
@@ -83,7 +96,8 @@ pub(crate) fn build(
     state: &mut ClothState,
 ) -> Result<Build, ClothError> {
     let is_built = is_built(wanted, built) && !particles.is_empty();
-    if is_built && built.has_grain(wanted.grain) {
+    let has_grain = is_built && built.has_grain(wanted.grain);
+    if has_grain && built.is_torn_by(wanted.tears) {
         follow_changes(wanted, parts, particles, built, state)?;
         return Ok(Build::Kept);
     }
@@ -94,6 +108,7 @@ pub(crate) fn build(
         material: *wanted.material,
         grained: wanted.grain.map(|(_, changed)| changed),
         weighed: wanted.weighed(),
+        torn: wanted.torn(),
         pins: wanted.pins.clone(),
         scale: wanted.scale,
         particles: [particles.columns(), particles.rows()],
@@ -104,7 +119,9 @@ pub(crate) fn build(
         return Err(error.clone());
     }
     let resumes = state.resumes;
-    let new = if is_built {
+    let new = if has_grain && !resumes {
+        follow_tears(wanted, parts, particles, built, state)
+    } else if is_built && !has_grain {
         follow_grain(wanted, sources, parts, particles, built, state)
     } else {
         build_new(wanted, sources, parts, particles, built, state)
@@ -158,6 +175,7 @@ fn build_new(
         scale: scale_of(wanted),
         source: wanted.source,
         grain: wanted.grain.map(|(grain, _)| grain.clone()),
+        tears: wanted.tears(),
     };
     let shared = parts.get(&recipe, material, || sources.surface(&recipe))?;
     let surface = &shared.surface;
@@ -194,6 +212,7 @@ fn build_new(
         weighed: wanted.weighed(),
         factors,
         pins: pins.clone(),
+        torn: wanted.torn(),
     });
     Ok(build)
 }
@@ -308,7 +327,7 @@ fn at_rest(
 
 /// Takes over another material or other pins: masses, springs and tree only where they change, so that a
 /// mass that the game has set outlasts a change of damping.
-fn follow_changes(
+pub(super) fn follow_changes(
     wanted: &BuildInputs,
     parts: &mut SharedParts,
     particles: &mut Mut<ClothParticles>,
@@ -367,7 +386,10 @@ fn follow_changes(
 }
 
 /// Whether the particles are as many as the surface has. One row of them is laid out as the surface is.
-fn check_count(particles: &mut Mut<ClothParticles>, surface: &Surface) -> Result<(), ClothError> {
+pub(super) fn check_count(
+    particles: &mut Mut<ClothParticles>,
+    surface: &Surface,
+) -> Result<(), ClothError> {
     if particles.matches(surface) {
         return Ok(());
     }

@@ -213,6 +213,7 @@ fn build_cloth(
         material: &inputs.material,
         grain: cloth.game.grain(),
         density: (cloth.game.density.as_ref()).map(|density| (&**density, density.last_changed())),
+        tears: cloth.game.tears(),
         pins: cloth.game.pins.unwrap_or(&NO_PINS),
         attachments: cloth
             .game

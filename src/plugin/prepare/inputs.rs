@@ -32,6 +32,9 @@ impl Inputs {
         let settings = game.settings.copied().unwrap_or_default();
         let material = game.material.copied().unwrap_or_default();
         settings.validate()?;
+        if let Some(tearing) = game.torn.1 {
+            tearing.validate(&material)?;
+        }
         let search = game.method.copied().unwrap_or_default();
         search.validate()?;
         let gravity = settings.gravity.unwrap_or(gravity);

@@ -26,6 +26,7 @@ mod roots;
 mod skin;
 mod source;
 mod step;
+mod tears;
 mod wind;
 
 pub(crate) use broad_phase::cover;

@@ -10,7 +10,8 @@ use bevy::ecs::{
 use super::{attach::Targets, roots::Roots, skin::Skins, source::Sources};
 use crate::{
     cloth::{
-        Cloth, ClothDensity, ClothGrain, ClothMaterial, ClothParticles, ClothShape, ClothSkin, Pins,
+        Cloth, ClothDensity, ClothGrain, ClothMaterial, ClothParticles, ClothShape, ClothSkin,
+        ClothTearing, ClothTears, Pins,
     },
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
@@ -35,6 +36,10 @@ pub(crate) struct GameQuery {
     pub material: Option<&'static ClothMaterial>,
     pub grain: Option<Ref<'static, ClothGrain>>,
     pub density: Option<Ref<'static, ClothDensity>>,
+    pub torn: (
+        Option<Ref<'static, ClothTears>>,
+        Option<&'static ClothTearing>,
+    ),
     pub pins: Option<&'static Pins>,
     pub attachments: Option<&'static ClothAttachments>,
     pub skin: Option<Ref<'static, ClothSkin>>,
@@ -55,6 +60,12 @@ impl GameQueryItem<'_, '_> {
     /// When the density was last changed, if it has one.
     pub fn weighed(&self) -> Option<Tick> {
         self.density.as_ref().map(DetectChanges::last_changed)
+    }
+
+    /// The tears and when they were last changed, if it has any.
+    pub fn tears(&self) -> Option<(&ClothTears, Tick)> {
+        let tears = self.torn.0.as_ref()?;
+        Some((&**tears, tears.last_changed()))
     }
 
     /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft.

@@ -11,8 +11,8 @@ use bevy::{
 use super::{notices::Noticed, pose::SkinLimits, shared::Shared, source::Source};
 use crate::{
     cloth::{
-        ClothError, ClothGrain, ClothMaterial, ClothParticles, DensityFactors, Pins, Springs,
-        Surface,
+        ClothError, ClothGrain, ClothMaterial, ClothParticles, ClothTears, DensityFactors, Pins,
+        Springs, Surface,
     },
     hierarchy::QuadTree,
     solver::{Solver, Tethers, material_stretch},
@@ -58,6 +58,9 @@ pub struct ClothBuilt {
     pub(crate) pinned: Vec<u32>,
     #[reflect(ignore)]
     pub(crate) pins_version: u32,
+    /// The place of the last tear, in the cloth's frame (m), and how many edges it tore, until that is reported.
+    #[reflect(ignore)]
+    pub(crate) unreported_tear: Option<(Vec3, usize)>,
 }
 
 /// The inputs of a cloth, besides the recipe of its surface.
@@ -73,6 +76,8 @@ pub(crate) struct BuiltFrom {
     pub weighed: Option<Tick>,
     pub factors: DensityFactors,
     pub pins: Pins,
+    /// When its `ClothTears` were last changed, if it has them.
+    pub torn: Option<Tick>,
 }
 
 /// The inputs of a cloth that could not be built, besides the recipe of its surface.
@@ -83,6 +88,7 @@ pub(crate) struct FailedBuild {
     pub material: ClothMaterial,
     pub grained: Option<Option<Tick>>,
     pub weighed: Option<Tick>,
+    pub torn: Option<Tick>,
     pub pins: Pins,
     pub scale: Vec3,
     /// Its columns and rows.
@@ -127,6 +133,19 @@ impl ClothBuilt {
             }
             (known, wanted) => known.is_none() && wanted.is_none(),
         }
+    }
+
+    /// Whether it is torn by these tears, which were last changed then. Values are compared only where they were written.
+    pub(crate) fn is_torn_by(&self, wanted: Option<(&ClothTears, Tick)>) -> bool {
+        let known = self.from.as_ref().and_then(|from| from.torn);
+        known == wanted.map(|(_, changed)| changed)
+            || wanted.map_or(&[][..], |(tears, _)| tears.edges()) == self.tears().edges()
+    }
+
+    /// The tears of its surface.
+    pub(crate) fn tears(&self) -> &ClothTears {
+        static NONE: ClothTears = ClothTears::none();
+        (self.shared.recipe.as_ref()).map_or(&NONE, |recipe| &recipe.tears)
     }
 
     /// Whether it was made from a `Cloth` and a `ClothDensity` that were changed then, and from this material and these
@@ -255,7 +274,7 @@ mod tests {
         super::shared::{Recipe, SharedParts},
         *,
     };
-    use crate::cloth::Cloth;
+    use crate::cloth::{Cloth, ClothTears};
 
     /// Gravity swings between nothing and 60 m/s² for 200 ticks: tethers are made as it first grows, for 9.81 and each
     /// doubling of it up to four fifths of 60, and never again.
@@ -269,6 +288,7 @@ mod tests {
         let mut parts = SharedParts::default();
         let recipe = Recipe {
             grain: None,
+            tears: ClothTears::default(),
             shape: cloth.shape,
             scale: Vec3::ONE,
             source: None,

@@ -7,8 +7,8 @@ use bevy::{ecs::resource::Resource, math::Vec3};
 use super::source::Source;
 use crate::{
     cloth::{
-        ClothError, ClothGrain, ClothMaterial, ClothShape, ClothWeft, Skinning, SpringKind,
-        Springs, Surface, TriangleMesh,
+        ClothError, ClothGrain, ClothMaterial, ClothShape, ClothTears, ClothWeft, Skinning,
+        SpringKind, Springs, Surface, TriangleMesh,
     },
     contact::Sheet,
     hierarchy::QuadTree,
@@ -71,6 +71,7 @@ pub(crate) struct Recipe {
     pub source: Option<Source>,
     /// The grain of a mesh with a weft.
     pub grain: Option<ClothGrain>,
+    pub tears: ClothTears,
 }
 
 impl Recipe {
@@ -79,17 +80,21 @@ impl Recipe {
     /// # Errors
     /// Those of [`ClothShape::surface`] and of its grain.
     pub fn surface_without_asset(&self) -> Result<Surface, ClothError> {
-        self.grained(self.shape.surface(self.scale)?, &TriangleMesh::default())
+        self.finished(self.shape.surface(self.scale)?, &TriangleMesh::default())
     }
 
-    /// A surface made from `mesh`, with its grain.
+    /// A surface made from `mesh`, with its grain and its tears.
     ///
     /// # Errors
-    /// Those of [`ClothGrain::apply`].
-    pub fn grained(&self, surface: Surface, mesh: &TriangleMesh) -> Result<Surface, ClothError> {
-        match &self.grain {
-            Some(grain) => grain.apply(surface, mesh),
-            None => Ok(surface),
+    /// Those of [`ClothGrain::apply`] and of [`Surface::torn`].
+    pub fn finished(&self, surface: Surface, mesh: &TriangleMesh) -> Result<Surface, ClothError> {
+        let surface = match &self.grain {
+            Some(grain) => grain.apply(surface, mesh)?,
+            None => surface,
+        };
+        match self.tears.edges() {
+            [] => Ok(surface),
+            edges => Arc::new(surface).torn(edges),
         }
     }
 }

@@ -1,14 +1,14 @@
 //! The snapshot of a single cloth.
 
 use bevy::ecs::{
-    change_detection::DetectChanges,
+    change_detection::{DetectChanges, DetectChangesMut},
     entity::{Entity, EntityMapper, MapEntities},
     world::World,
 };
 
 use super::error::SnapshotError;
 use crate::{
-    cloth::{Cloth, ClothParticles},
+    cloth::{Cloth, ClothParticles, ClothTears},
     contact::MutualContact,
     plugin::{
         authoring::ClothAttachments,
@@ -42,6 +42,7 @@ pub struct ClothSnapshot {
     frame: ClothFrame,
     state: ClothState,
     contacts: ClothContacts,
+    tears: ClothTears,
     /// Contact with itself alone.
     mutual: Option<Box<MutualContact>>,
     /// Whether the game has written the particles since the last tick.
@@ -57,6 +58,7 @@ impl Default for ClothSnapshot {
             frame: ClothFrame::default(),
             state: ClothState::default(),
             contacts: ClothContacts::default(),
+            tears: ClothTears::none(),
             mutual: None,
             is_written: false,
         }
@@ -65,7 +67,7 @@ impl Default for ClothSnapshot {
 
 impl ClothSnapshot {
     /// Version of the snapshots that this crate writes. It reads no other version.
-    pub const VERSION: u32 = 1;
+    pub const VERSION: u32 = 2;
 
     /// A snapshot of the current state of a cloth.
     ///
@@ -107,6 +109,10 @@ impl ClothSnapshot {
         self.is_written = state.inputs.written != Some(particles.last_changed());
         self.contacts.clone_from(contacts);
         self.mutual.clone_from(&scratch.mutual);
+        match world.get::<ClothTears>(cloth) {
+            Some(tears) => self.tears.clone_from(tears),
+            None => self.tears = ClothTears::none(),
+        }
         Ok(())
     }
 
@@ -143,6 +149,15 @@ impl ClothSnapshot {
         let mut entity = world.entity_mut(cloth);
         // A game may have removed some.
         entity.insert_if_new(<(ClothParticles, ClothParts)>::default());
+        match entity.get_mut::<ClothTears>() {
+            Some(mut tears) => {
+                tears.set_if_neq(self.tears.clone());
+            }
+            None if self.tears.is_empty() => {}
+            None => {
+                entity.insert(self.tears.clone());
+            }
+        }
         let wanted = entity.get::<ClothAttachments>().cloned();
         let last_written = entity
             .get::<ClothState>()

@@ -13,7 +13,7 @@ use bevy::{
 
 use super::{
     drawing::MeshDrawing,
-    write::{Tangents, copy_of, mesh_of},
+    write::{Tangents, TornVertices, copy_of, mesh_of},
 };
 use crate::{
     cloth::{Cloth, ClothShape},
@@ -31,16 +31,17 @@ pub(super) fn add_meshes(
         &ClothBuilt,
         Option<&Mesh3d>,
         Option<&ClothMesh>,
-        Option<&MeshDrawing>,
         Option<&SkinnedMesh>,
     )>,
+    mut drawings: Query<&mut MeshDrawing>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut notices: ResMut<Notices>,
     mut commands: Commands,
 ) {
-    for (entity, cloth, built, mesh, drawn, drawing, skin) in &cloths {
+    for (entity, cloth, built, mesh, drawn, skin) in &cloths {
         let surface = built.surface();
-        let is_current = drawing.is_some_and(|drawing| drawing.is_of(surface));
+        let drawing = drawings.get(entity);
+        let is_current = drawing.is_ok_and(|drawing| drawing.is_of(surface));
         let is_right = |drawn: &ClothMesh| is_current && meshes.contains(&drawn.handle);
         if surface.is_empty() {
             continue;
@@ -64,7 +65,7 @@ pub(super) fn add_meshes(
         let other = mesh.filter(|mesh| drawn.is_none_or(|drawn| drawn.handle != mesh.0));
         let is_asset = matches!(cloth.shape, ClothShape::Mesh { .. });
         let is_own = |mesh: &Mesh3d| {
-            let mut drawn = cloths.iter().filter_map(|(.., drawn, _, _)| drawn);
+            let mut drawn = cloths.iter().filter_map(|(.., drawn, _)| drawn);
             drawn.any(|drawn| drawn.handle == mesh.0)
         };
         // A scene or a clone brings a mesh of the plugin's along.
@@ -78,7 +79,8 @@ pub(super) fn add_meshes(
         let copy = source
             .as_ref()
             .and_then(|source| copy_of(meshes.get(source)?, surface));
-        let copy = copy.unwrap_or_else(|| mesh_of(surface));
+        let (copy, vertices) =
+            copy.unwrap_or_else(|| (mesh_of(surface), TornVertices::of_particles(surface)));
         let tangents = Tangents::of(&copy);
         let handle = meshes.add(copy);
         let drawn = ClothMesh {
@@ -86,14 +88,20 @@ pub(super) fn add_meshes(
             source,
             replaced,
         };
-        let drawing = MeshDrawing {
+        let new = MeshDrawing {
             surface: surface.clone(),
             tangents,
+            vertices,
             ..MeshDrawing::default()
         };
-        commands
-            .entity(entity)
-            .try_insert((Mesh3d(handle), drawn, drawing));
+        let mut cloth = commands.entity(entity);
+        cloth.try_insert((Mesh3d(handle), drawn));
+        match drawings.get_mut(entity) {
+            Ok(mut drawing) => drawing.replace(new),
+            Err(_) => {
+                cloth.try_insert(new);
+            }
+        }
     }
 }
 

@@ -5,9 +5,15 @@ use std::sync::Arc;
 use bevy::{
     ecs::{change_detection::Tick, component::Component, entity::Entity},
     math::{Affine3A, Vec3},
+    mesh::Mesh,
 };
 
-use super::{blend::Blend, placing::Carriers, skin::DrawnPose, write::Tangents};
+use super::{
+    blend::Blend,
+    placing::Carriers,
+    skin::DrawnPose,
+    write::{Tangents, TornVertices, write_mesh},
+};
 use crate::{
     cloth::Surface,
     plugin::frame::{ClothFrame, Shift},
@@ -21,6 +27,7 @@ pub(crate) struct MeshDrawing {
     /// The surface that it is a mesh of.
     pub(super) surface: Arc<Surface>,
     pub(super) tangents: Tangents,
+    pub(super) vertices: TornVertices,
     /// Positions as the last tick began, in the cloth's frame.
     pub(super) previous: Vec<Vec3>,
     /// The carriers of its pins, as of the last two ticks.
@@ -49,6 +56,27 @@ pub(crate) struct MeshDrawing {
 }
 
 impl MeshDrawing {
+    /// Takes over the mesh of another surface. It moves on from where it is drawn.
+    pub(super) fn replace(&mut self, new: Self) {
+        let old = std::mem::replace(self, new);
+        (self.previous, self.carriers, self.pose) = (old.previous, old.carriers, old.pose);
+        (self.rested, self.drives) = (old.rested, old.drives);
+        self.version = old.version.wrapping_add(1);
+    }
+
+    /// Writes what is drawn into the mesh.
+    pub(super) fn write(&mut self, mesh: &mut Mesh) {
+        let Self {
+            surface,
+            vertices,
+            drawn,
+            normals,
+            tangents,
+            ..
+        } = self;
+        write_mesh(mesh, surface, vertices, drawn, normals, tangents);
+    }
+
     /// In this frame the cloth drives another mesh, so its drawn positions are needed even if it is hidden.
     pub(crate) fn drive(&mut self) {
         self.drives = true;

@@ -42,7 +42,6 @@ use crate::{
 };
 use adding::{add_meshes, remove_mesh};
 use placing::Drawn;
-use write::write_mesh;
 
 pub(crate) use drawing::MeshDrawing;
 
@@ -251,10 +250,9 @@ impl DrawQueryItem<'_, '_> {
         let surface = self.built.surface();
         if is_seen
             && let Some(mut mesh) = meshes.get_mut(&self.mesh.handle)
-            && mesh.count_vertices() == surface.vertices()
+            && mesh.count_vertices() == drawing.vertices.len(surface)
         {
-            let (normals, tangents) = (&mut drawing.normals, &mut drawing.tangents);
-            write_mesh(&mut mesh, surface, &drawing.drawn, normals, tangents);
+            drawing.write(&mut mesh);
         }
     }
 

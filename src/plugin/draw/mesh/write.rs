@@ -4,6 +4,7 @@ use bevy::{
     asset::RenderAssetUsages,
     math::{Vec2, Vec3},
     mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
+    platform::collections::HashMap,
 };
 
 use crate::cloth::{Surface, TriangleMesh};
@@ -11,7 +12,7 @@ use crate::cloth::{Surface, TriangleMesh};
 /// A mesh of a surface at rest, with the vertices that it was made from, and texture coordinates and tangents where it has
 /// them.
 pub(super) fn mesh_of(surface: &Surface) -> Mesh {
-    let particle_of = |vertex: usize| surface.particle_of_vertex(vertex);
+    let (count, particle_of) = vertices_of(surface);
     // A vertex without a particle belongs to no triangle.
     let place = |vertex: usize| {
         particle_of(vertex).map_or(Vec3::ZERO, |particle| surface.rest_positions()[particle])
@@ -19,12 +20,12 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
     let normal =
         |vertex: usize| particle_of(vertex).map_or(Vec3::Y, |particle| surface.normal_of(particle));
     let mut vertex_of = vec![0; surface.len()];
-    for vertex in (0..surface.vertices()).rev() {
+    for vertex in (0..count).rev() {
         if let Some(particle) = particle_of(vertex) {
             vertex_of[particle] = vertex as u32;
         }
     }
-    let vertices = 0..surface.vertices();
+    let vertices = 0..count;
     let positions: Vec<_> = vertices
         .clone()
         .map(|vertex| place(vertex).to_array())
@@ -40,18 +41,106 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
     .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
     .with_inserted_indices(Indices::U32(indices));
     // Surfaces that the game gives as triangles have none.
-    if surface.uvs().len() == surface.vertices() {
+    if surface.uvs().len() == count {
         let uvs: Vec<_> = surface.uvs().iter().map(Vec2::to_array).collect();
-        let tangents = vec![[1.0, 0.0, 0.0, 1.0]; surface.vertices()];
+        let tangents = vec![[1.0, 0.0, 0.0, 1.0]; count];
         mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, uvs);
         mesh.insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
     }
     mesh
 }
 
+/// The vertices of a mesh without an asset, and the particle of each. Where the surface is torn, each particle has a vertex of
+/// its own.
+fn vertices_of(surface: &Surface) -> (usize, impl Fn(usize) -> Option<usize> + '_) {
+    let is_torn = surface.is_torn();
+    let count = if is_torn {
+        surface.len()
+    } else {
+        surface.vertices()
+    };
+    let particle_of = move |vertex: usize| match is_torn {
+        true => Some(vertex),
+        false => surface.particle_of_vertex(vertex),
+    };
+    (count, particle_of)
+}
+
+/// The particle of each vertex of the mesh of a torn surface, in place of the surface's own.
+#[derive(Debug, Default)]
+pub(super) struct TornVertices(Vec<u32>);
+
+impl TornVertices {
+    /// Those of [`mesh_of`].
+    pub fn of_particles(surface: &Surface) -> Self {
+        let count = if surface.is_torn() { surface.len() } else { 0 };
+        Self((0..count as u32).collect())
+    }
+
+    /// The particle of a vertex.
+    fn particle_of(&self, surface: &Surface, vertex: usize) -> Option<usize> {
+        if self.0.is_empty() {
+            return surface.particle_of_vertex(vertex);
+        }
+        let particle = *self.0.get(vertex)? as usize;
+        (particle < surface.len()).then_some(particle)
+    }
+
+    /// Number of vertices.
+    pub fn len(&self, surface: &Surface) -> usize {
+        match self.0.len() {
+            0 => surface.vertices(),
+            count => count,
+        }
+    }
+
+    /// Splits the vertices of an asset's mesh as the surface's particles are.
+    fn split(mesh: &mut Mesh, surface: &Surface, mut triangles: Vec<[u32; 3]>) -> Self {
+        if !surface.is_torn() {
+            return Self::default();
+        }
+        let vertices = surface.vertices();
+        let whole = (0..vertices).map(|vertex| surface.particle_of_vertex(vertex));
+        let mut particles: Vec<u32> = whole
+            .map(|of| of.map_or(u32::MAX, |of| of as u32))
+            .collect();
+        let faces = surface.faces_by_origin();
+        let mut origins: Vec<u32> = (0..vertices as u32).collect();
+        let mut split: HashMap<(u32, u32), u32> = HashMap::default();
+        for triangle in &mut triangles {
+            let of_vertices = triangle.map(|vertex| particles[vertex as usize]);
+            let mut sorted = of_vertices;
+            sorted.sort_unstable();
+            let Some(face) = faces.get(&sorted) else {
+                continue;
+            };
+            for (vertex, whole) in triangle.iter_mut().zip(of_vertices) {
+                let part = face.iter().find(|part| surface.origin_of(**part) == whole);
+                let part = part.copied().unwrap_or(whole);
+                if part != whole {
+                    *vertex = *split.entry((*vertex, part)).or_insert_with(|| {
+                        origins.push(*vertex);
+                        particles.push(part);
+                        origins.len() as u32 - 1
+                    });
+                }
+            }
+        }
+        mesh.insert_indices(Indices::U32(origins));
+        mesh.duplicate_vertices();
+        let mut list = Mesh::new(PrimitiveTopology::TriangleList, mesh.asset_usage);
+        for (attribute, values) in mesh.attributes() {
+            list.insert_attribute(*attribute, values.clone());
+        }
+        let indices = triangles.into_iter().flatten().collect();
+        *mesh = list.with_inserted_indices(Indices::U32(indices));
+        Self(particles)
+    }
+}
+
 /// A copy of an asset for one cloth: it is read and written, and lit. Triangles outside the surface are left out, as
 /// their corners do not move. `None` if the asset can't be read, or does not match the surface.
-pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<Mesh> {
+pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<(Mesh, TornVertices)> {
     let TriangleMesh {
         positions,
         triangles,
@@ -86,7 +175,12 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<Mesh> {
         }
         mesh = list.with_inserted_indices(Indices::U32(left));
     }
-    Some(mesh)
+    let triangles = triangles
+        .into_iter()
+        .filter(|triangle| moves(&triangle))
+        .collect();
+    let vertices = TornVertices::split(&mut mesh, surface, triangles);
+    Some((mesh, vertices))
 }
 
 /// How the tangents of a mesh follow its vertices: by the texture coordinates of its triangles.
@@ -179,6 +273,7 @@ impl Tangents {
 pub(super) fn write_mesh(
     mesh: &mut Mesh,
     surface: &Surface,
+    vertices: &TornVertices,
     drawn: &[Vec3],
     normals: &mut Vec<Vec3>,
     tangents: &mut Tangents,
@@ -190,7 +285,7 @@ pub(super) fn write_mesh(
     ] {
         if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
             for (vertex, value) in values.iter_mut().enumerate() {
-                if let Some(particle) = surface.particle_of_vertex(vertex) {
+                if let Some(particle) = vertices.particle_of(surface, vertex) {
                     *value = of_particles[particle].to_array();
                 }
             }

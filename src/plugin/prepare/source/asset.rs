@@ -138,6 +138,6 @@ impl Sources<'_, '_> {
             return recipe.surface_without_asset();
         };
         let mesh = self.triangles(source.mesh)?;
-        recipe.grained(Surface::of_mesh(&mesh, *weld, recipe.scale)?, &mesh)
+        recipe.finished(Surface::of_mesh(&mesh, *weld, recipe.scale)?, &mesh)
     }
 }

@@ -1,0 +1,221 @@
+//! Cloth that tears where it is loaded too much.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::{
+    error::ClothError, material::ClothMaterial, particles::ClothParticles, surface::Surface,
+    tears::ClothTears,
+};
+
+/// Tears a cloth where its threads bear more than their strength. A tear begins at the thread that is overloaded most, and runs
+/// across it from tick to tick, an edge at a time.
+///
+/// The load of a thread is its stretch over the material's stretch compliance (N/m, the force on a strip over its width). So the
+/// cloth needs a compliance: none of [`ClothMaterial`]'s presets for fabrics is rigid. Beside a pin a coarse cloth is
+/// stretched more than it should be, see [`ClothSettings`](crate::solver::ClothSettings); that counts as load, too.
+///
+/// The edges are listed in [`ClothTears`], which this component requires. `ClothTorn` messages tell of each tear.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// fn banner(mut commands: Commands) {
+///     commands.spawn((Cloth::new(20, 30, 0.05), ClothMaterial::COTTON, ClothTearing::new(200.0)));
+/// }
+/// # bevy::ecs::system::assert_is_system(banner);
+/// ```
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(ClothTears)]
+pub struct ClothTearing {
+    /// The load that threads along the warp can bear: along the columns of a grid, and along any edge of a mesh without a
+    /// [grain](crate::cloth::ClothGrain) (N/m).
+    pub strength: f32,
+    /// The same along the weft: along the rows of a grid (N/m).
+    pub weft_strength: f32,
+}
+
+impl Default for ClothTearing {
+    /// 200 N/m both ways: a fifth of a thin cotton's.
+    fn default() -> Self {
+        Self::new(200.0)
+    }
+}
+
+impl ClothTearing {
+    /// As strong along the weft as along the warp (N/m).
+    pub const fn new(strength: f32) -> Self {
+        Self {
+            strength,
+            weft_strength: strength,
+        }
+    }
+
+    /// Checks that the strengths are positive, and that the material stretches.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`].
+    pub fn validate(&self, material: &ClothMaterial) -> Result<(), ClothError> {
+        let is_positive = |value: f32| value > 0.0;
+        for strength in [self.strength, self.weft_strength] {
+            ClothError::check(
+                strength,
+                is_positive,
+                "strength of a cloth that tears (N/m)",
+                "positive",
+            )?;
+        }
+        for compliance in material.stretch_compliances() {
+            let quantity = "stretch compliance of a cloth that tears (m/N)";
+            ClothError::check(compliance, is_positive, quantity, "positive")?;
+        }
+        Ok(())
+    }
+}
+
+/// The search for edges to tear next. Its memory is reused from tick to tick.
+#[derive(Debug, Default)]
+pub(crate) struct TearSearch {
+    places: Vec<Vec3>,
+    /// Each overloaded edge, the most loaded first: its load over its strength, and its ends.
+    overloaded: Vec<(f32, [u32; 2])>,
+}
+
+impl TearSearch {
+    /// Tears at the most overloaded edge of each part of a cloth, or at those at which its tears end: a tear that runs takes
+    /// the load off the rest. Returns these edges, of the whole surface.
+    pub fn edges(
+        &mut self,
+        tearing: &ClothTearing,
+        material: &ClothMaterial,
+        surface: &Surface,
+        particles: &ClothParticles,
+        tears: &ClothTears,
+    ) -> Vec<[u32; 2]> {
+        self.places.clear();
+        self.places.extend(particles.positions());
+        self.find_overloaded(tearing, material, surface);
+        if self.overloaded.is_empty() {
+            return Vec::new();
+        }
+        self.overloaded
+            .sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut is_end = vec![false; surface.len()];
+        for end in tears.edges().iter().flatten() {
+            is_end[*end as usize] = true;
+        }
+        let pieces = surface.graph().pieces_of();
+        let splits: Vec<(bool, u32, Vec<[u32; 2]>)> = (self.overloaded.iter())
+            .filter_map(|(_, ends)| split(*ends, surface, particles, &is_end))
+            .collect();
+        let mut has_running = vec![false; surface.len()];
+        for (runs, particle, _) in &splits {
+            has_running[pieces[*particle as usize] as usize] |= runs;
+        }
+        let mut is_used = vec![false; surface.len()];
+        let mut has_begun = vec![false; surface.len()];
+        let mut torn = Vec::new();
+        for (runs, particle, edges) in splits {
+            let piece = pieces[particle as usize] as usize;
+            let may_tear = runs || !has_running[piece] && !has_begun[piece];
+            let ends = || edges.iter().flatten().map(|end| *end as usize);
+            if may_tear && !ends().any(|end| is_used[end]) {
+                has_begun[piece] = true;
+                ends().for_each(|end| is_used[end] = true);
+                torn.extend(edges);
+            }
+        }
+        torn
+    }
+
+    fn find_overloaded(
+        &mut self,
+        tearing: &ClothTearing,
+        material: &ClothMaterial,
+        surface: &Surface,
+    ) {
+        let Self {
+            places, overloaded, ..
+        } = self;
+        overloaded.clear();
+        let [weft, warp] = material.stretch_compliances();
+        let bears = [weft * tearing.weft_strength, warp * tearing.strength];
+        surface.for_each_thread(|ends, rest_length, along_warp| {
+            let [a, b] = ends.map(|end| places[end as usize]);
+            let stretch = a.distance(b) / rest_length - 1.0;
+            // Between both, as an ellipse has it.
+            let borne = match along_warp {
+                0.0 => bears[0],
+                1.0 => bears[1],
+                square => {
+                    1.0 / ((1.0 - square) / bears[0].powi(2) + square / bears[1].powi(2)).sqrt()
+                }
+            };
+            if stretch > borne {
+                overloaded.push((stretch / borne, ends));
+            }
+        });
+    }
+}
+
+/// Where an overloaded edge has the cloth tear: whether a tear runs on there, at which of its ends, and along which edges
+/// of the whole surface. That end is one at which a tear ends, or else one at a border. `None` if it is pinned, or has
+/// faces on one side alone.
+fn split(
+    ends: [u32; 2],
+    surface: &Surface,
+    particles: &ClothParticles,
+    is_end: &[bool],
+) -> Option<(bool, u32, Vec<[u32; 2]>)> {
+    let rest = surface.rest_positions();
+    let [from, to] = ends.map(|end| rest[end as usize]);
+    let mut best: Option<(bool, u32, Vec<[u32; 2]>)> = None;
+    for end in ends {
+        if particles.is_pinned(end as usize) != Some(false) {
+            continue;
+        }
+        let edges = across(end, to - from, surface);
+        let runs = is_end[surface.origin_of(end) as usize];
+        // One edge is enough at a border.
+        let is_better = best
+            .as_ref()
+            .is_none_or(|(known, _, others)| (runs, others.len()) > (*known, edges.len()));
+        if !edges.is_empty() && is_better {
+            let whole = |edge: [u32; 2]| edge.map(|end| surface.origin_of(end));
+            best = Some((runs, end, edges.into_iter().map(whole).collect()));
+        }
+    }
+    best
+}
+
+/// The edges at a particle that separate its faces on both sides of the plane across `direction`.
+fn across(particle: u32, direction: Vec3, surface: &Surface) -> Vec<[u32; 2]> {
+    let rest = surface.rest_positions();
+    let at = rest[particle as usize];
+    let fan: Vec<([u32; 3], bool)> = (surface.faces_around(particle))
+        .map(|face| {
+            let sum: Vec3 = face.iter().map(|corner| rest[*corner as usize] - at).sum();
+            (face, sum.dot(direction) > 0.0)
+        })
+        .collect();
+    let mut edges = Vec::new();
+    for (index, (face, side)) in fan.iter().enumerate() {
+        for (other, other_side) in &fan[..index] {
+            let shared = face
+                .iter()
+                .find(|corner| **corner != particle && other.contains(corner));
+            if let Some(end) = shared
+                && side != other_side
+            {
+                edges.push([particle, *end]);
+            }
+        }
+    }
+    edges
+}

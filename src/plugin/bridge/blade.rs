@@ -1,0 +1,83 @@
+//! Blades that cut cloth.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        system::{Query, SystemParam},
+    },
+    math::Vec3,
+};
+
+use crate::{
+    cloth::{ClothParticles, ClothTears, Cut},
+    plugin::{frame::ClothFrame, state::ClothBuilt},
+};
+
+/// Cuts cloths with a blade: a sword, scissors, the mouse. Only cloths with [`ClothTears`] or
+/// [`ClothTearing`](crate::cloth::ClothTearing) are cut.
+///
+/// A cut runs along the edges of the cloth's faces that are nearest to it: between two faces, if the way from the middle of one
+/// to the middle of the other goes through the swept area. It opens in the next tick. Cloth is where it was at the end of the
+/// last tick.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_drape::prelude::*;
+///
+/// #[derive(Component)]
+/// struct Sword {
+///     /// Hilt and tip, as the last tick ended.
+///     last: [Vec3; 2],
+/// }
+///
+/// fn slash(mut swords: Query<(&GlobalTransform, &mut Sword)>, mut blade: ClothBlade) {
+///     for (place, mut sword) in &mut swords {
+///         let now = [place.translation(), place.transform_point(Vec3::Y)];
+///         blade.sweep(sword.last, now);
+///         sword.last = now;
+///     }
+/// }
+/// # bevy::ecs::system::assert_is_system(slash);
+/// ```
+#[derive(SystemParam)]
+pub struct ClothBlade<'w, 's> {
+    cloths: Query<'w, 's, Cuttable>,
+}
+
+type Cuttable = (
+    Entity,
+    &'static ClothBuilt,
+    &'static ClothParticles,
+    &'static ClothFrame,
+    &'static mut ClothTears,
+);
+
+impl ClothBlade<'_, '_> {
+    /// Cuts where a straight blade goes from two ends to two others, in the world (m). Returns how many edges were torn.
+    /// Nothing is cut if an input is not finite.
+    pub fn sweep(&mut self, from: [Vec3; 2], to: [Vec3; 2]) -> usize {
+        self.sweep_where(from, to, |_| true)
+    }
+
+    /// The same, among the cloths for which `includes` returns true.
+    pub fn sweep_where(
+        &mut self,
+        from: [Vec3; 2],
+        to: [Vec3; 2],
+        includes: impl Fn(Entity) -> bool,
+    ) -> usize {
+        let mut torn = 0;
+        for (entity, built, particles, frame, mut tears) in &mut self.cloths {
+            if !(built.matches(particles) && includes(entity)) {
+                continue;
+            }
+            let to_cloth = frame.isometry().inverse();
+            let [from, to] = [from, to].map(|blade| blade.map(|end| to_cloth * end));
+            let edges = Cut::new(from, to).edges(built.surface(), particles);
+            if !edges.is_empty() {
+                torn += tears.tear_all(edges);
+            }
+        }
+        torn
+    }
+}

@@ -1,0 +1,96 @@
+//! Tears cloths that are simulated already.
+
+use std::sync::Arc;
+
+use bevy::{ecs::change_detection::Mut, math::Vec3};
+
+use super::build::{Build, BuildInputs, follow_changes};
+use crate::{
+    cloth::{ClothError, ClothParticles, Surface},
+    plugin::{
+        authoring::Attached,
+        state::{ClothBuilt, ClothState, Recipe, SharedParts},
+    },
+};
+
+/// Takes over other tears. Particles keep their places, motion and indices, and new ones follow.
+///
+/// # Errors
+/// [`ClothError::NoSuchEdge`]; the cloth stays as it was.
+pub(super) fn follow_tears(
+    wanted: &BuildInputs,
+    parts: &mut SharedParts,
+    particles: &mut Mut<ClothParticles>,
+    built: &mut ClothBuilt,
+    state: &mut ClothState,
+) -> Result<Build, ClothError> {
+    // What else has changed is of the same surface.
+    follow_changes(wanted, parts, particles, built, state)?;
+    let Some(known) = &built.shared.recipe else {
+        return Ok(Build::Kept);
+    };
+    let recipe = Recipe {
+        tears: wanted.tears(),
+        ..known.clone()
+    };
+    let before = built.surface().clone();
+    let shared = parts.get(&recipe, wanted.material, || {
+        let whole = before.whole();
+        match recipe.tears.edges() {
+            [] => Ok((*whole).clone()),
+            edges => whole.torn(edges),
+        }
+    })?;
+    let surface = &shared.surface;
+    let Some(parents) = surface.parents_in(&before) else {
+        return Ok(Build::Kept);
+    };
+    let torn = particles.torn(&before, surface, &parents);
+    **particles = torn;
+    let count = recipe
+        .tears
+        .edges()
+        .len()
+        .saturating_sub(built.tears().edges().len());
+    let place = place_of_tear(&recipe, before.len(), particles);
+    built.unreported_tear = place.map(|place| (place, count));
+    hold_parts(surface, &before, &parents, state);
+    built.solver = shared.solver.clone();
+    built.forget_tethers();
+    built.shared = shared;
+    if let Some(from) = &mut built.from {
+        from.torn = wanted.torn();
+        // Of each particle.
+        from.factors = wanted.factors(&built.shared.surface)?;
+    }
+    Ok(Build::Resampled)
+}
+
+/// The place of the first new particle, or the middle of the last torn edge, if nothing opened (m).
+fn place_of_tear(recipe: &Recipe, before: usize, particles: &ClothParticles) -> Option<Vec3> {
+    if before < particles.len() {
+        return Some(particles.position_at(before));
+    }
+    let [a, b] = recipe
+        .tears
+        .edges()
+        .last()?
+        .map(|end| particles.position_at(end as usize));
+    Some((a + b) / 2.0)
+}
+
+/// Attaches the new parts of attached particles, too.
+fn hold_parts(surface: &Arc<Surface>, before: &Surface, parents: &[u32], state: &mut ClothState) {
+    let attached = &mut state.attachments.attached;
+    attached.retain(|attached| (attached.particle as usize) < surface.len());
+    for known in 0..attached.len() {
+        for part in before.len()..surface.len() {
+            if parents[part] == attached[known].particle {
+                attached.push(Attached {
+                    particle: part as u32,
+                    ..attached[known]
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Tears cloth that is loaded too much, and tells of tears.
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        message::{Message, MessageWriter},
+        system::{Local, Query},
+    },
+    math::Vec3,
+};
+
+use crate::{
+    cloth::{ClothMaterial, ClothParticles, ClothTearing, ClothTears, TearSearch},
+    plugin::{
+        authoring::{ClothOrder, Ordered},
+        frame::ClothFrame,
+        state::{ClothBuilt, ClothState},
+    },
+};
+
+/// A cloth was torn or mended. It is sent in the tick after [`ClothTears`] changed.
+#[derive(Message, Debug, Clone, Copy, PartialEq)]
+pub struct ClothTorn {
+    /// The cloth.
+    pub cloth: Entity,
+    /// Number of edges that are torn since the last tick.
+    pub edges: usize,
+    /// Where: the first of the particles that came apart, in the world (m); or the middle of an edge, if none did.
+    pub place: Vec3,
+    /// Number of pieces that the cloth now has.
+    pub pieces: usize,
+}
+
+/// Tears each cloth that has a [`ClothTearing`] at edges that bear too much. They open in the next tick.
+pub(crate) fn tear_cloths(
+    mut cloths: Query<(
+        &ClothTearing,
+        Option<&ClothMaterial>,
+        &ClothBuilt,
+        &ClothParticles,
+        &ClothState,
+        &mut ClothTears,
+    )>,
+    mut search: Local<TearSearch>,
+) {
+    for (tearing, material, built, particles, state, mut tears) in &mut cloths {
+        let is_ready = state.is_valid && !state.rest.is_asleep() && built.matches(particles);
+        let material = material.copied().unwrap_or_default();
+        if is_ready && tearing.validate(&material).is_ok() {
+            let torn = search.edges(tearing, &material, built.surface(), particles, &tears);
+            if !torn.is_empty() {
+                tears.tear_all(torn);
+            }
+        }
+    }
+}
+
+/// Sends a message of each cloth that was torn in this tick, in the order of [`ClothOrder`].
+pub(crate) fn report_tears(
+    mut cloths: Query<(Entity, Option<&ClothOrder>, &ClothFrame, &mut ClothBuilt)>,
+    mut messages: MessageWriter<ClothTorn>,
+    mut torn: Local<Vec<Ordered>>,
+) {
+    torn.clear();
+    for (cloth, order, _, built) in &cloths {
+        if built.unreported_tear.is_some() {
+            torn.push((order.copied().unwrap_or_default(), cloth));
+        }
+    }
+    torn.sort_unstable();
+    let mut each = cloths.iter_many_mut(torn.iter().map(|(_, cloth)| cloth));
+    while let Some((cloth, _, frame, mut built)) = each.fetch_next() {
+        if let Some((place, edges)) = built.unreported_tear.take() {
+            messages.write(ClothTorn {
+                cloth,
+                edges,
+                place: frame.to_world(place),
+                pieces: built.surface().pieces(),
+            });
+        }
+    }
+}
