@@ -161,7 +161,41 @@ impl TearSearch {
                 overloaded.push((stretch / borne, ends));
             }
         });
+        // Edges of an irregular mesh are stretched unevenly: the mean of the faces around counts, too.
+        if surface.rest_grid().is_none() {
+            overloaded.retain_mut(|(load, ends)| {
+                let [a, b] = ends.map(|end| places[end as usize]);
+                let at_rest = ends.map(|end| surface.rest_positions()[end as usize]);
+                let own = a.distance(b) / at_rest[0].distance(at_rest[1]) - 1.0;
+                *load *= (mean_stretch(*ends, surface, places) / own).min(1.0);
+                *load > 1.0
+            });
+        }
     }
+}
+
+/// The stretch along an edge of the faces at both of its ends, weighted by their areas.
+fn mean_stretch(ends: [u32; 2], surface: &Surface, places: &[Vec3]) -> f32 {
+    let rest = surface.rest_positions();
+    let [from, to] = ends.map(|end| rest[end as usize]);
+    let direction = (to - from).normalize_or_zero();
+    let (mut sum, mut areas) = (0.0, 0.0);
+    for face in ends.into_iter().flat_map(|end| surface.faces_around(end)) {
+        let [a, b, c] = face.map(|corner| rest[corner as usize]);
+        let (p, q) = (b - a, c - a);
+        let [pp, pq, qq] = [p.dot(p), p.dot(q), q.dot(q)];
+        let square = pp * qq - pq * pq;
+        let (u, v) = (direction.dot(p), direction.dot(q));
+        // The direction in parts of both edges, and where these parts are now.
+        let parts = [(u * qq - v * pq) / square, (v * pp - u * pq) / square];
+        let at_rest = (p * parts[0] + q * parts[1]).length();
+        let [a, b, c] = face.map(|corner| places[corner as usize]);
+        let now = ((b - a) * parts[0] + (c - a) * parts[1]).length();
+        let area = square.max(0.0).sqrt();
+        sum += area * (now - at_rest);
+        areas += area;
+    }
+    if areas > 0.0 { sum / areas } else { 0.0 }
 }
 
 /// Where an overloaded edge has the cloth tear: whether a tear runs on there, at which of its ends, and along which edges

@@ -10,3 +10,23 @@ pub(crate) fn threads() -> usize {
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (pool + 1).min(available_parallelism())
 }
+
+/// Runs two functions at the same time, where Bevy has threads.
+pub(crate) fn join<A: Send + 'static, B>(
+    one: impl FnOnce() -> A + Send,
+    other: impl FnOnce() -> B,
+) -> (A, B) {
+    let Some(pool) = ComputeTaskPool::try_get() else {
+        return (one(), other());
+    };
+    let mut of_other = None;
+    let of_one = pool.scope(|scope| {
+        scope.spawn(async { one() });
+        of_other = Some(other());
+    });
+    let of_one = of_one.into_iter().next();
+    (
+        of_one.expect("it was spawned"),
+        of_other.expect("the scope has run it"),
+    )
+}

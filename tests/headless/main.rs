@@ -59,6 +59,7 @@ mod spin;
 mod startup;
 mod substepping;
 mod support;
+mod tears;
 mod touch;
 mod uneven;
 mod wind;

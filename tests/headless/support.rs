@@ -77,12 +77,14 @@ pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
         .init_resource::<Heard<ClothTouchStarted>>()
         .init_resource::<Heard<ClothTouchStopped>>()
         .init_resource::<Heard<ClothLimitExceeded>>()
+        .init_resource::<Heard<ClothTorn>>()
         .add_systems(
             Last,
             (
                 hear::<ClothTouchStarted>,
                 hear::<ClothTouchStopped>,
                 hear::<ClothLimitExceeded>,
+                hear::<ClothTorn>,
             ),
         )
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));

@@ -149,10 +149,15 @@ impl ClothParticles {
             past: self.past.of_parents(self.layout, to.layout(), parents),
             ..Self::of_layout(to.layout())
         };
+        let places: Vec<Vec3> = parents
+            .iter()
+            .map(|parent| self.position_at(*parent as usize))
+            .collect();
+        let places = to.parted(&places, |particle| parents[particle as usize]);
         for ((index, parent), slot) in parents.iter().enumerate().zip(new.layout.slots()) {
             let (parent, old) = (*parent as usize, self.layout.slot_of(*parent as usize));
             let (was, block) = (&self.blocks[old.block], &mut new.blocks[slot.block]);
-            block.set_position(slot.lane, was.position(old.lane));
+            block.set_position(slot.lane, places[index]);
             block.set_displacement(slot.lane, was.displacement(old.lane));
             let share = from.area_of(parent) / to.area_of(index);
             block.set_inverse_mass(slot.lane, was.inverse_mass(old.lane) * share);

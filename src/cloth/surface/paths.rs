@@ -1,29 +1,51 @@
 //! Shortest paths along edges, from one particle at a time.
 
-use std::{cmp::Reverse, collections::BinaryHeap};
-
 use super::graph::Graph;
 
-/// Shortest paths along the edges of a graph (Dijkstra 1959), with reused memory.
+/// Number of buckets: more would be searched for nothing where edges are of alike lengths.
+const BUCKETS: usize = 64;
+
+/// Shortest paths along the edges of a graph, with reused memory. Particles wait in buckets by their distance (Dial 1969), which
+/// is several times as fast as a heap. Within a bucket they are looked at again when their distance falls.
 #[derive(Debug)]
 pub(crate) struct ShortestPaths<'a> {
     graph: &'a Graph,
-    /// For each particle, the search that reached it last, and its distance (m).
-    reached: Vec<(u32, f64)>,
+    reached: Vec<Reached>,
     /// For each particle, the search whose target it was last.
     wanted: Vec<u32>,
     search: u32,
-    heap: BinaryHeap<Reverse<(u64, u32)>>,
+    /// Width of a bucket (m): no edge reaches beyond the last of them.
+    width: f64,
+    buckets: Vec<Vec<u32>>,
+    /// The particles that were passed in the current bucket.
+    passed: Vec<u32>,
+}
+
+/// How a particle was reached.
+#[derive(Debug, Default, Clone, Copy)]
+struct Reached {
+    /// The last search that reached it.
+    search: u32,
+    /// Its distance in that search (m).
+    distance: f64,
+    /// The distance with which its neighbours were reached last (m).
+    passed_on: f64,
 }
 
 impl<'a> ShortestPaths<'a> {
     pub fn new(graph: &'a Graph) -> Self {
+        let edges = (0..graph.len() as u32).flat_map(|particle| graph.of(particle));
+        let longest = edges
+            .map(|(_, length)| f64::from(*length))
+            .fold(0.0, f64::max);
         Self {
             graph,
-            reached: vec![(0, 0.0); graph.len()],
+            reached: vec![Reached::default(); graph.len()],
             wanted: vec![0; graph.len()],
             search: 0,
-            heap: BinaryHeap::new(),
+            width: longest / (BUCKETS - 2) as f64,
+            buckets: vec![Vec::new(); BUCKETS],
+            passed: Vec::new(),
         }
     }
 
@@ -35,34 +57,64 @@ impl<'a> ShortestPaths<'a> {
         for &particle in patch {
             self.wanted[particle as usize] = search;
         }
-        let mut left = patch.len();
-        self.heap.clear();
-        self.heap.push(Reverse((0, start)));
-        self.reached[start as usize] = (search, 0.0);
-        // Bits of non-negative floats sort like the floats.
-        while let Some(Reverse((bits, particle))) = self.heap.pop() {
-            let distance = f64::from_bits(bits);
-            let at = particle as usize;
-            if distance > self.reached[at].1 {
-                continue;
-            }
-            if self.wanted[at] == search {
-                self.wanted[at] = 0;
+        self.buckets.iter_mut().for_each(Vec::clear);
+        self.reach(start, 0.0);
+        let (mut left, mut last) = (patch.len(), (0.0, start));
+        // As many empty buckets in a row as there are: nothing waits.
+        let (mut bucket, mut empty) = (0, 0);
+        while left > 0 && empty < BUCKETS {
+            self.pass_bucket(bucket);
+            empty = if self.passed.is_empty() { empty + 1 } else { 0 };
+            while let Some(particle) = self.passed.pop() {
+                if self.wanted[particle as usize] != search {
+                    continue;
+                }
+                self.wanted[particle as usize] = 0;
                 left -= 1;
-                if left == 0 {
-                    return Some((particle, distance));
+                let found = (self.reached[particle as usize].distance, particle);
+                if found.0 > last.0 || found.0 == last.0 && found.1 > last.1 {
+                    last = found;
                 }
             }
-            for &(neighbour, length) in self.graph.of(particle) {
+            bucket += 1;
+        }
+        (left == 0).then_some((last.1, last.0))
+    }
+
+    /// Passes on all that waits in a bucket, until nothing in it changes.
+    fn pass_bucket(&mut self, bucket: usize) {
+        let (graph, search) = (self.graph, self.search);
+        while let Some(particle) = self.buckets[bucket % BUCKETS].pop() {
+            let known = &mut self.reached[particle as usize];
+            let distance = known.distance;
+            // It waited twice, or was passed in an earlier bucket.
+            if known.passed_on == distance {
+                continue;
+            }
+            known.passed_on = distance;
+            self.passed.push(particle);
+            for &(neighbour, length) in graph.of(particle) {
                 let farther = distance + f64::from(length);
-                let known = &mut self.reached[neighbour as usize];
-                if known.0 != search || farther < known.1 {
-                    *known = (search, farther);
-                    self.heap.push(Reverse((farther.to_bits(), neighbour)));
+                let known = &self.reached[neighbour as usize];
+                if known.search != search || farther < known.distance {
+                    self.reach(neighbour, farther);
                 }
             }
         }
-        None
+    }
+
+    fn reach(&mut self, particle: u32, distance: f64) {
+        self.reached[particle as usize] = Reached {
+            search: self.search,
+            distance,
+            passed_on: f64::NAN,
+        };
+        let bucket = if self.width > 0.0 {
+            (distance / self.width) as usize
+        } else {
+            0
+        };
+        self.buckets[bucket % BUCKETS].push(particle);
     }
 
     /// The distance from `start` to the farthest particle of `patch` (m), rounded up; infinite if one is unreachable.
@@ -80,7 +132,7 @@ impl<'a> ShortestPaths<'a> {
         let last = self.search(start, patch);
         let (reached, search) = (&self.reached, self.search);
         let distance = |particle: u32| match reached[particle as usize] {
-            (in_search, distance) if in_search == search => distance,
+            reached if reached.search == search => reached.distance,
             _ => f64::INFINITY,
         };
         distances.clear();

@@ -1,7 +1,7 @@
 //! Surfaces that are torn along edges.
 //!
-//! A torn surface has the faces of the whole one. A particle whose faces hang together no longer becomes several, at the
-//! same place at rest:
+//! A torn surface has the faces of the whole one. A particle whose faces do not hang together any more becomes
+//! several:
 //!
 //! ```text
 //!   o───o───o          o───o───o      two torn edges make one particle in their middle two;
@@ -10,6 +10,8 @@
 //!   │   │   │           ╲──o──╱
 //!   o───o───o          o───o───o
 //! ```
+//!
+//! They are moved apart by a fiftieth of the way to their faces' middles, so that layers know which side each is on.
 //!
 //! Particles keep their indices, and new ones follow in the order in which edges were torn. So whoever knows a particle by
 //! its index knows it after the next tear, too. A particle's mass and area are shared out by its faces, and nothing is lost.
@@ -30,12 +32,15 @@ use super::{
 };
 use crate::cloth::{error::ClothError, grid::ClothGrid, spring::SpringKind};
 
+/// How far a cut moves its sides apart, each, as a fraction of the way to the middle of the faces beside it.
+const HALF_WIDTH: f32 = 0.02;
+
 /// What a torn surface knows of the whole one.
 #[derive(Debug, Clone)]
 pub(super) struct Torn {
     whole: Arc<Surface>,
     /// The particles of each face, in the order of the whole surface's faces.
-    corners: Vec<[u32; 3]>,
+    pub(super) corners: Vec<[u32; 3]>,
     /// The particle of the whole surface that each particle was.
     origin: Vec<u32>,
 }
@@ -148,6 +153,32 @@ impl Surface {
         faces.map(by_origin).collect()
     }
 
+    /// The places of all particles (m), with a little room between those that have one parent: a cut has a width. So contact of
+    /// cloth with cloth knows which side each is on.
+    pub(crate) fn parted(&self, places: &[Vec3], parent: impl Fn(u32) -> u32) -> Vec<Vec3> {
+        let mut children = vec![0_u32; self.len()];
+        (0..self.len() as u32).for_each(|child| children[parent(child) as usize] += 1);
+        let mut sums = vec![(Vec3::ZERO, 0.0); self.len()];
+        for face in self.triangles() {
+            let middle = face
+                .iter()
+                .map(|corner| places[*corner as usize])
+                .sum::<Vec3>()
+                / 3.0;
+            for corner in face {
+                let (sum, count) = &mut sums[*corner as usize];
+                (*sum, *count) = (*sum + middle, *count + 1.0);
+            }
+        }
+        let apart = |(child, (sum, count)): (usize, (Vec3, f32))| match children
+            [parent(child as u32) as usize]
+        {
+            0 | 1 => places[child],
+            _ => places[child].lerp(sum / count, HALF_WIDTH),
+        };
+        sums.into_iter().enumerate().map(apart).collect()
+    }
+
     /// Gives each particle that tears made the value of the one that it was before.
     pub(crate) fn share_with_copies<T: Clone>(&self, values: &mut [T]) {
         for (copy, origin) in self.copies() {
@@ -225,11 +256,11 @@ impl Surface {
         })
     }
 
-    /// The two ends of a face's longest side: a cell's diagonal.
+    /// The two ends of a face's longest side, a cell's diagonal, the smaller first.
     fn diagonal_of(&self, [a, b, c]: [u32; 3]) -> [u32; 2] {
         let square =
             |[a, b]: [u32; 2]| self.rest[a as usize].distance_squared(self.rest[b as usize]);
-        let [one, two, three] = [[a, b], [b, c], [c, a]];
+        let [one, two, three] = [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
         let longer = if square(one) > square(two) { one } else { two };
         if square(longer) > square(three) {
             longer
@@ -367,6 +398,7 @@ impl Torn {
             pieces: pieces.map_or(0, |last| last as usize + 1),
             ..whole.extent
         };
+        surface.rest = surface.parted(&surface.rest, |particle| surface.origin_of(particle));
         surface
     }
 

@@ -12,6 +12,7 @@ use crate::{
     },
     contact::Sheet,
     hierarchy::QuadTree,
+    plugin::threads::join,
     solver::{Bending, Solver},
 };
 
@@ -130,16 +131,21 @@ impl SharedParts {
             Some(known) => known.surface.clone(),
             None => Arc::new(make()?),
         };
-        let springs = Springs::of_surface(&surface, material);
-        let diagonals = springs.has(SpringKind::Shear);
         // A tree does not know of stiffness.
-        let known = alike.filter(|known| known.springs.has(SpringKind::Shear) == diagonals);
-        let tree = match known {
+        let has_diagonals = material.shear_compliance.is_finite();
+        let known = alike.filter(|known| {
+            surface.as_grid().is_none() || known.springs.has(SpringKind::Shear) == has_diagonals
+        });
+        let tree = || match &known {
             Some(known) => known.tree.clone(),
-            None => QuadTree::of_surface(&surface, diagonals),
+            None => QuadTree::of_surface(&surface, has_diagonals),
         };
-        let mut solver = Solver::of_surface(&surface, &springs);
-        solver.set_bending(Bending::new(&surface, material));
+        let (tree, (springs, solver)) = join(tree, || {
+            let springs = Springs::of_surface(&surface, material);
+            let mut solver = Solver::of_surface(&surface, &springs);
+            solver.set_bending(Bending::new(&surface, material));
+            (springs, solver)
+        });
         let shared = Arc::new(Shared {
             recipe: Some(recipe.clone()),
             stiffnesses,

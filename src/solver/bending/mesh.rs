@@ -19,7 +19,7 @@
 //! `(M + s K) e = −s K p` is solved by conjugate gradients. Cloth that is soft for its spacing and sub-steps is pushed by `−s K p`
 //! instead, like a grid.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::sync::Arc;
 
 use bevy::math::{DVec3, Vec4};
 
@@ -36,6 +36,51 @@ const TOLERANCE: f32 = 1.0e-4;
 const MAX_ITERATIONS: usize = 400;
 const FEWEST_ITERATIONS: usize = 40;
 const MAX_WORK: usize = 200_000;
+
+/// Calls `visit` with each row of the matrix of patches with these stiffnesses: its columns that are not zero, ascending, and
+/// the sums of what the patches add there, in their order.
+fn for_each_row(patches: &[(Patch, f64)], rows: usize, mut visit: impl FnMut(u32, &[(u32, f64)])) {
+    // The patches around each particle.
+    let mut first = vec![0_u32; rows + 1];
+    let particles = || patches.iter().flat_map(|(patch, _)| patch.particles);
+    particles().for_each(|particle| first[particle as usize + 1] += 1);
+    for row in 0..rows {
+        first[row + 1] += first[row];
+    }
+    let mut next = first.clone();
+    let mut around = vec![(0, 0); 6 * patches.len()];
+    for (at, particle) in particles().enumerate() {
+        let next = &mut next[particle as usize];
+        around[*next as usize] = (at / 6, at % 6);
+        *next += 1;
+    }
+    let mut numbers: Vec<(u32, f64)> = Vec::new();
+    for row in 0..rows {
+        numbers.clear();
+        for &(patch, a) in &around[of(&first, row)] {
+            let (
+                Patch {
+                    particles,
+                    curvature,
+                    ..
+                },
+                stiffness,
+            ) = &patches[patch];
+            for (b, column) in particles.iter().enumerate() {
+                let product: f64 = curvature.iter().map(|of| of[a] * of[b]).sum();
+                if product == 0.0 {
+                    continue;
+                }
+                match numbers.iter_mut().find(|(known, _)| known == column) {
+                    Some((_, sum)) => *sum += stiffness * product,
+                    None => numbers.push((*column, stiffness * product)),
+                }
+            }
+        }
+        numbers.sort_unstable_by_key(|(column, _)| *column);
+        visit(row as u32, &numbers);
+    }
+}
 
 /// A particle during a solve. The data that its neighbours read lies apart, close together.
 #[derive(Debug, Default, Clone, Copy)]
@@ -85,7 +130,7 @@ impl MeshBending {
             .collect();
         let faces = surface.triangles();
         let beside = faces_beside(faces);
-        let mut matrix: BTreeMap<(u32, u32), f64> = BTreeMap::new();
+        let mut patches = Vec::with_capacity(faces.len());
         let mut rest = Vec::new();
         for (index, (face, beside)) in faces.iter().zip(&beside).enumerate() {
             let Some(mut patch) = Patch::new(*face, *beside, &places) else {
@@ -95,30 +140,19 @@ impl MeshBending {
                 patch.weave(warp.as_dvec3(), rigidity.ratio.into(), &places);
             }
             let stiffness = f64::from(rigidity.mean) * patch.area;
-            for (a, &row) in patch.particles.iter().enumerate() {
-                for (b, &column) in patch.particles.iter().enumerate() {
-                    let product: f64 = patch.curvature.iter().map(|of| of[a] * of[b]).sum();
-                    if product != 0.0 {
-                        *matrix.entry((row, column)).or_default() += stiffness * product;
-                    }
-                }
-            }
             rest.extend(patch.rest(stiffness, &places));
+            patches.push((patch, stiffness));
         }
-        let mut first = vec![0; places.len() + 1];
-        let mut diagonal = vec![0.0; places.len()];
-        let mut entries = Vec::with_capacity(matrix.len());
-        for (&(row, column), &number) in &matrix {
-            if row == column {
-                diagonal[row as usize] = number as f32;
-            } else {
-                entries.push((column, number as f32));
-                first[row as usize + 1] = entries.len() as u32;
-            }
-        }
-        for at in 1..first.len() {
-            first[at] = first[at].max(first[at - 1]);
-        }
+        let mut first = vec![0];
+        let mut diagonal = Vec::with_capacity(places.len());
+        let mut entries = Vec::new();
+        for_each_row(&patches, places.len(), |row, numbers| {
+            let on_it = numbers.iter().find(|(column, _)| *column == row);
+            diagonal.push(on_it.map_or(0.0, |(_, number)| *number as f32));
+            let others = numbers.iter().filter(|(column, _)| *column != row);
+            entries.extend(others.map(|(column, number)| (*column, *number as f32)));
+            first.push(entries.len() as u32);
+        });
         let layout = surface.layout();
         let mut bounds = vec![[0.0; LANES]; layout.blocks()];
         for (row, slot) in layout.slots().enumerate() {

@@ -1,5 +1,7 @@
 //! Surfaces of meshes: what is one particle, which way it faces, and how the grid's own triangles fare as a mesh.
 
+mod torn;
+
 use bevy::math::Vec3;
 
 use super::*;
