@@ -19,6 +19,7 @@ chapter!(characters, "lab/lod");
 chapter!(wind);
 chapter!(contact, "lab/games", "lab/self", "lab/colliders");
 chapter!(schedule);
+chapter!(tearing);
 chapter!(recipes);
 chapter!(saving);
 chapter!(tuning);

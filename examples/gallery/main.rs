@@ -96,6 +96,10 @@ const ENTRIES: &[Entry] = &[
         pictures: &[("volumes.png", "six bounding volumes")],
     },
     Entry {
+        name: "tear",
+        pictures: &[("tear.png", "a banner, cut and torn")],
+    },
+    Entry {
         name: "laundry",
         pictures: &[("laundry.png", "a hand pulls at a sheet")],
     },

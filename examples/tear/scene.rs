@@ -16,7 +16,7 @@ const TOP: f32 = 2.4;
 /// The load that its threads bear (N/m).
 const STRENGTH: f32 = 120.0;
 /// Length of the sword's blade (m), and how long a slash takes (s).
-const BLADE: f32 = 1.1;
+const BLADE: f32 = 1.25;
 const SLASH: f32 = 0.35;
 /// How far the mouse cuts (m).
 const FAR: f32 = 30.0;
@@ -33,7 +33,7 @@ pub fn build(app: &mut App) {
         ("V", "slash with the sword"),
         ("H", "mend the banner"),
     ]))
-    .insert_resource(ClothWind::gusty(Vec3::new(0.5, 0.0, 1.8)))
+    .insert_resource(ClothWind::gusty(Vec3::new(0.3, 0.0, 0.7)))
     .add_systems(Startup, (spawn_bar, spawn_banner, spawn_sword))
     .add_systems(FixedUpdate, swing.before(ClothSystems::Prepare))
     .add_systems(
@@ -133,12 +133,12 @@ fn spawn_sword(mut shop: Workshop) {
     }
 }
 
-/// The sword in a part of its slash, from 0 to 1: down through the banner from the right, edge on.
+/// The sword in a part of its slash, from 0 to 1. It points through the banner, and goes down from the upper right.
 fn pose(part: f32) -> Transform {
     let smooth = part * part * (3.0 - 2.0 * part);
-    let angle = -0.2 + 2.1 * smooth;
-    Transform::from_xyz(1.05, 0.95, 0.12)
-        .with_rotation(Quat::from_rotation_z(angle) * Quat::from_rotation_x(-0.12))
+    let blade = Vec3::new(0.85, 0.75, -1.0).lerp(Vec3::new(-0.75, -0.15, -1.0), smooth);
+    Transform::from_xyz(0.1, 0.85, 0.85)
+        .with_rotation(Quat::from_rotation_arc(Vec3::Y, blade.normalize()))
 }
 
 /// Moves a sword that slashes, and cuts where it goes.

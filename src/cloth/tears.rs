@@ -65,9 +65,22 @@ impl ClothTears {
         self.0.len() - before
     }
 
-    /// Tears a face out, given by its particles: it comes off as a part of its own.
+    /// Tears a face out, given by its particles: it comes off as a part of its own. Returns how many edges were whole.
     pub fn tear_out(&mut self, surface: &Surface, [a, b, c]: [u32; 3]) -> usize {
         let edges = [[a, b], [b, c], [c, a]];
+        self.tear_all(edges.map(|edge| edge.map(|end| surface.origin_of(end))))
+    }
+
+    /// Tears the cloth off a particle, such as a pinned one: it keeps the faces around it, and the rest comes off. Returns how
+    /// many edges were whole.
+    pub fn tear_off(&mut self, surface: &Surface, particle: u32) -> usize {
+        let edges = surface
+            .faces_around(particle)
+            .map(|[a, b, c]| match particle {
+                of if of == a => [b, c],
+                of if of == b => [c, a],
+                _ => [a, b],
+            });
         self.tear_all(edges.map(|edge| edge.map(|end| surface.origin_of(end))))
     }
 

@@ -224,6 +224,40 @@ fn pins_and_attachments_hold_both_sides() {
     assert_eq!(pinned, 6, "five, of which one is two");
 }
 
+/// Torn off its only pin, a cloth falls, and leaves a scrap there.
+#[test]
+fn a_cloth_is_torn_off_its_pin() {
+    for cloth in [Cloth::new(9, 9, 0.1), mesh(0.8, 0.8, 0.1)] {
+        let mut app = app();
+        let corner = Pins::new([Pin::Near {
+            point: Vec3::ZERO,
+            radius: 0.01,
+        }]);
+        let cloth = app
+            .world_mut()
+            .spawn((cloth, corner, ClothTears::default()))
+            .id();
+        tick(&mut app, 30);
+        let pinned = particles(&app, cloth)
+            .inverse_masses()
+            .position(|w| w == 0.0)
+            .expect("a pin");
+        let whole = surface(&app, cloth).clone();
+        change::<ClothTears>(&mut app, cloth, |tears| {
+            assert!(tears.tear_off(&whole, pinned as u32) > 0);
+        });
+        tick(&mut app, 64);
+        assert_eq!(surface(&app, cloth).pieces(), 2);
+        let rest = surface(&app, cloth).rest_positions();
+        let places = particles(&app, cloth).positions();
+        let fallen = places
+            .zip(rest)
+            .filter(|(place, rest)| rest.length() > 0.25 && place.y < rest.y - 2.0);
+        let far = rest.iter().filter(|rest| rest.length() > 0.25);
+        assert_eq!(fallen.count(), far.count());
+    }
+}
+
 /// A strip that is pulled apart slowly by a row of pins tears within 5 % of the load that its strength stands for, at any
 /// resolution of a grid: the stretch at that load is strength × compliance. Shear springs are soft, so that it hardly
 /// contracts: where its ends hold it, the corners bear 2 % more. A tick pulls by a thousandth of that load.
@@ -543,4 +577,89 @@ fn pieces_fall_asleep() {
     tick(&mut app, 1);
     assert!(!stats(&app, cloth).is_asleep);
     assert_eq!(surface(&app, cloth).pieces(), 3);
+}
+
+/// A balloon that is torn open has burst: it is no fault, and has no pressure.
+#[test]
+fn a_balloon_bursts() {
+    let mut app = app_that_draws(FixedUpdate);
+    let ball = Sphere::new(0.3).mesh().ico(6).expect("few vertices");
+    let ball = app.world_mut().resource_mut::<Assets<Mesh>>().add(ball);
+    let parts = (
+        Cloth::mesh(),
+        Mesh3d(ball),
+        ClothPressure::Gauge(30.0),
+        ClothTears::default(),
+    );
+    let cloth = app.world_mut().spawn(parts).id();
+    tick(&mut app, 10);
+    assert!(stats(&app, cloth).gauge_pressure > 29.0);
+    let face = surface(&app, cloth).triangles()[100];
+    let whole = surface(&app, cloth).clone();
+    change::<ClothTears>(&mut app, cloth, |tears| {
+        assert_eq!(tears.tear_out(&whole, face), 3);
+    });
+    tick(&mut app, 10);
+    assert_eq!(app.world().get::<ClothFault>(cloth), None);
+    assert_eq!(surface(&app, cloth).pieces(), 2);
+    assert_eq!(stats(&app, cloth).gauge_pressure, 0.0);
+}
+
+/// A fine mesh on a cloth that is cut in two loses the triangles across the cut, and no other is stretched.
+#[test]
+fn a_render_mesh_is_torn_too() {
+    let mut app = app_that_draws(FixedUpdate);
+    let fine = Plane3d::new(Vec3::Z, Vec2::splat(0.4))
+        .mesh()
+        .subdivisions(30)
+        .build();
+    let triangles = fine.indices().expect("indices").len() / 3;
+    let fine = app.world_mut().resource_mut::<Assets<Mesh>>().add(fine);
+    let parts = (
+        Cloth::new(9, 9, 0.1),
+        ClothTears::default(),
+        Visibility::Hidden,
+    );
+    let cloth = app.world_mut().spawn(parts).id();
+    let place = Transform::from_xyz(0.4, -0.4, 0.0);
+    let drawn = app
+        .world_mut()
+        .spawn((ClothRenderMesh { cloth }, Mesh3d(fine), place))
+        .id();
+    tick(&mut app, 5);
+    assert!(cut_at(&mut app, -0.43) > 7);
+    tick(&mut app, 20);
+    let handle = app
+        .world()
+        .get::<Mesh3d>(drawn)
+        .expect("it is drawn")
+        .0
+        .clone();
+    let mesh = app
+        .world()
+        .resource::<Assets<Mesh>>()
+        .get(&handle)
+        .expect("its mesh");
+    let Some(VertexAttributeValues::Float32x3(places)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION)
+    else {
+        panic!("positions");
+    };
+    let indices: Vec<usize> = mesh.indices().expect("indices").iter().collect();
+    // A row of 31 squares is across the cut.
+    let left = indices.len() / 3;
+    assert!(
+        left < triangles && left >= triangles - 2 * 31 * 2,
+        "{left} of {triangles}"
+    );
+    let side = 0.8 / 31.0;
+    for triangle in indices.chunks(3) {
+        for at in 0..3 {
+            let [a, b] =
+                [triangle[at], triangle[(at + 1) % 3]].map(|vertex| Vec3::from(places[vertex]));
+            assert!(
+                a.distance(b) < 1.2 * std::f32::consts::SQRT_2 * side,
+                "{a} {b}"
+            );
+        }
+    }
 }

@@ -179,6 +179,28 @@ impl Surface {
         sums.into_iter().enumerate().map(apart).collect()
     }
 
+    /// Whether a path along edges leads from one face to another, not much longer than the way between them at rest.
+    #[cfg(feature = "mesh")]
+    pub(crate) fn hang_together(&self, from: [u32; 3], to: [u32; 3]) -> bool {
+        let place = |particle: u32| self.rest[particle as usize];
+        let farthest = 2.0 * (place(from[0]).distance(place(to[0])) + self.spacing.longest);
+        let mut reached = from.to_vec();
+        let mut next = 0;
+        while let Some(&particle) = reached.get(next) {
+            next += 1;
+            if to.contains(&particle) {
+                return true;
+            }
+            for (beside, _) in self.graph().of(particle) {
+                let is_near = place(*beside).distance(place(from[0])) <= farthest;
+                if is_near && !reached.contains(beside) {
+                    reached.push(*beside);
+                }
+            }
+        }
+        false
+    }
+
     /// Gives each particle that tears made the value of the one that it was before.
     pub(crate) fn share_with_copies<T: Clone>(&self, values: &mut [T]) {
         for (copy, origin) in self.copies() {

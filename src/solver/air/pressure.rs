@@ -52,7 +52,8 @@ impl ClothPressure {
         }
     }
 
-    /// Checks that each value is in its range, and that `surface` encloses a volume.
+    /// Checks that each value is in its range, and that `surface` encloses a volume, or did so before it was torn: then it
+    /// has burst, and has no pressure.
     ///
     /// # Errors
     /// [`ClothError::Quantity`], and [`ClothError::NotClosed`].
@@ -70,7 +71,7 @@ impl ClothPressure {
                 ClothError::check(outside, is_some, "pressure outside (Pa)", range)?;
             }
         }
-        if surface.is_closed() {
+        if surface.is_closed() || surface.is_torn() {
             Ok(())
         } else {
             Err(ClothError::NotClosed)

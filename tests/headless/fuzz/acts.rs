@@ -1,7 +1,7 @@
 //! What is done to a world.
 
 use bevy::{
-    ecs::{entity::EntityHashSet, entity_disabling::Disabled},
+    ecs::{entity::EntityHashSet, entity_disabling::Disabled, system::RunSystemOnce},
     prelude::*,
     reflect::PartialReflect,
 };
@@ -62,7 +62,7 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
     let Some(&entity) = random.pick(&pool.all) else {
         return spawn(world, pool, random);
     };
-    match random.below(24) {
+    match random.below(26) {
         0..=1 if pool.all.len() < MOST => spawn(world, pool, random),
         0..=1 => {
             world.despawn(entity);
@@ -107,6 +107,7 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
             pool.written.insert(entity);
         }
         18 => replace_mesh(world, entity, random),
+        21..=22 => tear(world, entity, random),
         19 => pool.request = Some(random.one_in(2)),
         20 => {
             let places = random.pick(&pool.roots).copied();
@@ -153,6 +154,8 @@ fn heal(world: &mut World, entity: Entity) {
             ClothLod,
             ClothInertia,
             ClothSelfCollision,
+            ClothTearing,
+            ClothTears,
         )>();
     } else if entity.contains::<ClothCollider>() {
         entity
@@ -247,6 +250,48 @@ fn place_particle(world: &mut World, entity: Entity, random: &mut Random) {
     };
     // What can't be written is told to who writes it.
     drop(outcome);
+}
+
+/// Takes faces out, cuts across, or lets load tear.
+fn tear(world: &mut World, entity: Entity, random: &mut Random) {
+    let Some(surface) = world
+        .get::<ClothBuilt>(entity)
+        .map(|built| built.surface().clone())
+    else {
+        return;
+    };
+    let mut tears = world.get::<ClothTears>(entity).cloned().unwrap_or_default();
+    match random.below(4) {
+        0 => drop(
+            world
+                .entity_mut(entity)
+                .insert(ClothTearing::new(random.number())),
+        ),
+        1 => {
+            for _ in 0..random.below(40) {
+                if let Some(face) = random.pick(surface.triangles()) {
+                    tears.tear_out(&surface, *face);
+                }
+            }
+        }
+        _ => {
+            world
+                .entity_mut(entity)
+                .insert_if_new(ClothTears::default());
+            let blade = [
+                random.place(),
+                random.place(),
+                random.place(),
+                random.place(),
+            ];
+            let cut = move |mut cutter: ClothBlade| {
+                cutter.sweep([blade[0], blade[1]], [blade[2], blade[3]])
+            };
+            world.run_system_once(cut).expect("it borrows cloths alone");
+            return;
+        }
+    }
+    world.entity_mut(entity).insert(tears);
 }
 
 fn replace_mesh(world: &mut World, entity: Entity, random: &mut Random) {

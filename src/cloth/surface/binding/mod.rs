@@ -110,6 +110,12 @@ impl SurfaceBinding {
         self.len
     }
 
+    /// The particles of the face that a vertex is bound to.
+    #[cfg(feature = "mesh")]
+    pub(crate) fn face_of(&self, vertex: usize) -> [u32; 3] {
+        self.eights[vertex / LANES].lane(vertex % LANES).corners
+    }
+
     /// Whether there are no vertices.
     pub fn is_empty(&self) -> bool {
         self.len == 0

@@ -3,7 +3,7 @@
 use bevy::{
     asset::RenderAssetUsages,
     math::{Affine3A, Vec3, Vec4},
-    mesh::{Mesh, VertexAttributeValues},
+    mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
     transform::components::GlobalTransform,
 };
 
@@ -77,8 +77,12 @@ impl Driven {
         for tangent in &mut tangents {
             *tangent = (to_surface.matrix3 * *tangent).normalize_or(Vec3::X);
         }
+        let binding = SurfaceBinding::new(surface, &positions, &normals, &tangents)?;
+        if surface.is_torn() {
+            mesh = without_gaps(&mesh, &triangles, surface, &binding);
+        }
         let driven = Self {
-            binding: SurfaceBinding::new(surface, &positions, &normals, &tangents)?,
+            binding,
             positions: Vec::new(),
             normals: Vec::new(),
             unscaled: None,
@@ -162,6 +166,25 @@ impl Driven {
             }
         }
     }
+}
+
+/// A mesh without the triangles that span a tear: those with corners on faces that do not hang together any more.
+fn without_gaps(
+    mesh: &Mesh,
+    triangles: &[[u32; 3]],
+    surface: &Surface,
+    binding: &SurfaceBinding,
+) -> Mesh {
+    let is_whole = |[a, b, c]: &&[u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|vertex| binding.face_of(*vertex as usize));
+        surface.hang_together(a, b) && surface.hang_together(b, c)
+    };
+    let left = triangles.iter().filter(is_whole).flatten().copied();
+    let mut list = Mesh::new(PrimitiveTopology::TriangleList, mesh.asset_usage);
+    for (attribute, values) in mesh.attributes() {
+        list.insert_attribute(*attribute, values.clone());
+    }
+    list.with_inserted_indices(Indices::U32(left.collect()))
 }
 
 /// The normals of a mesh that has none: of its faces at each vertex, by their areas.
