@@ -60,7 +60,7 @@ use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence},
     contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothPressure, ClothSettings},
+    solver::{ClothCreasing, ClothPressure, ClothSettings},
 };
 
 /// Simulates every [`Cloth`]. Needs `TimePlugin`, and no rendering.
@@ -131,7 +131,8 @@ fn register_types(app: &mut App) {
         .register_type::<ClothWindZone>()
         .register_type::<ClothOrder>()
         .register_type::<ClothAir>()
-        .register_type::<ClothPressure>();
+        .register_type::<ClothPressure>()
+        .register_type::<ClothCreasing>();
     register_lists(app);
 }
 

@@ -24,6 +24,8 @@ use std::{collections::BTreeMap, sync::Arc};
 use bevy::math::{DVec3, Vec4};
 
 use super::{
+    creasing::ClothCreasing,
+    mesh_creases::MeshCreases,
     patch::{Patch, RestFace, faces_beside, frame},
     push::LIMIT,
 };
@@ -62,6 +64,7 @@ pub(super) struct MeshBending {
     /// On it.
     diagonal: Arc<[f32]>,
     rest: Arc<[RestFace]>,
+    creases: Option<Box<MeshCreases>>,
     /// Sum of the absolute values of each particle's row (N/m), by block.
     bounds: Arc<[Lanes]>,
     /// s (s²).
@@ -134,6 +137,7 @@ impl MeshBending {
             entries: entries.into(),
             diagonal: diagonal.into(),
             rest: rest.into(),
+            creases: None,
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
             directions: vec![Vec4::ZERO; places.len()],
@@ -239,6 +243,40 @@ impl MeshBending {
                 self.rows[particle as usize].left += turned.extend(0.0);
             }
         }
+        if let Some(creases) = &self.creases {
+            let (places, rows) = (&self.places, &mut self.rows);
+            let at = |particle: u32| {
+                let [place, moved] = places[particle as usize];
+                (place + moved).truncate()
+            };
+            creases.push(at, |particle, force| {
+                rows[particle as usize].left += force.extend(0.0);
+            });
+        }
+    }
+
+    /// Has it crease from now on, or not any more.
+    pub fn set_creasing(
+        &mut self,
+        surface: &Surface,
+        rigidity: Woven,
+        creasing: Option<ClothCreasing>,
+    ) {
+        match (creasing, &mut self.creases) {
+            (Some(creasing), Some(known)) => known.set(creasing),
+            (Some(creasing), none) => {
+                *none = Some(Box::new(MeshCreases::new(surface, rigidity, creasing)));
+            }
+            (None, known) => *known = None,
+        }
+    }
+
+    pub fn creases(&self) -> Option<&MeshCreases> {
+        self.creases.as_deref()
+    }
+
+    pub fn creases_mut(&mut self) -> Option<&mut MeshCreases> {
+        self.creases.as_deref_mut()
     }
 
     /// `left` becomes s times the forces, 0 of pinned particles.
