@@ -156,6 +156,11 @@ impl MeshCreases {
         self.gather();
     }
 
+    /// Whether no face has a crease.
+    pub fn is_flat(&self) -> bool {
+        self.creased.is_empty()
+    }
+
     fn gather(&mut self) {
         self.creased.clear();
         let each = self.rest.iter().enumerate();
