@@ -174,7 +174,9 @@ fn kept(creasing: ClothCreasing, curvature: f32) -> f64 {
     f64::from(left.min(creasing.largest_crease()))
 }
 
-/// Grids are exact: their stencils have the same curvature on a circle, and lie on one again.
+/// Grids are exact: their stencils have the same curvature on a circle, and lie on one again. What is left is the stretch on that
+/// circle, and rounding. The chord of a strip of length L is shorter by L³ κ ⁄ 12 m for each 1/m more, which is 0.7 mm for 1/m here.
+/// Of its places, rounding and a stretch of 10⁻⁴ make 0.01 mm, which is worth 0.02/m.
 #[test]
 fn a_strip_of_a_grid_springs_back_as_the_closed_form_says() {
     for hardening in [0.0, 0.3, 0.8] {
@@ -192,7 +194,7 @@ fn a_strip_of_a_grid_springs_back_as_the_closed_form_says() {
     }
 }
 
-/// Meshes, to within the error of their triangles.
+/// Meshes, to within the error of their triangles: 2.5 % of the curvature that they are bent to.
 #[test]
 fn a_strip_of_a_mesh_springs_back_as_the_closed_form_says() {
     for hardening in [0.0, 0.3, 0.8] {
@@ -206,6 +208,10 @@ fn a_strip_of_a_mesh_springs_back_as_the_closed_form_says() {
                 println!(
                     "{spacing} m, h {hardening}, {curvature}/m: {found:.3} of {exact:.3}/m, {:+.1} %",
                     100.0 * (found / exact - 1.0)
+                );
+                assert!(
+                    (found - exact).abs() < 0.025 * f64::from(curvature),
+                    "{found} {exact}"
                 );
             }
         }
@@ -248,7 +254,9 @@ fn momenta(particles: &ClothParticles) -> (DVec3, DVec3, f64) {
     (momentum, turning, energy)
 }
 
-/// A creased strip that is thrown, and turns once a second.
+/// A creased strip that is thrown, and turns once a second, keeps its motion as one without creases does. Rounding moves it by 10⁻⁵
+/// of its own in 2400 sub-steps. A mesh is solved to 10⁻⁴, and in sub-steps of 1 ms a turn by 6/s has an error of 10⁻⁴ of its own. Its
+/// crease turns with it.
 #[test]
 fn a_creased_strip_flies_on_and_turns_on() {
     for (name, make) in [
@@ -258,7 +266,6 @@ fn a_creased_strip_flies_on_and_turns_on() {
         ),
         ("mesh", Strip::mesh),
     ] {
-        let mut kept = Vec::new();
         for crease in [false, true] {
             let creasing = creasing(4.0, 0.2);
             let mut strip = make(0.02, crease.then_some(creasing));
@@ -292,12 +299,15 @@ fn a_creased_strip_flies_on_and_turns_on() {
                 off[2],
                 strip.curvature()
             );
-            kept.push(off);
+            assert!(off[0] < 1.0e-4 && off[1] < 1.0e-3, "{off:?}");
+            assert!(off[2] < 1.0e-4, "it gains energy: {off:?}");
+            assert!((strip.curvature() - before).abs() < 0.02, "{before}");
         }
     }
 }
 
-/// At rest in the air, a creased strip does not begin to turn.
+/// At rest in the air, a creased strip does not begin to turn, though a mesh of a cylinder is never without tension: in two seconds it
+/// moves by less than a hundredth of its length.
 #[test]
 fn a_creased_strip_rests() {
     for (name, mut strip) in [
@@ -319,5 +329,6 @@ fn a_creased_strip_rests() {
             "{name}: moved by {:.3} mm in two seconds",
             1000.0 * farthest
         );
+        assert!(farthest < 0.01 * LENGTH, "{name}: {farthest}");
     }
 }

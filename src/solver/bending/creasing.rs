@@ -29,7 +29,7 @@ pub struct ClothCreasing {
     /// κ_y, the curvature beyond which it yields (1/m): 1 over the radius of the tightest bend that leaves nothing. Positive,
     /// finite.
     pub yield_curvature: f32,
-    /// h, the stiffness beyond the yield curvature, in parts of D: from 0, perfectly plastic, to less than 1.
+    /// h, a ratio of stiffnesses: that beyond the yield curvature over D. From 0, which is perfectly plastic, to less than 1.
     pub hardening: f32,
 }
 

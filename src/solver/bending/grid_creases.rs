@@ -1,9 +1,8 @@
 //! The creases of a grid.
 //!
-//! A stencil of the plate with the second difference d and the rest curvature κ₀ has the energy `½ k |d − c n|²`, with
-//! c = κ₀ × the square of the spacing (of a cell, the product of both) and n the normal there. The part without c is the
-//! plate's. The rest is a force, `c k` times the gradient of d·n. It includes how n turns, so that no stencil has a resultant
-//! or a moment. What turns the normal is what is left of d beside it, which rigid springs make nothing of.
+//! A stencil of the plate has a second difference d, a rest curvature κ₀ and a normal n. Its energy is `½ k |d − c n|²`, where c is
+//! κ₀ times the square of the spacing. The part without c is the plate's. The rest is a force, `c k` times the gradient of d·n.
+//! It includes how n turns, so that no stencil has a resultant or a moment.
 //!
 //! Only stencils with a crease are looked at in a sub-step. Each family of stencils is pushed before it is solved: one at its rest
 //! curvature stays there, however stiff the others are.
@@ -233,14 +232,6 @@ impl GridCreases {
         if has_flowed {
             self.gather();
         }
-    }
-
-    /// Force on each particle (N), for tests.
-    #[cfg(test)]
-    pub fn forces(&self) -> impl Iterator<Item = (usize, Vec3)> {
-        let each = self.creases.iter();
-        each.flat_map(|of| of.particles.into_iter().zip(of.forces))
-            .map(|(particle, force)| (particle as usize, force))
     }
 }
 
