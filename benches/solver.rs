@@ -8,7 +8,7 @@ use std::time::Duration;
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::ClothMaterial,
-    solver::{Air, Bending, SimdLevel, Solver},
+    solver::{Air, Bending, ClothCreasing, SimdLevel, Solver},
 };
 use criterion::{
     BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
@@ -85,7 +85,7 @@ fn ticks(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// What bending adds to a tick: an element is a particle in a sub-step.
+/// What bending, and creases in all of the cloth, add to a tick: an element is a particle in a sub-step.
 fn bending(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("bending");
     group
@@ -104,6 +104,32 @@ fn bending(criterion: &mut Criterion) {
         ] {
             let mut solver = scene.solver(false);
             solver.set_bending(material.and_then(|of| Bending::new(&scene.surface, &of)));
+            time(
+                &mut group,
+                BenchmarkId::new(name, side),
+                &scene,
+                &mut solver,
+            );
+        }
+    }
+    for side in [16, 64, 128] {
+        let scene = in_motion(side);
+        group.throughput(Throughput::Elements(
+            scene.particles.len() as u64 * u64::from(SUBSTEPS),
+        ));
+        for (name, yield_curvature) in [
+            ("canvas that might crease", 1.0e6),
+            ("canvas, creased", 1.0e-3),
+        ] {
+            let creasing = ClothCreasing {
+                yield_curvature,
+                hardening: 0.5,
+            };
+            let canvas = ClothMaterial::CANVAS;
+            let mut bending = Bending::new(&scene.surface, &canvas).expect("it resists");
+            bending.set_creasing(&scene.surface, &canvas, Some(creasing));
+            let mut solver = scene.solver(false);
+            solver.set_bending(Some(bending));
             time(
                 &mut group,
                 BenchmarkId::new(name, side),

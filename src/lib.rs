@@ -67,7 +67,9 @@ pub mod prelude {
     pub use crate::plugin::{ClothPanel, ClothPanelPlugin};
     #[cfg(feature = "rapier")]
     pub use crate::plugin::{ClothPushBack, RapierClothCollider};
-    pub use crate::solver::{ClothLimit, ClothPressure, ClothSettings, Substepping, TimeOrder};
+    pub use crate::solver::{
+        ClothCreasing, ClothLimit, ClothPressure, ClothSettings, Substepping, TimeOrder,
+    };
 }
 
 /// The README's snippets, compiled with the doc tests.

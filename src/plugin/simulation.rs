@@ -61,7 +61,7 @@ use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, ClothTearing, ClothTears},
     contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
-    solver::{ClothPressure, ClothSettings},
+    solver::{ClothCreasing, ClothPressure, ClothSettings},
 };
 
 /// Simulates every [`Cloth`]. Needs `TimePlugin`, and no rendering.
@@ -133,7 +133,8 @@ fn register_types(app: &mut App) {
         .register_type::<ClothOrder>()
         .register_type::<ClothAir>()
         .register_type::<ClothPressure>()
-        .register_type::<ClothTearing>();
+        .register_type::<ClothTearing>()
+        .register_type::<ClothCreasing>();
     register_lists(app);
 }
 

@@ -92,6 +92,7 @@ pub use air::ClothPressure;
 pub(crate) use air::{AirMemory, FILLING};
 #[doc(hidden)]
 pub use bending::Bending;
+pub use bending::ClothCreasing;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]

@@ -14,9 +14,9 @@ use bevy::{
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles},
     prelude::{
-        ClothAttachments, ClothBody, ClothCollider, ClothGrab, ClothGravity, ClothInertia,
-        ClothLod, ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings, ClothSkin,
-        DrapePlugins, Pin, Pins,
+        ClothAttachments, ClothBody, ClothCollider, ClothCreasing, ClothGrab, ClothGravity,
+        ClothInertia, ClothLod, ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings,
+        ClothSkin, DrapePlugins, Pin, Pins,
     },
 };
 use stats_alloc::Region;
@@ -52,7 +52,7 @@ fn in_ticks(mut app: App, change: impl Fn(&mut World, u32)) -> usize {
     change.allocations + change.reallocations
 }
 
-/// Allocations with a cloth whose attached pins move.
+/// Allocations with a cloth that creases and whose attached pins move.
 fn with_attachments(pins: usize, is_animated: bool, levels: &[ClothLodLevel]) -> usize {
     let mut app = app_on_one_thread(());
     let target = app.world_mut().spawn(Transform::default()).id();
@@ -64,7 +64,11 @@ fn with_attachments(pins: usize, is_animated: bool, levels: &[ClothLodLevel]) ->
     };
     let cloth = (Cloth::new(20, 20, 0.05), Pins::none(), attached, settings);
     let lod = ClothLod::at(ClothLodLevel::Full);
-    let cloth = app.world_mut().spawn((cloth, lod)).id();
+    let creases = ClothCreasing {
+        yield_curvature: 0.5,
+        hardening: 0.3,
+    };
+    let cloth = app.world_mut().spawn((cloth, creases, lod)).id();
     in_ticks(app, |world, count| {
         let some = 0.01 * (count % 7) as f32;
         let mut place = world.get_mut::<Transform>(target).expect("a place");

@@ -8,7 +8,10 @@ use bevy_drape::{
     contact::{ContactSettings, Detection, MovingCollider, NarrowPhase},
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::ClothCollider,
-    solver::{Air, Bending, Control, PinMotion, Solver, Stretch, Substepping, Tethers, TickStep},
+    solver::{
+        Air, Bending, ClothCreasing, Control, PinMotion, Solver, Stretch, Substepping, Tethers,
+        TickStep,
+    },
 };
 use stats_alloc::Region;
 
@@ -52,6 +55,10 @@ pub fn a_step_does_not_allocate() {
         ..Default::default()
     };
     let tree = QuadTree::of_grid(&grid, true);
+    let creasing = ClothCreasing {
+        yield_curvature: 0.5,
+        hardening: 0.3,
+    };
     let pins = [PinMotion {
         particle: 0,
         from: Vec3::ZERO,
@@ -69,7 +76,9 @@ pub fn a_step_does_not_allocate() {
         let mut query = TopDownQuery::default();
         let mut bounds = [const { None::<()> }; 3].map(|_| NodeBounds::default());
         let mut stretch = Stretch::measure(springs, &particles);
-        solver.set_bending(Bending::new(&surface, &stiff));
+        let mut bending = Bending::new(&surface, &stiff).expect("it resists");
+        bending.set_creasing(&surface, &stiff, Some(creasing));
+        solver.set_bending(Some(bending));
         solver.set_tethers(Tethers::new(&surface, &material, &particles, 9.81));
         let mut control = Control::default();
         let mut pushed = 0.0_f32;

@@ -22,6 +22,7 @@ fn of_users() -> Vec<&'static str> {
         ClothBody::type_path(),
         ClothBones::type_path(),
         ClothCollider::type_path(),
+        ClothCreasing::type_path(),
         ClothInertia::type_path(),
         ClothLayers::type_path(),
         ClothLod::type_path(),

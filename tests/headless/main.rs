@@ -7,6 +7,7 @@ mod characters;
 mod clones;
 mod components;
 mod crammed;
+mod creases;
 mod damping;
 mod density;
 mod drawing;

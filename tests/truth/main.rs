@@ -10,6 +10,7 @@ mod catenary;
 mod changes;
 mod compliance;
 mod convergence;
+mod creases;
 mod damping;
 mod distance;
 mod drape;

@@ -42,7 +42,8 @@ pub struct ClothMaterial {
     /// Compliance along both diagonals (m/N), zero or more; infinity for no shear springs.
     pub shear_compliance: f32,
     /// Flexural rigidity (N·m): the moment that holds a strip bent to a curvature of 1/m, per metre of its width. Zero
-    /// or more, finite. Zero bends freely and costs nothing. With a [`weft`](Self::weft), that of a strip along the warp.
+    /// or more, finite. Zero bends freely and costs nothing. With a [`weft`](Self::weft), that of a strip along the warp. Folds stay
+    /// in cloth with a [`ClothCreasing`](crate::solver::ClothCreasing).
     pub bend_rigidity: f32,
     /// The values that differ along the weft. `None` is a cloth that is alike in both directions.
     pub weft: Option<ClothWeft>,

@@ -8,7 +8,7 @@ use crate::{
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::state::KnownInputs,
-    solver::ClothSettings,
+    solver::{ClothCreasing, ClothSettings},
 };
 
 /// The game's settings. Removed components count as their defaults.
@@ -19,6 +19,7 @@ pub(crate) struct Inputs {
     pub search: SearchMethod,
     pub narrow_phase: NarrowPhase,
     pub self_collision: Option<ClothSelfCollision>,
+    pub creasing: Option<ClothCreasing>,
     /// In the world (m/s²).
     pub gravity: Vec3,
 }
@@ -37,6 +38,9 @@ impl Inputs {
         }
         let search = game.method.copied().unwrap_or_default();
         search.validate()?;
+        if let Some(creasing) = game.creasing {
+            creasing.validate()?;
+        }
         let gravity = settings.gravity.unwrap_or(gravity);
         for value in gravity.to_array() {
             ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
@@ -47,6 +51,7 @@ impl Inputs {
             search,
             narrow_phase: game.narrow_phase.copied().unwrap_or_default(),
             self_collision: game.self_collision.copied(),
+            creasing: game.creasing.copied(),
             gravity,
         })
     }
@@ -58,6 +63,7 @@ impl Inputs {
             search: self.search,
             narrow_phase: self.narrow_phase,
             self_collision: self.self_collision,
+            creasing: self.creasing,
             acceleration,
         }
     }

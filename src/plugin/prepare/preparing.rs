@@ -23,7 +23,7 @@ use crate::{
             ClothState, ClothStats, WindField,
         },
     },
-    solver::{ClothPressure, ClothSettings},
+    solver::{ClothCreasing, ClothPressure, ClothSettings},
 };
 
 /// The pins of a cloth from which the game took its [`Pins`].
@@ -49,6 +49,7 @@ pub(crate) struct GameQuery {
     pub self_collision: Option<&'static ClothSelfCollision>,
     pub air: Option<&'static ClothAir>,
     pub pressure: Option<&'static ClothPressure>,
+    pub creasing: Option<&'static ClothCreasing>,
     pub lod: Option<&'static ClothLod>,
     pub teleport: Option<&'static ClothTeleport>,
 }

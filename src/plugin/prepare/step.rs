@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     contact::ContactSettings,
-    plugin::state::EffectiveWind,
+    plugin::state::{ClothBuilt, ClothState, EffectiveWind},
     solver::{Substepping, TickStep},
 };
 
@@ -62,6 +62,7 @@ pub(super) fn prepare_step(
     } = inputs;
     built.solver.set_stretch_damping(material.stretch_damping);
     let surface = built.surface().clone();
+    follow_creases(built, state, inputs);
     if !state.rest.is_asleep() {
         let (surface, field) = (&*surface, &*around.field);
         (state.inputs.air).set(&mut built.solver, surface, particles, &cloth.frame, field);
@@ -94,6 +95,20 @@ pub(super) fn prepare_step(
     });
     scratch.substepping = settings.substepping;
     scratch.is_in_island = false;
+}
+
+/// Hands the solver the creases of the last tick. A cloth that does not crease any more has none.
+fn follow_creases(built: &mut ClothBuilt, state: &mut ClothState, inputs: &Inputs) {
+    if inputs.creasing.is_none() && state.creases.is_empty() {
+        return;
+    }
+    let (surface, material) = (&built.shared.surface, &inputs.material);
+    (built.solver).set_creasing(surface, material, inputs.creasing);
+    if inputs.creasing.is_some() {
+        built.solver.recall_creases(&state.creases);
+    } else {
+        state.creases.clear();
+    }
 }
 
 /// Prepares its search for contacts, and its reach.

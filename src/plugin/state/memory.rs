@@ -15,7 +15,7 @@ use crate::{
     contact::{Carrier, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::authoring::{Attached, ClothAttachment},
-    solver::{ClothLimit, ClothSettings, Control, Rest, Stretch},
+    solver::{ClothCreasing, ClothLimit, ClothSettings, Control, Rest, Stretch},
 };
 
 /// The memory of a cloth from tick to tick, besides its [`ClothParticles`](crate::cloth::ClothParticles) and its
@@ -51,11 +51,20 @@ pub struct ClothState {
     /// Whether it continues from a snapshot, though nothing is built yet.
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub(crate) resumes: bool,
+    pub(crate) reported: Reported,
+    /// Rest curvatures of its creases, as its solver has them; none if it does not crease.
+    pub(crate) creases: Vec<f32>,
+}
+
+/// Excess over limits, and what of it the log knows.
+#[derive(Debug, Default, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Reported {
     /// Excess over each limit.
-    pub(crate) excess: [Excess; ClothLimit::ALL.len()],
+    pub excess: [Excess; ClothLimit::ALL.len()],
     /// Whether it was reported that a jump dragged it along.
     #[cfg_attr(feature = "serialize", serde(skip))]
-    pub(crate) was_dragged: bool,
+    pub was_dragged: bool,
 }
 
 /// The attachments of a cloth.
@@ -96,6 +105,7 @@ pub(crate) struct KnownInputs {
     pub search: SearchMethod,
     pub narrow_phase: NarrowPhase,
     pub self_collision: Option<ClothSelfCollision>,
+    pub creasing: Option<ClothCreasing>,
     /// Of gravity, in the cloth's frame (m/s²).
     pub acceleration: Vec3,
 }
@@ -136,8 +146,8 @@ impl ClothState {
             ref carriers,
             largest_gravity,
             resumes,
-            excess,
-            was_dragged,
+            reported,
+            ref creases,
         } = *other;
         self.rest.copy_from(rest);
         self.inputs.copy_from(inputs);
@@ -148,8 +158,14 @@ impl ClothState {
         (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
         (self.layer_substeps, self.stretch) = (layer_substeps, stretch);
         (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
-        (self.resumes, self.excess) = (resumes, excess);
-        self.was_dragged = was_dragged;
+        (self.resumes, self.reported) = (resumes, reported);
+        self.creases.clone_from(creases);
+    }
+
+    /// Takes over the creases as a tick ends.
+    pub(crate) fn remember_creases(&mut self, creases: &[f32]) {
+        self.creases.clear();
+        self.creases.extend_from_slice(creases);
     }
 
     /// Whether this state, read from a file, matches these particles.
@@ -162,6 +178,7 @@ impl ClothState {
         };
         let blocks = particles.blocks().len();
         self.rest.is_valid()
+            && self.creases.iter().all(|crease| crease.is_finite())
             && is_of_all(self.pose.places.len())
             && is_of_all(self.pose.normals.len())
             && self.attachments.attached.iter().all(is_attached)
@@ -171,10 +188,11 @@ impl ClothState {
                 .all(|(_, carrier)| carrier.is_in(blocks))
     }
 
-    /// Forgets attachments, carried bodies and gravity, because the particles have been replaced.
+    /// Forgets attachments, carried bodies, gravity and creases, because the particles have been replaced.
     pub(crate) fn detach(&mut self) {
         self.largest_gravity = 0.0;
         self.carriers.clear();
+        self.creases.clear();
         self.attachments.detach();
         self.pose = Pose::default();
     }

@@ -101,6 +101,7 @@ impl IntegrateQueryItem<'_, '_> {
         self.stats.air_impulse = rotation * self.built.solver.air_impulse();
         (self.stats.enclosed_volume, self.stats.gauge_pressure) = self.built.solver.enclosed();
         self.state.inputs.air.memory = self.built.solver.air_memory();
+        self.state.remember_creases(self.built.solver.creases());
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 
@@ -190,6 +191,7 @@ impl IntegrateQueryItem<'_, '_> {
         self.scratch.detection.restart();
         let air = self.state.inputs.air.memory;
         self.built.solver.set_air_memory(air);
+        self.built.solver.recall_creases(&self.state.creases);
     }
 
     /// The quantities of the tick's last run of sub-steps that are compared with the limits.

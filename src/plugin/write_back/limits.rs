@@ -163,8 +163,8 @@ pub(crate) fn report_limits(
             true => GATHERED,
             false => scratch.settling.saturating_sub(1),
         };
-        if scratch.dragged > 0.0 && !state.was_dragged {
-            state.was_dragged = true;
+        if scratch.dragged > 0.0 && !state.reported.was_dragged {
+            state.reported.was_dragged = true;
             let describe = || (name.describe(Part::Cloth), None);
             dragged.add(name.entity, [scratch.dragged, FAR], describe);
         }
@@ -182,7 +182,7 @@ pub(crate) fn report_limits(
                 continue;
             }
             let is_reported =
-                state.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
+                state.reported.excess[index].observe(limit, beyond.map(|[quantity, _]| quantity));
             if let Some([quantity, good_up_to]) = beyond
                 && is_reported
             {

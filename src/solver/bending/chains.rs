@@ -9,23 +9,13 @@
 
 use super::{
     factor::{factor_chain, factor_strip, set},
+    grid_creases::Solve,
     plate::Plate,
 };
 use crate::{
     cloth::{Block, LANES, Lanes, Layout, W},
     solver::kernels::{Factor, Kernels, Vec3Lanes},
 };
-
-/// Which way a family is solved, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Solve {
-    /// The cells between each even column and the next one, or each odd one.
-    Twist { is_odd: bool },
-    /// Down the columns.
-    Down,
-    /// Along the rows.
-    Across,
-}
 
 /// Chains, or strips of cells, that have no particle in common.
 #[derive(Debug, Clone)]
@@ -232,9 +222,17 @@ impl ChainBending {
         }
     }
 
-    pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+    /// Solves family after family; `before` pushes at each of them first.
+    pub fn solve(
+        &mut self,
+        blocks: &mut [Block],
+        kernels: &Kernels,
+        before: impl Fn(Solve, &mut [Block]),
+    ) {
         for at in 0..self.families.len() {
-            match self.families[at].solve {
+            let solve = self.families[at].solve;
+            before(solve, blocks);
+            match solve {
                 Solve::Twist { is_odd } => self.solve_cells(at, is_odd, blocks, kernels),
                 Solve::Down => self.solve_columns(at, blocks, kernels),
                 Solve::Across => self.solve_rows(at, blocks, kernels),

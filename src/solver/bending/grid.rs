@@ -2,6 +2,8 @@
 
 use super::{
     chains::ChainBending,
+    creasing::ClothCreasing,
+    grid_creases::GridCreases,
     plate::Plate,
     push::{LIMIT, Push},
 };
@@ -20,6 +22,7 @@ pub(super) struct GridBending {
     push: Push,
     /// From when it first may be needed.
     chains: Option<ChainBending>,
+    creases: Option<Box<GridCreases>>,
     weight: f32,
     is_soft: bool,
 }
@@ -32,6 +35,7 @@ impl GridBending {
             push: Push::new(&plate),
             plate,
             chains: None,
+            creases: None,
             weight: 0.0,
             is_soft: true,
         }
@@ -53,9 +57,35 @@ impl GridBending {
     }
 
     pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+        match &mut self.creases {
+            Some(_) => self.solve_creased(blocks, kernels),
+            None => self.solve_flat(blocks, kernels),
+        }
+    }
+
+    fn solve_flat(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         match &mut self.chains {
-            Some(chains) if !self.is_soft => chains.solve(blocks, kernels),
+            Some(chains) if !self.is_soft => chains.solve(blocks, kernels, |_, _| {}),
             _ => self.push.apply(blocks, 1.0, self.weight, kernels),
+        }
+    }
+
+    fn solve_creased(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+        let Some(creases) = &mut self.creases else {
+            return;
+        };
+        creases.aim(blocks, 1.0);
+        match &mut self.chains {
+            Some(chains) if !self.is_soft => {
+                let weight = self.weight;
+                chains.solve(blocks, kernels, |family, blocks| {
+                    creases.push(Some(family), weight, blocks);
+                });
+            }
+            _ => {
+                self.push.apply(blocks, 1.0, self.weight, kernels);
+                creases.push(None, self.weight, blocks);
+            }
         }
     }
 
@@ -66,7 +96,32 @@ impl GridBending {
 
     /// Adds what the forces at the positions make of displacements with this weight (s²).
     pub fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
+        if let Some(creases) = &mut self.creases {
+            // Displacements have no part in either.
+            creases.aim(blocks, 0.0);
+            creases.push(None, weight, blocks);
+        }
         self.push.apply(blocks, 0.0, weight, kernels);
+    }
+
+    /// Has it crease from now on, or not any more.
+    pub fn set_creasing(&mut self, grid: &ClothGrid, creasing: Option<ClothCreasing>) {
+        match (creasing, &mut self.creases) {
+            (Some(creasing), Some(known)) => known.set(creasing),
+            (Some(creasing), none) => {
+                let new = GridCreases::new(grid, &self.plate, creasing);
+                *none = Some(Box::new(new));
+            }
+            (None, known) => *known = None,
+        }
+    }
+
+    pub fn creases(&self) -> Option<&GridCreases> {
+        self.creases.as_deref()
+    }
+
+    pub fn creases_mut(&mut self) -> Option<&mut GridCreases> {
+        self.creases.as_deref_mut()
     }
 
     /// Whether forces push it, as it was prepared.

@@ -24,6 +24,8 @@ use std::sync::Arc;
 use bevy::math::{DVec3, Vec4};
 
 use super::{
+    creasing::ClothCreasing,
+    mesh_creases::MeshCreases,
     patch::{Patch, RestFace, faces_beside, frame},
     push::LIMIT,
 };
@@ -107,6 +109,7 @@ pub(super) struct MeshBending {
     /// On it.
     diagonal: Arc<[f32]>,
     rest: Arc<[RestFace]>,
+    creases: Option<Box<MeshCreases>>,
     /// Sum of the absolute values of each particle's row (N/m), by block.
     bounds: Arc<[Lanes]>,
     /// s (s²).
@@ -168,6 +171,7 @@ impl MeshBending {
             entries: entries.into(),
             diagonal: diagonal.into(),
             rest: rest.into(),
+            creases: None,
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
             directions: vec![Vec4::ZERO; places.len()],
@@ -240,12 +244,52 @@ impl MeshBending {
         if !self.conjugate_gradients() {
             return;
         }
+        self.add(blocks);
+        if self.creases.as_ref().is_some_and(|of| !of.is_flat()) {
+            self.aim_again();
+            if self.conjugate_gradients() {
+                self.add(blocks);
+            }
+        }
+    }
+
+    /// Adds the solution to the displacements.
+    fn add(&self, blocks: &mut [Block]) {
         for (row, slot) in self.rows.iter().zip(self.layout.slots()) {
             let view = blocks[slot.block].view_mut();
             view[DX + slot.lane] += row.added.x;
             view[DY + slot.lane] += row.added.y;
             view[DZ + slot.lane] += row.added.z;
         }
+    }
+
+    /// Turns the forces of creases to where the solution leads, for what that adds to it. Forces from where it came from turn
+    /// the cloth: a creased strip at rest began to turn by a degree in a second.
+    fn aim_again(&mut self) {
+        self.push_creases(-self.weight);
+        for (row, [_, moved]) in self.rows.iter_mut().zip(&mut self.places) {
+            *moved += row.added;
+            row.added = Vec4::ZERO;
+        }
+        self.push_creases(self.weight);
+        for row in self.rows.iter_mut().filter(|row| row.mass == 0.0) {
+            row.left = Vec4::ZERO;
+        }
+    }
+
+    /// Adds the forces of creases times this to `left`.
+    fn push_creases(&mut self, weight: f32) {
+        let Some(creases) = &self.creases else {
+            return;
+        };
+        let (places, rows) = (&self.places, &mut self.rows);
+        let at = |particle: u32| {
+            let [place, moved] = places[particle as usize];
+            (place + moved).truncate()
+        };
+        creases.push(at, |particle, force| {
+            rows[particle as usize].left += weight * force.extend(0.0);
+        });
     }
 
     /// `left` becomes −K p, less what the rest curvatures want.
@@ -273,6 +317,31 @@ impl MeshBending {
                 self.rows[particle as usize].left += turned.extend(0.0);
             }
         }
+        self.push_creases(1.0);
+    }
+
+    /// Has it crease from now on, or not any more.
+    pub fn set_creasing(
+        &mut self,
+        surface: &Surface,
+        rigidity: Woven,
+        creasing: Option<ClothCreasing>,
+    ) {
+        match (creasing, &mut self.creases) {
+            (Some(creasing), Some(known)) => known.set(creasing),
+            (Some(creasing), none) => {
+                *none = Some(Box::new(MeshCreases::new(surface, rigidity, creasing)));
+            }
+            (None, known) => *known = None,
+        }
+    }
+
+    pub fn creases(&self) -> Option<&MeshCreases> {
+        self.creases.as_deref()
+    }
+
+    pub fn creases_mut(&mut self) -> Option<&mut MeshCreases> {
+        self.creases.as_deref_mut()
     }
 
     /// `left` becomes s times the forces, 0 of pinned particles.

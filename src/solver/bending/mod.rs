@@ -5,11 +5,17 @@
 //! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
 //! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A surface
 //! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction.
+//!
+//! Where the cloth creases, its rest curvature is a state. It is constant in a tick and pushes at p, in frames that turn with the
+//! cloth; as the tick ends, it follows by the return mapping of plasticity with linear kinematic hardening (Simo and Hughes 1998).
 
 mod chains;
+mod creasing;
 mod factor;
 mod grid;
+mod grid_creases;
 mod mesh;
+mod mesh_creases;
 mod patch;
 mod plate;
 mod push;
@@ -18,6 +24,7 @@ mod tests;
 
 use super::kernels::Kernels;
 use crate::cloth::{Block, ClothMaterial, Surface};
+pub use creasing::ClothCreasing;
 use grid::GridBending;
 use mesh::MeshBending;
 
@@ -76,5 +83,46 @@ impl Bending {
         if let Kind::Grid(grid) = &mut self.of {
             grid.push(blocks, weight, kernels);
         }
+    }
+
+    /// Sets how `surface`, of which it is, creases; `None` for not at all. It needs the material that it was made with.
+    pub fn set_creasing(
+        &mut self,
+        surface: &Surface,
+        material: &ClothMaterial,
+        creasing: Option<ClothCreasing>,
+    ) {
+        match (&mut self.of, surface.as_grid()) {
+            (Kind::Grid(grid), Some(of)) => grid.set_creasing(of, creasing),
+            (Kind::Mesh(mesh), None) => {
+                mesh.set_creasing(surface, material.woven_bending(), creasing);
+            }
+            _ => {}
+        }
+    }
+
+    /// The rest curvatures of its creases; none if it does not crease.
+    pub fn creases(&self) -> &[f32] {
+        let creases = match &self.of {
+            Kind::Grid(grid) => grid.creases().map(|of| of.rest()),
+            Kind::Mesh(mesh) => mesh.creases().map(|of| of.rest()),
+        };
+        creases.unwrap_or_default()
+    }
+
+    /// Takes over rest curvatures of earlier; none if they are not of this surface.
+    pub(super) fn recall_creases(&mut self, creases: &[f32]) {
+        match &mut self.of {
+            Kind::Grid(grid) => grid.creases_mut().map(|of| of.recall(creases)),
+            Kind::Mesh(mesh) => mesh.creases_mut().map(|of| of.recall(creases)),
+        };
+    }
+
+    /// Creases it where it is bent beyond its yield curvature.
+    pub(super) fn crease(&mut self, blocks: &[Block]) {
+        match &mut self.of {
+            Kind::Grid(grid) => grid.creases_mut().map(|of| of.flow(blocks)),
+            Kind::Mesh(mesh) => mesh.creases_mut().map(|of| of.flow(blocks)),
+        };
     }
 }

@@ -120,22 +120,32 @@ impl Patch {
         })
     }
 
-    /// Makes its curvatures those along `warp`, along the weft and of twist, with the fourth root of the weft's rigidity over
-    /// the warp's.
-    pub fn weave(&mut self, warp: DVec3, ratio: f64, places: &[DVec3]) {
+    /// From its curvatures to those along `warp`, along the weft and of twist, with the fourth root of the weft's rigidity over
+    /// the warp's. The same ones without a warp.
+    pub fn woven(&self, warp: Option<DVec3>, ratio: f64, places: &[DVec3]) -> [[f64; 3]; 3] {
+        let Some(warp) = warp else {
+            return DMat3::IDENTITY.to_cols_array_2d();
+        };
         let [a, b, c] = [0, 1, 2].map(|corner| places[self.particles[corner] as usize]);
         let x = (b - a).normalize();
         let y = (b - a).cross(c - a).normalize().cross(x);
         let (cos, sin) = (warp.dot(x), warp.dot(y));
-        let root = std::f64::consts::SQRT_2;
+        let beside = std::f64::consts::SQRT_2 * cos * sin;
+        let (cos, sin) = (cos * cos, sin * sin);
+        [
+            [cos, sin, beside].map(|number| number / ratio),
+            [sin, cos, -beside].map(|number| number * ratio),
+            [-beside, beside, cos - sin],
+        ]
+    }
+
+    /// Makes its curvatures those along `warp`, along the weft and of twist.
+    pub fn weave(&mut self, warp: DVec3, ratio: f64, places: &[DVec3]) {
+        let woven = self.woven(Some(warp), ratio, places);
         for particle in 0..6 {
-            let [along_x, along_y, twist] = self.curvature.map(|of| of[particle]);
-            let along_warp = cos * cos * along_x + sin * sin * along_y + root * cos * sin * twist;
-            let along_weft = sin * sin * along_x + cos * cos * along_y - root * cos * sin * twist;
-            let twist = root * cos * sin * (along_y - along_x) + (cos * cos - sin * sin) * twist;
-            let woven = [along_warp / ratio, along_weft * ratio, twist];
-            for (of, number) in self.curvature.iter_mut().zip(woven) {
-                of[particle] = number;
+            let own = DVec3::from(self.curvature.map(|of| of[particle]));
+            for (of, woven) in self.curvature.iter_mut().zip(woven) {
+                of[particle] = own.dot(woven.into());
             }
         }
     }

@@ -9,7 +9,7 @@ use bevy::math::Vec3;
 
 use super::{
     air::{Air, AirMemory, Airflow},
-    bending::Bending,
+    bending::{Bending, ClothCreasing},
     chains::GridSolver,
     forces::Forces,
     kernels::SimdLevel,
@@ -20,7 +20,7 @@ use super::{
     stretch::Stretch,
     tether::{Anchors, Tethers},
 };
-use crate::cloth::{ClothParticles, Layout, SpringStorage, Springs, Surface};
+use crate::cloth::{ClothMaterial, ClothParticles, Layout, SpringStorage, Springs, Surface};
 
 pub(crate) use started::StartedTick;
 
@@ -122,6 +122,30 @@ impl Solver {
     /// Sets the resistance to bending, which must be that of the solver's particles; `None` for none.
     pub fn set_bending(&mut self, bending: Option<Bending>) {
         self.bending = bending;
+    }
+
+    /// Sets how what resists its bending creases; `None` for not at all. `surface` and `material` are those that it was made with.
+    pub(crate) fn set_creasing(
+        &mut self,
+        surface: &Surface,
+        material: &ClothMaterial,
+        creasing: Option<ClothCreasing>,
+    ) {
+        if let Some(bending) = &mut self.bending {
+            bending.set_creasing(surface, material, creasing);
+        }
+    }
+
+    /// The rest curvatures of its creases for the next tick; none if it does not crease.
+    pub fn creases(&self) -> &[f32] {
+        self.bending.as_ref().map_or(&[], Bending::creases)
+    }
+
+    /// Restores the creases from the last tick.
+    pub(crate) fn recall_creases(&mut self, creases: &[f32]) {
+        if let Some(bending) = &mut self.bending {
+            bending.recall_creases(creases);
+        }
     }
 
     /// Sets uniform air around the surface that the solver was made for; `None` for no air, which costs nothing.

@@ -304,6 +304,22 @@ impl Solver {
         pins: &[PinMotion],
         tick: StartedTick,
     ) -> Stretch {
+        let is_moved = tick.step.seconds > 0.0;
+        let stretch = self.settle(particles, pins, tick);
+        if let Some(bending) = &mut self.bending
+            && is_moved
+        {
+            bending.crease(particles.blocks());
+        }
+        stretch
+    }
+
+    fn settle(
+        &mut self,
+        particles: &mut ClothParticles,
+        pins: &[PinMotion],
+        tick: StartedTick,
+    ) -> Stretch {
         let StartedTick {
             step,
             is_pushed,

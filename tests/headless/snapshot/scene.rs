@@ -63,7 +63,7 @@ fn once(at: Vec3, velocity: Vec3, seconds: f32) -> Transform {
     Transform::from_translation(at + velocity * seconds.clamp(0.5, 3.0))
 }
 
-/// An app with cloths of every kind: swinging, asleep on a ball and woken, attached, holding a tolerance, teleported, in layers, on a
+/// An app with cloths of every kind: swinging, creasing, asleep on a ball and woken, attached, holding a tolerance, teleported, in layers, on a
 /// body, in gusts, below a root that carries it, at a lower rate, on a skeleton, before a fan that comes by, full of gas. The same entities each time.
 pub fn everything() -> (App, Vec<Entity>) {
     everything_after(0)
@@ -92,6 +92,10 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
         velocity: Some(Vec3::ZERO),
         drag: 0.0,
         lift: 0.0,
+    };
+    let creases = ClothCreasing {
+        yield_curvature: 1.0,
+        hardening: 0.3,
     };
     let edge = || Pins::new([Pin::at_rest(|place| place.z < 0.01)]);
     let world = app.world_mut();
@@ -128,7 +132,7 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     cloths.push(world.spawn((attached, at(21.0, 0.0, 0.0))).id());
     // Holds a tolerance, on a ball; changes its sub-steps as the ball moves.
     let triangles = Cloth::triangles(positions, triangles);
-    let exact = (triangles, edge(), ClothSettings::tolerance(0.02));
+    let exact = (triangles, edge(), creases, ClothSettings::tolerance(0.02));
     cloths.push(world.spawn((exact, at(30.0, 0.0, 0.0))).id());
     let stirs = Moves(|t| Transform::from_xyz(30.3, -0.4 + 0.1 * (3.0 * t).sin(), 0.3));
     world.spawn((ball(0.15), at(30.3, -0.4, 0.3), stirs));
@@ -147,7 +151,11 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     }
     world.spawn((ClothCollider::cuboid(0.2, 0.1, 0.2), at(80.0, 0.1, 0.0)));
     // Folds onto itself.
-    let folding = (Cloth::new(12, 12, 0.05), ClothSelfCollision::default());
+    let folding = (
+        Cloth::new(12, 12, 0.05),
+        creases,
+        ClothSelfCollision::default(),
+    );
     cloths.push(world.spawn((folding, at(90.0, 0.0, 0.0))).id());
     // Carries a body that the game presses into it.
     let border = |row: u32, column: u32| row.is_multiple_of(9) || column.is_multiple_of(9);

@@ -1,5 +1,6 @@
 //! Against dense matrices in f64.
 
+mod creases;
 mod dense;
 mod mesh;
 mod soft;

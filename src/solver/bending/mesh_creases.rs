@@ -1,0 +1,228 @@
+//! The creases of a mesh.
+//!
+//! A face of area A with the curvatures κ, as vectors in its own frame, has the energy `½ A Σ D |κ − κ₀|²`. The part without κ₀ is
+//! the bending of the mesh. The rest is a force, the gradient of `A D κ·κ₀`. It includes how the frame turns, so that no face
+//! has a resultant or a moment.
+
+use bevy::math::{DVec3, Vec3};
+
+use super::{
+    creasing::ClothCreasing,
+    patch::{Patch, faces_beside, frame},
+};
+use crate::cloth::{Block, Layout, Surface, Woven};
+
+/// Curvatures along a face's first edge, beside it and of twist (1/m), in its frame.
+type Curvature = [[f32; 3]; 3];
+
+/// A face and those beside it.
+#[derive(Debug, Clone)]
+struct Face {
+    particles: [u32; 6],
+    /// Contribution of each particle's position to the curvatures (1/m²).
+    curvature: [[f32; 6]; 3],
+    /// Area times rigidity, from curvatures to moments (N m³).
+    stiffness: [[f32; 3]; 3],
+    /// That of the surface at rest.
+    natural: [Vec3; 3],
+    /// The curvature of a face that lies flat on the one beside it (1/m).
+    most: f32,
+}
+
+impl Face {
+    fn new(patch: &Patch, woven: [[f64; 3]; 3], rigidity: Woven, places: &[DVec3]) -> Option<Self> {
+        let number = |row: usize, column: usize| {
+            let product = woven.iter().map(|of| of[row] * of[column]).sum::<f64>();
+            (f64::from(rigidity.mean) * patch.area * product) as f32
+        };
+        // From one corner, so that rounding stays below curvatures.
+        let origin = places[patch.particles[0] as usize];
+        let place = |particle: u32| (places[particle as usize] - origin).as_vec3();
+        let mut new = Self {
+            particles: patch.particles,
+            curvature: patch.curvature.map(|of| of.map(|number| number as f32)),
+            stiffness: std::array::from_fn(|row| std::array::from_fn(|column| number(row, column))),
+            natural: [Vec3::ZERO; 3],
+            most: 4.0 / (2.0 * patch.area as f32).sqrt(),
+        };
+        let at = new.particles.map(place);
+        new.natural = new.bent(&at, &frame(at[0], at[1], at[2])?);
+        Some(new)
+    }
+
+    /// Its curvatures in its frame.
+    fn bent(&self, at: &[Vec3; 6], [x, y, z]: &[Vec3; 3]) -> [Vec3; 3] {
+        self.curvature.map(|of| {
+            let numbers = of.iter().zip(at);
+            let bent: Vec3 = numbers
+                .map(|(number, place)| *number * (*place - at[0]))
+                .sum();
+            Vec3::new(bent.dot(*x), bent.dot(*y), bent.dot(*z))
+        })
+    }
+
+    /// The forces of a crease on each particle (N).
+    fn forces(&self, at: &[Vec3; 6], crease: &Curvature) -> Option<[Vec3; 6]> {
+        let axes = frame(at[0], at[1], at[2])?;
+        let crease = crease.map(Vec3::from);
+        let moments = self.stiffness.map(|of| -> Vec3 {
+            of.iter()
+                .zip(crease)
+                .map(|(number, crease)| *number * crease)
+                .sum()
+        });
+        let mut forces: [Vec3; 6] = std::array::from_fn(|particle| {
+            let of = self.curvature.iter().zip(moments);
+            of.map(|(of, moment)| of[particle] * moment).sum()
+        });
+        let bent = self.bent(at, &axes).into_iter().zip(moments);
+        let turning: Vec3 = bent.map(|(bent, moment)| bent.cross(moment)).sum();
+        // What the frame does as its corners move: the third turns it around the first edge, the ends of that turn the edge.
+        let [x, y, _] = axes;
+        let (along, third) = ((at[1] - at[0]).dot(x), at[2] - at[0]);
+        let (foot, height) = (third.dot(x) / along, third.dot(y));
+        let [lift, tip, swing] = [turning.x / height, turning.y / along, turning.z / along];
+        forces[0] += Vec3::new(0.0, swing, lift * (1.0 - foot) - tip);
+        forces[1] += Vec3::new(0.0, -swing, lift * foot + tip);
+        forces[2].z -= lift;
+        let [x, y, z] = axes;
+        let forces = forces.map(|force| force.x * x + force.y * y + force.z * z);
+        forces
+            .iter()
+            .all(|force| force.is_finite())
+            .then_some(forces)
+    }
+}
+
+/// The rest curvatures of a mesh.
+#[derive(Debug, Clone)]
+pub(super) struct MeshCreases {
+    creasing: ClothCreasing,
+    layout: Layout,
+    faces: Vec<Face>,
+    /// Beyond those of the surface.
+    rest: Vec<Curvature>,
+    places: Vec<Vec3>,
+    /// Faces with a crease.
+    creased: Vec<u32>,
+}
+
+impl MeshCreases {
+    pub fn new(surface: &Surface, rigidity: Woven, creasing: ClothCreasing) -> Self {
+        let places: Vec<DVec3> = surface
+            .rest_positions()
+            .iter()
+            .map(|place| place.as_dvec3())
+            .collect();
+        let corners = surface.triangles();
+        let mut faces = Vec::with_capacity(corners.len());
+        for (index, (face, beside)) in corners.iter().zip(faces_beside(corners)).enumerate() {
+            let Some(patch) = Patch::new(*face, beside, &places) else {
+                continue;
+            };
+            let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);
+            let woven = patch.woven(warp.map(|of| of.as_dvec3()), rigidity.ratio.into(), &places);
+            faces.extend(Face::new(&patch, woven, rigidity, &places));
+        }
+        Self {
+            creasing,
+            layout: surface.layout(),
+            rest: vec![Curvature::default(); faces.len()],
+            places: vec![Vec3::ZERO; places.len()],
+            creased: Vec::with_capacity(faces.len()),
+            faces,
+        }
+    }
+
+    pub fn set(&mut self, creasing: ClothCreasing) {
+        self.creasing = creasing;
+    }
+
+    pub fn rest(&self) -> &[f32] {
+        self.rest.as_flattened().as_flattened()
+    }
+
+    /// Takes over rest curvatures; none where there are those of another surface.
+    pub fn recall(&mut self, rest: &[f32]) {
+        let own = self.rest.as_flattened_mut().as_flattened_mut();
+        if own == rest {
+            return;
+        }
+        if own.len() == rest.len() {
+            own.copy_from_slice(rest);
+        } else {
+            own.fill(0.0);
+        }
+        self.gather();
+    }
+
+    /// Whether no face has a crease.
+    pub fn is_flat(&self) -> bool {
+        self.creased.is_empty()
+    }
+
+    fn gather(&mut self) {
+        self.creased.clear();
+        let each = self.rest.iter().enumerate();
+        let creased = each.filter(|(_, rest)| **rest != Curvature::default());
+        self.creased.extend(creased.map(|(face, _)| face as u32));
+    }
+
+    /// Adds its forces (N) where particles are at these places.
+    pub fn push(&self, place: impl Fn(u32) -> Vec3, mut add: impl FnMut(u32, Vec3)) {
+        for &face in &self.creased {
+            let (face, rest) = (&self.faces[face as usize], &self.rest[face as usize]);
+            let Some(forces) = face.forces(&face.particles.map(&place), rest) else {
+                continue;
+            };
+            for (particle, force) in face.particles.into_iter().zip(forces) {
+                add(particle, force);
+            }
+        }
+    }
+
+    /// Has rest curvatures follow where the cloth is bent beyond its yield curvature.
+    pub fn flow(&mut self, blocks: &[Block]) {
+        for (place, slot) in self.places.iter_mut().zip(self.layout.slots()) {
+            *place = blocks[slot.block].position(slot.lane);
+        }
+        let mut has_flowed = false;
+        for (face, rest) in self.faces.iter().zip(&mut self.rest) {
+            let at = face
+                .particles
+                .map(|particle| self.places[particle as usize]);
+            let Some(axes) = frame(at[0], at[1], at[2]) else {
+                continue;
+            };
+            let mut trials = face.bent(&at, &axes);
+            for ((trial, natural), rest) in trials.iter_mut().zip(face.natural).zip(&*rest) {
+                let elastic = (*trial - natural).to_array().into_iter().zip(rest);
+                let mut yielding = elastic.map(|(bent, rest)| self.creasing.trial(bent, *rest));
+                *trial =
+                    Vec3::from_array(std::array::from_fn(|_| yielding.next().unwrap_or_default()));
+            }
+            let norm_squared = trials.iter().map(|trial| trial.length_squared()).sum();
+            let flow = self.creasing.flow(norm_squared);
+            if flow == 0.0 {
+                continue;
+            }
+            has_flowed = true;
+            let flowed = |kind: usize| Vec3::from(rest[kind]) + flow * trials[kind];
+            let flowed: [Vec3; 3] = std::array::from_fn(flowed);
+            let norm = flowed
+                .iter()
+                .map(|of| of.length_squared())
+                .sum::<f32>()
+                .sqrt();
+            let part = if norm > face.most {
+                face.most / norm
+            } else {
+                1.0
+            };
+            *rest = flowed.map(|of| (part * of).to_array());
+        }
+        if has_flowed {
+            self.gather();
+        }
+    }
+}

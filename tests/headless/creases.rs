@@ -1,0 +1,168 @@
+//! Folds that stay.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::support::*;
+
+/// Length of the sheet (m).
+const LENGTH: f32 = 0.4;
+
+const CREASING: ClothCreasing = ClothCreasing {
+    yield_curvature: 5.0,
+    hardening: 0.1,
+};
+
+/// A sheet whose ends two hands brought together and let go of, two seconds ago.
+fn folded(creasing: Option<ClothCreasing>) -> (App, Entity) {
+    let mut app = app();
+    let hands = [0.0, LENGTH].map(|x| {
+        let place = Transform::from_xyz(x, 0.0, 0.0);
+        app.world_mut().spawn(place).id()
+    });
+    let held = ClothAttachments::new([(Pin::Column(0), hands[0]), (Pin::Column(20), hands[1])]);
+    let paper = ClothMaterial {
+        bend_rigidity: 3.0e-4,
+        damping: 0.1,
+        ..ClothMaterial::COTTON
+    };
+    let settings = ClothSettings {
+        gravity: Some(Vec3::ZERO),
+        ..default()
+    };
+    let sheet = (Cloth::new(21, 5, LENGTH / 20.0), Pins::none(), paper);
+    let sheet = app.world_mut().spawn((sheet, settings, held)).id();
+    if let Some(creasing) = creasing {
+        app.world_mut().entity_mut(sheet).insert(creasing);
+    }
+    for step in 0..=64 {
+        let angle = 0.8 * std::f32::consts::PI * step as f32 / 64.0;
+        let place = 0.5 * LENGTH * Vec3::new(1.0 + 0.7 * angle.cos(), 0.0, 0.7 * angle.sin());
+        let start = Vec3::X * LENGTH;
+        let to = start.lerp(place, (step as f32 / 16.0).min(1.0));
+        change::<Transform>(&mut app, hands[1], |hand| {
+            *hand = Transform::from_translation(to)
+        });
+        tick(&mut app, 1);
+    }
+    app.world_mut()
+        .entity_mut(sheet)
+        .remove::<ClothAttachments>();
+    tick(&mut app, 128);
+    assert!(app.world().get::<ClothFault>(sheet).is_none());
+    (app, sheet)
+}
+
+/// How far apart its ends are, in parts of its length.
+fn open(app: &App, sheet: Entity) -> f32 {
+    let columns = particles(app, sheet).columns();
+    let [a, b] = [0, columns - 1].map(|column| position(app, sheet, (2, column)));
+    a.distance(b) / LENGTH
+}
+
+/// A sheet that creases stays folded, as long as it is the same sheet, wherever it is put. One that does not springs back.
+#[test]
+fn a_fold_made_by_hands_stays() {
+    let (app, sheet) = folded(None);
+    let flat = open(&app, sheet);
+    let (mut app, sheet) = folded(Some(CREASING));
+    let creased = open(&app, sheet);
+    change::<Transform>(&mut app, sheet, |place| {
+        *place = Transform::from_xyz(3.0, 1.0, 0.0).with_rotation(Quat::from_rotation_x(2.0));
+    });
+    app.world_mut().entity_mut(sheet).insert(ClothTeleport);
+    tick(&mut app, 64);
+    let turned = open(&app, sheet);
+    change::<ClothMaterial>(&mut app, sheet, |paper| paper.bend_rigidity = 5.0e-4);
+    tick(&mut app, 128);
+    let stiffened = open(&app, sheet);
+    println!("flat {flat:.3}, creased {creased:.3}, turned {turned:.3}, stiffened {stiffened:.3}");
+    assert!(flat > 0.97, "{flat}");
+    assert!(creased < 0.8, "{creased}");
+    assert!((turned - creased).abs() < 0.02, "{turned} {creased}");
+    assert!((stiffened - creased).abs() < 0.02, "{stiffened} {creased}");
+}
+
+/// Without the component it springs back, and so does a sheet that is built anew.
+#[test]
+fn creases_end_with_the_component_and_with_the_surface() {
+    let (mut app, sheet) = folded(Some(CREASING));
+    app.world_mut().entity_mut(sheet).remove::<ClothCreasing>();
+    tick(&mut app, 192);
+    let without = open(&app, sheet);
+    let (mut app, sheet) = folded(Some(CREASING));
+    change::<Cloth>(&mut app, sheet, |cloth| {
+        *cloth = Cloth::new(17, 5, LENGTH / 16.0)
+    });
+    tick(&mut app, 192);
+    let anew = open(&app, sheet);
+    println!("without {without:.3}, anew {anew:.3}");
+    assert!(without > 0.97, "{without}");
+    assert!(anew > 0.97, "{anew}");
+}
+
+/// What is no curvature and no hardening is a fault that names it, and leaves other cloth alone. A good value mends it.
+#[test]
+fn bad_creasing_is_a_fault() {
+    let mut app = app();
+    let other = app.world_mut().spawn(Cloth::new(5, 5, 0.1)).id();
+    let sheet = app
+        .world_mut()
+        .spawn((Cloth::new(5, 5, 0.1), CREASING))
+        .id();
+    for (yield_curvature, hardening, name) in [
+        (0.0, 0.1, "yield curvature"),
+        (-1.0, 0.1, "yield curvature"),
+        (f32::NAN, 0.1, "yield curvature"),
+        (f32::INFINITY, 0.1, "yield curvature"),
+        (5.0, -0.1, "hardening"),
+        (5.0, 1.0, "hardening"),
+        (5.0, f32::NAN, "hardening"),
+    ] {
+        let bad = ClothCreasing {
+            yield_curvature,
+            hardening,
+        };
+        app.world_mut().entity_mut(sheet).insert(bad);
+        let before = [sheet, other].map(|cloth| position(&app, cloth, (4, 2)));
+        tick(&mut app, 2);
+        let fault = app.world().get::<ClothFault>(sheet).expect("a fault");
+        assert!(fault.error.to_string().contains(name), "{}", fault.error);
+        assert!(app.world().get::<ClothFault>(other).is_none());
+        assert_eq!(position(&app, sheet, (4, 2)), before[0]);
+        assert_ne!(position(&app, other, (4, 2)), before[1]);
+    }
+    app.world_mut().entity_mut(sheet).insert(CREASING);
+    tick(&mut app, 2);
+    assert!(app.world().get::<ClothFault>(sheet).is_none());
+}
+
+/// A material that bends freely has no creases, and what never yields moves bit for bit as without.
+#[test]
+fn nothing_stays_below_the_yield_curvature() {
+    let hung = |rigidity: f32, creasing: Option<ClothCreasing>| {
+        let mut app = app();
+        let material = ClothMaterial {
+            bend_rigidity: rigidity,
+            ..ClothMaterial::COTTON
+        };
+        let pins = Pins::new([Pin::Corner(Corner::TopLeft)]);
+        let cloth = (Cloth::new(12, 12, 0.05), material, pins);
+        let cloth = app.world_mut().spawn(cloth).id();
+        if let Some(creasing) = creasing {
+            app.world_mut().entity_mut(cloth).insert(creasing);
+        }
+        tick(&mut app, 128);
+        particles(&app, cloth).clone()
+    };
+    // A grid bends by at most 2 over its spacing, and √3 times as much in all directions at once.
+    let beyond = ClothCreasing {
+        yield_curvature: 100.0,
+        hardening: 0.0,
+    };
+    for rigidity in [6.0e-6, 1.0e-3] {
+        assert!(hung(rigidity, Some(beyond)) == hung(rigidity, None));
+    }
+    assert!(hung(0.0, Some(CREASING)) == hung(0.0, None));
+    assert!(hung(1.0e-3, Some(CREASING)) != hung(1.0e-3, None));
+}
