@@ -56,9 +56,10 @@ pub mod prelude {
         ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothBuilt,
         ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGrab, ClothGravity, ClothHit,
         ClothInertia, ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
-        ClothRayCast, ClothSnapshot, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
-        ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
-        ClothWorldSnapshot, DrapePlugins, GlobalClothLod, SnapshotError, shift_cloths,
+        ClothRayCast, ClothSeam, ClothSeamSide, ClothSnapshot, ClothStats, ClothSystems,
+        ClothTarget, ClothTeleport, ClothTouchStarted, ClothTouchStopped, ClothWind,
+        ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
+        SnapshotError, shift_cloths,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

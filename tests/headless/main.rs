@@ -49,6 +49,7 @@ mod scene_files;
 mod scenes;
 mod schedule;
 mod scratch;
+mod seams;
 mod search;
 mod self_collision;
 mod shapes;

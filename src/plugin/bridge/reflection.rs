@@ -13,7 +13,8 @@ use crate::{
     cloth::{Cloth, ClothDensity, ClothGrain, ClothSkin, Pins},
     contact::ClothCollider,
     plugin::authoring::{
-        BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, GlobalClothLod,
+        BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, ClothSeam,
+        GlobalClothLod,
     },
 };
 
@@ -27,6 +28,7 @@ pub(crate) fn register_lists(app: &mut App) {
     register::<ClothAttachments>(app);
     register::<ClothBones>(app);
     register::<ClothGrab>(app);
+    register::<ClothSeam>(app);
     register::<ClothSkin>(app);
     register::<ClothLod>(app);
     register::<GlobalClothLod>(app);

@@ -207,6 +207,7 @@ fn group(wanted: &mut [WantedLevel], groups: &mut Islands) {
         centre: own.centre,
         radius: own.radius,
         layers: own.layers,
+        touches: true,
         bounds: None,
     }));
     groups.join(|_| None);
