@@ -31,8 +31,8 @@ use crate::{
 /// a new seam.
 ///
 /// Cloths that are sewn together run in one island, with the same number of sub-steps, and wake each other. Particles that
-/// are sewn together do not collide, and neither do the faces and edges at them. While one of the cloths is disabled, at
-/// fault or not moved for its level of detail, the seam waits.
+/// are sewn together do not collide, and neither do the faces and edges at them. While one of the cloths is at fault, the seam
+/// waits; while one is gone or disabled, the seam has a [`ClothFault`](crate::plugin::ClothFault).
 ///
 /// ```
 /// use bevy::prelude::*;
