@@ -57,9 +57,10 @@ pub mod prelude {
         ClothAir, ClothAttachment, ClothAttachments, ClothBlade, ClothBody, ClothBone, ClothBones,
         ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGrab, ClothGravity,
         ClothHit, ClothInertia, ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
-        ClothRayCast, ClothSnapshot, ClothStats, ClothSystems, ClothTarget, ClothTeleport,
-        ClothTorn, ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
-        ClothWorldSnapshot, DrapePlugins, GlobalClothLod, SnapshotError, shift_cloths,
+        ClothRayCast, ClothSeam, ClothSeamSide, ClothSnapshot, ClothStats, ClothSystems,
+        ClothTarget, ClothTeleport, ClothTorn, ClothTouchStarted, ClothTouchStopped, ClothWind,
+        ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
+        SnapshotError, shift_cloths,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

@@ -103,6 +103,10 @@ const ENTRIES: &[Entry] = &[
         name: "laundry",
         pictures: &[("laundry.png", "a hand pulls at a sheet")],
     },
+    Entry {
+        name: "sewing",
+        pictures: &[("sewing.png", "a tunic, sewn around a figure")],
+    },
 ];
 
 /// Runs all examples, or those that are named

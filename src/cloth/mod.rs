@@ -13,6 +13,7 @@ mod particles;
 mod pins;
 mod presence;
 mod recipe;
+mod sewing;
 mod skin;
 mod spring;
 mod springs;
@@ -49,6 +50,7 @@ pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
 pub(crate) use particles::{DensityFactors, Earlier, Load, StepKind};
 pub(crate) use presence::ClothPresence;
+pub(crate) use sewing::{SewnSide, Stitch, stitches};
 pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};
 #[cfg(feature = "mesh")]

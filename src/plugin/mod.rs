@@ -32,8 +32,9 @@ use bevy::{
 
 pub use authoring::{
     ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothGrab,
-    ClothGravity, ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothTarget,
-    ClothTeleport, ClothWind, ClothWindShape, ClothWindZone, GlobalClothLod,
+    ClothGravity, ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothSeam,
+    ClothSeamSide, ClothTarget, ClothTeleport, ClothWind, ClothWindShape, ClothWindZone,
+    GlobalClothLod,
 };
 #[cfg(feature = "mesh")]
 pub use authoring::{ClothMesh, ClothSkeleton};

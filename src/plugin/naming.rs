@@ -15,6 +15,7 @@ pub(crate) enum Part {
     Grab,
     #[cfg(feature = "mesh")]
     RenderMesh,
+    Seam,
     WindZone,
 }
 
@@ -34,6 +35,7 @@ impl NamedItem<'_, '_> {
             Part::Grab => "cloth grab",
             #[cfg(feature = "mesh")]
             Part::RenderMesh => "cloth render mesh",
+            Part::Seam => "cloth seam",
             Part::WindZone => "cloth wind zone",
         };
         format!("{part} {}", quoted(self.entity, self.name))

@@ -17,7 +17,7 @@ use bevy::{
         observer::On,
         query::{Allow, With},
         schedule::{
-            IntoScheduleConfigs, ScheduleLabel,
+            IntoScheduleConfigs, ScheduleLabel, SystemCondition,
             common_conditions::{any_with_component, resource_exists},
         },
         system::{Commands, Query},
@@ -33,15 +33,16 @@ use super::prepare::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
     authoring::{
         ClothAir, ClothBody, ClothGrab, ClothGravity, ClothInertia, ClothOrder, ClothPush,
-        ClothTeleport, ClothWind, ClothWindZone, give_order,
+        ClothSeam, ClothTeleport, ClothWind, ClothWindZone, give_order,
     },
     bridge::register_lists,
     frame::ClothFrame,
     naming::Part,
     prepare::{
-        ChangedColliders, ColliderMotion, ColliderTree, Islands, Teleporting, choose_levels,
-        find_islands, follow_roots, forget_collider, hold_cloths, let_go, note_enabled,
-        note_removals, prepare_cloths, prepare_colliders, prepare_wind,
+        ChangedColliders, ColliderMotion, ColliderTree, Islands, Seams, Teleporting, choose_levels,
+        find_islands, follow_roots, forget_collider, forget_stitches, hold_cloths, let_go,
+        note_enabled, note_removals, prepare_cloths, prepare_colliders, prepare_seams,
+        prepare_wind,
     },
     search::{query_collisions, rebuild_hierarchies},
     sets::ClothSystems,
@@ -151,6 +152,7 @@ fn add_resources_and_observers(app: &mut App) {
         .init_resource::<SharedParts>()
         .init_resource::<Notices>()
         .init_resource::<Islands>()
+        .init_resource::<Seams>()
         .init_resource::<ColliderTree>()
         .init_resource::<WindField>()
         .init_resource::<ChangedColliders>()
@@ -164,6 +166,7 @@ fn add_resources_and_observers(app: &mut App) {
         .add_observer(reset_motion)
         .add_observer(remove_bone_colliders)
         .add_observer(let_go)
+        .add_observer(forget_stitches)
         .add_observer(forget_collider)
         .add_observer(note_enabled)
         .add_systems(Last, note_removals)
@@ -187,6 +190,8 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     )
         .chain()
         .run_if(any_with_component::<ClothTears>);
+    // Once more after the last one is gone, to wake what it held.
+    let seams = prepare_seams.run_if(any_with_component::<ClothSeam>.or_else(Seams::were_there));
     app.configure_sets(
         schedule,
         (
@@ -210,6 +215,7 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 prepare_wind,
                 levels,
                 prepare_cloths,
+                seams,
                 find_islands,
             )
                 .chain()

@@ -75,6 +75,7 @@ mod list;
 mod motion;
 mod partitions;
 mod rest;
+mod seam;
 mod settings;
 mod spin;
 mod spring_solver;
@@ -100,6 +101,7 @@ pub use kernels::SimdLevel;
 pub(crate) use motion::MotionConstraints;
 #[doc(hidden)]
 pub use rest::Rest;
+pub(crate) use seam::{Seam, SeamCloth, SeamPull};
 pub use settings::ClothSettings;
 pub use step::TimeOrder;
 #[doc(hidden)]

@@ -50,6 +50,7 @@ mod scene_files;
 mod scenes;
 mod schedule;
 mod scratch;
+mod seams;
 mod search;
 mod self_collision;
 mod shapes;

@@ -7,6 +7,7 @@ use bevy::math::{Vec3, Vec3A};
 use super::{
     bounds::Bounds,
     intersections::passes,
+    joined::Joined,
     lanes::{Groups, Hits, Points, near_edges, near_faces},
     motion::Motion,
     pair::{TWO_EDGES, VERTEX_AND_FACE, edge_to_edge, vertex_to_face},
@@ -45,6 +46,7 @@ pub(super) fn compare(
     pair: &mut PatchPair,
     cloths: &[Participant],
     motion: &Motion,
+    joined: &Joined,
     place: &Place,
     candidates: &mut Vec<Candidate>,
     scratch: &mut Comparison,
@@ -82,6 +84,7 @@ pub(super) fn compare(
     let mut features = Features {
         sides: &sides,
         points: &scratch.points,
+        joined,
         hits: &mut scratch.hits,
         is_one_cloth,
         is_one_patch: pair.of[0] == pair.of[1],
@@ -167,6 +170,7 @@ pub(super) fn cross(
     pair: &PatchPair,
     cloths: &[Participant],
     motion: &Motion,
+    joined: &Joined,
     work: &mut usize,
 ) -> bool {
     let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
@@ -187,7 +191,8 @@ pub(super) fn cross(
             bounds.overlaps(&other.bounds)
                 && faces.iter().any(|face| {
                     let corners = face.map(|corner| other.particle(corner));
-                    let is_joined = a == b && ends.iter().any(|end| corners.contains(end));
+                    let is_joined = a == b && ends.iter().any(|end| corners.contains(end))
+                        || joined.join(&own.global(ends), &other.global(corners));
                     !is_joined
                         && other.bounds(*face).overlaps(&bounds)
                         && passes(places, face.map(|corner| other.place(corner).as_dvec3()))
@@ -251,6 +256,11 @@ impl<'a> Side<'a> {
         self.particles[usize::from(local)]
     }
 
+    /// The places of its cloth's particles among those of all cloths.
+    fn global<const N: usize>(&self, particles: [u32; N]) -> [u32; N] {
+        particles.map(|particle| self.first_particle + particle)
+    }
+
     fn bounds<const N: usize>(&self, feature: [u16; N]) -> Bounds {
         let add = |bounds: Bounds, local: &u16| bounds.with(self.place(*local));
         feature.iter().fold(Bounds::EMPTY, add)
@@ -278,6 +288,7 @@ impl<'a> Side<'a> {
 struct Features<'a> {
     sides: &'a [Side<'a>; 2],
     points: &'a [Points],
+    joined: &'a Joined,
     hits: &'a mut Hits,
     is_one_cloth: bool,
     is_one_patch: bool,
@@ -303,12 +314,15 @@ impl Features<'_> {
             if self.is_one_cloth && corners.contains(&vertex) {
                 continue;
             }
+            let [a, b, c] = other.global(corners);
+            let particles = [own.first_particle + vertex, a, b, c];
+            if self.joined.join(&particles[..1], &particles[1..]) {
+                continue;
+            }
             let thickness = self.allowed(self.thickness, |rest| {
                 let at_rest = |particle: u32| rest[particle as usize];
                 vertex_to_face(at_rest(vertex), corners.map(at_rest))
             });
-            let [a, b, c] = corners.map(|corner| other.first_particle + corner);
-            let particles = [own.first_particle + vertex, a, b, c];
             let distance = hit.square.sqrt() - self.tolerance;
             let near = Candidate::new(particles, VERTEX_AND_FACE, thickness, distance);
             self.candidates.push(near);
@@ -331,12 +345,14 @@ impl Features<'_> {
             if is_known || is_joined {
                 continue;
             }
+            let [[p, q], [r, s]] = [own.global(ends), other.global(other_ends)];
+            if self.joined.join(&[p, q], &[r, s]) {
+                continue;
+            }
             let thickness = self.allowed(wanted, |rest| {
                 let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
                 edge_to_edge(at_rest(ends), at_rest(other_ends))
             });
-            let [p, q] = ends.map(|end| own.first_particle + end);
-            let [r, s] = other_ends.map(|end| other.first_particle + end);
             let distance = hit.square.sqrt() - self.tolerance;
             let near = Candidate::new([p, q, r, s], TWO_EDGES, thickness, distance);
             self.candidates.push(near);

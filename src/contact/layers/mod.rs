@@ -36,6 +36,7 @@ mod contacts;
 mod folds;
 mod inside;
 mod intersections;
+mod joined;
 mod lanes;
 mod mean_pushes;
 mod members;
@@ -138,6 +139,13 @@ impl MutualContact {
     /// Forgets all pairs: the particles are others, or have jumped.
     pub fn forget(&mut self) {
         (self.is_known, self.ticks_off) = (false, 0);
+    }
+
+    /// Sets the pairs of particles that are sewn together, by their places among the particles of all cloths.
+    pub fn set_joined(&mut self, pairs: impl Iterator<Item = [u32; 2]>) {
+        if self.near.joined.set(pairs) {
+            self.forget();
+        }
     }
 
     /// Begins a tick of these cloths. `meets` returns whether two of them may touch.

@@ -14,6 +14,7 @@
 use super::{
     compare::{Comparison, compare, cross},
     folds::Folds,
+    joined::Joined,
     motion::Motion,
     near_patches::{Meets, PatchBoxes},
     participant::Participant,
@@ -29,6 +30,8 @@ const SOON: f32 = 0.5;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NearFeatures {
     folds: Folds,
+    /// The particles that are sewn together.
+    pub joined: Joined,
     pairs: Vec<PatchPair>,
     candidates: Vec<Candidate>,
     /// Number of candidates that belong to pairs of patches.
@@ -215,6 +218,7 @@ impl NearFeatures {
                     pair,
                     cloths,
                     motion,
+                    &self.joined,
                     &place,
                     &mut self.candidates,
                     &mut self.comparison,
@@ -228,7 +232,7 @@ impl NearFeatures {
                 pair.is_tangled |= self.begins && pair.has_tangled(&self.candidates[first..]);
             }
             if pair.is_tangled || self.begins {
-                let cross = cross(pair, cloths, motion, &mut counts.work);
+                let cross = cross(pair, cloths, motion, &self.joined, &mut counts.work);
                 if pair.is_tangled || cross {
                     pair.leave_alone(cross, &place);
                 }

@@ -13,6 +13,7 @@ mod lod;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod order;
+mod seam;
 #[cfg(feature = "mesh")]
 mod skeleton;
 mod wind;
@@ -33,6 +34,8 @@ pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
 pub use mesh::ClothMesh;
 pub use order::ClothOrder;
 pub(crate) use order::{Ordered, give_order};
+pub(crate) use seam::ClothStitches;
+pub use seam::{ClothSeam, ClothSeamSide};
 #[cfg(feature = "mesh")]
 pub use skeleton::ClothSkeleton;
 pub(crate) use wind::DENSITY;

@@ -13,7 +13,8 @@ use crate::{
     cloth::{Cloth, ClothDensity, ClothGrain, ClothSkin, ClothTears, Pins},
     contact::ClothCollider,
     plugin::authoring::{
-        BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, GlobalClothLod,
+        BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, ClothSeam,
+        GlobalClothLod,
     },
 };
 
@@ -28,6 +29,7 @@ pub(crate) fn register_lists(app: &mut App) {
     register::<ClothAttachments>(app);
     register::<ClothBones>(app);
     register::<ClothGrab>(app);
+    register::<ClothSeam>(app);
     register::<ClothSkin>(app);
     register::<ClothLod>(app);
     register::<GlobalClothLod>(app);

@@ -3,21 +3,16 @@
 use bevy::{
     ecs::{
         entity::Entity,
-        query::{QueryData, With},
         resource::Resource,
-        system::{Query, ResMut},
+        system::{Query, Res, ResMut},
     },
-    math::{Mat3, Vec3},
+    math::Vec3,
 };
 
+use super::{neighbour::Neighbour, seams::Seams};
 use crate::{
-    cloth::ClothParticles,
-    contact::{ClothLayers, ClothSelfCollision, MutualContact},
-    plugin::{
-        authoring::{ClothOrder, Ordered},
-        frame::ClothFrame,
-        state::{BroadPhaseBounds, ClothBuilt, ClothScratch, ClothState},
-    },
+    contact::{ClothLayers, MutualContact},
+    plugin::authoring::Ordered,
 };
 
 /// Cloths that may touch each other in the tick, island by island.
@@ -31,15 +26,20 @@ pub(crate) struct Islands {
     parent: Vec<u32>,
     /// Which island the cloths of each root are, if any.
     island_of: Vec<u32>,
+    /// The span of each cloth, sorted, where cloths are sewn.
+    span_of: Vec<(Entity, u32)>,
 }
 
-/// Cloths that may touch each other. If all sleep, one may be woken in the tick.
+/// Cloths that may touch each other, or that are sewn together. If all sleep, one may be woken in the tick.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Island {
     /// Ascending.
     pub cloths: Vec<Ordered>,
     pub contact: MutualContact,
+    /// Their seams, in the order in which they are solved.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub seams: Vec<Entity>,
 }
 
 /// Where a cloth may be.
@@ -49,54 +49,46 @@ pub(crate) struct Span {
     pub centre: Vec3,
     pub radius: f32,
     pub layers: ClothLayers,
+    /// Whether it touches cloth at all.
+    pub touches: bool,
     /// The least and the greatest corner of the box that it stays in (m), once it was asked for.
     pub bounds: Option<[Vec3; 2]>,
 }
 
 const NONE: u32 = u32::MAX;
 
-#[derive(QueryData)]
-#[query_data(mutable)]
-pub(crate) struct Neighbour {
-    entity: Entity,
-    built: &'static ClothBuilt,
-    particles: &'static ClothParticles,
-    frame: &'static ClothFrame,
-    bounds: &'static mut BroadPhaseBounds,
-    state: &'static mut ClothState,
-    scratch: &'static mut ClothScratch,
-    layers: Option<&'static ClothLayers>,
-    order: Option<&'static ClothOrder>,
-}
-
-/// Those that touch cloth at all.
-type Neighbours<'w, 's> = Query<'w, 's, Neighbour, With<ClothSelfCollision>>;
-
-/// Finds which cloths may touch each other in the tick. A cloth that moves wakes sleeping cloths beside it.
-pub(crate) fn find_islands(mut islands: ResMut<Islands>, mut cloths: Neighbours) {
+/// Finds which cloths may touch each other in the tick, or are sewn together. A cloth that moves wakes sleeping cloths beside
+/// it.
+pub(crate) fn find_islands(
+    mut islands: ResMut<Islands>,
+    seams: Res<Seams>,
+    mut cloths: Query<Neighbour>,
+) {
     let islands = &mut *islands;
     islands.spans.clear();
     for mut cloth in &mut cloths {
         cloth.scratch.is_in_island = false;
-        if let Some(settings) = cloth.scratch.self_collision
-            && cloth.bounds.takes_part
-        {
+        let settings = cloth.scratch.self_collision;
+        let is_joined = settings.is_some() || seams.hold(cloth.entity);
+        if is_joined && cloth.bounds.takes_part {
             islands.spans.push(Span {
                 cloth: (cloth.order.copied().unwrap_or_default(), cloth.entity),
                 centre: cloth.bounds.centre,
-                radius: cloth.bounds.radius + settings.thickness,
+                radius: cloth.bounds.radius + settings.map_or(0.0, |of| of.thickness),
                 layers: cloth.layers.copied().unwrap_or_default(),
+                touches: settings.is_some(),
                 bounds: None,
             });
         }
     }
     std::mem::swap(&mut islands.all, &mut islands.before);
     islands.all.clear();
-    if islands.spans.len() < 2 {
+    if islands.spans.len() < 2 && seams.active.is_empty() {
         return;
     }
     islands.join(|entity| cloths.get(entity).map(|cloth| cloth.bounds()).ok());
-    islands.collect();
+    islands.sew(&seams);
+    islands.collect(&seams);
     for island in &mut islands.all {
         wake(island, &mut cloths);
     }
@@ -134,6 +126,8 @@ impl Islands {
                 }
                 let reach = own.radius + other.radius;
                 if own.centre.distance_squared(other.centre) <= reach * reach
+                    && own.touches
+                    && other.touches
                     && own.layers.interacts_with(other.layers)
                     && self.find(a as u32) != self.find(b as u32)
                     && self.boxes_meet([a, b], &bounds)
@@ -143,6 +137,29 @@ impl Islands {
                 }
             }
         }
+    }
+
+    /// Joins all cloths that are sewn together.
+    pub fn sew(&mut self, seams: &Seams) {
+        self.span_of.clear();
+        if seams.active.is_empty() {
+            return;
+        }
+        let spans = self.spans.iter().enumerate();
+        (self.span_of).extend(spans.map(|(index, span)| (span.cloth.1, index as u32)));
+        self.span_of.sort_unstable();
+        for seam in &seams.active {
+            if let [Some(a), Some(b)] = seam.cloths.map(|(_, cloth)| self.span(cloth)) {
+                let [a, b] = [a, b].map(|span| self.find(span));
+                self.parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+    }
+
+    /// The span of a cloth, where cloths are sewn.
+    fn span(&self, cloth: Entity) -> Option<u32> {
+        let place = self.span_of.binary_search_by_key(&cloth, |of| of.0).ok()?;
+        Some(self.span_of[place].1)
     }
 
     /// Whether the boxes of two cloths meet. Boxes are computed once, and a cloth without a box meets all.
@@ -165,6 +182,17 @@ impl Islands {
         }
     }
 
+    /// The island of a root, which is made with it.
+    fn island(&mut self, root: usize) -> &mut Island {
+        if self.island_of[root] == NONE {
+            self.island_of[root] = self.all.len() as u32;
+            let mut island = Island::default();
+            island.cloths.push(self.spans[root].cloth);
+            self.all.push(island);
+        }
+        &mut self.all[self.island_of[root] as usize]
+    }
+
     fn find(&mut self, mut span: u32) -> u32 {
         while self.parent[span as usize] != span {
             let above = self.parent[span as usize];
@@ -174,23 +202,24 @@ impl Islands {
         span
     }
 
-    /// Makes islands of cloths that are not alone. An island of the same cloths as before keeps its contacts.
-    fn collect(&mut self) {
+    /// Makes islands of cloths that are not alone, or are sewn to themselves. An island of the same cloths as before keeps
+    /// its contacts.
+    fn collect(&mut self, seams: &Seams) {
         self.island_of.clear();
         self.island_of.resize(self.spans.len(), NONE);
         for span in 0..self.spans.len() {
             let root = self.find(span as u32) as usize;
-            if root == span {
-                continue;
+            if root != span {
+                let cloth = self.spans[span].cloth;
+                self.island(root).cloths.push(cloth);
             }
-            if self.island_of[root] == NONE {
-                self.island_of[root] = self.all.len() as u32;
-                let mut island = Island::default();
-                island.cloths.push(self.spans[root].cloth);
-                self.all.push(island);
+        }
+        for seam in &seams.active {
+            let [first, second] = seam.cloths.map(|(_, cloth)| self.span(cloth));
+            if let (Some(span), true) = (first, second.is_some()) {
+                let root = self.find(span) as usize;
+                self.island(root).seams.push(seam.seam);
             }
-            let island = &mut self.all[self.island_of[root] as usize];
-            island.cloths.push(self.spans[span].cloth);
         }
         for island in &mut self.all {
             island.cloths.sort_unstable();
@@ -208,7 +237,7 @@ impl Islands {
 }
 
 /// Wakes all cloths of an island in which one moves.
-fn wake(island: &mut Island, cloths: &mut Neighbours) {
+fn wake(island: &mut Island, cloths: &mut Query<Neighbour>) {
     let mut is_moving = false;
     let entities = || island.cloths.iter().map(|(_, cloth)| cloth);
     for cloth in cloths.iter_many(entities()) {
@@ -226,38 +255,5 @@ fn wake(island: &mut Island, cloths: &mut Neighbours) {
         if is_moving && cloth.state.rest.is_asleep() {
             cloth.wake();
         }
-    }
-}
-
-impl NeighbourItem<'_, '_> {
-    /// Wakes a cloth that was prepared as a sleeping one.
-    fn wake(&mut self) {
-        self.state.rest.disturb();
-        self.state.rests_on.clear();
-        self.bounds.has_sleeping_contacts = false;
-        let scratch = &mut *self.scratch;
-        scratch.near.clear();
-        scratch.detection.begin(self.built.surface(), scratch.reach);
-    }
-}
-
-impl NeighbourReadOnlyItem<'_, '_> {
-    /// The least and the greatest corner of the box in the world that the cloth stays in within the tick (m): where its particles
-    /// are, and as far around as they may get by themselves, and again as far should something drag them.
-    fn bounds(&self) -> [Vec3; 2] {
-        let ends = [Vec3::MAX, Vec3::MIN];
-        let [low, high] = self
-            .particles
-            .positions()
-            .fold(ends, |[low, high], place| [low.min(place), high.max(place)]);
-        let axes = Mat3::from_quat(self.frame.isometry().rotation);
-        let half = (high - low) / 2.0;
-        let half =
-            axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
-        let centre = self.frame.to_world(low.midpoint(high));
-        let thickness = self.scratch.self_collision.map_or(0.0, |of| of.thickness);
-        let around = 2.0 * self.scratch.reach + thickness + 1.0e-5 * centre.length();
-        let half = half * (1.0 + 1.0e-5) + around;
-        [centre - half, centre + half]
     }
 }

@@ -14,6 +14,7 @@ use super::{
     cameras::Cameras,
     colliders::{ColliderMotion, ColliderTree},
     islands::{Islands, Span},
+    seams::Seams,
 };
 use crate::{
     cloth::ClothParticles,
@@ -78,7 +79,7 @@ pub(crate) fn choose_levels(
     cameras: Cameras,
     colliders: Colliders,
     mut tree: ResMut<ColliderTree>,
-    time: Res<Time>,
+    (time, seams): (Res<Time>, Res<Seams>),
     mut work: Local<Work>,
 ) {
     let is_asked_for = !own.is_empty() || global.is_some();
@@ -121,9 +122,11 @@ pub(crate) fn choose_levels(
     for (place, own) in wanted.iter_mut().enumerate() {
         (own.group, own.phase) = (place, place as u32);
     }
-    let is_coarse = |own: &WantedLevel| own.touches_cloth && own.level != ClothLodLevel::Full;
+    let is_coarse = |own: &WantedLevel| {
+        (own.touches_cloth || seams.hold(own.cloth.1)) && own.level != ClothLodLevel::Full
+    };
     if wanted.iter().any(is_coarse) {
-        group(wanted, groups);
+        group(wanted, groups, &seams);
     }
     for place in 0..wanted.len() {
         let own = wanted[place];
@@ -199,17 +202,20 @@ impl LodQueryItem<'_, '_> {
     }
 }
 
-/// Gives cloths that may touch each other the finest of their levels, and moves them in the same ticks.
-fn group(wanted: &mut [WantedLevel], groups: &mut Islands) {
-    let spans = wanted.iter().filter(|own| own.touches_cloth);
+/// Gives cloths that may touch each other, or are sewn together, the finest of their levels, and moves them in the same ticks.
+fn group(wanted: &mut [WantedLevel], groups: &mut Islands, seams: &Seams) {
+    let is_joined = |own: &&WantedLevel| own.touches_cloth || seams.hold(own.cloth.1);
+    let spans = wanted.iter().filter(is_joined);
     groups.begin(spans.map(|own| Span {
         cloth: own.cloth,
         centre: own.centre,
         radius: own.radius,
         layers: own.layers,
+        touches: own.touches_cloth,
         bounds: None,
     }));
     groups.join(|_| None);
+    groups.sew(seams);
     let place_of =
         |wanted: &[WantedLevel], cloth| wanted.binary_search_by_key(&cloth, |own| own.cloth);
     for (cloth, root) in groups.roots() {

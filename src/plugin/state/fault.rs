@@ -12,7 +12,7 @@ use bevy::{
 
 use crate::{cloth::ClothError, plugin::naming::Part};
 
-/// On a cloth, a collider or a hand that is left out of the simulation, with the reason. The plugin removes it as soon as the
+/// On a cloth, a collider, a hand or a seam that is left out of the simulation, with the reason. The plugin removes it as soon as the
 /// fault is corrected.
 #[derive(Component, Reflect, MapEntities, Debug, Clone, PartialEq)]
 #[type_path = "bevy_drape"]

@@ -4,6 +4,7 @@ use bevy::ecs::system::{Query, ResMut};
 
 use super::{
     island::integrate_together,
+    seams::SewnSeams,
     tick::{Colliders, IntegrateQuery},
 };
 use crate::plugin::{naming::Named, prepare::Islands, threads::threads};
@@ -16,10 +17,11 @@ pub(crate) fn integrate(
     mut cloths: Query<IntegrateQuery>,
     colliders: Colliders,
     mut islands: ResMut<Islands>,
+    mut seams: SewnSeams,
     names: Query<Named>,
 ) {
     for island in &mut islands.all {
-        integrate_together(island, &mut cloths, &colliders, &names);
+        integrate_together(island, &mut cloths, &mut seams, &colliders, &names);
     }
     let (mut awake, mut work) = (0, 0);
     for cloth in &cloths {

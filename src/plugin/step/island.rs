@@ -6,13 +6,16 @@ use bevy::{
         system::Query,
     },
     log::warn,
-    math::Isometry3d,
     platform::time::Instant,
 };
 
-use super::tick::{Colliders, IntegrateQuery, IntegrateQueryItem};
+use super::{
+    member::{Member, members, participants},
+    seams::{Sewing, SewnSeams},
+    tick::{Colliders, IntegrateQuery},
+};
 use crate::{
-    contact::{ClothLayers, Inside, MutualContact, Participant},
+    contact::{ClothLayers, Inside, MutualContact},
     plugin::{
         clock::milliseconds_since,
         naming::{Named, Part},
@@ -21,25 +24,20 @@ use crate::{
     solver::{LimitInputs, StartedTick, Stretch, SubStep, Substepping, TickStep},
 };
 
-/// A cloth of an island, in its tick.
-struct Member<'w, 's> {
-    cloth: IntegrateQueryItem<'w, 's>,
-    /// `None` of one that sleeps.
-    step: Option<TickStep>,
-    to_common: Option<Isometry3d>,
-}
-
 /// Simulates the tick of all cloths of an island, and repeats it with more sub-steps while the tolerance of one of them
 /// needs it.
 pub(crate) fn integrate_together(
     island: &mut Island,
     cloths: &mut Query<IntegrateQuery>,
+    seams: &mut SewnSeams,
     colliders: &Colliders,
     names: &Query<Named>,
 ) {
     let start = Instant::now();
     let entities: EntityIndexSet = island.cloths.iter().map(|(_, cloth)| *cloth).collect();
     let mut members = members(cloths, &entities);
+    let mut sewing = Sewing::begin(island, &members, seams);
+    sewing.tell(&mut island.contact, &members);
     // All take the largest number of sub-steps that any of them needs.
     let mut substeps = members
         .iter()
@@ -61,6 +59,7 @@ pub(crate) fn integrate_together(
     loop {
         let more = advance(
             &mut members,
+            &mut sewing,
             substeps,
             &mut island.contact,
             colliders,
@@ -73,8 +72,11 @@ pub(crate) fn integrate_together(
         for member in members.iter_mut().filter(|member| member.step.is_some()) {
             member.cloth.restart();
         }
+        sewing.restart();
         island.contact.forget();
     }
+    let seconds = members.iter().find_map(|member| member.step);
+    sewing.end(seconds.map_or(0.0, |step| step.seconds));
     let milliseconds = milliseconds_since(start) / members.len().max(1) as f64;
     for Member { cloth, step, .. } in &mut members {
         if let Some(step) = step {
@@ -89,43 +91,10 @@ pub(crate) fn integrate_together(
     }
 }
 
-/// The cloths of an island that are moved in the tick, and those that sleep in it.
-fn members<'w, 's>(
-    cloths: &'w mut Query<'_, 's, IntegrateQuery>,
-    entities: &EntityIndexSet,
-) -> Vec<Member<'w, 's>> {
-    let mut members = Vec::new();
-    let mut first = None;
-    for mut cloth in cloths.iter_many_unique_mut(entities) {
-        let is_asleep = cloth.state.rest.is_asleep();
-        // One that sleeps stays prepared while nothing changes.
-        let step = match is_asleep {
-            true => cloth.scratch.step,
-            false => cloth.scratch.step.take(),
-        };
-        let Some(step) = step else {
-            continue;
-        };
-        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
-            continue;
-        }
-        let frame = cloth.frame.isometry();
-        let to_common = first.map(|first: Isometry3d| first.inverse() * frame);
-        first = first.or(Some(frame));
-        cloth.stats.is_asleep = is_asleep;
-        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
-        members.push(Member {
-            cloth,
-            step: (!is_asleep).then_some(step),
-            to_common,
-        });
-    }
-    members
-}
-
 /// A single run through the sub-steps of all. Returns the number that a tolerance needs, if these were too few.
 fn advance(
     members: &mut [Member],
+    sewing: &mut Sewing,
     substeps: u32,
     contact: &mut MutualContact,
     colliders: &Colliders,
@@ -143,8 +112,9 @@ fn advance(
     warn_of_inside(members, contact, names);
     let mut is_pushed = vec![false; members.len()];
     let mut moved: Vec<Option<SubStep>> = Vec::with_capacity(members.len());
-    for _ in 0..substeps {
+    for index in 0..substeps {
         moved.clear();
+        sewing.pull(members, dt);
         for (Member { cloth, .. }, tick) in members.iter_mut().zip(&mut ticks) {
             let substep = tick.as_mut().and_then(|tick| {
                 let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);
@@ -156,6 +126,7 @@ fn advance(
             });
             moved.push(substep);
         }
+        sewing.close(members, &mut ticks, &mut moved, (index + 1) as f32 * dt, dt);
         contact.note_before_colliders(&participants(members));
         for ((member, tick), substep) in members.iter_mut().zip(&mut ticks).zip(&moved) {
             if let (Some(tick), Some(substep)) = (tick, *substep)
@@ -254,13 +225,4 @@ fn warn_of_inside(members: &mut [Member], contact: &MutualContact, names: &Query
     warn!(
         "{first} begins inside {second}{others}: {share:.0} % of its particles are nearer than {distance:.1} mm: spawn them a thickness apart, or keep them from meeting with `ClothLayers`"
     );
-}
-
-fn participants<'a>(members: &'a mut [Member]) -> Vec<Participant<'a>> {
-    let each = members.iter_mut();
-    each.map(|member| {
-        let settings = member.cloth.scratch.self_collision.unwrap_or_default();
-        member.cloth.participant(settings, member.to_common)
-    })
-    .collect()
 }

@@ -5,7 +5,9 @@
 
 mod integrate;
 mod island;
+mod member;
 mod push;
+mod seams;
 mod tick;
 
 pub(crate) use integrate::integrate;

@@ -15,14 +15,15 @@ use super::{cloth::ClothSnapshot, error::SnapshotError};
 use crate::{
     cloth::Cloth,
     plugin::{
-        authoring::{ClothOrder, ClothWindZone, RootMotion},
+        authoring::{ClothOrder, ClothSeam, ClothStitches, ClothWindZone, RootMotion},
         prepare::{ColliderMemory, ColliderMotion, Island, Islands},
         state::{ClothState, WindField},
     },
+    solver::Seam,
 };
 
 /// Everything that the next ticks of all cloths of a world depend on, except for the game's own components. It holds a
-/// [`ClothSnapshot`] of each cloth, the motion of colliders, contacts between cloths, and the state of the wind. It
+/// [`ClothSnapshot`] of each cloth, the motion of colliders, contacts between cloths, the stitches of seams, and the state of the wind. It
 /// also holds the `Transform`s of all of these, of their carriers, and of everything above them in the hierarchy.
 ///
 /// Take and restore it between two ticks, in the same app or in an app that has just started with the same entities.
@@ -65,6 +66,8 @@ pub struct ClothWorldSnapshot {
     roots: Vec<(Entity, Option<Isometry3d>)>,
     islands: Vec<Island>,
     orders: Vec<(Entity, ClothOrder)>,
+    /// The stitches of each seam, and the cloths that it joins.
+    seams: Vec<(Entity, Option<[Entity; 2]>, Seam)>,
     /// Time for which the wind has blown (s), and the distance that it has travelled (m).
     wind: (f64, DVec3),
     /// Translation (m), rotation and scale of `Transform`s.
@@ -108,6 +111,7 @@ impl ClothWorldSnapshot {
         let orders = orders.iter(world);
         self.orders.clear();
         (self.orders).extend(orders.map(|(entity, order)| (entity, *order)));
+        self.take_seams(world);
         let islands = world.get_resource::<Islands>();
         self.islands.clear();
         (self.islands).extend(
@@ -120,6 +124,21 @@ impl ClothWorldSnapshot {
         let mut zones = world.query_filtered::<Entity, With<ClothWindZone>>();
         let zones: Vec<Entity> = zones.iter(world).collect();
         self.take_transforms(world, &zones);
+    }
+
+    fn take_seams(&mut self, world: &mut World) {
+        let mut seams = world.query_filtered::<(Entity, &ClothStitches), With<ClothSeam>>();
+        let mut taken = 0;
+        for (seam, stitches) in seams.iter(world) {
+            if taken == self.seams.len() {
+                self.seams.push((seam, None, Seam::default()));
+            }
+            let (entity, cloths, known) = &mut self.seams[taken];
+            (*entity, *cloths) = (seam, stitches.cloths);
+            known.clone_from(&stitches.seam);
+            taken += 1;
+        }
+        self.seams.truncate(taken);
     }
 
     /// Takes the transforms of all of them and of these wind zones, of their carriers, and of everything above them.
@@ -166,6 +185,9 @@ impl ClothWorldSnapshot {
         for (entity, _) in &self.roots {
             has::<RootMotion>(world, *entity, "ClothInertia")?;
         }
+        for (entity, ..) in &self.seams {
+            has::<ClothSeam>(world, *entity, "ClothSeam")?;
+        }
         for (entity, _) in &self.transforms {
             has::<Transform>(world, *entity, "Transform")?;
         }
@@ -197,6 +219,13 @@ impl ClothWorldSnapshot {
                 entity.insert(*order);
             }
         }
+        for (entity, cloths, seam) in &self.seams {
+            let known = world.get::<ClothSeam>(*entity).cloned();
+            if let Some(mut stitches) = world.get_mut::<ClothStitches>(*entity) {
+                stitches.seam.clone_from(seam);
+                (stitches.cloths, stitches.surfaces, stitches.known) = (*cloths, None, known);
+            }
+        }
         if let Some(mut islands) = world.get_resource_mut::<Islands>() {
             islands.all.clone_from(&self.islands);
         }
@@ -206,7 +235,7 @@ impl ClothWorldSnapshot {
         Ok(())
     }
 
-    /// All entities that a world needs for [`restore`](Self::restore), each once: cloths, colliders, roots, what carries them, zones of
+    /// All entities that a world needs for [`restore`](Self::restore), each once: cloths, colliders, roots, what carries them, seams, zones of
     /// wind, and the parents of all of these. Save a name of your own for each, and
     /// [`map_entities`](MapEntities::map_entities) takes the snapshot to the entities that have these names in another world.
     pub fn entities(&self) -> impl Iterator<Item = Entity> + '_ {
@@ -215,8 +244,13 @@ impl ClothWorldSnapshot {
         let colliders = self.colliders.iter().map(|(entity, _)| *entity);
         let roots = self.roots.iter().map(|(entity, _)| *entity);
         let transforms = self.transforms.iter().map(|(entity, _)| *entity);
-        (cloths.chain(colliders).chain(roots).chain(transforms))
-            .filter(move |entity| seen.insert(*entity))
+        let seams = self.seams.iter().map(|(entity, ..)| *entity);
+        (cloths
+            .chain(colliders)
+            .chain(roots)
+            .chain(transforms)
+            .chain(seams))
+        .filter(move |entity| seen.insert(*entity))
     }
 
     /// The cloths, each with its entity.
@@ -262,7 +296,9 @@ impl MapEntities for ClothWorldSnapshot {
         let islands = (self.islands.iter_mut()).flat_map(|island| &mut island.cloths);
         let islands = islands.map(|(_, cloth)| cloth);
         let orders = self.orders.iter_mut().map(|(entity, _)| entity);
-        let all = colliders.chain(roots).chain(transforms);
+        let seams = (self.seams.iter_mut())
+            .flat_map(|(seam, cloths, _)| cloths.iter_mut().flatten().chain([seam]));
+        let all = colliders.chain(roots).chain(transforms).chain(seams);
         for entity in all.chain(islands).chain(orders) {
             *entity = mapper.get_mapped(*entity);
         }

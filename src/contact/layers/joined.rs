@@ -1,0 +1,36 @@
+//! Particles that are sewn together, which do not touch.
+
+/// Pairs of particles of all cloths that are sewn together. Features of two sides at such a pair are like neighbours: they
+/// neither touch nor cross.
+#[derive(Debug, Default, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Joined {
+    /// In both orders, sorted.
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Joined {
+    /// Takes over other pairs. Returns whether they differ.
+    pub fn set(&mut self, pairs: impl Iterator<Item = [u32; 2]>) -> bool {
+        let mut new: Vec<[u32; 2]> = pairs.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
+        if new.is_empty() && self.pairs.is_empty() {
+            return false;
+        }
+        new.sort_unstable();
+        new.dedup();
+        let differs = self.pairs != new;
+        self.pairs = new;
+        differs
+    }
+
+    /// Whether a particle of one feature is sewn to one of the other.
+    pub fn join(&self, own: &[u32], other: &[u32]) -> bool {
+        !self.pairs.is_empty()
+            && own.iter().any(|&own| {
+                let first = self.pairs.partition_point(|pair| pair[0] < own);
+                let with = self.pairs[first..].iter();
+                with.take_while(|pair| pair[0] == own)
+                    .any(|pair| other.contains(&pair[1]))
+            })
+    }
+}

@@ -1,0 +1,247 @@
+//! Finds the cloths and the particles of seams.
+
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{
+        entity::Entity,
+        lifecycle::Remove,
+        name::Name,
+        observer::On,
+        query::{QueryData, With},
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut},
+    },
+    math::Vec3,
+};
+
+use super::neighbour::Neighbour;
+use crate::{
+    cloth::{Cloth, ClothError, SewnSide, Surface, stitches},
+    plugin::{
+        authoring::{ClothSeam, ClothSeamSide, ClothStitches, ClothTarget, Ordered},
+        frame::relative,
+        naming::Part,
+        state::ClothFault,
+    },
+    solver::Seam,
+};
+
+/// The seams that hold cloths together in the tick.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Seams {
+    /// In the order in which they are solved.
+    pub active: Vec<ActiveSeam>,
+    /// Those of the tick before.
+    before: Vec<ActiveSeam>,
+}
+
+/// A seam that holds cloths together in the tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct ActiveSeam {
+    pub cloths: [Ordered; 2],
+    /// Its first particles: two seams of the same cloths are solved in the order of these.
+    first: [[u32; 2]; 2],
+    pub seam: Entity,
+}
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct SeamQuery {
+    entity: Entity,
+    seam: &'static ClothSeam,
+    stitches: &'static mut ClothStitches,
+    fault: Option<&'static ClothFault>,
+}
+
+impl Seams {
+    /// Whether there were any in the tick before.
+    pub fn were_there(seams: Res<Self>) -> bool {
+        !seams.active.is_empty()
+    }
+
+    /// Whether a cloth is sewn to anything.
+    pub fn hold(&self, cloth: Entity) -> bool {
+        let mut cloths = self.active.iter().flat_map(|seam| seam.cloths);
+        cloths.any(|(_, each)| each == cloth)
+    }
+}
+
+/// Finds the particles of seams that are new or whose cloths are new, and wakes what they move.
+pub(crate) fn prepare_seams(
+    mut seams: Query<SeamQuery>,
+    mut cloths: Query<Neighbour>,
+    names: Query<(Entity, &Name), With<Cloth>>,
+    mut all: ResMut<Seams>,
+    mut commands: Commands,
+) {
+    let all = &mut *all;
+    std::mem::swap(&mut all.active, &mut all.before);
+    all.active.clear();
+    for mut seam in &mut seams {
+        let outcome = seam.prepare(&mut cloths, &names);
+        let (outcome, active) = match outcome {
+            Ok(active) => (Ok(()), active),
+            Err(error) => (Err(error), None),
+        };
+        all.active.extend(active);
+        ClothFault::report(&mut commands, seam.entity, seam.fault, Part::Seam, outcome);
+    }
+    // Whichever was spawned first.
+    all.active.sort_unstable();
+    for gone in &all.before {
+        let is_left = |seam: &ActiveSeam| seam.seam == gone.seam && seam.cloths == gone.cloths;
+        if !all.active.iter().any(is_left) {
+            wake(gone.cloths.map(|(_, cloth)| cloth), &mut cloths);
+        }
+    }
+}
+
+/// Forgets the stitches of a seam that is removed.
+pub(crate) fn forget_stitches(
+    removed: On<Remove, ClothSeam>,
+    mut seams: Query<(&mut ClothStitches, Option<&ClothFault>)>,
+    mut commands: Commands,
+) {
+    let Ok((mut stitches, fault)) = seams.get_mut(removed.entity) else {
+        return;
+    };
+    *stitches = ClothStitches::default();
+    ClothFault::report(&mut commands, removed.entity, fault, Part::Seam, Ok(()));
+}
+
+fn wake(of: [Entity; 2], cloths: &mut Query<Neighbour>) {
+    for cloth in of {
+        if let Ok(mut cloth) = cloths.get_mut(cloth)
+            && cloth.is_asleep()
+        {
+            cloth.wake();
+        }
+    }
+}
+
+/// The cloth that a side names.
+fn cloth_of(
+    side: &ClothSeamSide,
+    names: &Query<(Entity, &Name), With<Cloth>>,
+) -> Result<Entity, ClothError> {
+    let name = match &side.cloth {
+        ClothTarget::Entity(entity) => return Ok(*entity),
+        ClothTarget::Named(name) => name,
+    };
+    let called = names.iter().filter(|(_, its)| its.as_str() == name);
+    called
+        .map(|(entity, _)| entity)
+        .min_by_key(|entity| (entity.generation().to_bits(), entity.index_u32()))
+        .ok_or_else(|| ClothError::NoTargetNamed {
+            pin: format!("{:?}", side.along),
+            name: name.clone(),
+        })
+}
+
+impl SeamQueryItem<'_, '_> {
+    /// Finds its stitches. `None` if it joins nothing, or before it has begun.
+    fn prepare(
+        &mut self,
+        cloths: &mut Query<Neighbour>,
+        names: &Query<(Entity, &Name), With<Cloth>>,
+    ) -> Result<Option<ActiveSeam>, ClothError> {
+        self.seam.validate()?;
+        let sides = self.seam.sides();
+        let [first, second] = sides.map(|side| cloth_of(side, names));
+        let of = [first?, second?];
+        let is_known = self.stitches.known.as_ref() == Some(self.seam);
+        let mut surfaces: [Option<Arc<Surface>>; 2] = [None, None];
+        let mut orders = of.map(|cloth| (Default::default(), cloth));
+        let mut is_ready = true;
+        for (place, cloth) in of.into_iter().enumerate() {
+            let Ok(item) = cloths.get(cloth) else {
+                return Err(ClothError::NoSuchCloth { cloth });
+            };
+            orders[place].0 = item.order.copied().unwrap_or_default();
+            is_ready &= item.scratch.step.is_some() && item.built.matches(item.particles);
+            surfaces[place] = Some(item.built.surface().clone());
+        }
+        let (true, [Some(a), Some(b)]) = (is_ready, surfaces) else {
+            let has_begun = self.stitches.cloths == Some(of);
+            return Ok(has_begun.then(|| self.active(orders)).flatten());
+        };
+        let surfaces = [a, b];
+        let wakes = !self.is_of(of, &surfaces) && self.begin(of, &surfaces, cloths)?;
+        self.stitches.surfaces = Some(surfaces);
+        if !is_known {
+            self.stitches.known = Some(self.seam.clone());
+        }
+        let stitches = &self.stitches.seam;
+        if wakes || !is_known || stitches.is_closing(&self.seam.pull()) {
+            wake(of, cloths);
+        }
+        Ok(self.active(orders))
+    }
+
+    /// The seam of these cloths, unless it joins nothing.
+    fn active(&self, cloths: [Ordered; 2]) -> Option<ActiveSeam> {
+        let first = self.stitches.seam.joined().next();
+        first.map(|first| ActiveSeam {
+            cloths,
+            first,
+            seam: self.entity,
+        })
+    }
+
+    /// Whether its stitches are those of the same sides of the same surfaces.
+    fn is_of(&self, cloths: [Entity; 2], surfaces: &[Arc<Surface>; 2]) -> bool {
+        let stitches = &*self.stitches;
+        let is_same = match &stitches.surfaces {
+            Some(known) => known.iter().zip(surfaces).all(|(a, b)| Arc::ptr_eq(a, b)),
+            None => {
+                let counts = surfaces.each_ref().map(|surface| surface.len());
+                stitches.seam.is_of(counts)
+            }
+        };
+        is_same
+            && stitches.cloths == Some(cloths)
+            && (stitches.known.as_ref()).is_some_and(|known| known.sides() == self.seam.sides())
+    }
+
+    /// Begins anew, from where the particles are. Returns whether it has.
+    fn begin(
+        &mut self,
+        of: [Entity; 2],
+        surfaces: &[Arc<Surface>; 2],
+        cloths: &Query<Neighbour>,
+    ) -> Result<bool, ClothError> {
+        let [first, second] = self.seam.sides();
+        let first = SewnSide::of(&surfaces[0], &first.along)?;
+        let second = SewnSide::of(&surfaces[1], &second.along)?;
+        let [Ok(a), Ok(b)] = of.map(|cloth| cloths.get(cloth)) else {
+            return Ok(false);
+        };
+        let from_second = relative(a.frame.isometry(), b.frame.isometry());
+        let places: [Vec<Vec3>; 2] = [
+            a.particles.positions().collect(),
+            b.particles
+                .positions()
+                .map(|place| from_second * place)
+                .collect(),
+        ];
+        let [own, others] = &places;
+        let places = [&own[..], &others[..]];
+        let spacing = surfaces[0]
+            .spacing()
+            .typical
+            .min(surfaces[1].spacing().typical);
+        let all = stitches([&first, &second], places, spacing);
+        let mut new = Seam::new(&all, places, of[0] == of[1]);
+        let stitches = &mut *self.stitches;
+        let goes_on = stitches.cloths == Some(of)
+            && (stitches.known.as_ref()).is_some_and(|known| known.sides() == self.seam.sides());
+        if goes_on {
+            // Another resolution of the same cloths.
+            new.resume(&stitches.seam);
+        }
+        stitches.seam = new;
+        stitches.cloths = Some(of);
+        Ok(true)
+    }
+}

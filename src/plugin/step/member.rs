@@ -1,0 +1,77 @@
+//! The cloths of an island, in their tick.
+
+use bevy::{
+    ecs::{entity::EntityIndexSet, system::Query},
+    math::Isometry3d,
+};
+
+use super::tick::{IntegrateQuery, IntegrateQueryItem};
+use crate::{
+    contact::Participant,
+    solver::{SeamCloth, TickStep},
+};
+
+/// A cloth of an island, in its tick.
+pub(super) struct Member<'w, 's> {
+    pub cloth: IntegrateQueryItem<'w, 's>,
+    /// `None` of one that sleeps.
+    pub step: Option<TickStep>,
+    pub to_common: Option<Isometry3d>,
+}
+
+/// The cloths of an island that are moved in the tick, and those that sleep in it. Those that touch cloth come first.
+pub(super) fn members<'w, 's>(
+    cloths: &'w mut Query<'_, 's, IntegrateQuery>,
+    entities: &EntityIndexSet,
+) -> Vec<Member<'w, 's>> {
+    let mut members = Vec::new();
+    for mut cloth in cloths.iter_many_unique_mut(entities) {
+        let is_asleep = cloth.state.rest.is_asleep();
+        // One that sleeps stays prepared while nothing changes.
+        let step = match is_asleep {
+            true => cloth.scratch.step,
+            false => cloth.scratch.step.take(),
+        };
+        let Some(step) = step else {
+            continue;
+        };
+        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
+            continue;
+        }
+        cloth.stats.is_asleep = is_asleep;
+        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+        members.push(Member {
+            cloth,
+            step: (!is_asleep).then_some(step),
+            to_common: None,
+        });
+    }
+    members.sort_by_key(|member| member.cloth.scratch.self_collision.is_none());
+    let first = members.first().map(|first| first.cloth.frame.isometry());
+    for member in members.iter_mut().skip(1) {
+        let frame = member.cloth.frame.isometry();
+        member.to_common = first.map(|first| first.inverse() * frame);
+    }
+    members
+}
+
+/// Those that touch cloth.
+pub(super) fn participants<'a>(members: &'a mut [Member]) -> Vec<Participant<'a>> {
+    let each = members.iter_mut();
+    each.filter_map(|member| {
+        let settings = member.cloth.scratch.self_collision?;
+        Some(member.cloth.participant(settings, member.to_common))
+    })
+    .collect()
+}
+
+impl Member<'_, '_> {
+    /// As a seam sees it.
+    pub fn sewn(&mut self, to_common: Option<Isometry3d>) -> SeamCloth<'_> {
+        SeamCloth {
+            particles: &mut self.cloth.particles,
+            to_common,
+            is_fixed: self.step.is_none(),
+        }
+    }
+}

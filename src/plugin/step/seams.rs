@@ -1,0 +1,142 @@
+//! The seams of an island, in their tick.
+
+use bevy::{
+    ecs::{entity::EntityIndexSet, system::Query, world::Mut},
+    math::Isometry3d,
+};
+
+use super::member::Member;
+use crate::{
+    contact::MutualContact,
+    plugin::{
+        authoring::{ClothSeam, ClothStitches},
+        frame::relative,
+        prepare::Island,
+    },
+    solver::{Seam, SeamCloth, SeamPull, StartedTick, SubStep},
+};
+
+pub(crate) type SewnSeams<'w, 's> = Query<'w, 's, (&'static ClothSeam, &'static mut ClothStitches)>;
+
+/// The seams of an island, in the order in which they are solved.
+#[derive(Default)]
+pub(super) struct Sewing<'w>(Vec<Sewn<'w>>);
+
+/// A seam between two members of an island, or of one with itself.
+struct Sewn<'w> {
+    stitches: Mut<'w, ClothStitches>,
+    pull: SeamPull,
+    members: [usize; 2],
+    /// From the second one's frame to the first one's.
+    from_second: Option<Isometry3d>,
+}
+
+impl<'w> Sewing<'w> {
+    /// Begins the tick of those whose cloths are both among the members.
+    pub fn begin(island: &Island, members: &[Member], seams: &'w mut SewnSeams) -> Self {
+        if island.seams.is_empty() {
+            return Self::default();
+        }
+        let entities: EntityIndexSet = island.seams.iter().copied().collect();
+        let sewn = seams
+            .iter_many_unique_mut(&entities)
+            .filter_map(|(seam, mut stitches)| {
+                let place = |cloth| members.iter().position(|of| of.cloth.entity == cloth);
+                let [Some(a), Some(b)] = stitches.cloths?.map(place) else {
+                    return None;
+                };
+                let [first, second] = [a, b].map(|place| members[place].cloth.frame.isometry());
+                stitches.seam.begin();
+                Some(Sewn {
+                    stitches,
+                    pull: seam.pull(),
+                    members: [a, b],
+                    from_second: (first != second).then(|| relative(first, second)),
+                })
+            });
+        Self(sewn.collect())
+    }
+
+    /// Goes back to where the tick began.
+    pub fn restart(&mut self) {
+        self.0
+            .iter_mut()
+            .for_each(|sewn| sewn.stitches.seam.restart());
+    }
+
+    /// Ends the tick of this many seconds.
+    pub fn end(&mut self, seconds: f32) {
+        for Sewn { stitches, pull, .. } in &mut self.0 {
+            stitches.seam.end(seconds, pull);
+        }
+    }
+
+    /// Tells contact of cloth with cloth which particles are sewn together.
+    pub fn tell(&self, contact: &mut MutualContact, members: &[Member]) {
+        let first = |of: usize| {
+            let before = members[..of].iter();
+            let lengths = before.map(|member| member.cloth.particles.len() as u32);
+            lengths.sum::<u32>()
+        };
+        let touches = |of: &usize| members[*of].cloth.scratch.self_collision.is_some();
+        let sewn = self
+            .0
+            .iter()
+            .filter(|sewn| sewn.members.iter().all(touches));
+        contact.set_joined(sewn.flat_map(|sewn| {
+            let firsts = sewn.members.map(first);
+            let joined = sewn.stitches.seam.joined();
+            joined.map(move |pair| pair.map(|[cloth, particle]| firsts[cloth as usize] + particle))
+        }));
+    }
+
+    /// Applies last forces before the springs of a sub-step of `dt` (s) are solved.
+    pub fn pull(&mut self, members: &mut [Member], dt: f32) {
+        for sewn in &mut self.0 {
+            let sewn_part = sewn.pull.sewn;
+            sewn.solve(members, |seam, cloths| seam.pull(cloths, dt, sewn_part));
+        }
+    }
+
+    /// Closes all gaps at the end of a sub-step of `dt` (s), `seconds` after the tick began.
+    pub fn close(
+        &mut self,
+        members: &mut [Member],
+        ticks: &mut [Option<StartedTick>],
+        moved: &mut [Option<SubStep>],
+        seconds: f32,
+        dt: f32,
+    ) {
+        for sewn in &mut self.0 {
+            let pull = sewn.pull;
+            let farthest = sewn.solve(members, |seam, cloths| {
+                seam.close(cloths, &pull, seconds, dt)
+            });
+            let [a, b] = sewn.members;
+            for of in [Some(a), (a != b).then_some(b)].into_iter().flatten() {
+                if let (Some(tick), Some(substep)) = (&mut ticks[of], &mut moved[of]) {
+                    tick.note_push(&mut members[of].cloth.particles);
+                    substep.farthest_move += farthest;
+                }
+            }
+        }
+    }
+}
+
+impl Sewn<'_> {
+    fn solve<R: Default>(
+        &mut self,
+        members: &mut [Member],
+        solve: impl FnOnce(&mut Seam, &mut [SeamCloth]) -> R,
+    ) -> R {
+        let seam = &mut self.stitches.seam;
+        match members.get_disjoint_mut(self.members) {
+            Ok([first, second]) => {
+                let cloths = &mut [first.sewn(None), second.sewn(self.from_second)];
+                solve(seam, cloths)
+            }
+            // One cloth twice.
+            Err(_) => solve(seam, &mut [members[self.members[0]].sewn(None)]),
+        }
+    }
+}
