@@ -2,8 +2,9 @@
 //!
 //! A stitch is a constraint of extended position-based dynamics (Macklin, Müller and Chentanez 2016): its point x and the
 //! point Σ wᵢ xᵢ of the other side are no farther apart than a gap that closes, and at last in the same place. The springs of both
-//! cloths are solved first, each cloth for itself. So the force of the last sub-step is applied before them, and the stitch
-//! solves only what has changed: what hangs by a seam pulls at the other cloth's springs as in one piece.
+//! cloths are solved first, each cloth for itself. So a seam stretches the springs beside it by what the other cloth falls in a
+//! sub-step, times its rows: as the square of the sub-step. To apply the last sub-step's force before the springs makes that
+//! worse: the forces swing.
 
 use bevy::math::{Isometry3d, Vec3};
 
@@ -15,8 +16,8 @@ const CLOSING: f32 = 1.0;
 /// Rounds of a sub-step, each forwards and backwards along the seam.
 const ROUNDS: usize = 2;
 
-/// The part of the last sub-step's force that is applied before springs are solved.
-const KEPT: f32 = 0.9;
+/// The largest slope of the curve by which it closes, over that of a line.
+const STEEPEST: f32 = 1.5;
 
 /// A seam from tick to tick.
 #[derive(Debug, Default, Clone)]
@@ -48,7 +49,7 @@ struct Thread {
     /// The gap as the seam began, and the one that is left (m).
     begin: f32,
     gap: f32,
-    /// Force on the point (N).
+    /// Force on the point in the last sub-step (N).
     pull: Vec3,
     /// Whether the gap has closed.
     is_closed: bool,
@@ -215,7 +216,7 @@ impl Seam {
 
     /// How long it takes to close, at the speed that is allowed (s).
     fn duration(&self, pull: &SeamPull) -> f32 {
-        pull.seconds.max(self.longest / CLOSING)
+        pull.seconds.max(STEEPEST * self.longest / CLOSING)
     }
 
     /// Whether gaps of it are still closing.
@@ -250,25 +251,6 @@ impl Seam {
         self.since = (self.since + seconds).min(self.duration(pull));
     }
 
-    /// Applies most of the last sub-step's force before springs are solved. Marks the cloths that it moves.
-    pub fn pull(&mut self, cloths: &mut [SeamCloth], dt: f32, sewn: [f32; 2]) {
-        self.gather(cloths);
-        let Self {
-            threads, states, ..
-        } = self;
-        for thread in threads.iter_mut() {
-            thread.pull *= KEPT;
-            if thread.is_closed && thread.is_sewn(sewn) {
-                thread.push(thread.pull * dt * dt, states);
-            } else {
-                thread.pull = Vec3::ZERO;
-            }
-        }
-        self.scatter(cloths, |block, lane, push| {
-            block.set_displacement(lane, block.displacement(lane) + push);
-        });
-    }
-
     /// Closes its gaps at the end of a sub-step of `dt` (s), `seconds` after the tick began. Returns the largest push (m).
     pub fn close(
         &mut self,
@@ -279,11 +261,13 @@ impl Seam {
     ) -> f32 {
         self.gather(cloths);
         let duration = self.duration(pull);
-        let left = if duration > 0.0 {
-            (1.0 - (self.since + seconds) / duration).max(0.0)
+        let past = if duration > 0.0 {
+            ((self.since + seconds) / duration).min(1.0)
         } else {
-            0.0
+            1.0
         };
+        // It begins and ends gently.
+        let left = 1.0 - past * past * (3.0 - 2.0 * past);
         let Self {
             threads, states, ..
         } = self;
@@ -301,6 +285,9 @@ impl Seam {
             thread.is_closed = allowed <= 0.0;
         }
         let softness = pull.compliance / (dt * dt);
+        threads
+            .iter_mut()
+            .for_each(|thread| thread.pull = Vec3::ZERO);
         let mut solve = |thread: &mut Thread| {
             if thread.is_sewn(pull.sewn) {
                 let mut pulled = thread.pull * dt * dt;
@@ -318,10 +305,7 @@ impl Seam {
         }
         let squares = states.iter().map(|state| state.push.length_squared());
         let farthest = squares.fold(0.0, f32::max).sqrt();
-        self.scatter(cloths, |block, lane, push| {
-            block.set_position(lane, block.position(lane) + push);
-            block.set_displacement(lane, block.displacement(lane) + push);
-        });
+        self.scatter(cloths);
         farthest
     }
 
@@ -344,11 +328,7 @@ impl Seam {
             }));
     }
 
-    fn scatter(
-        &self,
-        cloths: &mut [SeamCloth],
-        mut push: impl FnMut(&mut crate::cloth::Block, usize, Vec3),
-    ) {
+    fn scatter(&self, cloths: &mut [SeamCloth]) {
         for (&[cloth, particle], state) in self.nodes.iter().zip(&self.states) {
             if state.push == Vec3::ZERO {
                 continue;
@@ -356,7 +336,9 @@ impl Seam {
             let cloth = &mut cloths[cloth as usize];
             let Slot { block, lane } = cloth.slot(particle);
             let by = cloth.own_vector(state.push);
-            push(&mut cloth.particles.blocks_mut()[block], lane, by);
+            let block = &mut cloth.particles.blocks_mut()[block];
+            block.set_position(lane, block.position(lane) + by);
+            block.set_displacement(lane, block.displacement(lane) + by);
         }
     }
 }

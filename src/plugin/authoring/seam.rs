@@ -65,7 +65,7 @@ pub struct ClothSeam {
     /// Its second side.
     #[entities]
     pub second: ClothSeamSide,
-    /// The time in which it closes from the gap at which it begins (s).
+    /// The time in which it closes from the gap at which it begins (s). It begins and ends gently.
     pub seconds: f32,
     /// The gap that it leaves under a load of 1 N on each metre of it (m²/N). 0 for a seam that does not give, which is the
     /// default.

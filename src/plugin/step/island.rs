@@ -43,7 +43,8 @@ pub(crate) fn integrate_together(
         .iter()
         .filter_map(|member| member.step.map(|step| step.substeps))
         .max()
-        .unwrap_or(1);
+        .unwrap_or(1)
+        .max(sewing.needed(&members));
     let may_repeat = members.iter().any(|member| {
         matches!(
             member.cloth.scratch.substepping,
@@ -114,7 +115,6 @@ fn advance(
     let mut moved: Vec<Option<SubStep>> = Vec::with_capacity(members.len());
     for index in 0..substeps {
         moved.clear();
-        sewing.pull(members, dt);
         for (Member { cloth, .. }, tick) in members.iter_mut().zip(&mut ticks) {
             let substep = tick.as_mut().and_then(|tick| {
                 let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);

@@ -13,7 +13,7 @@ use crate::{
         frame::relative,
         prepare::Island,
     },
-    solver::{Seam, SeamCloth, SeamPull, StartedTick, SubStep},
+    solver::{Seam, SeamCloth, SeamPull, StartedTick, SubStep, Substepping},
 };
 
 pub(crate) type SewnSeams<'w, 's> = Query<'w, 's, (&'static ClothSeam, &'static mut ClothStitches)>;
@@ -90,12 +90,20 @@ impl<'w> Sewing<'w> {
         }));
     }
 
-    /// Applies last forces before the springs of a sub-step of `dt` (s) are solved.
-    pub fn pull(&mut self, members: &mut [Member], dt: f32) {
-        for sewn in &mut self.0 {
-            let sewn_part = sewn.pull.sewn;
-            sewn.solve(members, |seam, cloths| seam.pull(cloths, dt, sewn_part));
-        }
+    /// Sub-steps that hold two cloths together: those of one that is as long as both.
+    pub fn needed(&self, members: &[Member]) -> u32 {
+        let each = self.0.iter().filter_map(|Sewn { members: of, .. }| {
+            let along = |of: usize| {
+                let cloth = &members[of].cloth;
+                let is_free = cloth.scratch.substepping == Substepping::Automatic;
+                is_free.then(|| cloth.built.surface().particles_along())
+            };
+            let [a, b] = [along(of[0])?, along(of[1])?];
+            let both = if of[0] == of[1] { a } else { a + b };
+            let seconds = of.iter().find_map(|&of| members[of].step)?.seconds;
+            Some(Substepping::needed(both, seconds))
+        });
+        each.max().unwrap_or(0)
     }
 
     /// Closes all gaps at the end of a sub-step of `dt` (s), `seconds` after the tick began.
