@@ -579,6 +579,37 @@ fn pieces_fall_asleep() {
     assert_eq!(surface(&app, cloth).pieces(), 3);
 }
 
+/// A flag with a patch sewn to it, of cloth that creases: cut through both, nothing is at fault, and the seam holds what is left
+/// of the patch.
+#[test]
+fn sewn_and_creased_cloth_is_cut() {
+    let mut app = app();
+    let parts = (
+        ClothTears::default(),
+        ClothCreasing::LEATHER,
+        ClothSelfCollision::default(),
+    );
+    let flag = app.world_mut().spawn((Cloth::new(13, 13, 0.1), parts)).id();
+    let before = Transform::from_xyz(0.35, -0.35, 0.01);
+    let patch = (Cloth::new(9, 9, 0.0625), Pins::none(), before, parts);
+    let patch = app.world_mut().spawn(patch).id();
+    let border = Pin::filter(|row, column| row % 8 == 0 || column % 8 == 0);
+    let middle = Pin::filter(|row, column| (3..=9).contains(&row) && (3..=9).contains(&column));
+    app.world_mut()
+        .spawn(ClothSeam::new((flag, middle), (patch, border)));
+    tick(&mut app, 60);
+    assert!(cut_at(&mut app, -0.63) > 12 + 7);
+    tick(&mut app, 120);
+    for cloth in [flag, patch] {
+        assert_eq!(app.world().get::<ClothFault>(cloth), None);
+        assert!(particles(&app, cloth).validate().is_ok());
+        assert_eq!(surface(&app, cloth).pieces(), 2);
+    }
+    // The upper half of the patch hangs where it was, and does not slide off.
+    let corner = particles(&app, patch).position(0).expect("it exists") + before.translation;
+    assert!((corner.y + 0.35).abs() < 0.1, "{corner}");
+}
+
 /// A balloon that is torn open has burst: it is no fault, and has no pressure.
 #[test]
 fn a_balloon_bursts() {

@@ -55,6 +55,8 @@ pub(super) fn follow_tears(
     let place = place_of_tear(&recipe, before.len(), particles);
     built.unreported_tear = place.map(|place| (place, count));
     hold_parts(surface, &before, &parents, state);
+    // They are those of other faces.
+    state.creases.clear();
     built.solver = shared.solver.clone();
     built.forget_tethers();
     built.shared = shared;
