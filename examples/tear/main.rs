@@ -1,7 +1,7 @@
 //! A banner and a sword. Slash it, scratch it with the mouse, or pull at it until it tears.
 //!
-//! The banner has a `ClothTearing`, so it tears where it is loaded too much. A `ClothBlade` cuts it: the plugin is told where
-//! the sword was and where it is, tick by tick. In the window the mouse cuts in the same way while a key is held. Without a
+//! The banner has a `ClothTearing`, so it tears where it is loaded too much. A `ClothBlade` cuts it where the
+//! sword goes, from its place in one tick to that in the next. In the window the mouse cuts in the same way while a key is held. Without a
 //! window a script slashes, and a `ClothGrab` pulls at what is left. The scene is in `scene.rs`, the script in `headless.rs`.
 //!
 //! ```sh

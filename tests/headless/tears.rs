@@ -589,7 +589,10 @@ fn sewn_and_creased_cloth_is_cut() {
         ClothCreasing::LEATHER,
         ClothSelfCollision::default(),
     );
-    let flag = app.world_mut().spawn((Cloth::new(13, 13, 0.1), parts)).id();
+    let flag = app
+        .world_mut()
+        .spawn((Cloth::new(13, 13, 0.1), parts.clone()))
+        .id();
     let before = Transform::from_xyz(0.35, -0.35, 0.01);
     let patch = (Cloth::new(9, 9, 0.0625), Pins::none(), before, parts);
     let patch = app.world_mut().spawn(patch).id();

@@ -93,9 +93,7 @@ pub enum ClothError {
         pin: String,
     },
     /// A paint names a vertex attribute or a channel that does not exist.
-    #[error(
-        "the cloth has no channel {channel} of a vertex attribute \"{name}\"; it has: {attributes}"
-    )]
+    #[error("no channel {channel} of a vertex attribute \"{name}\"; the cloth has: {attributes}")]
     NoSuchPaint {
         /// The name of the attribute.
         name: String,
@@ -105,9 +103,7 @@ pub enum ClothError {
         attributes: String,
     },
     /// A paint does not have one value for each vertex.
-    #[error(
-        "the cloth has {expected} vertices, but {found} values were given: give one for each vertex"
-    )]
+    #[error("{found} values were given for {expected} vertices: give one for each vertex")]
     PaintCount {
         /// Number of vertices.
         expected: usize,
@@ -196,9 +192,7 @@ pub enum ClothError {
         indices: usize,
     },
     /// A triangle names a vertex that does not exist.
-    #[error(
-        "triangle {triangle} has the corners {corners:?}, but there are only {vertices} vertices"
-    )]
+    #[error("triangle {triangle} has corners {corners:?}, but there are {vertices} vertices")]
     TriangleOutOfRange {
         /// Index of the triangle.
         triangle: usize,

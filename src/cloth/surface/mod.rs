@@ -16,6 +16,7 @@ mod from_grid;
 mod from_mesh;
 mod graph;
 mod grid;
+mod incidence;
 mod normals;
 mod orientation;
 mod paths;
@@ -27,12 +28,15 @@ mod triangles;
 mod weld;
 mod woven;
 
-use std::{fmt, sync::OnceLock};
+use std::{
+    fmt,
+    sync::{Arc, OnceLock},
+};
 
 use bevy::math::{Vec2, Vec3};
 
 use super::{grid::ClothGrid, lanes::Layout, spring::SpringKind};
-use torn::{Incidence, Torn};
+use incidence::Incidence;
 
 pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
@@ -74,6 +78,16 @@ pub struct Surface {
     grid: Option<ClothGrid>,
     torn: Option<Box<Torn>>,
     derived: Derived,
+}
+
+/// What a torn surface knows of the whole one.
+#[derive(Debug, Clone)]
+struct Torn {
+    whole: Arc<Surface>,
+    /// The particles of each face, in the order of the whole surface's faces.
+    corners: Vec<[u32; 3]>,
+    /// The particle of the whole surface that each particle was.
+    origin: Vec<u32>,
 }
 
 /// Computed when they are first asked for: a cloth without contacts needs none of them.
@@ -252,34 +266,6 @@ impl Surface {
             let grid = self.grid.as_ref();
             grid.map_or_else(Vec::new, grid::uvs)
         })
-    }
-
-    /// Calls `visit` with each edge that has a spring along it: its ends, its length at rest (m), and the square of the cosine of
-    /// its angle with the warp, 1 without a grain. Diagonals of a grid are left out.
-    pub(crate) fn for_each_thread(&self, mut visit: impl FnMut([u32; 2], f32, f32)) {
-        if let Some(grid) = &self.grid {
-            let (columns, spacing) = (grid.columns(), grid.spacing());
-            for index in 0..self.len() as u32 {
-                if (index + 1) % columns > 0 {
-                    visit([index, index + 1], spacing.x, 0.0);
-                }
-                if ((index + columns) as usize) < self.len() {
-                    visit([index, index + columns], spacing.y, 1.0);
-                }
-            }
-            return;
-        }
-        let threads = self
-            .links
-            .iter()
-            .filter(|link| link.kind == SpringKind::Structural);
-        if self.grain.is_empty() {
-            return threads.for_each(|link| visit(link.ends, link.rest_length, 1.0));
-        }
-        let along_warp = self.derived.along_warp.get_or_init(|| self.along_warp());
-        for (link, along_warp) in threads.zip(along_warp) {
-            visit(link.ends, link.rest_length, *along_warp);
-        }
     }
 
     /// Its faces, by their owners.

@@ -99,8 +99,36 @@ impl Surface {
         self.grain.get(face).copied()
     }
 
+    /// Calls `visit` with each edge that has a spring along it: its ends, its length at rest (m), and the square of the cosine of
+    /// its angle with the warp, 1 without a grain. Diagonals of a grid are left out.
+    pub(crate) fn for_each_thread(&self, mut visit: impl FnMut([u32; 2], f32, f32)) {
+        if let Some(grid) = &self.grid {
+            let (columns, spacing) = (grid.columns(), grid.spacing());
+            for index in 0..self.len() as u32 {
+                if (index + 1) % columns > 0 {
+                    visit([index, index + 1], spacing.x, 0.0);
+                }
+                if ((index + columns) as usize) < self.len() {
+                    visit([index, index + columns], spacing.y, 1.0);
+                }
+            }
+            return;
+        }
+        let threads = self
+            .links
+            .iter()
+            .filter(|link| link.kind == SpringKind::Structural);
+        if self.grain.is_empty() {
+            return threads.for_each(|link| visit(link.ends, link.rest_length, 1.0));
+        }
+        let along_warp = self.derived.along_warp.get_or_init(|| self.along_warp());
+        for (link, along_warp) in threads.zip(along_warp) {
+            visit(link.ends, link.rest_length, *along_warp);
+        }
+    }
+
     /// The square of the cosine between each edge of a mesh and the warp beside it, in the order of its links.
-    pub(super) fn along_warp(&self) -> Vec<f32> {
+    fn along_warp(&self) -> Vec<f32> {
         let threads = self
             .links
             .iter()

@@ -1,90 +1,19 @@
 //! Builds cloths that are new or whose components have changed.
 
-use std::sync::Arc;
-
-use bevy::{
-    ecs::change_detection::{DetectChangesMut, Mut, Tick},
-    math::Vec3,
-};
+use bevy::{ecs::change_detection::Mut, math::Vec3};
 
 use super::{
+    build_inputs::{Build, BuildInputs},
+    follow::{check_count, follow_changes, follow_grain},
     resample::{is_same_rectangle, resample},
     source::Sources,
     tears::follow_tears,
 };
 use crate::{
-    cloth::{
-        Cloth, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothParticles, ClothTears,
-        DensityFactors, Pins, Surface,
-    },
-    plugin::{
-        authoring::ClothAttachment,
-        state::{
-            BuiltFrom, ClothBuilt, ClothState, FailedBuild, Recipe, Shared, SharedParts, Source,
-            Stiffnesses,
-        },
-    },
+    cloth::{ClothError, ClothParticles, DensityFactors, Surface},
+    plugin::state::{BuiltFrom, ClothBuilt, ClothState, FailedBuild, Recipe, Shared, SharedParts},
     solver::{TickStep, TimeOrder},
 };
-
-/// The game's description of a cloth. Removed components count as their defaults, and as no pins.
-pub(crate) struct BuildInputs<'a> {
-    pub cloth: &'a Cloth,
-    /// When the cloth was last changed.
-    pub changed: Tick,
-    /// Its mesh, if it is made from one.
-    pub source: Option<Source>,
-    pub material: &'a ClothMaterial,
-    /// The grain of a mesh with a weft, and when it was last changed.
-    pub grain: Option<(&'a ClothGrain, Option<Tick>)>,
-    /// Its density, and when that was last changed.
-    pub density: Option<(&'a ClothDensity, Tick)>,
-    /// Its tears, and when they were last changed.
-    pub tears: Option<(&'a ClothTears, Tick)>,
-    pub pins: &'a Pins,
-    pub attachments: &'a [ClothAttachment],
-    pub scale: Vec3,
-}
-
-impl BuildInputs<'_> {
-    /// When its density was last changed.
-    fn weighed(&self) -> Option<Tick> {
-        self.density.map(|(_, changed)| changed)
-    }
-
-    /// When its grain was last changed.
-    fn grained(&self) -> Option<Tick> {
-        self.grain.and_then(|(_, changed)| changed)
-    }
-
-    /// When its tears were last changed.
-    pub(super) fn torn(&self) -> Option<Tick> {
-        self.tears.map(|(_, changed)| changed)
-    }
-
-    pub(super) fn tears(&self) -> ClothTears {
-        self.tears
-            .map_or_else(ClothTears::none, |(tears, _)| tears.clone())
-    }
-
-    pub(super) fn factors(&self, surface: &Surface) -> Result<DensityFactors, ClothError> {
-        self.density.map_or_else(
-            || Ok(DensityFactors::default()),
-            |(density, _)| density.factors(surface),
-        )
-    }
-}
-
-/// The result of building.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Build {
-    /// The particles are those of the last tick.
-    Kept,
-    /// Of another resolution, or torn, at the places of the last tick.
-    Resampled,
-    /// New particles.
-    New,
-}
 
 /// Builds a new cloth, or follows changes of an old one. Changes nothing on an error.
 pub(crate) fn build(
@@ -217,44 +146,6 @@ fn build_new(
     Ok(build)
 }
 
-/// Takes over another grain, or none: springs and bending follow other directions, the particles stay as they are.
-fn follow_grain(
-    wanted: &BuildInputs,
-    sources: &Sources,
-    parts: &mut SharedParts,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) -> Result<Build, ClothError> {
-    wanted.material.validate()?;
-    wanted.pins.validate(built.surface())?;
-    let Some(known) = &built.shared.recipe else {
-        return Ok(Build::Kept);
-    };
-    let recipe = Recipe {
-        grain: wanted.grain.map(|(grain, _)| grain.clone()),
-        ..known.clone()
-    };
-    let shared = parts.get(&recipe, wanted.material, || sources.surface(&recipe))?;
-    // A change that fails leaves the springs as they are.
-    follow_changes(wanted, parts, particles, built, state)?;
-    take_springs(built, shared, state);
-    if let Some(from) = &mut built.from {
-        from.grained = wanted.grained();
-    }
-    Ok(Build::Kept)
-}
-
-/// Takes over the springs of the same particles.
-fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothState) {
-    built.shared = shared;
-    let tethers = built.solver.take_tethers();
-    built.solver = built.shared.solver.clone();
-    built.solver.set_tethers(tethers);
-    // The stretch that bounds rely on is measured over other springs now.
-    state.inputs.written = None;
-}
-
 /// The particles of a cloth of which only the resolution has changed, while the rectangle is the same; `None` for any
 /// other change.
 fn resampled(
@@ -323,90 +214,4 @@ fn at_rest(
     }
     particles.make_uneven(surface, wanted.cloth.unevenness, |index| is_held[index]);
     Ok(particles)
-}
-
-/// Takes over another material or other pins: masses, springs and tree only where they change, so that a
-/// mass that the game has set outlasts a change of damping.
-pub(super) fn follow_changes(
-    wanted: &BuildInputs,
-    parts: &mut SharedParts,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) -> Result<(), ClothError> {
-    let BuildInputs { material, pins, .. } = *wanted;
-    check_count(particles, built.surface())?;
-    let Some(from) = &mut built.from else {
-        return Ok(());
-    };
-    let (was, were_pinned) = (&from.material, &from.pins);
-    let are_others_pinned = were_pinned != pins;
-    let is_weighed_otherwise = from.weighed != wanted.weighed();
-    if was == material && !are_others_pinned && !is_weighed_otherwise {
-        return Ok(());
-    }
-    material.validate()?;
-    let surface = &built.shared.surface;
-    if is_weighed_otherwise {
-        let factors = wanted.factors(surface)?;
-        pins.validate(surface)?;
-        // The same as before leaves masses that the game has set.
-        if factors != from.factors {
-            // Their motion goes on: nothing that rests on where they are has to be looked at again.
-            let particles = particles.bypass_change_detection();
-            particles.weigh(surface, material, &factors)?;
-            built.masses = particles.free_masses();
-            from.factors = factors;
-        }
-        from.weighed = wanted.weighed();
-    }
-    if was.areal_density != material.areal_density || are_others_pinned {
-        particles.assign_masses(surface, material, &from.factors, pins)?;
-        // They are pinned again with the offsets that they have.
-        for attached in &state.attachments.attached {
-            particles.pin(attached.particle as usize);
-        }
-    }
-    let tethered_by = |of: &ClothMaterial| {
-        let [weft, warp] = of.stretch_compliances();
-        [of.areal_density, weft, warp, of.shear_compliance]
-    };
-    let gives_otherwise = tethered_by(was) != tethered_by(material);
-    let is_sprung_otherwise = Stiffnesses::of(was) != Stiffnesses::of(material);
-    (from.material, from.pins) = (*material, pins.clone());
-    if are_others_pinned || gives_otherwise {
-        built.forget_tethers();
-    }
-    if is_sprung_otherwise {
-        let shared = parts.with_material(&built.shared, material);
-        take_springs(built, shared, state);
-    }
-    state.rest.disturb();
-    Ok(())
-}
-
-/// Whether the particles are as many as the surface has. One row of them is laid out as the surface is.
-pub(super) fn check_count(
-    particles: &mut Mut<ClothParticles>,
-    surface: &Surface,
-) -> Result<(), ClothError> {
-    if particles.matches(surface) {
-        return Ok(());
-    }
-    if let Some(laid_out) = particles.laid_out(surface) {
-        **particles = laid_out;
-        return Ok(());
-    }
-    Err(if particles.len() == surface.len() {
-        ClothError::ParticleLayout {
-            cloth: surface.to_string(),
-            columns: particles.columns(),
-            rows: particles.rows(),
-        }
-    } else {
-        ClothError::ParticleCount {
-            expected: surface.len(),
-            found: particles.len(),
-        }
-    })
 }

@@ -12,7 +12,8 @@ use super::{
     asleep::sleeps_as_it_was,
     attach::follow_targets,
     broad_phase::clear_stats,
-    build::{Build, BuildInputs, build},
+    build::build,
+    build_inputs::{Build, BuildInputs},
     carry::{carry, new_from_old},
     drag::jump,
     freeze::{freeze, thaw},
@@ -66,7 +67,7 @@ pub(crate) fn prepare_cloths(
                 skip(&mut cloth);
                 return stand_still(&mut cloth, &around);
             }
-            let wind = around.field.of_cloth(cloth.game.air)?;
+            let wind = around.field.of_cloth(cloth.game.air.0)?;
             if sleeps_as_it_was(&cloth, &inputs, &around, &wind, seconds) {
                 return Ok(());
             }
@@ -261,7 +262,7 @@ fn take_over(
     if let Some(self_collision) = &inputs.self_collision {
         self_collision.validate(surface)?;
     }
-    if let Some(pressure) = cloth.game.pressure {
+    if let Some(pressure) = cloth.game.air.1 {
         pressure.validate(surface)?;
     }
     Ok(was_written)

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use bevy::{ecs::change_detection::Mut, math::Vec3};
 
-use super::build::{Build, BuildInputs, follow_changes};
+use super::{
+    build_inputs::{Build, BuildInputs},
+    follow::follow_changes,
+};
 use crate::{
     cloth::{ClothError, ClothParticles, Surface},
     plugin::{

@@ -26,7 +26,7 @@ use bevy::math::{DVec3, Vec4};
 use super::{
     creasing::ClothCreasing,
     mesh_creases::MeshCreases,
-    patch::{Patch, RestFace, faces_beside, frame},
+    patch::{Patch, RestFace, faces_beside, for_each_row, frame},
     push::LIMIT,
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, Surface, W, Woven};
@@ -38,51 +38,6 @@ const TOLERANCE: f32 = 1.0e-4;
 const MAX_ITERATIONS: usize = 400;
 const FEWEST_ITERATIONS: usize = 40;
 const MAX_WORK: usize = 200_000;
-
-/// Calls `visit` with each row of the matrix of patches with these stiffnesses: its columns that are not zero, ascending, and
-/// the sums of what the patches add there, in their order.
-fn for_each_row(patches: &[(Patch, f64)], rows: usize, mut visit: impl FnMut(u32, &[(u32, f64)])) {
-    // The patches around each particle.
-    let mut first = vec![0_u32; rows + 1];
-    let particles = || patches.iter().flat_map(|(patch, _)| patch.particles);
-    particles().for_each(|particle| first[particle as usize + 1] += 1);
-    for row in 0..rows {
-        first[row + 1] += first[row];
-    }
-    let mut next = first.clone();
-    let mut around = vec![(0, 0); 6 * patches.len()];
-    for (at, particle) in particles().enumerate() {
-        let next = &mut next[particle as usize];
-        around[*next as usize] = (at / 6, at % 6);
-        *next += 1;
-    }
-    let mut numbers: Vec<(u32, f64)> = Vec::new();
-    for row in 0..rows {
-        numbers.clear();
-        for &(patch, a) in &around[of(&first, row)] {
-            let (
-                Patch {
-                    particles,
-                    curvature,
-                    ..
-                },
-                stiffness,
-            ) = &patches[patch];
-            for (b, column) in particles.iter().enumerate() {
-                let product: f64 = curvature.iter().map(|of| of[a] * of[b]).sum();
-                if product == 0.0 {
-                    continue;
-                }
-                match numbers.iter_mut().find(|(known, _)| known == column) {
-                    Some((_, sum)) => *sum += stiffness * product,
-                    None => numbers.push((*column, stiffness * product)),
-                }
-            }
-        }
-        numbers.sort_unstable_by_key(|(column, _)| *column);
-        visit(row as u32, &numbers);
-    }
-}
 
 /// A particle during a solve. The data that its neighbours read lies apart, close together.
 #[derive(Debug, Default, Clone, Copy)]

@@ -48,6 +48,55 @@ pub(super) fn faces_beside(faces: &[[u32; 3]]) -> Vec<[Option<u32>; 3]> {
     beside
 }
 
+/// Calls `visit` with each row of the matrix of patches with these stiffnesses: its columns that are not zero, ascending, and
+/// the sums of what the patches add there, in their order.
+pub(super) fn for_each_row(
+    patches: &[(Patch, f64)],
+    rows: usize,
+    mut visit: impl FnMut(u32, &[(u32, f64)]),
+) {
+    // The patches around each particle.
+    let mut first = vec![0_u32; rows + 1];
+    let particles = || patches.iter().flat_map(|(patch, _)| patch.particles);
+    particles().for_each(|particle| first[particle as usize + 1] += 1);
+    for row in 0..rows {
+        first[row + 1] += first[row];
+    }
+    let mut next = first.clone();
+    let mut around = vec![(0, 0); 6 * patches.len()];
+    for (at, particle) in particles().enumerate() {
+        let next = &mut next[particle as usize];
+        around[*next as usize] = (at / 6, at % 6);
+        *next += 1;
+    }
+    let mut numbers: Vec<(u32, f64)> = Vec::new();
+    for row in 0..rows {
+        numbers.clear();
+        for &(patch, a) in &around[first[row] as usize..first[row + 1] as usize] {
+            let (
+                Patch {
+                    particles,
+                    curvature,
+                    ..
+                },
+                stiffness,
+            ) = &patches[patch];
+            for (b, column) in particles.iter().enumerate() {
+                let product: f64 = curvature.iter().map(|of| of[a] * of[b]).sum();
+                if product == 0.0 {
+                    continue;
+                }
+                match numbers.iter_mut().find(|(known, _)| known == column) {
+                    Some((_, sum)) => *sum += stiffness * product,
+                    None => numbers.push((*column, stiffness * product)),
+                }
+            }
+        }
+        numbers.sort_unstable_by_key(|(column, _)| *column);
+        visit(row as u32, &numbers);
+    }
+}
+
 /// A face and those beside it.
 pub(super) struct Patch {
     /// Its corners, and the corners beyond its edges; where there is none, a corner again, with zeros.

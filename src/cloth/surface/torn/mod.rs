@@ -19,6 +19,9 @@
 //! Search and contact need no rule of their own. Their bounds are measured along the springs that are left: they are built
 //! from the torn surface as from any mesh.
 
+mod split;
+mod springs;
+
 use std::sync::{Arc, OnceLock};
 
 use bevy::math::{DVec3, Vec3};
@@ -26,72 +29,13 @@ use bevy::math::{DVec3, Vec3};
 use bevy::platform::collections::HashMap;
 
 use super::{
-    Derived, Extent, Faces, Link, Surface,
-    springs::{Side, face_area, for_each_pair, sides_of},
+    Derived, Extent, Faces, Surface, Torn, incidence::Incidence, springs::face_area,
     triangles::VertexAttribute,
 };
-use crate::cloth::{error::ClothError, grid::ClothGrid, spring::SpringKind};
+use crate::cloth::{error::ClothError, grid::ClothGrid};
 
 /// How far a cut moves its sides apart, each, as a fraction of the way to the middle of the faces beside it.
 const HALF_WIDTH: f32 = 0.02;
-
-/// What a torn surface knows of the whole one.
-#[derive(Debug, Clone)]
-pub(super) struct Torn {
-    whole: Arc<Surface>,
-    /// The particles of each face, in the order of the whole surface's faces.
-    pub(super) corners: Vec<[u32; 3]>,
-    /// The particle of the whole surface that each particle was.
-    origin: Vec<u32>,
-}
-
-/// The sides of all faces, and the faces at each particle.
-#[derive(Debug, Default, Clone)]
-pub(super) struct Incidence {
-    sides: Vec<Side>,
-    /// First face of each particle; one more entry than particles.
-    first: Vec<u32>,
-    faces: Vec<u32>,
-}
-
-impl Incidence {
-    fn new(faces: &[[u32; 3]], particles: usize) -> Self {
-        let mut first = vec![0; particles + 1];
-        for corner in faces.iter().flatten() {
-            first[*corner as usize + 1] += 1;
-        }
-        for particle in 0..particles {
-            first[particle + 1] += first[particle];
-        }
-        let mut next = first.clone();
-        let mut around = vec![0; 3 * faces.len()];
-        for (index, face) in faces.iter().enumerate() {
-            for corner in face {
-                let next = &mut next[*corner as usize];
-                around[*next as usize] = index as u32;
-                *next += 1;
-            }
-        }
-        Self {
-            sides: sides_of(faces),
-            first,
-            faces: around,
-        }
-    }
-
-    /// The faces at a particle, ascending.
-    pub fn around(&self, particle: u32) -> &[u32] {
-        let [start, end] = [0, 1].map(|at| self.first[particle as usize + at] as usize);
-        &self.faces[start..end]
-    }
-
-    /// The sides of the faces at an edge, whose smaller end comes first.
-    pub fn at(&self, ends: [u32; 2]) -> &[Side] {
-        let start = self.sides.partition_point(|side| side.ends < ends);
-        let count = self.sides[start..].partition_point(|side| side.ends == ends);
-        &self.sides[start..start + count]
-    }
-}
 
 impl Surface {
     /// This surface, torn along edges of the whole surface, in the order in which they were torn. The smaller index of
@@ -229,12 +173,6 @@ impl Surface {
         Some(parents)
     }
 
-    /// The faces at a particle.
-    pub(crate) fn faces_around(&self, particle: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
-        let around = self.incidence().around(particle).iter();
-        around.map(|face| self.triangles()[*face as usize])
-    }
-
     /// The middle of a face, or of its cell on a grid, with the particles at these places (m).
     pub(crate) fn middle_of(&self, face: [u32; 3], places: &[DVec3]) -> DVec3 {
         let place = |corner: u32| places[corner as usize];
@@ -243,6 +181,12 @@ impl Surface {
             return (place(a) + place(b)) / 2.0;
         }
         face.map(place).into_iter().sum::<DVec3>() / 3.0
+    }
+
+    /// The faces at a particle.
+    pub(crate) fn faces_around(&self, particle: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let around = self.incidence().around(particle).iter();
+        around.map(|face| self.triangles()[*face as usize])
     }
 
     /// Calls `visit` with each edge between two faces, and the faces.
@@ -293,66 +237,6 @@ impl Surface {
 }
 
 impl Torn {
-    fn new(whole: &Arc<Surface>, edges: &[[u32; 2]]) -> Self {
-        let mut torn = Self {
-            whole: whole.clone(),
-            corners: whole.triangles().to_vec(),
-            origin: (0..whole.len() as u32).collect(),
-        };
-        let mut ends: Vec<(u32, usize, u32)> = Vec::with_capacity(2 * edges.len());
-        for (time, [a, b]) in edges.iter().enumerate() {
-            ends.extend([(*a, time, *b), (*b, time, *a)]);
-        }
-        ends.sort_unstable();
-        let mut parts = Vec::new();
-        for at in ends.chunk_by(|a, b| a.0 == b.0) {
-            torn.split(at, &mut parts);
-        }
-        // As they came off.
-        parts.sort_unstable();
-        for Part { particle, face, .. } in &parts {
-            let copy = torn.origin.len() as u32;
-            torn.origin.push(*particle);
-            let of = ends.partition_point(|(end, ..)| end < particle)..;
-            let edges = ends[of].iter().take_while(|(end, ..)| end == particle);
-            let others: Vec<u32> = edges.map(|(.., other)| *other).collect();
-            for (own, at) in pieces(whole, *particle, &others) {
-                if at == *face {
-                    let corners = torn.corners[own as usize].iter_mut();
-                    (corners.filter(|corner| **corner == *particle))
-                        .for_each(|corner| *corner = copy);
-                }
-            }
-        }
-        torn
-    }
-
-    /// Number of particles of the whole surface.
-    pub fn whole_len(&self) -> usize {
-        self.whole.len()
-    }
-
-    /// Finds the parts that come off a particle with one torn edge after the other.
-    fn split(&self, edges: &[(u32, usize, u32)], parts: &mut Vec<Part>) {
-        let particle = edges[0].0;
-        let mut known: Vec<u32> = (pieces(&self.whole, particle, &[]).into_iter())
-            .map(|(_, piece)| piece)
-            .collect();
-        for count in 1..=edges.len() {
-            let others: Vec<u32> = edges[..count].iter().map(|(.., other)| *other).collect();
-            for (_, face) in pieces(&self.whole, particle, &others) {
-                if !known.contains(&face) {
-                    known.push(face);
-                    parts.push(Part {
-                        time: edges[count - 1].1,
-                        particle,
-                        face,
-                    });
-                }
-            }
-        }
-    }
-
     fn surface(self, edges: &[[u32; 2]]) -> Surface {
         let whole = self.whole.clone();
         let copied = |of: &[Vec3]| -> Vec<Vec3> {
@@ -447,132 +331,4 @@ impl Torn {
         }
         areas
     }
-
-    /// The springs, and the particles at a border. A spring along a torn edge becomes one for each side, and stands for
-    /// the area on its side. Those across a torn edge are gone.
-    fn links(&self) -> (Vec<Link>, Vec<bool>) {
-        let whole = &self.whole;
-        let faces = whole.triangles();
-        let is_grid = whole.as_grid().is_some();
-        let first_along = (whole.links).partition_point(|link| link.kind != SpringKind::Structural);
-        let (known_across, known_along) = whole.links.split_at(first_along);
-        let (mut known_across, mut known_along) = (known_across.iter(), known_along.iter());
-        let (mut across, mut along) = (Vec::new(), Vec::new());
-        let mut is_border = vec![false; self.origin.len()];
-        let area = |side: &Side| face_area(faces[side.face as usize], &whole.rest);
-        for sides in (whole.incidence().sides).chunk_by(|a, b| a.ends == b.ends) {
-            let total: f32 = sides.iter().map(area).sum();
-            let is_diagonal =
-                is_grid && whole.diagonal_of(faces[sides[0].face as usize]) == sides[0].ends;
-            let known = if is_grid { None } else { known_along.next() };
-            let own: Vec<[u32; 2]> = sides.iter().map(|side| self.ends(side)).collect();
-            for (index, ends) in own.iter().enumerate() {
-                if own[..index].contains(ends) {
-                    continue;
-                }
-                let alike = sides.iter().zip(&own).filter(|(_, other)| *other == ends);
-                let (count, part) = alike.fold((0, 0.0), |(count, sum), (side, _)| {
-                    (count + 1, sum + area(side))
-                });
-                if count != 2 {
-                    ends.iter().for_each(|end| is_border[*end as usize] = true);
-                }
-                match known {
-                    Some(known) => along.push(Link {
-                        ends: *ends,
-                        slenderness: known.slenderness * (total / part),
-                        ..*known
-                    }),
-                    None if is_diagonal => {
-                        across.push(whole.grid_link(SpringKind::Shear, *ends, self, count))
-                    }
-                    None => along.push(whole.grid_link(SpringKind::Structural, *ends, self, count)),
-                }
-            }
-            for_each_pair(sides, &whole.rest, |one, other| {
-                let known = if is_grid { None } else { known_across.next() };
-                if self.ends(one) != self.ends(other) || is_grid && !is_diagonal {
-                    return;
-                }
-                let [a, b] = [one, other].map(|side| self.corner(side.face, side.opposite));
-                let ends = [a.min(b), a.max(b)];
-                across.push(match known {
-                    Some(known) => Link { ends, ..*known },
-                    None => whole.grid_link(SpringKind::Shear, ends, self, 2),
-                });
-            });
-        }
-        across.append(&mut along);
-        (across, is_border)
-    }
-
-    /// The particle at a corner of a face, by the particle of the whole surface.
-    fn corner(&self, face: u32, particle: u32) -> u32 {
-        let face = face as usize;
-        let at = (self.whole.triangles()[face].iter()).position(|corner| *corner == particle);
-        self.corners[face][at.unwrap_or(0)]
-    }
-
-    /// The ends of a face's side.
-    fn ends(&self, side: &Side) -> [u32; 2] {
-        let [a, b] = side.ends.map(|end| self.corner(side.face, end));
-        [a.min(b), a.max(b)]
-    }
-}
-
-impl Surface {
-    /// A spring of a grid with this number of faces at its side: of a strip that is as wide as a cell for two.
-    fn grid_link(&self, kind: SpringKind, ends: [u32; 2], torn: &Torn, faces: u32) -> Link {
-        let [a, b] = ends.map(|end| torn.origin[end as usize]);
-        let spacing = self
-            .grid
-            .as_ref()
-            .map_or(bevy::math::Vec2::ONE, ClothGrid::spacing);
-        let rest_length = self.rest[a as usize].distance(self.rest[b as usize]);
-        let width = match kind {
-            SpringKind::Structural if a.abs_diff(b) == 1 => spacing.y,
-            SpringKind::Structural => spacing.x,
-            SpringKind::Shear | SpringKind::Bend => rest_length,
-        };
-        Link {
-            kind,
-            ends,
-            rest_length,
-            slenderness: rest_length / width * 2.0 / faces as f32,
-        }
-    }
-}
-
-/// A part of a particle that came off.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Part {
-    /// The edge whose tear took it off.
-    time: usize,
-    particle: u32,
-    /// The first of its faces.
-    face: u32,
-}
-
-/// The faces at a particle, each with the first face of its piece: faces hang together at edges that are not torn, which
-/// lead to `others`.
-fn pieces(surface: &Surface, particle: u32, others: &[u32]) -> Vec<(u32, u32)> {
-    let around = surface.incidence().around(particle);
-    let faces = surface.triangles();
-    let mut pieces: Vec<(u32, u32)> = around.iter().map(|face| (*face, *face)).collect();
-    for one in 0..around.len() {
-        for two in 0..one {
-            let corners = faces[around[one] as usize];
-            let shares = |corner: &u32| faces[around[two] as usize].contains(corner);
-            let holds = |corner: &u32| *corner != particle && !others.contains(corner);
-            if corners.iter().any(|corner| holds(corner) && shares(corner)) {
-                let (a, b) = (pieces[one].1, pieces[two].1);
-                let joined = a.min(b);
-                let of_both = pieces
-                    .iter_mut()
-                    .filter(|(_, piece)| *piece == a || *piece == b);
-                of_both.for_each(|(_, piece)| *piece = joined);
-            }
-        }
-    }
-    pieces
 }

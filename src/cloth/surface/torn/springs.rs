@@ -1,0 +1,105 @@
+//! The springs that tears leave.
+
+use bevy::math::Vec2;
+
+use crate::cloth::{
+    grid::ClothGrid,
+    spring::SpringKind,
+    surface::{
+        Link, Surface, Torn,
+        springs::{Side, face_area, for_each_pair},
+    },
+};
+
+impl Torn {
+    /// The springs, and the particles at a border. A spring along a torn edge becomes one for each side, and stands for
+    /// the area on its side. Those across a torn edge are gone.
+    pub fn links(&self) -> (Vec<Link>, Vec<bool>) {
+        let whole = &self.whole;
+        let faces = whole.triangles();
+        let is_grid = whole.as_grid().is_some();
+        let first_along = (whole.links).partition_point(|link| link.kind != SpringKind::Structural);
+        let (known_across, known_along) = whole.links.split_at(first_along);
+        let (mut known_across, mut known_along) = (known_across.iter(), known_along.iter());
+        let (mut across, mut along) = (Vec::new(), Vec::new());
+        let mut is_border = vec![false; self.origin.len()];
+        let area = |side: &Side| face_area(faces[side.face as usize], &whole.rest);
+        for sides in (whole.incidence().sides).chunk_by(|a, b| a.ends == b.ends) {
+            let total: f32 = sides.iter().map(area).sum();
+            let is_diagonal =
+                is_grid && whole.diagonal_of(faces[sides[0].face as usize]) == sides[0].ends;
+            let known = if is_grid { None } else { known_along.next() };
+            let own: Vec<[u32; 2]> = sides.iter().map(|side| self.ends(side)).collect();
+            for (index, ends) in own.iter().enumerate() {
+                if own[..index].contains(ends) {
+                    continue;
+                }
+                let alike = sides.iter().zip(&own).filter(|(_, other)| *other == ends);
+                let (count, part) = alike.fold((0, 0.0), |(count, sum), (side, _)| {
+                    (count + 1, sum + area(side))
+                });
+                if count != 2 {
+                    ends.iter().for_each(|end| is_border[*end as usize] = true);
+                }
+                match known {
+                    Some(known) => along.push(Link {
+                        ends: *ends,
+                        slenderness: known.slenderness * (total / part),
+                        ..*known
+                    }),
+                    None if is_diagonal => {
+                        across.push(whole.grid_link(SpringKind::Shear, *ends, self, count))
+                    }
+                    None => along.push(whole.grid_link(SpringKind::Structural, *ends, self, count)),
+                }
+            }
+            for_each_pair(sides, &whole.rest, |one, other| {
+                let known = if is_grid { None } else { known_across.next() };
+                if self.ends(one) != self.ends(other) || is_grid && !is_diagonal {
+                    return;
+                }
+                let [a, b] = [one, other].map(|side| self.corner(side.face, side.opposite));
+                let ends = [a.min(b), a.max(b)];
+                across.push(match known {
+                    Some(known) => Link { ends, ..*known },
+                    None => whole.grid_link(SpringKind::Shear, ends, self, 2),
+                });
+            });
+        }
+        across.append(&mut along);
+        (across, is_border)
+    }
+
+    /// The particle at a corner of a face, by the particle of the whole surface.
+    fn corner(&self, face: u32, particle: u32) -> u32 {
+        let face = face as usize;
+        let at = (self.whole.triangles()[face].iter()).position(|corner| *corner == particle);
+        self.corners[face][at.unwrap_or(0)]
+    }
+
+    /// The ends of a face's side.
+    fn ends(&self, side: &Side) -> [u32; 2] {
+        let [a, b] = side.ends.map(|end| self.corner(side.face, end));
+        [a.min(b), a.max(b)]
+    }
+}
+
+impl Surface {
+    /// A spring of a grid with this number of faces at its side: of a strip that is as wide as a cell for two.
+    fn grid_link(&self, kind: SpringKind, ends: [u32; 2], torn: &Torn, faces: u32) -> Link {
+        let [a, b] = ends.map(|end| torn.origin[end as usize]);
+        let spacing = self.grid.as_ref().map_or(Vec2::ONE, ClothGrid::spacing);
+        let rest_length = self.rest[a as usize].distance(self.rest[b as usize]);
+        let width = match kind {
+            SpringKind::Structural if a.abs_diff(b) == 1 => spacing.y,
+            SpringKind::Structural => spacing.x,
+            SpringKind::Shear | SpringKind::Bend => rest_length,
+        };
+        Link {
+            kind,
+            ends,
+            rest_length,
+            slenderness: rest_length / width * 2.0 / faces as f32,
+        }
+    }
+}
