@@ -99,6 +99,15 @@ impl Rest {
         self.is_asleep
     }
 
+    /// For how long they have been near their places (s); endless if they sleep.
+    pub(crate) fn calm(&self) -> f32 {
+        if self.is_asleep {
+            f32::INFINITY
+        } else {
+            self.calm
+        }
+    }
+
     /// Whether all particles were near their places when they were last compared.
     pub fn is_calm(&self) -> bool {
         self.is_asleep || self.calm > 0.0

@@ -55,6 +55,9 @@ pub(crate) struct Span {
     pub bounds: Option<[Vec3; 2]>,
 }
 
+/// For how long a cloth has to be calm to let those sleep that it is sewn to (s): half of what it takes to fall asleep itself.
+const SETTLED: f32 = 0.25;
+
 const NONE: u32 = u32::MAX;
 
 /// Finds which cloths may touch each other in the tick, or are sewn together. A cloth that moves wakes sleeping cloths beside
@@ -238,11 +241,13 @@ impl Islands {
 
 /// Wakes all cloths of an island in which one moves.
 fn wake(island: &mut Island, cloths: &mut Query<Neighbour>) {
+    // What touches one of several that are sewn together moves all, at once.
+    let is_sewn = !island.seams.is_empty();
     let mut is_moving = false;
     let entities = || island.cloths.iter().map(|(_, cloth)| cloth);
     for cloth in cloths.iter_many(entities()) {
         let rest = &cloth.state.rest;
-        is_moving |= !rest.is_asleep() && !rest.is_calm();
+        is_moving |= !rest.is_calm() || (is_sewn && rest.calm() < SETTLED);
         if cloth.scratch.was_put {
             island.contact.forget();
         }
