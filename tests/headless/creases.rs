@@ -110,6 +110,7 @@ fn bad_creasing_is_a_fault() {
         .world_mut()
         .spawn((Cloth::new(5, 5, 0.1), CREASING))
         .id();
+    tick(&mut app, 1);
     for (yield_curvature, hardening, name) in [
         (0.0, 0.1, "yield curvature"),
         (-1.0, 0.1, "yield curvature"),
@@ -164,5 +165,10 @@ fn nothing_stays_below_the_yield_curvature() {
         assert!(hung(rigidity, Some(beyond)) == hung(rigidity, None));
     }
     assert!(hung(0.0, Some(CREASING)) == hung(0.0, None));
-    assert!(hung(1.0e-3, Some(CREASING)) != hung(1.0e-3, None));
+    // It is far beyond 1/m where it hangs by its corner.
+    let soon = ClothCreasing {
+        yield_curvature: 1.0,
+        hardening: 0.1,
+    };
+    assert!(hung(6.0e-6, Some(soon)) != hung(6.0e-6, None));
 }
