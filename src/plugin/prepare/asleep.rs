@@ -64,9 +64,12 @@ pub(super) fn sleeps_as_it_was(
             pins,
         )
         && sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
-        && (state.inputs.air).is_still(wind.as_ref(), cloth.game.air.1, field, || {
-            ball(built, &cloth.particles, state.stretch.bound, &cloth.frame)
-        })
+        && (state.inputs.air).is_still(
+            wind.as_ref(),
+            cloth.game.pressure(built.surface()),
+            field,
+            || ball(built, &cloth.particles, state.stretch.bound, &cloth.frame),
+        )
         && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))
 }
 

@@ -262,7 +262,7 @@ fn take_over(
     if let Some(self_collision) = &inputs.self_collision {
         self_collision.validate(surface)?;
     }
-    if let Some(pressure) = cloth.game.air.1 {
+    if let Some(pressure) = cloth.game.pressure(surface) {
         pressure.validate(surface)?;
     }
     Ok(was_written)

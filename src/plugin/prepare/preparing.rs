@@ -11,7 +11,7 @@ use super::{attach::Targets, roots::Roots, skin::Skins, source::Sources};
 use crate::{
     cloth::{
         Cloth, ClothDensity, ClothGrain, ClothMaterial, ClothParticles, ClothShape, ClothSkin,
-        ClothTearing, ClothTears, Pins,
+        ClothTearing, ClothTears, Pins, Surface,
     },
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
@@ -60,6 +60,12 @@ impl GameQueryItem<'_, '_> {
     /// When the density was last changed, if it has one.
     pub fn weighed(&self) -> Option<Tick> {
         self.density.as_ref().map(DetectChanges::last_changed)
+    }
+
+    /// Its pressure. What was closed and is torn open has burst.
+    pub fn pressure(&self, surface: &Surface) -> Option<&ClothPressure> {
+        let (_, pressure) = self.air;
+        pressure.filter(|_| !surface.is_torn() || surface.is_closed())
     }
 
     /// The tears and when they were last changed, if it has any.

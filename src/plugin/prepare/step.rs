@@ -28,7 +28,7 @@ pub(super) fn see_whether_it_rests(
     let (built, scratch) = (&*cloth.built, &*cloth.scratch);
     let settings = inputs.settings;
     let known = Some(inputs.known(acceleration));
-    let (field, pressure) = (&*around.field, cloth.game.air.1);
+    let (field, pressure) = (&*around.field, cloth.game.pressure(cloth.built.surface()));
     let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
     let is_still = state
         .inputs

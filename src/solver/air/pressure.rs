@@ -52,8 +52,7 @@ impl ClothPressure {
         }
     }
 
-    /// Checks that each value is in its range, and that `surface` encloses a volume, or did so before it was torn: then it
-    /// has burst, and has no pressure.
+    /// Checks that each value is in its range, and that `surface` encloses a volume.
     ///
     /// # Errors
     /// [`ClothError::Quantity`], and [`ClothError::NotClosed`].
@@ -71,7 +70,7 @@ impl ClothPressure {
                 ClothError::check(outside, is_some, "pressure outside (Pa)", range)?;
             }
         }
-        if surface.is_closed() || surface.is_torn() {
+        if surface.is_closed() {
             Ok(())
         } else {
             Err(ClothError::NotClosed)
