@@ -1,6 +1,6 @@
 //! The same app without a window, where a script slashes the banner and pulls at it: a report and a picture.
 
-use std::process::ExitCode;
+use std::{process::ExitCode, time::Instant};
 
 use bevy::prelude::*;
 use bevy_drape::{contact::intersections, prelude::*};
@@ -28,6 +28,9 @@ struct Own {
     pieces: usize,
     /// Mass of all parts now over that of the whole banner.
     mass: f32,
+    /// The longest tick in which something tore, and the longest of the others (ms).
+    tearing_ms: f64,
+    whole_ms: f64,
     /// The most triangle pairs that intersected in any tick, by brute force.
     intersections: usize,
 }
@@ -42,6 +45,7 @@ pub fn report(mut run: Run) -> ExitCode {
                 .chain()
                 .before(ClothSystems::Prepare),
         )
+        .add_systems(FixedFirst, begin_tick)
         .add_systems(FixedLast, measure);
     let report = Report {
         title: "A banner and a sword",
@@ -52,6 +56,10 @@ pub fn report(mut run: Run) -> ExitCode {
     report.print(&mut run, |Report { own, .. }| {
         println!("  cut              {} edges by the sword", own.cut);
         println!("  torn             {} edges by a hand that pulls", own.torn);
+        println!(
+            "  ticks            {:.1} ms at most; {:.1} ms where it tears",
+            own.whole_ms, own.tearing_ms
+        );
         println!(
             "  pieces           {}, which together have {:.4} of the mass",
             own.pieces, own.mass
@@ -92,13 +100,30 @@ fn pull(time: Res<Time>, mut hands: Query<&mut ClothGrab>) {
     }
 }
 
+/// When the tick began.
+#[derive(Resource)]
+struct Began(Instant);
+
+fn begin_tick(mut commands: Commands) {
+    commands.insert_resource(Began(Instant::now()));
+}
+
 fn measure(
+    began: Res<Began>,
     mut torn: MessageReader<ClothTorn>,
     swords: Query<&Sword>,
     cloths: Query<(&ClothBuilt, &ClothParticles)>,
     mut whole: Local<Option<f32>>,
     mut own: ResMut<Own>,
 ) {
+    let milliseconds = 1000.0 * began.0.elapsed().as_secs_f64();
+    // The first ones build the cloth.
+    let is_later = whole.is_some();
+    match torn.is_empty() {
+        true if is_later => own.whole_ms = own.whole_ms.max(milliseconds),
+        true => {}
+        false => own.tearing_ms = own.tearing_ms.max(milliseconds),
+    }
     for torn in torn.read() {
         match swords.iter().any(|sword| sword.slashing.is_some()) {
             true => own.cut += torn.edges,

@@ -31,6 +31,7 @@ use super::{
 /// ```
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(ClothTears)]
 pub struct ClothTearing {

@@ -12,7 +12,7 @@ use super::surface::Surface;
 /// `ClothTearing` under load, `ClothBlade` by a cut, or a game that calls [`tear`](Self::tear).
 ///
 /// An edge is a pair of neighbouring particles of the cloth as it was spawned; on a grid, also the two ends of a diagonal of
-/// [`Surface::triangles`]. A particle becomes two where the torn edges at it leave it no way from one face to the next. One edge
+/// [`Surface::triangles`]. A particle becomes two where torn edges separate its faces. One edge
 /// alone opens nothing, unless an end of it is at a border.
 ///
 /// Torn cloth keeps its particles, with their places, velocities and total mass. New particles follow after them. A pinned or
@@ -87,6 +87,11 @@ impl ClothTears {
     /// The torn edges, in the order in which they were torn. The smaller index of each comes first.
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.0
+    }
+
+    /// The first edges of these.
+    pub(crate) fn first(&self, count: usize) -> Self {
+        Self(self.0[..count.min(self.0.len())].to_vec())
     }
 
     /// Whether nothing is torn.

@@ -413,6 +413,19 @@ fn what_is_torn_is_rolled_back() {
             .restore(other.world_mut(), clone)
             .expect("it is there");
         assert!(go_on(&mut other, clone) == expected);
+        // Between a cut and its opening.
+        cut_at(&mut app, -0.18);
+        let saved = ClothSnapshot::of(app.world(), torn).expect("a cloth");
+        tick(&mut app, 20);
+        let expected = particles(&app, torn).clone();
+        for app in [&mut app, &mut other] {
+            let mut cloths = app.world_mut().query_filtered::<Entity, With<Cloth>>();
+            let cloth = cloths.single(app.world()).expect("one cloth");
+            saved.restore(app.world_mut(), cloth).expect("it is there");
+            tick(app, 20);
+            assert_eq!(app.world().get::<ClothFault>(cloth), None);
+            assert!(particles(app, cloth) == &expected);
+        }
         // Mended, it is the whole cloth.
         app.world_mut()
             .entity_mut(torn)
@@ -611,6 +624,54 @@ fn sewn_and_creased_cloth_is_cut() {
     // The upper half of the patch hangs where it was, and does not slide off.
     let corner = particles(&app, patch).position(0).expect("it exists") + before.translation;
     assert!((corner.y + 0.35).abs() < 0.1, "{corner}");
+}
+
+/// A hand holds on to cloth that tears elsewhere, and a pin by its index holds all parts after its cloth is weighed again.
+#[test]
+fn hands_and_pins_outlast_tears() {
+    let mut app = app();
+    let pins = Pins::new([Pin::Index(4), Pin::at_rest(|place| place.y > -1.0e-3)]);
+    let cloth = (Cloth::new(9, 9, 0.5), pins, ClothTears::default());
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 10);
+    let grab = ClothGrab {
+        cloth,
+        particle: 76,
+        ..default()
+    };
+    let target = particles(&app, cloth).position(76).expect("it exists");
+    let hand = app.world_mut().spawn(ClothGrab { target, ..grab }).id();
+    tick(&mut app, 5);
+    tear(&mut app, cloth, [[4, 13], [13, 22]]);
+    tick(&mut app, 5);
+    assert!(app.world().get::<ClothGrab>(hand).is_some());
+    assert_eq!(particles(&app, cloth).is_pinned(76), Some(true));
+    change::<ClothMaterial>(&mut app, cloth, |material| material.areal_density = 0.3);
+    tick(&mut app, 2);
+    let pinned = particles(&app, cloth)
+        .inverse_masses()
+        .filter(|w| *w == 0.0);
+    assert_eq!(
+        pinned.count(),
+        9 + 1 + 1,
+        "a row, one part more of it, and the hand's"
+    );
+    // An edge that is none, written after the preparation, stops no tick.
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert(ClothTearing::default());
+    app.add_systems(
+        FixedUpdate,
+        (|mut tears: Query<&mut ClothTears>| {
+            tears
+                .iter_mut()
+                .for_each(|mut tears| assert!(tears.tear([7, 9_999]) || !tears.is_empty()));
+        })
+        .after(ClothSystems::Integrate)
+        .before(ClothSystems::WriteBack),
+    );
+    tick(&mut app, 3);
+    assert!(app.world().get::<ClothFault>(cloth).is_some());
 }
 
 /// A balloon that is torn open has burst: it is no fault, and has no pressure.

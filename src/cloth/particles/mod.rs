@@ -141,7 +141,7 @@ impl ClothParticles {
         Some(new)
     }
 
-    /// The particles of a surface that was torn otherwise: each one takes place, motion and mass of its parent, and of the mass
+    /// The particles of the surface with other tears: each one takes place, motion and mass of its parent, and of the mass
     /// the share of its area.
     pub(crate) fn torn(&self, from: &Surface, to: &Surface, parents: &[u32]) -> Self {
         let mut new = Self {

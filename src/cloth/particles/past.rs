@@ -190,7 +190,10 @@ impl Past {
         }
         Self {
             blocks,
-            ..self.clone()
+            is_known: self.is_known,
+            wait: self.wait,
+            has_moved: self.has_moved,
+            watch: self.watch,
         }
     }
 

@@ -77,9 +77,14 @@ impl Pins {
     /// Calls `pinned` with the index of each pinned particle of `surface`, possibly more than once. The pins must be
     /// valid for it.
     pub(crate) fn for_each(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
-        self.0
-            .iter()
-            .for_each(|pin| pin.for_each(surface, &mut pinned));
+        for pin in &self.0 {
+            pin.for_each(surface, &mut pinned);
+            // A hand holds one part alone, a pin all of them.
+            if let Pin::Index(index) = pin {
+                let parts = surface.copies().filter(|(_, of)| *of as usize == *index);
+                parts.for_each(|(part, _)| pinned(part as usize));
+            }
+        }
     }
 }
 

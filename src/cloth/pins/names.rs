@@ -78,9 +78,8 @@ impl Pin {
     fn for_each_whole(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
         let places = || {
             surface
-                .rest_positions()
-                .iter()
-                .map(|place| *place / surface.scale())
+                .whole_positions()
+                .map(|place| place / surface.scale())
         };
         match self {
             Self::Index(index) => pinned(*index),

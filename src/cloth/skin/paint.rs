@@ -139,9 +139,8 @@ impl ClothPaint {
                 })
                 .collect(),
             Self::AtRest(RestFunction(of)) => surface
-                .rest_positions()
-                .iter()
-                .map(|place| of(*place / surface.scale()))
+                .whole_positions()
+                .map(|place| of(place / surface.scale()))
                 .collect(),
             Self::Vertices(values) => of_vertices(surface, values)?,
         };

@@ -27,14 +27,15 @@ use crate::{
 /// #[derive(Component)]
 /// struct Sword {
 ///     /// Hilt and tip, as the last tick ended.
-///     last: [Vec3; 2],
+///     last: Option<[Vec3; 2]>,
 /// }
 ///
 /// fn slash(mut swords: Query<(&GlobalTransform, &mut Sword)>, mut blade: ClothBlade) {
 ///     for (place, mut sword) in &mut swords {
 ///         let now = [place.translation(), place.transform_point(Vec3::Y)];
-///         blade.sweep(sword.last, now);
-///         sword.last = now;
+///         if let Some(last) = sword.last.replace(now) {
+///             blade.sweep(last, now);
+///         }
 ///     }
 /// }
 /// # bevy::ecs::system::assert_is_system(slash);

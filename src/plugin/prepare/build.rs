@@ -26,7 +26,9 @@ pub(crate) fn build(
 ) -> Result<Build, ClothError> {
     let is_built = is_built(wanted, built) && !particles.is_empty();
     let has_grain = is_built && built.has_grain(wanted.grain);
-    if has_grain && built.is_torn_by(wanted.tears) {
+    // A snapshot may be from between a tear and its opening.
+    let is_open = !state.resumes || built.tears().edges().len() == state.inputs.opened;
+    if has_grain && is_open && built.is_torn_by(wanted.tears) {
         follow_changes(wanted, parts, particles, built, state)?;
         return Ok(Build::Kept);
     }
@@ -57,6 +59,7 @@ pub(crate) fn build(
     };
     built.refused = new.as_ref().err().map(|error| (tried, error.clone()));
     let build = new?;
+    state.inputs.opened = built.tears().edges().len();
     if !resumes {
         state.rest.disturb();
     }
@@ -104,8 +107,12 @@ fn build_new(
         scale: scale_of(wanted),
         source: wanted.source,
         grain: wanted.grain.map(|(grain, _)| grain.clone()),
-        tears: wanted.tears(),
+        tears: match state.resumes {
+            true => wanted.tears().first(state.inputs.opened),
+            false => wanted.tears(),
+        },
     };
+    let is_open = recipe.tears.edges().len() == wanted.tears().edges().len();
     let shared = parts.get(&recipe, material, || sources.surface(&recipe))?;
     let surface = &shared.surface;
     pins.validate(surface)?;
@@ -141,8 +148,11 @@ fn build_new(
         weighed: wanted.weighed(),
         factors,
         pins: pins.clone(),
-        torn: wanted.torn(),
+        torn: wanted.torn().filter(|_| is_open),
     });
+    if !is_open {
+        return follow_tears(wanted, parts, particles, built, state);
+    }
     Ok(build)
 }
 

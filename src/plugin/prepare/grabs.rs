@@ -100,7 +100,11 @@ pub(crate) fn hold_cloths(
                 commands.queue(move |world: &mut World| detach(world, entity, held));
                 continue;
             }
-            let is_there = cloths.get(held).is_ok_and(|cloth| hand.has(&cloth, &roots));
+            let cloth = cloths.get(held);
+            let is_there = cloth.is_ok_and(|cloth| {
+                hand.follow_tear(cloth.built.surface());
+                hand.has(&cloth, &roots)
+            });
             if !is_there {
                 commands.entity(entity).try_remove::<ClothGrab>();
                 continue;
@@ -162,6 +166,20 @@ impl GrabbedQueryItem<'_, '_> {
 }
 
 impl HandQueryItem<'_, '_> {
+    /// Takes over the surface if the one that it holds was torn or mended, and still has the particle.
+    fn follow_tear(&mut self, surface: &Arc<Surface>) {
+        let (grip, particle) = (&mut *self.grip, self.grab.particle);
+        let is_known = Arc::ptr_eq(&grip.surface, surface);
+        let parents = match is_known {
+            true => None,
+            false => surface.parents_in(&grip.surface),
+        };
+        if parents.is_some_and(|parents| parents.get(particle as usize) == Some(&particle)) {
+            grip.surface = surface.clone();
+            grip.lengths = lengths(surface, particle);
+        }
+    }
+
     /// Whether the surface is still the one that it holds, and does not jump.
     fn has(&self, cloth: &GrabbedQueryItem, roots: &Roots) -> bool {
         let carrier = cloth.state.attachments.targets.first();

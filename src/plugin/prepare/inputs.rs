@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::preparing::GameQueryItem;
 use crate::{
-    cloth::{ClothError, ClothMaterial},
+    cloth::{ClothError, ClothMaterial, ClothTearing},
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::state::KnownInputs,
@@ -20,6 +20,7 @@ pub(crate) struct Inputs {
     pub narrow_phase: NarrowPhase,
     pub self_collision: Option<ClothSelfCollision>,
     pub creasing: Option<ClothCreasing>,
+    pub tearing: Option<ClothTearing>,
     /// In the world (m/s²).
     pub gravity: Vec3,
 }
@@ -52,6 +53,7 @@ impl Inputs {
             narrow_phase: game.narrow_phase.copied().unwrap_or_default(),
             self_collision: game.self_collision.copied(),
             creasing: game.creasing.copied(),
+            tearing: game.torn.1.copied(),
             gravity,
         })
     }
@@ -64,6 +66,7 @@ impl Inputs {
             narrow_phase: self.narrow_phase,
             self_collision: self.self_collision,
             creasing: self.creasing,
+            tearing: self.tearing,
             acceleration,
         }
     }

@@ -65,7 +65,7 @@ impl GameQueryItem<'_, '_> {
     /// Its pressure. What was closed and is torn open has burst.
     pub fn pressure(&self, surface: &Surface) -> Option<&ClothPressure> {
         let (_, pressure) = self.air;
-        pressure.filter(|_| !surface.is_torn() || surface.is_closed())
+        pressure.filter(|_| surface.is_closed() || !surface.was_closed())
     }
 
     /// The tears and when they were last changed, if it has any.

@@ -1,7 +1,5 @@
 //! Tears cloths that are simulated already.
 
-use std::sync::Arc;
-
 use bevy::{ecs::change_detection::Mut, math::Vec3};
 
 use super::{
@@ -9,7 +7,7 @@ use super::{
     follow::follow_changes,
 };
 use crate::{
-    cloth::{ClothError, ClothParticles, Surface},
+    cloth::{ClothError, ClothParticles, ClothTears, Surface},
     plugin::{
         authoring::Attached,
         state::{ClothBuilt, ClothState, Recipe, SharedParts},
@@ -55,9 +53,9 @@ pub(super) fn follow_tears(
         .edges()
         .len()
         .saturating_sub(built.tears().edges().len());
-    let place = place_of_tear(&recipe, before.len(), particles);
+    let place = place_of_tear([&recipe.tears, built.tears()], before.len(), particles);
     built.unreported_tear = place.map(|place| (place, count));
-    hold_parts(surface, &before, &parents, state);
+    hold_parts(surface, &parents, state);
     // They are those of other faces.
     state.creases.clear();
     built.solver = shared.solver.clone();
@@ -72,28 +70,31 @@ pub(super) fn follow_tears(
 }
 
 /// The place of the first new particle, or the middle of the last torn edge, if nothing opened (m).
-fn place_of_tear(recipe: &Recipe, before: usize, particles: &ClothParticles) -> Option<Vec3> {
+fn place_of_tear(
+    [now, then]: [&ClothTears; 2],
+    before: usize,
+    particles: &ClothParticles,
+) -> Option<Vec3> {
     if before < particles.len() {
         return Some(particles.position_at(before));
     }
-    let [a, b] = recipe
-        .tears
-        .edges()
-        .last()?
-        .map(|end| particles.position_at(end as usize));
+    let edge = now.edges().last().or(then.edges().last())?;
+    let [a, b] = edge.map(|end| particles.position_at(end as usize));
     Some((a + b) / 2.0)
 }
 
 /// Attaches the new parts of attached particles, too.
-fn hold_parts(surface: &Arc<Surface>, before: &Surface, parents: &[u32], state: &mut ClothState) {
+fn hold_parts(surface: &Surface, parents: &[u32], state: &mut ClothState) {
     let attached = &mut state.attachments.attached;
-    attached.retain(|attached| (attached.particle as usize) < surface.len());
+    attached.retain(|attached| parents.get(attached.particle as usize) == Some(&attached.particle));
     for known in 0..attached.len() {
-        for part in before.len()..surface.len() {
-            if parents[part] == attached[known].particle {
+        let of = attached[known];
+        for part in (0..surface.len() as u32).filter(|part| *part != of.particle) {
+            let is_held = || attached.iter().any(|known| known.particle == part);
+            if parents[part as usize] == of.particle && !is_held() {
                 attached.push(Attached {
-                    particle: part as u32,
-                    ..attached[known]
+                    particle: part,
+                    ..of
                 });
             }
         }

@@ -11,7 +11,7 @@ use bevy::{
 
 use super::{air::AirState, excess::Excess, lod::LodState, pose::Pose, resting::RestsOn};
 use crate::{
-    cloth::ClothParticles,
+    cloth::{ClothParticles, ClothTearing},
     contact::{Carrier, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::authoring::{Attached, ClothAttachment},
@@ -106,6 +106,7 @@ pub(crate) struct KnownInputs {
     pub narrow_phase: NarrowPhase,
     pub self_collision: Option<ClothSelfCollision>,
     pub creasing: Option<ClothCreasing>,
+    pub tearing: Option<ClothTearing>,
     /// Of gravity, in the cloth's frame (m/s²).
     pub acceleration: Vec3,
 }
@@ -119,11 +120,14 @@ pub(crate) struct InputMemory {
     pub written: Option<Tick>,
     pub known: Option<KnownInputs>,
     pub air: AirState,
+    /// How many of its torn edges have opened: the last ones do so as the next tick begins.
+    pub opened: usize,
 }
 
 impl InputMemory {
     fn copy_from(&mut self, other: &Self) {
         (self.written, self.known) = (other.written, other.known);
+        self.opened = other.opened;
         self.air.clone_from(&other.air);
     }
 }

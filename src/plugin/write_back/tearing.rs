@@ -44,7 +44,11 @@ pub(crate) fn tear_cloths(
     mut search: Local<TearSearch>,
 ) {
     for (tearing, material, built, particles, state, mut tears) in &mut cloths {
-        let is_ready = state.is_valid && !state.rest.is_asleep() && built.matches(particles);
+        // Tears that the game has listed since the tick began open first.
+        let is_ready = state.is_valid
+            && !state.rest.is_asleep()
+            && built.matches(particles)
+            && built.tears() == &*tears;
         let material = material.copied().unwrap_or_default();
         if is_ready && tearing.validate(&material).is_ok() {
             let torn = search.edges(tearing, &material, built.surface(), particles, &tears);

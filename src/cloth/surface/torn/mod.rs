@@ -75,6 +75,21 @@ impl Surface {
         (self.torn.as_ref()).map_or(particle, |torn| torn.origin[particle as usize])
     }
 
+    /// The positions of the particles at rest (m) before anything was torn.
+    pub(crate) fn whole_positions(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let before = |index: usize| match &self.torn {
+            Some(torn) => torn.whole.rest[torn.origin[index] as usize],
+            None => self.rest[index],
+        };
+        (0..self.len()).map(before)
+    }
+
+    /// Whether it encloses a volume, or did so before it was torn.
+    pub(crate) fn was_closed(&self) -> bool {
+        let whole = self.torn.as_ref().map(|torn| &torn.whole);
+        whole.map_or_else(|| self.is_closed(), |whole| whole.is_closed())
+    }
+
     /// The particles that tears made, each with the one that it was before.
     pub(crate) fn copies(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         let torn = self.torn.as_ref();
@@ -177,8 +192,12 @@ impl Surface {
     pub(crate) fn middle_of(&self, face: [u32; 3], places: &[DVec3]) -> DVec3 {
         let place = |corner: u32| places[corner as usize];
         if self.rest_grid().is_some() {
-            let [a, b] = self.diagonal_of(face);
-            return (place(a) + place(b)) / 2.0;
+            let whole = self.torn.as_ref().map_or(self, |torn| &torn.whole);
+            let diagonal = whole.diagonal_of(face.map(|corner| self.origin_of(corner)));
+            let ends = face
+                .iter()
+                .filter(|corner| diagonal.contains(&self.origin_of(**corner)));
+            return ends.map(|end| place(*end)).sum::<DVec3>() / 2.0;
         }
         face.map(place).into_iter().sum::<DVec3>() / 3.0
     }
