@@ -1,4 +1,4 @@
-//! The same app without a window, where a script slashes the banner and pulls at it: a report and a picture.
+//! The same app without a window, where a script slashes the banner: a report and a picture.
 
 use std::{process::ExitCode, time::Instant};
 
@@ -11,13 +11,8 @@ use crate::{
     shared::{headless::Run, parts::report::Report},
 };
 
-/// When the sword slashes, and when a hand takes hold (s).
+/// When the sword slashes (s).
 const SLASHED: f32 = 2.5;
-const PULLED: f32 = 4.5;
-/// Where the hand looks from, and at which point, and how fast it pulls (m/s).
-const EYE: Vec3 = Vec3::new(-0.25, 1.9, 3.0);
-const AIM: Vec3 = Vec3::new(-0.25, 1.75, 0.0);
-const PULL: Vec3 = Vec3::new(-0.2, -0.6, 0.5);
 
 /// The printed report.
 #[derive(Serialize, Resource, Default, Clone)]
@@ -39,12 +34,7 @@ struct Own {
 pub fn report(mut run: Run) -> ExitCode {
     run.app
         .init_resource::<Own>()
-        .add_systems(
-            FixedUpdate,
-            (slash, take_hold, pull)
-                .chain()
-                .before(ClothSystems::Prepare),
-        )
+        .add_systems(FixedUpdate, slash.before(ClothSystems::Prepare))
         .add_systems(FixedFirst, begin_tick)
         .add_systems(FixedLast, measure);
     let report = Report {
@@ -55,7 +45,7 @@ pub fn report(mut run: Run) -> ExitCode {
     };
     report.print(&mut run, |Report { own, .. }| {
         println!("  cut              {} edges by the sword", own.cut);
-        println!("  torn             {} edges by a hand that pulls", own.torn);
+        println!("  torn             {} edges by its load", own.torn);
         println!(
             "  ticks            {:.1} ms at most; {:.1} ms where it tears",
             own.whole_ms, own.tearing_ms
@@ -82,21 +72,6 @@ fn slash(time: Res<Time>, mut swords: Query<&mut Sword>) {
         swords
             .iter_mut()
             .for_each(|mut sword| sword.slashing = Some(0.0));
-    }
-}
-
-fn take_hold(time: Res<Time>, mut rays: ClothRayCast, mut commands: Commands) {
-    if let Ok(direction) = Dir3::new(AIM - EYE)
-        && is_now(&time, PULLED)
-        && let Some(hit) = rays.cast(Ray3d::new(EYE, direction), f32::INFINITY)
-    {
-        commands.spawn(hit.grab());
-    }
-}
-
-fn pull(time: Res<Time>, mut hands: Query<&mut ClothGrab>) {
-    for mut hand in &mut hands {
-        hand.target += PULL * time.delta_secs();
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The banner has a `ClothTearing`, so it tears where it is loaded too much. A `ClothBlade` cuts it where the
 //! sword goes, from its place in one tick to that in the next. In the window the mouse cuts in the same way while a key is held. Without a
-//! window a script slashes, and a `ClothGrab` pulls at what is left. The scene is in `scene.rs`, the script in `headless.rs`.
+//! window a script slashes. The scene is in `scene.rs`, the script in `headless.rs`.
 //!
 //! ```sh
 //! cargo run --example tear                         # a window, or headless where no window opens

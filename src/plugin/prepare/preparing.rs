@@ -62,7 +62,7 @@ impl GameQueryItem<'_, '_> {
         self.density.as_ref().map(DetectChanges::last_changed)
     }
 
-    /// Its pressure. What was closed and is torn open has burst.
+    /// Its pressure. A closed surface that is torn open has burst.
     pub fn pressure(&self, surface: &Surface) -> Option<&ClothPressure> {
         let (_, pressure) = self.air;
         pressure.filter(|_| surface.is_closed() || !surface.was_closed())
