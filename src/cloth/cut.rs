@@ -15,7 +15,7 @@ pub(crate) struct Cut {
 impl Cut {
     /// Of a straight blade that goes from two ends to two others.
     pub fn new(from: [Vec3; 2], to: [Vec3; 2]) -> Self {
-        let ([a, b], [c, d]) = (from.map(|end| end.as_dvec3()), to.map(|end| end.as_dvec3()));
+        let ([a, b], [c, d]) = (from.map(Vec3::as_dvec3), to.map(Vec3::as_dvec3));
         Self {
             triangles: [[a, b, d], [a, d, c]],
             low: a.min(b).min(c.min(d)),
@@ -30,10 +30,7 @@ impl Cut {
         if !(self.low.is_finite() && self.high.is_finite()) {
             return edges;
         }
-        let places: Vec<DVec3> = particles
-            .positions()
-            .map(|place| place.as_dvec3())
-            .collect();
+        let places: Vec<DVec3> = particles.positions().map(Vec3::as_dvec3).collect();
         let middle = |face: [u32; 3]| surface.middle_of(face, &places);
         surface.for_each_fold(|ends, [one, other]| {
             let [a, b] = ends.map(|end| places[end as usize]);
@@ -84,5 +81,5 @@ fn is_before(p: DVec3, q: DVec3) -> bool {
         .zip(q.to_array())
         .map(|(p, q)| p.total_cmp(&q))
         .find(|order| order.is_ne());
-    by.is_some_and(|order| order.is_lt())
+    by.is_some_and(std::cmp::Ordering::is_lt)
 }

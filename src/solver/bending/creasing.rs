@@ -12,7 +12,7 @@ use crate::cloth::ClothError;
 ///
 /// It is the plasticity of a beam with linear kinematic hardening (Simo and Hughes 1998, chapter 1). With the flexural rigidity D
 /// of the [material](crate::cloth::ClothMaterial::bend_rigidity), a strip that is bent to the curvature κ has the moment D κ
-/// up to κ_y, and `D (κ_y + h (κ − κ_y))` beyond that. Released, it keeps the curvature `(1 − h) (κ − κ_y)`, but at most
+/// up to `κ_y`, and `D (κ_y + h (κ − κ_y))` beyond that. Released, it keeps the curvature `(1 − h) (κ − κ_y)`, but at most
 /// [`largest_crease`](Self::largest_crease). In two directions at once, the norm of the curvature yields, `√(κ_xx² + κ_yy² + 2 κ_xy²)`.
 ///
 /// Creases follow once a tick. They are kept in snapshots, while the cloth sleeps, and when its material changes. They are
@@ -26,7 +26,7 @@ use crate::cloth::ClothError;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct ClothCreasing {
-    /// κ_y, the curvature beyond which it yields (1/m): 1 over the radius of the tightest bend that leaves nothing. Positive,
+    /// `κ_y`, the curvature beyond which it yields (1/m): 1 over the radius of the tightest bend that leaves nothing. Positive,
     /// finite.
     pub yield_curvature: f32,
     /// h, a ratio of stiffnesses: that beyond the yield curvature over D. From 0, which is perfectly plastic, to less than 1.
@@ -40,7 +40,7 @@ impl Default for ClothCreasing {
 }
 
 impl ClothCreasing {
-    /// Office paper of 0.1 mm, an estimate: its outer fibres yield at a strain of about 0.5 %, so κ_y = 2 × 0.005 ⁄ 0.1 mm. The
+    /// Office paper of 0.1 mm, an estimate: its outer fibres yield at a strain of about 0.5 %, so `κ_y` = 2 × 0.005 ⁄ 0.1 mm. The
     /// hardening is a guess.
     pub const PAPER: Self = Self {
         yield_curvature: 100.0,

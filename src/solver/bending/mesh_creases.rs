@@ -121,7 +121,7 @@ impl MeshCreases {
                 continue;
             };
             let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);
-            let woven = patch.woven(warp.map(|of| of.as_dvec3()), rigidity.ratio.into(), &places);
+            let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
             faces.extend(Face::new(&patch, woven, rigidity, &places));
         }
         Self {

@@ -104,8 +104,8 @@ impl Bending {
     /// The rest curvatures of its creases; none if it does not crease.
     pub fn creases(&self) -> &[f32] {
         let creases = match &self.of {
-            Kind::Grid(grid) => grid.creases().map(|of| of.rest()),
-            Kind::Mesh(mesh) => mesh.creases().map(|of| of.rest()),
+            Kind::Grid(grid) => grid.creases().map(grid_creases::GridCreases::rest),
+            Kind::Mesh(mesh) => mesh.creases().map(mesh_creases::MeshCreases::rest),
         };
         creases.unwrap_or_default()
     }

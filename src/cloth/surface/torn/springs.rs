@@ -48,7 +48,7 @@ impl Torn {
                         ..*known
                     }),
                     None if is_diagonal => {
-                        across.push(whole.grid_link(SpringKind::Shear, *ends, self, count))
+                        across.push(whole.grid_link(SpringKind::Shear, *ends, self, count));
                     }
                     None => along.push(whole.grid_link(SpringKind::Structural, *ends, self, count)),
                 }
