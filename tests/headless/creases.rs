@@ -41,7 +41,7 @@ fn folded(creasing: Option<ClothCreasing>) -> (App, Entity) {
         let start = Vec3::X * LENGTH;
         let to = start.lerp(place, (step as f32 / 16.0).min(1.0));
         change::<Transform>(&mut app, hands[1], |hand| {
-            *hand = Transform::from_translation(to)
+            *hand = Transform::from_translation(to);
         });
         tick(&mut app, 1);
     }
@@ -92,7 +92,7 @@ fn creases_end_with_the_component_and_with_the_surface() {
     let without = open(&app, sheet);
     let (mut app, sheet) = folded(Some(CREASING));
     change::<Cloth>(&mut app, sheet, |cloth| {
-        *cloth = Cloth::new(17, 5, LENGTH / 16.0)
+        *cloth = Cloth::new(17, 5, LENGTH / 16.0);
     });
     tick(&mut app, 192);
     let anew = open(&app, sheet);

@@ -582,7 +582,7 @@ fn bad_seams_have_faults() {
         ("no particle", |seam| seam.second.along.clear()),
         ("nobody", |seam| seam.second.cloth = "nobody".into()),
         ("not a cloth", |seam| {
-            seam.first.cloth = Entity::PLACEHOLDER.into()
+            seam.first.cloth = Entity::PLACEHOLDER.into();
         }),
     ];
     for (text, spoil) in spoilt {
