@@ -85,7 +85,7 @@ fn ticks(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// What bending, and creases in all of the cloth, add to a tick: an element is a particle in a sub-step.
+/// The time that bending, and creases in all of the cloth, add to a tick: an element is a particle in a sub-step.
 fn bending(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("bending");
     group

@@ -11,7 +11,7 @@ use crate::shared::stage::StagePlugin;
 use crate::shared::window::Keys;
 
 /// Width of a panel, and its height (m).
-const WIDTH: f32 = 0.56;
+const WIDTH: f32 = 0.62;
 const HEIGHT: f32 = 0.84;
 /// Height of the shoulder seam, and how far in front of the figure's middle and behind it the panels begin (m).
 const TOP: f32 = 1.53;
@@ -21,11 +21,11 @@ const CLOSING: f32 = 2.0;
 const DRESSED: f32 = 2.25;
 /// When the figure begins to turn (s), how far to either side (rad), and how long from side to side and back (s).
 const TURNS: f32 = 4.0;
-const TURN: f32 = 0.9;
-const PERIOD: f32 = 3.0;
+const TURN: f32 = 0.7;
+const PERIOD: f32 = 4.0;
 /// Parts of a panel's upper edge that are a shoulder, on each side, and of its height that are left open for the arm.
 const SHOULDER: f32 = 0.3;
-const ARMHOLE: f32 = 0.3;
+const ARMHOLE: f32 = 0.36;
 
 /// The scene, without a camera.
 pub fn build(app: &mut App) {

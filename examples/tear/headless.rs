@@ -86,7 +86,7 @@ fn begin_tick(mut commands: Commands) {
 fn measure(
     began: Res<Began>,
     mut torn: MessageReader<ClothTorn>,
-    swords: Query<&Sword>,
+    time: Res<Time>,
     cloths: Query<(&ClothBuilt, &ClothParticles)>,
     mut whole: Local<Option<f32>>,
     mut own: ResMut<Own>,
@@ -100,7 +100,7 @@ fn measure(
         false => own.tearing_ms = own.tearing_ms.max(milliseconds),
     }
     for torn in torn.read() {
-        match swords.iter().any(|sword| sword.slashing.is_some()) {
+        match time.elapsed_secs() < SLASHED + 0.5 {
             true => own.cut += torn.edges,
             false => own.torn += torn.edges,
         }

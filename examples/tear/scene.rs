@@ -14,7 +14,7 @@ use crate::shared::window::Keys;
 const SIZE: Vec2 = Vec2::new(1.2, 1.7);
 const TOP: f32 = 2.4;
 /// The load that its threads bear (N/m).
-const STRENGTH: f32 = 400.0;
+const STRENGTH: f32 = 600.0;
 /// Length of the sword's blade (m), and how long a slash takes (s).
 const BLADE: f32 = 1.25;
 const SLASH: f32 = 0.35;

@@ -680,7 +680,7 @@ fn cloths_of_a_seam_may_change_and_go() {
 }
 
 /// A hundred random pairs of cloths, turned and scaled, with and without layers and balls, sewn anywhere, also where that takes
-/// more cloth than there is: nothing is lost or at fault.
+/// more cloth than there is: nothing is lost or at fault. Where both sides are alike in length, they stretch little.
 #[test]
 fn random_seams_hold_random_cloths() {
     let mut seed = 1_u64;
@@ -689,10 +689,10 @@ fn random_seams_hold_random_cloths() {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         (seed >> 33) % below
     };
-    let (mut worst, mut widest) = (Vec::new(), Vec::new());
+    let (mut worst, mut alike) = (Vec::new(), Vec::new());
     for number in 0..100 {
         let mut app = app();
-        let mut cloths = Vec::new();
+        let (mut cloths, mut scales) = (Vec::new(), [1.0; 2]);
         for of in 0..2 {
             let [columns, rows] = [0; 2].map(|_| 4 + random(20) as u32);
             let pins = match random(3) {
@@ -705,6 +705,7 @@ fn random_seams_hold_random_cloths() {
             let turned = Transform::from_translation(place)
                 .with_rotation(Quat::from_rotation_y(random(6) as f32))
                 .with_scale(Vec3::splat(0.7 + 0.1 * random(6) as f32));
+            scales[of] = turned.scale.x;
             let cloth = (Cloth::new(columns, rows, 0.05), pins, turned);
             let cloth = app.world_mut().spawn(cloth).id();
             if random(3) == 0 {
@@ -716,6 +717,7 @@ fn random_seams_hold_random_cloths() {
         }
         let ball = Transform::from_xyz(0.3, -0.6, 0.1);
         app.world_mut().spawn((ClothCollider::ball(0.2), ball));
+        let mut lengths = [0.0_f32; 2];
         let mut side = |of: usize| {
             let (cloth, columns, rows) = cloths[of];
             let pin = match random(5) {
@@ -725,6 +727,12 @@ fn random_seams_hold_random_cloths() {
                 3 => Pin::filter(|row, column| row == 0 || column == 0),
                 _ => Pin::Index(random(u64::from(columns)) as usize),
             };
+            lengths[of] = match pin {
+                Pin::Row(_) => (columns - 1) as f32,
+                Pin::Column(_) => (rows - 1) as f32,
+                _ => 0.0,
+            } * 0.05
+                * scales[of];
             ClothSeamSide::new(cloth, [pin])
         };
         let seam = ClothSeam {
@@ -733,6 +741,7 @@ fn random_seams_hold_random_cloths() {
             seconds: 0.5,
             ..default()
         };
+        let is_alike = lengths[0].min(lengths[1]) > 0.8 * lengths[0].max(lengths[1]);
         let seam = sew(&mut app, seam);
         for step in 0..100 {
             tick(&mut app, 1);
@@ -745,13 +754,22 @@ fn random_seams_hold_random_cloths() {
         let stretch = cloths
             .iter()
             .map(|(cloth, ..)| stats(&app, *cloth).stretch.structural);
-        worst.push(stretch.fold(0.0, f32::max));
-        widest.push(number);
+        let stretch = stretch.fold(0.0, f32::max);
+        if is_alike {
+            alike.push(stretch);
+        }
+        worst.push(stretch);
     }
     let mut sorted = worst.clone();
     sorted.sort_by(f32::total_cmp);
     println!(
         "stretch after 1.6 s: median {}, 90 % {}, most {}",
         sorted[50], sorted[90], sorted[99]
+    );
+    // The plugin's own limit of stretch, for rows and columns of alike length.
+    println!("of alike sides: {alike:?}");
+    assert!(
+        alike.len() > 2 && alike.iter().all(|stretch| *stretch < 0.15),
+        "{alike:?}"
     );
 }

@@ -1,5 +1,7 @@
 //! Cloth that tears: under load, by a blade, and by the game's hand.
 
+use std::time::Instant;
+
 use bevy::{ecs::system::SystemState, mesh::VertexAttributeValues, prelude::*};
 use bevy_drape::{contact::intersections, plugin::ClothBuilt, prelude::*};
 
@@ -326,6 +328,75 @@ fn a_strip_tears_at_its_strength() {
             pieces,
             tears(&app, cloth).edges().len()
         );
+    }
+}
+
+/// A slit in cloth whose threads all bear too much runs on at its two ends alone, by an edge each in a tick. The sides of it tear no
+/// further.
+#[test]
+fn a_tear_runs_from_its_ends() {
+    let mut app = app();
+    let parts = (Cloth::new(21, 21, 0.1), ClothTears::default());
+    let cloth = app.world_mut().spawn(parts).id();
+    tick(&mut app, 60);
+    let slit: Vec<[u32; 2]> = (8..12)
+        .map(|column| [10 * 21 + column, 10 * 21 + column + 1])
+        .collect();
+    tear(&mut app, cloth, slit);
+    tick(&mut app, 2);
+    app.world_mut()
+        .entity_mut(cloth)
+        .insert(ClothTearing::new(0.01));
+    for _ in 0..6 {
+        let before = tears(&app, cloth).edges().len();
+        tick(&mut app, 1);
+        let torn = tears(&app, cloth).edges()[before..].to_vec();
+        assert!((1..=2).contains(&torn.len()), "{torn:?}");
+    }
+}
+
+/// How long it takes to tear cloths of several sizes along one edge after another, each within the last: with `--nocapture`.
+#[test]
+fn a_tear_opens_in_cloth_of_any_size() {
+    let ms = |app: &mut App, ticks: usize| {
+        let start = Instant::now();
+        tick(app, ticks);
+        1000.0 * start.elapsed().as_secs_f64() / ticks as f64
+    };
+    for side in [16, 32, 64] {
+        for is_mesh in [false, true] {
+            let spacing = 1.6 / (side - 1) as f32;
+            let cloth = match is_mesh {
+                false => Cloth::new(side, side, spacing),
+                true => mesh(1.6, 1.6, spacing),
+            };
+            let mut app = app();
+            let cloth = app
+                .world_mut()
+                .spawn((cloth, top(), ClothTears::default()))
+                .id();
+            tick(&mut app, 10);
+            let whole = ms(&mut app, 20);
+            let (mut opens, mut count) = (Vec::new(), surface(&app, cloth).len());
+            for _ in 0..10 {
+                let face = surface(&app, cloth).triangles()[count];
+                let before = surface(&app, cloth).clone();
+                change::<ClothTears>(&mut app, cloth, |tears| {
+                    tears.tear_out(&before, face);
+                });
+                opens.push(ms(&mut app, 1));
+                assert!(surface(&app, cloth).len() > count);
+                count = surface(&app, cloth).len();
+            }
+            opens.sort_by(f64::total_cmp);
+            println!(
+                "{side}²{}: a tick takes {whole:.2} ms, of the torn one {:.2}, the one that tears {:.1}, at most {:.1}",
+                if is_mesh { " of a mesh" } else { "" },
+                ms(&mut app, 20),
+                opens[5],
+                opens[9]
+            );
+        }
     }
 }
 

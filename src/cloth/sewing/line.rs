@@ -115,7 +115,8 @@ impl Line {
 
     /// The alignment of another line by which both are nearest, with particles at these places (m).
     fn align(&self, other: &Self, [own, others]: [&[Vec3]; 2]) -> Alignment {
-        if self.is_ring && !other.is_ring {
+        // A ring is turned by steps of the finer one.
+        if self.is_ring && (!other.is_ring || self.at.len() > other.at.len()) {
             return other.align(self, [others, own]).inverse();
         }
         let starts = match other.is_ring {

@@ -80,7 +80,7 @@ pub struct Surface {
     derived: Derived,
 }
 
-/// What a torn surface knows of the whole one.
+/// The whole surface of a torn one, and how its particles follow from it.
 #[derive(Debug, Clone)]
 struct Torn {
     whole: Arc<Surface>,

@@ -156,7 +156,7 @@ impl ClothSeam {
         Ok(())
     }
 
-    /// What the solver makes of its numbers.
+    /// Its numbers, for the solver.
     pub(crate) fn pull(&self) -> SeamPull {
         SeamPull {
             seconds: self.seconds,

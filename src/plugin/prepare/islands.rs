@@ -241,7 +241,7 @@ impl Islands {
 
 /// Wakes all cloths of an island in which one moves.
 fn wake(island: &mut Island, cloths: &mut Query<Neighbour>) {
-    // What touches one of several that are sewn together moves all, at once.
+    // A touch on one of several sewn cloths moves all of them at once.
     let is_sewn = !island.seams.is_empty();
     let mut is_moving = false;
     let entities = || island.cloths.iter().map(|(_, cloth)| cloth);

@@ -213,7 +213,8 @@ fn springs_are_those_of_the_whole_where_nothing_opens() {
 fn torn_springs_pull_as_hard_together() {
     let mut random = Random(3);
     let material = ClothMaterial {
-        shear_compliance: 1.0e-4,
+        // Softer stretch leaves a mesh springs across its edges.
+        shear_compliance: 2.0e-5,
         ..ClothMaterial::COTTON
     };
     for whole in [grid(), mesh()] {
