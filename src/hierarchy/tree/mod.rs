@@ -13,10 +13,7 @@ mod tests;
 use std::{ops::Range, sync::Arc};
 
 use bevy::{
-    math::{
-        Vec3,
-        bounding::{BoundingSphere, BoundingVolume},
-    },
+    math::{Vec3, bounding::BoundingSphere},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
@@ -40,6 +37,30 @@ use halving::GridTree;
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone)]
 pub struct QuadTree(Arc<dyn Tree>);
+
+/// The sphere around both. Pieces may be as far apart as numbers go, or lost, so no length overflows: `f64`.
+fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere {
+    let (from, to) = (around.center.as_dvec3(), centre.as_dvec3());
+    let [one, other, apart] = [
+        f64::from(around.radius()),
+        f64::from(radius),
+        from.distance(to),
+    ];
+    if one >= apart + other {
+        return *around;
+    }
+    let whole = ((one + other + apart) / 2.0).max(other);
+    let part = if apart > 0.0 {
+        (whole - one) / apart
+    } else {
+        1.0
+    };
+    let middle = from.lerp(to, part).as_vec3();
+    // More than the rounding errors of its middle and radius.
+    let rounding = f64::from(middle.abs().max_element() * f32::EPSILON);
+    let radius = (whole * (1.0 + 1.0e-6) + rounding) as f32;
+    BoundingSphere::new(middle, radius.max(0.0))
+}
 
 impl Default for QuadTree {
     /// A tree without particles.
@@ -144,17 +165,17 @@ impl QuadTree {
         let sphere = |&top: &u32| {
             let node = self.node(top);
             let radius = (node.rest_radius * growth(stretch)).max(0.0);
-            BoundingSphere::new(particles.position_at(node.middle as usize), radius)
+            (particles.position_at(node.middle as usize), radius)
         };
         let mut tops = self.0.tops().iter().map(sphere);
-        let Some(first) = tops.next() else {
-            return none;
-        };
-        tops.fold(first, |around, sphere| {
-            let merged = around.merge(&sphere);
-            // More than the rounding error of a merge.
-            BoundingSphere::new(merged.center, merged.radius() * (1.0 + 1.0e-5))
-        })
+        match (tops.next(), tops.next()) {
+            (None, _) => none,
+            (Some((centre, radius)), None) => BoundingSphere::new(centre, radius),
+            (Some(first), Some(second)) => [second].into_iter().chain(tops).fold(
+                BoundingSphere::new(first.0, first.1),
+                |around, (centre, radius)| merged(&around, centre, radius),
+            ),
+        }
     }
 
     /// Indices of a node's particles.

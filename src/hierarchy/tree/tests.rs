@@ -200,3 +200,45 @@ fn a_network_is_not_of_particles_in_a_grid() {
     let tree = QuadTree::of_network(&rest, &[]).expect("a tree");
     assert!(tree.matches(&in_row) && !tree.matches(&in_grid));
 }
+
+/// Pieces of a torn cloth may be lost, each in its own direction.
+#[test]
+fn a_sphere_around_two_has_both() {
+    let corner = |direction: f32| Vec3::splat(direction);
+    let places = [
+        0.0,
+        1.0e-3,
+        1.0,
+        -7.3,
+        1.0e6,
+        -1.0e18,
+        3.0e30,
+        f32::MAX,
+        f32::MIN,
+    ];
+    let radii = [0.0, 1.0e-3, 0.7, 1.0e4, 1.0e30];
+    for (from, to) in places.iter().flat_map(|a| places.map(|b| (*a, b))) {
+        for (one, other) in radii.iter().flat_map(|a| radii.map(|b| (*a, b))) {
+            let around = merged(&BoundingSphere::new(corner(from), one), corner(to), other);
+            for (place, radius) in [(from, one), (to, other)] {
+                let apart = around.center.as_dvec3().distance(corner(place).as_dvec3());
+                let reach = f64::from(around.radius());
+                assert!(
+                    apart + f64::from(radius) <= reach * (1.0 + 1.0e-7),
+                    "{from} ± {one}, {to} ± {other}: {around:?}"
+                );
+            }
+            let needed = (corner(from).as_dvec3().distance(corner(to).as_dvec3())
+                + f64::from(one + other))
+                / 2.0;
+            let needed = needed.max(f64::from(one.max(other)));
+            let largest = f64::from(from.abs().max(to.abs()));
+            assert!(f64::from(around.radius()) <= needed * 1.00001 + largest * 1.0e-6);
+        }
+    }
+    for lost in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let known = BoundingSphere::new(Vec3::ONE, 1.0);
+        let _ = merged(&known, corner(lost), 1.0);
+        let _ = merged(&BoundingSphere::new(corner(lost), 1.0), Vec3::ONE, f32::MAX);
+    }
+}
