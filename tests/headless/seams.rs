@@ -693,7 +693,7 @@ fn random_seams_hold_random_cloths() {
     for number in 0..100 {
         let mut app = app();
         let (mut cloths, mut scales) = (Vec::new(), [1.0; 2]);
-        for of in 0..2 {
+        for (of, scale) in scales.iter_mut().enumerate() {
             let [columns, rows] = [0; 2].map(|_| 4 + random(20) as u32);
             let pins = match random(3) {
                 0 if of == 0 => Pins::none(),
@@ -705,7 +705,7 @@ fn random_seams_hold_random_cloths() {
             let turned = Transform::from_translation(place)
                 .with_rotation(Quat::from_rotation_y(random(6) as f32))
                 .with_scale(Vec3::splat(0.7 + 0.1 * random(6) as f32));
-            scales[of] = turned.scale.x;
+            *scale = turned.scale.x;
             let cloth = (Cloth::new(columns, rows, 0.05), pins, turned);
             let cloth = app.world_mut().spawn(cloth).id();
             if random(3) == 0 {

@@ -168,7 +168,7 @@ fn creasing(yield_curvature: f32, hardening: f32) -> ClothCreasing {
 }
 
 /// A strip that is bent to κ has the moment `M = D (κ_y + h (κ − κ_y))`. Without it, it springs back by M ⁄ D: it keeps
-/// `(1 − h) (κ − κ_y)`, or, as it yields again on its way back, κ_y (1 − h) ⁄ h.
+/// `(1 − h) (κ − κ_y)`, or, as it yields again on its way back, `κ_y (1 − h) ⁄ h`.
 fn kept(creasing: ClothCreasing, curvature: f32) -> f64 {
     let left = (1.0 - creasing.hardening) * (curvature - creasing.yield_curvature);
     f64::from(left.min(creasing.largest_crease()))
@@ -237,7 +237,7 @@ fn nothing_stays_of_what_does_not_yield() {
 fn momenta(particles: &ClothParticles) -> (DVec3, DVec3, f64) {
     let masses: Vec<f64> = (particles.inverse_masses().map(|of| 1.0 / f64::from(of))).collect();
     let mass: f64 = masses.iter().sum();
-    let places: Vec<DVec3> = particles.positions().map(|of| of.as_dvec3()).collect();
+    let places: Vec<DVec3> = particles.positions().map(Vec3::as_dvec3).collect();
     let velocity = |index: usize| particles.velocity(index).expect("it exists").as_dvec3();
     let weighed = places
         .iter()
