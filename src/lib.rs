@@ -39,7 +39,7 @@ pub mod prelude {
     pub use crate::cloth::{
         Cloth, ClothBackstop, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothPaint,
         ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothTearing, ClothTears, ClothWeft,
-        Corner, Pin, Pins, Surface,
+        Corner, Pin, Pins, RopeShape, Surface,
     };
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,

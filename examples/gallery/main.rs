@@ -107,6 +107,10 @@ const ENTRIES: &[Entry] = &[
         name: "sewing",
         pictures: &[("sewing.png", "a tunic, sewn around a figure")],
     },
+    Entry {
+        name: "ropes",
+        pictures: &[("ropes.png", "ropes hold a swing and a sail")],
+    },
 ];
 
 /// Runs all examples, or those that are named

@@ -23,17 +23,18 @@ pub enum ClothPlane {
 }
 
 impl ClothPlane {
-    /// A point of the plane, `along` a row and `down` a column (m), and `above` it.
-    fn point(self, along: f32, down: f32, above: f32) -> Vec3 {
+    /// The directions along a row and down a column, of length 1.
+    fn axes(self) -> [Vec3; 2] {
         match self {
-            Self::Hanging => Vec3::new(along, -down, above),
-            Self::Lying => Vec3::new(along, above, down),
+            Self::Hanging => [Vec3::X, Vec3::NEG_Y],
+            Self::Lying => [Vec3::X, Vec3::Z],
         }
     }
 
     /// The normal of the cloth at rest.
     pub fn normal(self) -> Vec3 {
-        self.point(0.0, 0.0, 1.0)
+        let [along, down] = self.axes();
+        down.cross(along)
     }
 }
 
@@ -77,12 +78,6 @@ impl GridShape {
         if columns < 2 || rows < 2 {
             return Err(ClothError::GridTooSmall { columns, rows });
         }
-        if (columns as usize)
-            .checked_mul(rows as usize)
-            .is_none_or(|count| count > MAX_PARTICLES)
-        {
-            return Err(ClothError::GridTooLarge { columns, rows });
-        }
         let name = "spacing (m)";
         ClothError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
         let scaled = spacing
@@ -90,24 +85,8 @@ impl GridShape {
                 ClothPlane::Hanging => scale.truncate(),
                 ClothPlane::Lying => scale.xz(),
             };
-        let extent = scaled * Vec2::new(columns as f32, rows as f32);
-        let measurable = |length: f32| (1.0e-9..FARTHEST).contains(&length.abs());
-        if !(measurable(scaled.x) && measurable(scaled.y) && measurable(extent.length())) {
-            return Err(ClothError::Quantity {
-                quantity: "spacing × scale (m)",
-                expected: "at least 10⁻⁹, and the cloth smaller than 10¹² m",
-                value: scaled.abs().min_element(),
-            });
-        }
-        let middle = Vec2::new(columns as f32 - 1.0, rows as f32 - 1.0) * scaled / 2.0;
-        Ok(ClothGrid {
-            columns,
-            rows,
-            spacing: scaled,
-            plane,
-            scale,
-            origin: if centred { middle } else { Vec2::ZERO },
-        })
+        let axes = plane.axes();
+        ClothGrid::new([columns, rows], scaled, axes, scale, centred)
     }
 }
 
@@ -119,7 +98,8 @@ pub struct ClothGrid {
     rows: u32,
     /// Distance along the width and the height (m), scaled; negative under a mirroring scale.
     spacing: Vec2,
-    plane: ClothPlane,
+    /// The directions along a row and down a column, of length 1.
+    axes: [Vec3; 2],
     /// The transform's scale that is in it.
     scale: Vec3,
     /// How far from particle (0, 0) the frame's origin is, along the width and the height (m).
@@ -127,6 +107,43 @@ pub struct ClothGrid {
 }
 
 impl ClothGrid {
+    /// A grid with this scaled spacing (m) along its axes.
+    ///
+    /// # Errors
+    /// [`ClothError::GridTooLarge`] or [`ClothError::Quantity`].
+    pub(super) fn new(
+        [columns, rows]: [u32; 2],
+        spacing: Vec2,
+        axes: [Vec3; 2],
+        scale: Vec3,
+        centred: bool,
+    ) -> Result<Self, ClothError> {
+        if (columns as usize)
+            .checked_mul(rows as usize)
+            .is_none_or(|count| count > MAX_PARTICLES)
+        {
+            return Err(ClothError::GridTooLarge { columns, rows });
+        }
+        let extent = spacing * Vec2::new(columns as f32, rows as f32);
+        let measurable = |length: f32| (1.0e-9..FARTHEST).contains(&length.abs());
+        if !(measurable(spacing.x) && measurable(spacing.y) && measurable(extent.length())) {
+            return Err(ClothError::Quantity {
+                quantity: "spacing × scale (m)",
+                expected: "at least 10⁻⁹, and the cloth smaller than 10¹² m",
+                value: spacing.abs().min_element(),
+            });
+        }
+        let middle = Vec2::new(columns as f32 - 1.0, rows as f32 - 1.0) * spacing / 2.0;
+        Ok(Self {
+            columns,
+            rows,
+            spacing,
+            axes,
+            scale,
+            origin: if centred { middle } else { Vec2::ZERO },
+        })
+    }
+
     /// Particles along the width.
     pub fn columns(&self) -> u32 {
         self.columns
@@ -176,12 +193,12 @@ impl ClothGrid {
     /// Position of a particle at rest, in the cloth's frame (m).
     pub fn rest_position(&self, row: u32, column: u32) -> Vec3 {
         let place = Vec2::new(column as f32, row as f32) * self.spacing - self.origin;
-        self.plane.point(place.x, place.y, 0.0)
+        self.axes[0] * place.x + self.axes[1] * place.y
     }
 
     /// The normal of the cloth at rest, of length 1.
     pub fn normal(&self) -> Vec3 {
-        self.plane.normal()
+        self.axes[1].cross(self.axes[0])
     }
 
     /// All particles as (row, column), in the order of their indices.

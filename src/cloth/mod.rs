@@ -13,6 +13,7 @@ mod particles;
 mod pins;
 mod presence;
 mod recipe;
+mod rope;
 mod sewing;
 mod skin;
 mod spring;
@@ -33,6 +34,7 @@ pub use particle_id::ParticleId;
 pub use particles::ClothParticles;
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
+pub use rope::RopeShape;
 pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
 #[doc(hidden)]
 pub use spring::{Spring, SpringKind};

@@ -14,10 +14,11 @@ use super::{
     particles::ClothParticles,
     pins::Pins,
     presence::log_unsimulated,
+    rope::RopeShape,
     surface::{Surface, TriangleMesh},
 };
 
-/// A cloth: a grid of particles, or any triangle mesh.
+/// A cloth: a grid of particles, any triangle mesh, or a [`rope`](Self::rope).
 ///
 /// Spawning this component is enough. A grid of `columns` × `rows` particles, `spacing` metres apart, hangs by its top
 /// row from the entity's [`Transform`]. It spans (0, 0, 0) to (width, −height, 0) in the entity's frame.
@@ -58,7 +59,7 @@ use super::{
 #[component(on_add = log_unsimulated)]
 #[require(ClothParticles, ClothMaterial, Pins, Transform)]
 pub struct Cloth {
-    /// The grid or the triangles.
+    /// The grid, the rope or the triangles.
     pub shape: ClothShape,
     /// The largest initial offset of free particles from the surface, in spacings: real cloth is never perfectly flat.
     /// Without it, nothing moves a flat cloth out of a vertical plane, and a flag stays a board. Equal cloths get equal
@@ -74,6 +75,8 @@ pub struct Cloth {
 pub enum ClothShape {
     /// A grid of particles.
     Grid(GridShape),
+    /// A row of particles without faces.
+    Rope(RopeShape),
     /// Triangles provided by the game.
     Triangles {
         /// Vertices in the entity's frame (m), before the transform's scale.
@@ -103,6 +106,7 @@ impl ClothShape {
     pub(crate) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         match self {
             Self::Grid(grid) => grid.scaled(scale).map(|grid| Surface::of_grid(&grid)),
+            Self::Rope(rope) => rope.scaled(scale).map(|grid| Surface::of_grid(&grid)),
             Self::Triangles {
                 positions,
                 triangles,
@@ -148,6 +152,31 @@ impl Cloth {
         }))
     }
 
+    /// A rope of this many particles, `spacing` metres apart, and this radius (m). It hangs down from its transform;
+    /// [`lying`](Self::lying) lays it out along +x. The pin `Pin::Corner(Corner::TopLeft)`, or [`Pin::Index`](crate::cloth::Pin)
+    /// with 0, holds its first particle.
+    ///
+    /// ```
+    /// use bevy::prelude::*;
+    /// use bevy_drape::prelude::*;
+    ///
+    /// fn spawn_clothesline(mut commands: Commands) {
+    ///     // 3 m long and 1 cm thick, held by both ends.
+    ///     let ends = Pins::new([Pin::Index(0), Pin::Index(60)]);
+    ///     commands.spawn((Cloth::rope(61, 0.05, 0.005).lying(), ends, Transform::from_xyz(0.0, 2.0, 0.0)));
+    /// }
+    /// # bevy::ecs::system::assert_is_system(spawn_clothesline);
+    /// ```
+    pub const fn rope(particles: u32, spacing: f32, radius: f32) -> Self {
+        Self::of_shape(ClothShape::Rope(RopeShape {
+            particles,
+            spacing,
+            radius,
+            plane: ClothPlane::Hanging,
+            centred: false,
+        }))
+    }
+
     /// The mesh of the entity's `Mesh3d`. The cloth waits for the asset, and draws itself with its own copy: other
     /// users of the asset see it unchanged.
     #[cfg(feature = "mesh")]
@@ -176,18 +205,22 @@ impl Cloth {
         }
     }
 
-    /// Lays a grid out in the horizontal plane, facing up. A mesh keeps the shape of its asset.
+    /// Lays a grid out in the horizontal plane, facing up, and a rope along +x. A mesh keeps the shape of its asset.
     pub const fn lying(mut self) -> Self {
-        if let ClothShape::Grid(grid) = &mut self.shape {
-            grid.plane = ClothPlane::Lying;
+        match &mut self.shape {
+            ClothShape::Grid(grid) => grid.plane = ClothPlane::Lying,
+            ClothShape::Rope(rope) => rope.plane = ClothPlane::Lying,
+            _ => {}
         }
         self
     }
 
-    /// Centres a grid on the entity's origin. A mesh keeps the shape of its asset.
+    /// Centres a grid or a rope on the entity's origin. A mesh keeps the shape of its asset.
     pub const fn centred(mut self) -> Self {
-        if let ClothShape::Grid(grid) = &mut self.shape {
-            grid.centred = true;
+        match &mut self.shape {
+            ClothShape::Grid(grid) => grid.centred = true,
+            ClothShape::Rope(rope) => rope.centred = true,
+            _ => {}
         }
         self
     }
@@ -203,7 +236,7 @@ impl Cloth {
     /// particle. 0 welds only vertices at exactly the same position. Ignored by a grid.
     pub const fn welded(mut self, distance: f32) -> Self {
         match &mut self.shape {
-            ClothShape::Grid(_) => {}
+            ClothShape::Grid(_) | ClothShape::Rope(_) => {}
             ClothShape::Triangles { weld, .. } => *weld = distance,
             #[cfg(feature = "mesh")]
             ClothShape::Mesh { weld } => *weld = distance,

@@ -1,4 +1,4 @@
-//! Which face a ray hits first: a top-down query with the ray as its probe.
+//! Which face, or segment of a rope, a ray hits first: a top-down query with the ray as its probe.
 
 use bevy::math::{DVec3, Ray3d, Vec3, bounding::BoundingSphere};
 
@@ -12,11 +12,13 @@ use super::{
 };
 use crate::cloth::{ClothParticles, Surface};
 
-/// Where a ray hits a face.
+/// Where a ray hits a face, or a segment of a rope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RayHit {
-    /// Index of the face in [`Surface::triangles`].
+    /// Index of the face in [`Surface::triangles`], or of the segment's first particle.
     pub face: usize,
+    /// Its corners. The last two of a segment are the same.
+    pub particles: [u32; 3],
     /// Barycentric weights of its corners.
     pub weights: [f32; 3],
     /// Along the ray (m).
@@ -43,7 +45,8 @@ impl RayQuery {
         ray: Ray3d,
         max_distance: f32,
     ) -> Option<RayHit> {
-        let reach = surface.face_reach() * (1.0 + stretch) * ROUNDING;
+        let rope = surface.rope_radius();
+        let reach = surface.face_reach() * (1.0 + stretch) * ROUNDING + rope.unwrap_or(0.0);
         let mut around = tree.root_sphere(particles, stretch);
         if !around.radius().is_finite() {
             // Pieces that no spring joins.
@@ -62,22 +65,52 @@ impl RayQuery {
             particle_radius: 0.0,
         };
         self.query.search(tree, &self.bounds, particles, &probe);
-        let faces = surface.faces();
-        let candidates = self.query.candidates().iter();
-        let hits = candidates
-            .flat_map(|&owner| faces.range_of(owner))
-            .filter_map(|face| {
-                let corners =
-                    faces.all()[face].map(|corner| particles.position_at(corner as usize));
-                let (weights, distance) = hit(ray, corners)?;
-                (distance <= max_distance).then_some(RayHit {
-                    face,
-                    weights,
-                    distance,
-                })
+        let place = |particle: u32| particles.position_at(particle as usize);
+        let new = |face: usize, particles: [u32; 3], (weights, distance): ([f32; 3], f32)| {
+            (distance <= max_distance).then_some(RayHit {
+                face,
+                particles,
+                weights,
+                distance,
+            })
+        };
+        let first =
+            |a: &RayHit, b: &RayHit| (a.distance.total_cmp(&b.distance)).then(a.face.cmp(&b.face));
+        let candidates = self.query.candidates().iter().copied();
+        if let Some(radius) = rope {
+            let segments = candidates.filter(|from| (*from as usize) + 1 < surface.len());
+            let hits = segments.filter_map(|from| {
+                let hit = hit_segment(ray, [place(from), place(from + 1)], radius)?;
+                new(from as usize, [from, from + 1, from + 1], hit)
             });
-        hits.min_by(|a, b| (a.distance.total_cmp(&b.distance)).then(a.face.cmp(&b.face)))
+            return hits.min_by(first);
+        }
+        let faces = surface.faces();
+        let hits = candidates
+            .flat_map(|owner| faces.range_of(owner))
+            .filter_map(|face| {
+                let corners = faces.all()[face];
+                new(face, corners, hit(ray, corners.map(place))?)
+            });
+        hits.min_by(first)
     }
+}
+
+/// The weights of the ends of a segment of a rope of this radius (m) where a ray passes nearest to it, if it hits it, and the distance (m).
+fn hit_segment(ray: Ray3d, ends: [Vec3; 2], radius: f32) -> Option<([f32; 3], f32)> {
+    let direction = ray.direction.as_dvec3();
+    let [a, b] = ends.map(|end| end.as_dvec3() - ray.origin.as_dvec3());
+    // Seen along the ray, the segment is one in a plane, and the ray is its origin.
+    let across = |at: DVec3| at.reject_from_normalized(direction);
+    let (from, way) = (across(a), across(b) - across(a));
+    let length = way.length_squared();
+    let part = match length > 0.0 {
+        true => (-from.dot(way) / length).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    let distance = a.lerp(b, part).dot(direction);
+    let is_hit = (from + way * part).length() <= f64::from(radius) && distance >= 0.0;
+    is_hit.then_some(([1.0 - part as f32, part as f32, 0.0], distance as f32))
 }
 
 /// The distances between which a ray is in a sphere, up to the largest, if it is.

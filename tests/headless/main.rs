@@ -46,6 +46,7 @@ mod reflection;
 mod render_mesh;
 mod resolution;
 mod rest;
+mod ropes;
 mod scene_files;
 mod scenes;
 mod schedule;

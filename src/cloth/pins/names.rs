@@ -134,6 +134,8 @@ impl Pin {
         match self {
             Self::Cell(row, column) => cell(*row, *column),
             Self::Row(row) => (0..columns).for_each(|column| cell(*row, column)),
+            // The top of a rope is its first particle.
+            Self::Top if rows == 1 => cell(0, 0),
             Self::Top => (0..columns).for_each(|column| cell(0, column)),
             Self::Column(column) => (0..rows).for_each(|row| cell(row, *column)),
             Self::Corner(Corner::TopLeft) => cell(0, 0),

@@ -42,7 +42,7 @@ pub enum Pin {
     /// Every particle whose (row, column) passes the predicate. Closures cannot be serialized: loaded from a scene
     /// file, it pins nothing.
     Where(#[reflect(ignore)] PinPredicate),
-    /// The default: the top row of a grid, and nothing of a mesh.
+    /// The default: the top row of a grid, the first particle of a rope, and nothing of a mesh.
     #[default]
     Top,
     /// The particle of a mesh vertex, by the vertex index in the asset or in

@@ -11,6 +11,18 @@ impl Surface {
         let cells = || grid.cells();
         let spacing = grid.spacing();
         let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
+        // A rope has neither faces nor distances across.
+        let is_rope = grid.rope_radius().is_some();
+        let shortest = if is_rope {
+            spacing.x
+        } else {
+            spacing.min_element()
+        };
+        let longest = if is_rope {
+            spacing.x
+        } else {
+            spacing.max_element()
+        };
         Self {
             rest: cells()
                 .map(|(row, column)| grid.rest_position(row, column))
@@ -26,18 +38,25 @@ impl Surface {
             is_border: Vec::new(),
             scale: grid.scale(),
             spacing: Spacing {
-                shortest: spacing.min_element(),
-                typical: spacing.min_element(),
-                longest: spacing.max_element(),
+                shortest,
+                typical: shortest,
+                longest,
             },
             extent: Extent {
                 diagonal: grid.diagonal(),
-                area: (sides.as_vec2() * spacing).element_product(),
+                area: match grid.rope_radius() {
+                    Some(radius) => grid.diagonal() * 2.0 * radius,
+                    None => (sides.as_vec2() * spacing).element_product(),
+                },
                 particles_across: grid.columns().min(grid.rows()) as usize,
                 // Without shear springs, a path follows both sides of a cell.
-                face_reach: spacing.element_sum(),
-                longest_spring: spacing.length(),
-                max_faces: 6,
+                face_reach: if is_rope {
+                    longest
+                } else {
+                    spacing.element_sum()
+                },
+                longest_spring: if is_rope { longest } else { spacing.length() },
+                max_faces: if is_rope { 0 } else { 6 },
                 pieces: 1,
             },
             grid: Some(*grid),

@@ -7,7 +7,7 @@ use crate::cloth::grid::ClothGrid;
 
 /// From (0, 0) at particle (0, 0) to (1, 1) at the last one.
 pub(super) fn uvs(grid: &ClothGrid) -> Vec<Vec2> {
-    let last = Vec2::new((grid.columns() - 1) as f32, (grid.rows() - 1) as f32);
+    let last = Vec2::new((grid.columns() - 1) as f32, (grid.rows() - 1) as f32).max(Vec2::ONE);
     let uv = |(row, column): (u32, u32)| Vec2::new(column as f32, row as f32) / last;
     grid.cells().map(uv).collect()
 }

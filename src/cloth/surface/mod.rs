@@ -204,6 +204,11 @@ impl Surface {
         self.grid.as_ref()
     }
 
+    /// Half of the thickness of a rope (m); `None` for what has faces.
+    pub fn rope_radius(&self) -> Option<f32> {
+        self.grid.as_ref()?.rope_radius()
+    }
+
     /// Whether the surface encloses a volume: it is a mesh with two faces at each edge.
     pub fn is_closed(&self) -> bool {
         !self.is_border.is_empty() && !self.is_border.contains(&true)
@@ -366,6 +371,7 @@ impl fmt::Debug for Surface {
 impl fmt::Display for Surface {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.grid {
+            Some(grid) if grid.rows() == 1 => write!(f, "a rope of {} particles", grid.columns()),
             Some(grid) => write!(f, "{} columns × {} rows", grid.columns(), grid.rows()),
             None => write!(
                 f,

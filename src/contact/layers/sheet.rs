@@ -69,7 +69,10 @@ impl Sheet {
         );
         let closest = surface.as_grid().map_or(0.0, |grid| {
             let [across, down] = grid.spacing().to_array();
-            across * down / across.hypot(down)
+            match grid.rope_radius() {
+                Some(_) => across,
+                None => across * down / across.hypot(down),
+            }
         });
         let mut sheet = Self {
             surface: surface.clone(),
@@ -179,6 +182,9 @@ impl Sheet {
     fn add_patch(&mut self, owned: &[u32], seen: &mut HashSet<[u32; 2]>) {
         let from = [self.particles.len(), self.faces.len(), self.edges.len()];
         self.particles.extend(owned);
+        if self.surface.rope_radius().is_some() {
+            self.add_rope(owned);
+        }
         for &particle in owned {
             for &face in self.surface.faces().of(particle) {
                 let face = face.map(|corner| {
@@ -214,6 +220,17 @@ impl Sheet {
         });
     }
 
+    /// Adds the edges of a rope that begin at the particles that a patch owns: the last ones of all.
+    fn add_rope(&mut self, owned: &[u32]) {
+        let Some(&last) = owned.last() else { return };
+        let mut count = owned.len() as u16;
+        if (last as usize) + 1 < self.surface.len() {
+            self.particles.push(last + 1);
+            count += 1;
+        }
+        self.edges.extend((1..count).map(|end| [end - 1, end]));
+    }
+
     /// The surface.
     pub fn surface(&self) -> &Arc<Surface> {
         &self.surface
@@ -242,7 +259,8 @@ impl Sheet {
     /// A lower bound of the distance between any two features without a common particle in a window (m), from its tangents at
     /// these positions.
     pub(super) fn unfolded(&self, window: usize, places: &[Vec3A]) -> f32 {
-        let Some(grid) = self.surface.as_grid() else {
+        let grid = self.surface.as_grid();
+        let Some(grid) = grid.filter(|grid| grid.rope_radius().is_none()) else {
             return f32::NEG_INFINITY;
         };
         let [rows, columns] = self.windows.particles_in(window);

@@ -49,11 +49,11 @@ fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere 
     if one >= apart + other {
         return *around;
     }
+    // Another that contains it is the whole.
     let whole = ((one + other + apart) / 2.0).max(other);
-    let part = if apart > 0.0 {
-        (whole - one) / apart
-    } else {
-        1.0
+    let part = match whole > other {
+        true => (whole - one) / apart,
+        false => 1.0,
     };
     let middle = from.lerp(to, part).as_vec3();
     // More than the rounding errors of its middle and radius.

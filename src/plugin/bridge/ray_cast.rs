@@ -56,9 +56,10 @@ type Hittable = (
 pub struct ClothHit {
     /// The cloth.
     pub cloth: Entity,
-    /// Index of the face in [`Surface::triangles`](crate::cloth::Surface::triangles).
+    /// Index of the face in [`Surface::triangles`](crate::cloth::Surface::triangles), or that of the first particle of a
+    /// rope's segment.
     pub face: usize,
-    /// Indices of the particles at the corners of the face.
+    /// Indices of the particles at the corners of the face. The last two of a rope's segment are the same.
     pub particles: [u32; 3],
     /// The nearest of them.
     pub particle: u32,
@@ -66,7 +67,7 @@ pub struct ClothHit {
     pub weights: [f32; 3],
     /// The point, in the world (m).
     pub point: Vec3,
-    /// Unit normal of the face, towards the origin of the ray.
+    /// Unit normal of the face, towards the origin of the ray. On a rope, it is opposite to the ray.
     pub normal: Vec3,
     /// Distance from the origin of the ray (m).
     pub distance: f32,
@@ -113,7 +114,7 @@ impl ClothRayCast<'_, '_> {
             let stretch = state.stretch.bound;
             let found = (self.query).cast(surface, tree, particles, stretch, own, farthest);
             let Some(found) = found else { continue };
-            let face = surface.triangles()[found.face];
+            let face = found.particles;
             let [a, b, c] = face.map(|particle| particles.position_at(particle as usize));
             let normal = (b - a).cross(c - a).normalize_or(-*direction);
             let normal = if normal.dot(*direction) > 0.0 {

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::preparing::GameQueryItem;
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothTearing},
+    cloth::{ClothError, ClothMaterial, ClothShape, ClothTearing},
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::state::KnownInputs,
@@ -31,9 +31,12 @@ impl Inputs {
     /// # Errors
     /// The first value that is out of range. The material is checked when it changes.
     pub fn of(game: &GameQueryItem, gravity: Vec3) -> Result<Self, ClothError> {
-        let settings = game.settings.copied().unwrap_or_default();
+        let mut settings = game.settings.copied().unwrap_or_default();
         let material = game.material.copied().unwrap_or_default();
         settings.validate()?;
+        if let ClothShape::Rope(rope) = &game.cloth.shape {
+            settings.particle_radius = settings.particle_radius.max(rope.radius);
+        }
         if let Some(tearing) = game.torn.1 {
             tearing.validate(&material)?;
         }

@@ -76,7 +76,7 @@ impl GameQueryItem<'_, '_> {
 
     /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft.
     pub fn grain(&self) -> Option<(&ClothGrain, Option<Tick>)> {
-        let is_grid = matches!(self.cloth.shape, ClothShape::Grid(_));
+        let is_grid = matches!(self.cloth.shape, ClothShape::Grid(_) | ClothShape::Rope(_));
         if is_grid || !self.material?.is_woven() {
             return None;
         }

@@ -49,6 +49,10 @@ pub(crate) fn resample(
 /// Where one of `of` rows or columns is among `from` of another grid: the one before it, never the last, and how far from there to the
 /// next.
 fn place(index: u32, of: u32, from: u32) -> (u32, f32) {
+    // The only row of a rope.
+    if of == 1 || from == 1 {
+        return (0, 0.0);
+    }
     let at = index as f32 * (from - 1) as f32 / (of - 1) as f32;
     let before = (at as u32).min(from - 2);
     (before, at - before as f32)

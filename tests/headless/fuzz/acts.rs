@@ -182,7 +182,7 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
     let [columns, rows] = [2 + random.below(8) as u32, 2 + random.below(8) as u32];
     let grid = || Cloth::new(columns, rows, 0.1);
     let ball = |radius| ClothCollider::ball(radius);
-    let entity = match random.below(13) {
+    let entity = match random.below(14) {
         0..=2 => world.spawn((grid(), place)).id(),
         3 => world
             .spawn((grid(), Pins::none(), ClothSelfCollision::default(), place))
@@ -217,6 +217,12 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
             .spawn((ClothCollider::cuboid(0.2, 0.1, random.number()), place))
             .id(),
         10 => world.spawn((ClothCollider::plane(), place)).id(),
+        12 => {
+            let rope = Cloth::rope(columns * rows, 0.1, 0.02);
+            world
+                .spawn((rope, ClothSelfCollision::default(), place))
+                .id()
+        }
         11 => {
             let cloth = random.pick(&pool.all).copied();
             let grab = ClothGrab {

@@ -5,6 +5,7 @@ mod blend;
 mod drawing;
 mod placing;
 mod skin;
+mod tube;
 mod write;
 
 use bevy::{

@@ -7,11 +7,15 @@ use bevy::{
     platform::collections::HashMap,
 };
 
+use super::tube;
 use crate::cloth::{Surface, TriangleMesh};
 
 /// A mesh of a surface at rest, with the vertices that it was made from, and texture coordinates and tangents where it has
 /// them.
 pub(super) fn mesh_of(surface: &Surface) -> Mesh {
+    if tube::radius_of(surface).is_some() {
+        return tube::mesh_of(surface);
+    }
     let (count, particle_of) = vertices_of(surface);
     // A vertex without a particle belongs to no triangle.
     let place = |vertex: usize| {
@@ -278,6 +282,9 @@ pub(super) fn write_mesh(
     normals: &mut Vec<Vec3>,
     tangents: &mut Tangents,
 ) {
+    if let Some(radius) = tube::radius_of(surface) {
+        return tube::write(mesh, drawn, radius);
+    }
     surface.normals_at(drawn, normals);
     for (attribute, of_particles) in [
         (Mesh::ATTRIBUTE_POSITION, drawn),

@@ -1,0 +1,398 @@
+//! Ropes: hung, laid over things, tied to cloth, and what they carry.
+
+use bevy::prelude::*;
+use bevy_drape::{plugin::ClothBuilt, prelude::*};
+use bevy_rapier3d::prelude::{Collider, ColliderMassProperties, RigidBody};
+
+use crate::{fuzz::random::Random, rapier::app_with_rapier, support::*};
+
+/// Air and the material take the swing of what hangs.
+fn damped() -> ClothMaterial {
+    ClothMaterial {
+        damping: 0.5,
+        ..ClothMaterial::COTTON
+    }
+}
+
+fn spawn(app: &mut App, rope: impl Bundle) -> Entity {
+    let rope = app.world_mut().spawn(rope).id();
+    tick(app, 1);
+    assert_eq!(app.world().get::<ClothFault>(rope), None);
+    rope
+}
+
+/// The particles in the world (m).
+fn places(app: &App, cloth: Entity) -> Vec<Vec3> {
+    let frame = app.world().get::<ClothFrame>(cloth).expect("a frame");
+    let all = particles(app, cloth).positions();
+    all.map(|place| frame.to_world(place)).collect()
+}
+
+fn length(places: &[Vec3]) -> f32 {
+    places
+        .windows(2)
+        .map(|ends| ends[0].distance(ends[1]))
+        .sum()
+}
+
+/// The sag of a chain of some length between supports at one height (m): `L = 2 a sinh(d ⁄ 2a)`, `f = a (cosh(d ⁄ 2a) − 1)`.
+fn catenary(length: f64, distance: f64) -> f64 {
+    let (mut low, mut high) = (1.0e-3_f64, 1.0e3_f64);
+    for _ in 0..200 {
+        let a = (low * high).sqrt();
+        // The larger a, the straighter.
+        if 2.0 * a * (distance / 2.0 / a).sinh() > length {
+            low = a;
+        } else {
+            high = a;
+        }
+    }
+    low * ((distance / 2.0 / low).cosh() - 1.0)
+}
+
+/// A rope pinned by its first particle hangs straight down. Between two pins it hangs as a catenary does, whatever its resolution:
+/// a chain of n straight links is off by (1 ⁄ n)² of the sag or less. Cotton stretches by less than 10⁻⁴ under this weight.
+#[test]
+fn it_hangs_as_a_chain_does() {
+    for count in [11, 24, 65] {
+        let spacing = 2.0 / (count - 1) as f32;
+        let mut app = app();
+        let free = spawn(&mut app, (Cloth::rope(count, spacing, 0.01), damped()));
+        let between = Pins::new([Pin::Index(0), Pin::Index(count as usize - 1)]);
+        let rope = (Cloth::rope(count, spacing, 0.01).lying(), between, damped());
+        let rope = spawn(&mut app, rope);
+        // The supports come closer: 1.2 m for 2 m of rope.
+        for step in 1..=64 {
+            let x = 2.0 - 0.8 * step as f32 / 64.0;
+            change::<ClothParticles>(&mut app, rope, |particles| {
+                particles
+                    .set_position(count as usize - 1, Vec3::X * x)
+                    .expect("it exists");
+            });
+            tick(&mut app, 1);
+        }
+        tick(&mut app, 1500);
+        let hung = places(&app, free);
+        let end = hung[count as usize - 1];
+        assert!(end.distance(Vec3::NEG_Y * 2.0) < 1.0e-3, "{count}: {end}");
+        let all = places(&app, rope);
+        let sag = all.iter().map(|place| -place.y).fold(0.0, f32::max);
+        let truth = catenary(2.0, 1.2) as f32;
+        let tolerance = truth * (1.0 / (count - 1) as f32).powi(2) + 2.0e-3 * truth;
+        assert!(
+            (sag - truth).abs() < tolerance,
+            "{count}: {sag} m, {truth} m"
+        );
+        assert!((length(&all) - 2.0).abs() < 2.0e-3, "{count}");
+    }
+}
+
+/// It bends under its weight as a strip of two columns does that is as wide as the rope is thick: both are one beam. The strip may twist,
+/// and does not.
+#[test]
+fn it_bends_as_a_strip_of_its_width() {
+    let material = ClothMaterial {
+        bend_rigidity: 4.0e-3,
+        damping: 0.5,
+        ..ClothMaterial::COTTON
+    };
+    let drop = |cloth: Cloth, pins: Vec<Pin>, place: Transform, last: usize| {
+        let mut app = app();
+        let cloth = spawn(&mut app, (cloth, Pins::new(pins), material, place));
+        tick(&mut app, 1200);
+        places(&app, cloth)[last].y
+    };
+    let rope = Cloth::rope(17, 0.02, 0.01).lying();
+    let held = vec![Pin::Index(0), Pin::Index(1)];
+    let rope = drop(rope, held, Transform::default(), 16);
+    let strip = Cloth::new(17, 2, 0.02).lying();
+    let held = vec![Pin::Column(0), Pin::Column(1)];
+    let strip = drop(strip, held, Transform::default(), 16);
+    assert!(strip < -0.01, "{strip} m");
+    assert!(
+        (rope - strip).abs() < 0.01 * strip.abs(),
+        "{rope} m, {strip} m"
+    );
+}
+
+/// It lies on a ball at its radius, and hangs down on both sides.
+#[test]
+fn it_hangs_over_a_ball() {
+    let mut app = app();
+    let rope = (
+        Cloth::rope(61, 0.025, 0.02).lying().centred(),
+        Pins::none(),
+        Transform::from_xyz(0.0, 0.45, 0.0),
+    );
+    let rope = spawn(&mut app, rope);
+    app.world_mut().spawn(ClothCollider::ball(0.4));
+    tick(&mut app, 64);
+    let nearest = places(&app, rope)
+        .iter()
+        .map(|place| place.length())
+        .fold(f32::MAX, f32::min);
+    // Friction turns it a little from its height at first; a particle is never deeper than half of a millimetre.
+    assert!((nearest - 0.42).abs() < 5.0e-4, "{nearest} m");
+}
+
+/// Tied by its ends to the corners of a sail, two ropes hold it: a rope's last particle is where the corner is.
+#[test]
+fn it_ties_a_sail_by_its_corners() {
+    let mut app = app();
+    let sail = (
+        Cloth::new(21, 21, 0.05),
+        Pins::none(),
+        damped(),
+        Transform::from_xyz(0.0, -0.5, 0.0),
+    );
+    let sail = spawn(&mut app, sail);
+    for (x, corner) in [(0.0, Corner::TopLeft), (1.0, Corner::TopRight)] {
+        let place = Transform::from_xyz(x, 0.0, 0.0);
+        let rope = spawn(&mut app, (Cloth::rope(11, 0.05, 0.005), damped(), place));
+        let seam = ClothSeam::new((rope, Pin::Index(10)), (sail, Pin::Corner(corner)));
+        app.world_mut().spawn(seam);
+    }
+    tick(&mut app, 640);
+    let own = places(&app, sail);
+    let mut ropes = app
+        .world_mut()
+        .query_filtered::<(Entity, &Cloth), Without<ClothSeam>>();
+    let is_rope = |cloth: &Cloth| matches!(cloth.shape, ClothShape::Rope(_));
+    let ropes: Vec<Entity> = ropes
+        .iter(app.world())
+        .filter_map(|(entity, cloth)| is_rope(cloth).then_some(entity))
+        .collect();
+    assert_eq!(ropes.len(), 2);
+    for (rope, corner) in ropes.into_iter().zip([own[0], own[20]]) {
+        let all = places(&app, rope);
+        let end = all[10];
+        assert!(end.distance(corner) < 2.0e-3, "{end} {corner}");
+        assert!(length(&all) < 0.5 * 1.02, "{}", length(&all));
+    }
+    assert!(own.iter().all(|place| place.y < 0.0 && place.y > -1.7));
+}
+
+/// Two slings hold a plank that rapier moves: it comes to rest in them, level, above where the ropes are when they are taut.
+#[test]
+fn two_of_them_hold_a_plank() {
+    let mut app = app_with_rapier();
+    let rope_material = ClothMaterial {
+        areal_density: 8.0,
+        damping: 0.3,
+        ..ClothMaterial::COTTON
+    };
+    for x in [-0.3, 0.3] {
+        let ends = Pins::new([Pin::Index(0), Pin::Index(50)]);
+        let rope = (
+            Cloth::rope(51, 0.02, 0.01),
+            ends,
+            rope_material,
+            Transform::from_xyz(x, 1.0, 0.0),
+        );
+        let rope = spawn(&mut app, rope);
+        // Down, across below the plank, and up.
+        change::<ClothParticles>(&mut app, rope, |particles| {
+            for index in 0..51 {
+                let along = 0.02 * index as f32;
+                let place = Vec3::new(
+                    0.0,
+                    -along.min(1.0 - along).min(0.35),
+                    (along - 0.35).clamp(0.0, 0.3) - 0.15,
+                );
+                particles.set_position(index, place).expect("it exists");
+            }
+        });
+    }
+    let plank = (
+        RigidBody::Dynamic,
+        Collider::cuboid(0.45, 0.02, 0.14),
+        ColliderMassProperties::Mass(2.0),
+        RapierClothCollider,
+        ClothPushBack,
+        Transform::from_xyz(0.0, 0.7, 0.0),
+    );
+    let plank = app.world_mut().spawn(plank).id();
+    tick(&mut app, 640);
+    let place = app.world().get::<Transform>(plank).expect("a place");
+    let up = place.rotation * Vec3::Y;
+    println!("the plank is at {}, up is {up}", place.translation);
+    assert!(
+        (place.translation.y - 0.68).abs() < 0.03,
+        "{}",
+        place.translation
+    );
+    assert!(up.y > 0.99, "{up}");
+}
+
+/// A rope that falls across a cloth with layers lies on it: no segment passes through a triangle.
+#[test]
+fn it_lies_on_cloth_with_layers() {
+    for is_turned in [false, true] {
+        let mut app = app();
+        let layers = ClothSelfCollision::default();
+        let sheet = Cloth::new(17, 17, 0.05).lying().centred();
+        let corners = [
+            Corner::TopLeft,
+            Corner::TopRight,
+            Corner::BottomLeft,
+            Corner::BottomRight,
+        ];
+        let pins = Pins::new(corners.map(Pin::Corner));
+        let sheet = spawn(&mut app, (sheet, pins, layers));
+        let turn = if is_turned { 0.6 } else { 0.0 };
+        let place = Transform::from_xyz(0.03, 0.1, 0.02).with_rotation(Quat::from_rotation_y(turn));
+        let rope = Cloth::rope(31, 0.02, 0.01).lying().centred();
+        let rope = spawn(&mut app, (rope, Pins::none(), layers, damped(), place));
+        let surface = app
+            .world()
+            .get::<ClothBuilt>(sheet)
+            .expect("built")
+            .surface()
+            .clone();
+        for _ in 0..320 {
+            tick(&mut app, 1);
+            let (own, others) = (places(&app, rope), places(&app, sheet));
+            for ends in own.windows(2) {
+                for face in surface.triangles() {
+                    let corners = face.map(|corner| others[corner as usize]);
+                    assert!(
+                        !crosses([ends[0], ends[1]], corners),
+                        "{ends:?}, {corners:?}"
+                    );
+                }
+            }
+        }
+        let lowest = places(&app, rope)
+            .iter()
+            .map(|place| place.y)
+            .fold(f32::MAX, f32::min);
+        assert!(lowest > -0.3, "{lowest} m");
+    }
+}
+
+/// Whether a segment passes through a triangle, by signed volumes in f64.
+fn crosses(ends: [Vec3; 2], corners: [Vec3; 3]) -> bool {
+    let [p, q] = ends.map(|end| end.as_dvec3());
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let side = |at: bevy::math::DVec3| (b - a).cross(c - a).dot(at - a);
+    let past = |from: bevy::math::DVec3, to: bevy::math::DVec3| (q - p).cross(from - p).dot(to - p);
+    let around = [past(a, b), past(b, c), past(c, a)];
+    let is_around = around.iter().all(|v| *v > 0.0) || around.iter().all(|v| *v < 0.0);
+    side(p) * side(q) < 0.0 && is_around
+}
+
+/// It keeps its place when its resolution changes, and is picked, taken and let go.
+#[test]
+fn it_is_refined_and_taken() {
+    let mut app = app();
+    let rope = spawn(&mut app, (Cloth::rope(11, 0.1, 0.01), damped()));
+    tick(&mut app, 600);
+    let before = places(&app, rope)[10];
+    app.world_mut()
+        .entity_mut(rope)
+        .insert(Cloth::rope(41, 0.025, 0.01));
+    tick(&mut app, 1);
+    let all = places(&app, rope);
+    assert_eq!(all.len(), 41);
+    assert!(all[40].distance(before) < 1.0e-3);
+    let hit = app
+        .world_mut()
+        .run_system_cached(|mut rays: ClothRayCast| {
+            let at = |x| Ray3d::new(Vec3::new(x, -0.51, 3.0), Dir3::NEG_Z);
+            assert_eq!(rays.cast(at(0.02), 10.0), None);
+            rays.cast(at(0.009), 10.0)
+        })
+        .expect("a system")
+        .expect("the rope is there");
+    assert_eq!((hit.cloth, hit.particle), (rope, 20));
+    let (mut grab, place) = hit.grab();
+    grab.target = hit.point + Vec3::X * 0.3;
+    let hand = app.world_mut().spawn((grab, place)).id();
+    tick(&mut app, 200);
+    let held = places(&app, rope)[20];
+    assert!(held.x > 0.25, "{held}");
+    app.world_mut().despawn(hand);
+    tick(&mut app, 1200);
+    let held = places(&app, rope)[20];
+    assert!(held.x.abs() < 0.02, "{held}");
+}
+
+/// What is no rope is a fault with a name, and nothing else stops.
+#[test]
+fn what_is_no_rope_is_a_fault() {
+    let mut app = app();
+    let other = spawn(&mut app, Cloth::rope(8, 0.1, 0.01));
+    for wrong in [
+        Cloth::rope(1, 0.1, 0.01),
+        Cloth::rope(8, 0.0, 0.01),
+        Cloth::rope(8, 0.1, f32::NAN),
+    ] {
+        let rope = app.world_mut().spawn(wrong).id();
+        tick(&mut app, 2);
+        let fault = app.world().get::<ClothFault>(rope).expect("a fault");
+        assert!(fault.to_string().contains("rope"), "{fault}");
+    }
+    assert_eq!(app.world().get::<ClothFault>(other), None);
+}
+
+/// A hundred ropes of any size, held anywhere, in wind, over a ball, with layers or without: all stay finite, and none is longer than it was by
+/// more than a tenth.
+#[test]
+fn random_ropes_hold() {
+    let mut random = Random(31);
+    let mut longest = 0.0_f32;
+    let mut app = app();
+    app.insert_resource(ClothWind {
+        velocity: Vec3::new(4.0, 0.0, 1.0),
+        ..default()
+    });
+    let mut all = Vec::new();
+    for number in 0..100 {
+        let count = 2 + random.below(70) as u32;
+        let (long, radius) = (0.3 + 2.0 * random.part(), 0.002 + 0.03 * random.part());
+        let material = ClothMaterial {
+            areal_density: 0.1 + 8.0 * random.part(),
+            bend_rigidity: if random.one_in(2) {
+                0.0
+            } else {
+                0.02 * random.part()
+            },
+            ..ClothMaterial::COTTON
+        };
+        let pins = match random.below(3) {
+            0 => Pins::default(),
+            1 => Pins::new([Pin::Index(0), Pin::Index(count as usize - 1)]),
+            _ => Pins::none(),
+        };
+        let turn =
+            Quat::from_rotation_z(6.0 * random.part()) * Quat::from_rotation_x(3.0 * random.part());
+        let place = Vec3::new(5.0 * (number % 10) as f32, 0.0, 5.0 * (number / 10) as f32);
+        let rope = Cloth::rope(count, long / (count - 1) as f32, radius);
+        let rope = if random.one_in(2) { rope.lying() } else { rope };
+        let place = Transform::from_translation(place).with_rotation(turn);
+        let mut rope = app.world_mut().spawn((rope, pins, material, place));
+        if random.one_in(3) {
+            rope.insert(ClothSelfCollision::default());
+        }
+        all.push((rope.id(), long));
+        let ball = place.translation + Vec3::new(0.2, -0.6, 0.1);
+        app.world_mut()
+            .spawn((ClothCollider::ball(0.3), Transform::from_translation(ball)));
+    }
+    for _ in 0..240 {
+        tick(&mut app, 1);
+        for (rope, long) in &all {
+            let own = places(&app, *rope);
+            assert!(own.iter().all(|place| place.is_finite()));
+            longest = longest.max(length(&own) / long - 1.0);
+        }
+    }
+    println!(
+        "of 100 random ropes the longest was stretched by {:.2} %",
+        100.0 * longest
+    );
+    assert!(longest < 0.1, "{longest}");
+    for (rope, _) in all {
+        assert_eq!(app.world().get::<ClothFault>(rope), None);
+    }
+}
