@@ -163,8 +163,6 @@ fn spawn_swing(mut shop: Workshop) -> Result {
         let across = (along - height).clamp(0.0, width) - width / 2.0;
         laid.set_position(index, Vec3::new(0.0, -down, across))?;
     }
-    laid.pin(0);
-    laid.pin(particles as usize - 1);
     for x in [-SLINGS, SLINGS] {
         shop.commands.spawn((
             Name::new("sling"),

@@ -236,10 +236,10 @@ impl Cloth {
     /// particle. 0 welds only vertices at exactly the same position. Ignored by a grid.
     pub const fn welded(mut self, distance: f32) -> Self {
         match &mut self.shape {
-            ClothShape::Grid(_) | ClothShape::Rope(_) => {}
             ClothShape::Triangles { weld, .. } => *weld = distance,
             #[cfg(feature = "mesh")]
             ClothShape::Mesh { weld } => *weld = distance,
+            _ => {}
         }
         self
     }

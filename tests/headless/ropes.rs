@@ -330,7 +330,8 @@ fn what_is_no_rope_is_a_fault() {
         let rope = app.world_mut().spawn(wrong).id();
         tick(&mut app, 2);
         let fault = app.world().get::<ClothFault>(rope).expect("a fault");
-        assert!(fault.to_string().contains("rope"), "{fault}");
+        let text = fault.error.to_string();
+        assert!(text.contains("rope"), "{text}");
     }
     assert_eq!(app.world().get::<ClothFault>(other), None);
 }

@@ -108,7 +108,7 @@ mod tests {
     }
 
     /// M ⁄ D of a strip bent there and back, against the corners of the hysteresis of linear kinematic hardening: loading along
-    /// `κ_y + h (κ − κ_y)`, unloading along κ for 2 κ_y, and again along h. f32 rounds numbers up to 100 by 1e−5 in all.
+    /// `κ_y + h (κ − κ_y)`, unloading along κ for `2 κ_y`, and again along h. f32 rounds numbers up to 100 by 1e−5 in all.
     #[test]
     fn hysteresis_is_that_of_kinematic_hardening() {
         let mut crease = 0.0;

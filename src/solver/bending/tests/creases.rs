@@ -78,7 +78,7 @@ fn creases_have_no_resultant_and_turn_with_the_cloth() {
         let turn = Quat::from_rotation_y(1.0) * Quat::from_rotation_x(0.7);
         let (_, unturned) = forces(&surface, Quat::IDENTITY);
         let (particles, forces) = forces(&surface, turn);
-        let places: Vec<DVec3> = particles.positions().map(|at| at.as_dvec3()).collect();
+        let places: Vec<DVec3> = particles.positions().map(Vec3::as_dvec3).collect();
         let middle = places.iter().sum::<DVec3>() / places.len() as f64;
         let size: f64 = forces.iter().map(|force| force.length()).sum();
         let resultant: DVec3 = forces.iter().sum();
