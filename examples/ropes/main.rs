@@ -43,8 +43,8 @@ fn main() -> ExitCode {
         // Along the sail.
         particles: 28,
         shot: Shot {
-            from: Vec3::new(2.6, 1.9, 5.2),
-            focus: Vec3::new(0.0, 1.25, 0.0),
+            from: Vec3::new(2.4, 3.3, 5.6),
+            focus: Vec3::new(0.0, 1.45, 0.0),
             fov: 0.6,
         },
         drawn_at: 4.4,

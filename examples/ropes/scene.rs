@@ -13,10 +13,11 @@ use crate::shared::stage::StagePlugin;
 use crate::shared::window::Keys;
 
 /// Half of the distances between the posts, their height, and their radius (m).
-const POSTS: Vec3 = Vec3::new(1.25, 2.3, 0.95);
+const POSTS: Vec3 = Vec3::new(1.25, 2.7, 0.95);
 const POST: f32 = 0.035;
-/// Half of the sail's length and width (m).
+/// Half of the sail's length and width (m), and how much longer its ties are than the way to it.
 const SAIL: Vec2 = Vec2::new(0.85, 0.6);
+const SLACK: f32 = 1.1;
 /// The swing: the height of its bar and of its plank, and half of the plank's size (m), its mass (kg), and where its slings are (m).
 const BAR: f32 = 2.0;
 const SEAT: f32 = 0.55;
@@ -86,6 +87,8 @@ fn spawn_posts(mut shop: Workshop) {
 fn hemp() -> ClothMaterial {
     ClothMaterial {
         areal_density: PER_METRE / (2.0 * ROPE),
+        // Far stiffer than cloth.
+        stretch_compliance: 1.0e-6,
         damping: 0.3,
         ..ClothMaterial::CANVAS
     }
@@ -126,12 +129,13 @@ fn spawn_sail(mut shop: Workshop) {
     ] {
         let post = Vec3::new(x * POSTS.x, POSTS.y, z * POSTS.z);
         let way = Vec3::new(x * size.x, POSTS.y, z * size.y) - post;
-        let particles = (way.length() / SPACING).ceil() as u32 + 1;
+        let length = SLACK * way.length();
+        let particles = (length / SPACING).ceil() as u32 + 1;
         let place = Transform::from_translation(post)
             .with_rotation(Quat::from_rotation_arc(Vec3::NEG_Y, way.normalize()));
         let tie = (
             Name::new("tie"),
-            Cloth::rope(particles, way.length() / (particles - 1) as f32, ROPE),
+            Cloth::rope(particles, length / (particles - 1) as f32, ROPE),
             hemp(),
             paint.clone(),
             ShowClothGizmos::nothing(),
@@ -170,6 +174,8 @@ fn spawn_swing(mut shop: Workshop) -> Result {
             laid.clone(),
             Pins::new(ends.clone()),
             hemp(),
+            // They carry many times their own weight.
+            ClothSettings::substeps(60),
             paint.clone(),
             ShowClothGizmos::nothing(),
             Transform::from_xyz(x, BAR, 0.0),

@@ -18,6 +18,7 @@ mod sewing;
 mod skin;
 mod spring;
 mod springs;
+mod stress;
 mod surface;
 mod tearing;
 mod tears;

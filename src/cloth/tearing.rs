@@ -7,8 +7,8 @@ use bevy::{
 };
 
 use super::{
-    error::ClothError, material::ClothMaterial, particles::ClothParticles, surface::Surface,
-    tears::ClothTears,
+    error::ClothError, material::ClothMaterial, particles::ClothParticles, springs::Springs,
+    stress::Stress, surface::Surface, tears::ClothTears,
 };
 
 /// Tears a cloth where its threads bear more than their strength. A tear begins at the thread that is overloaded most, and runs
@@ -84,8 +84,9 @@ impl ClothTearing {
 #[derive(Debug, Default)]
 pub(crate) struct TearSearch {
     places: Vec<Vec3>,
-    /// Each overloaded edge, the most loaded first: its load over its strength, and its ends.
-    overloaded: Vec<(f32, [u32; 2])>,
+    /// Each overloaded edge, the most loaded first: its load over its strength, its ends, and how much of it is along the warp.
+    overloaded: Vec<(f32, [u32; 2], f32)>,
+    stress: Stress,
 }
 
 impl TearSearch {
@@ -95,13 +96,13 @@ impl TearSearch {
         &mut self,
         tearing: &ClothTearing,
         material: &ClothMaterial,
-        surface: &Surface,
+        (surface, springs): (&Surface, &Springs),
         particles: &ClothParticles,
         tears: &ClothTears,
     ) -> Vec<[u32; 2]> {
         self.places.clear();
         self.places.extend(particles.positions());
-        self.find_overloaded(tearing, material, surface);
+        self.find_overloaded(tearing, material, (surface, springs));
         if self.overloaded.is_empty() {
             return Vec::new();
         }
@@ -110,7 +111,7 @@ impl TearSearch {
         let is_tip = tips(surface, tears);
         let pieces = surface.graph().pieces_of();
         let splits: Vec<(bool, u32, Vec<[u32; 2]>)> = (self.overloaded.iter())
-            .filter_map(|(_, ends)| split(*ends, surface, particles, &is_tip))
+            .filter_map(|(_, ends, _)| split(*ends, surface, particles, &is_tip))
             .collect();
         let mut has_running = vec![false; surface.len()];
         for (runs, particle, _) in &splits {
@@ -136,10 +137,12 @@ impl TearSearch {
         &mut self,
         tearing: &ClothTearing,
         material: &ClothMaterial,
-        surface: &Surface,
+        (surface, springs): (&Surface, &Springs),
     ) {
         let Self {
-            places, overloaded, ..
+            places,
+            overloaded,
+            stress,
         } = self;
         overloaded.clear();
         let [weft, warp] = material.stretch_compliances();
@@ -147,53 +150,31 @@ impl TearSearch {
         surface.for_each_thread(|ends, rest_length, along_warp| {
             let [a, b] = ends.map(|end| places[end as usize]);
             let stretch = a.distance(b) / rest_length - 1.0;
-            // Between both, as an ellipse has it.
-            let borne = match along_warp {
-                0.0 => bears[0],
-                1.0 => bears[1],
-                square => {
-                    1.0 / ((1.0 - square) / bears[0].powi(2) + square / bears[1].powi(2)).sqrt()
-                }
-            };
+            let borne = between(bears, along_warp);
             if stretch > borne {
-                overloaded.push((stretch / borne, ends));
+                overloaded.push((stretch / borne, ends, along_warp));
             }
         });
-        // Edges of an irregular mesh are stretched unevenly: the mean of the faces around counts, too.
-        if surface.rest_grid().is_none() {
-            overloaded.retain_mut(|(load, ends)| {
-                let [a, b] = ends.map(|end| places[end as usize]);
-                let at_rest = ends.map(|end| surface.rest_positions()[end as usize]);
-                let own = a.distance(b) / at_rest[0].distance(at_rest[1]) - 1.0;
-                *load *= (mean_stretch(*ends, surface, places) / own).min(1.0);
+        // Edges of an irregular mesh are stretched unevenly: the load of the patch around counts, too.
+        if surface.rest_grid().is_none() && !overloaded.is_empty() {
+            stress.find(springs, surface, places);
+            let [weft, warp] = [tearing.weft_strength, tearing.strength];
+            overloaded.retain_mut(|(load, ends, along_warp)| {
+                let borne = between([weft, warp], *along_warp);
+                *load = load.min(stress.along(*ends, places) / borne);
                 *load > 1.0
             });
         }
     }
 }
 
-/// The stretch along an edge of the faces at both of its ends, weighted by their areas.
-fn mean_stretch(ends: [u32; 2], surface: &Surface, places: &[Vec3]) -> f32 {
-    let rest = surface.rest_positions();
-    let [from, to] = ends.map(|end| rest[end as usize]);
-    let direction = (to - from).normalize_or_zero();
-    let (mut sum, mut areas) = (0.0, 0.0);
-    for face in ends.into_iter().flat_map(|end| surface.faces_around(end)) {
-        let [a, b, c] = face.map(|corner| rest[corner as usize]);
-        let (p, q) = (b - a, c - a);
-        let [pp, pq, qq] = [p.dot(p), p.dot(q), q.dot(q)];
-        let square = pp * qq - pq * pq;
-        let (u, v) = (direction.dot(p), direction.dot(q));
-        // The direction in parts of both edges, and where these parts are now.
-        let parts = [(u * qq - v * pq) / square, (v * pp - u * pq) / square];
-        let at_rest = (p * parts[0] + q * parts[1]).length();
-        let [a, b, c] = face.map(|corner| places[corner as usize]);
-        let now = ((b - a) * parts[0] + (c - a) * parts[1]).length();
-        let area = square.max(0.0).sqrt();
-        sum += area * (now - at_rest);
-        areas += area;
+/// The strength of a thread from those of weft and warp, as an ellipse has it, by the square of the cosine of its angle with the warp.
+fn between([weft, warp]: [f32; 2], along_warp: f32) -> f32 {
+    match along_warp {
+        0.0 => weft,
+        1.0 => warp,
+        square => 1.0 / ((1.0 - square) / weft.powi(2) + square / warp.powi(2)).sqrt(),
     }
-    if areas > 0.0 { sum / areas } else { 0.0 }
 }
 
 /// Marks the particles at which a tear ends: torn edges lead there, and it is still one.

@@ -68,11 +68,15 @@ impl Pin {
         if let Self::Index(index) = self {
             return pinned(*index);
         }
+        let mut is_named = vec![false; if surface.is_torn() { surface.len() } else { 0 }];
         self.for_each_whole(surface, |index| {
             pinned(index);
-            let parts = surface.copies().filter(|(_, of)| *of as usize == index);
-            parts.for_each(|(part, _)| pinned(part as usize));
+            if let Some(is_named) = is_named.get_mut(index) {
+                *is_named = true;
+            }
         });
+        let parts = surface.copies().filter(|(_, of)| is_named[*of as usize]);
+        parts.for_each(|(part, _)| pinned(part as usize));
     }
 
     fn for_each_whole(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {

@@ -184,7 +184,7 @@ impl Welded {
             .into_iter()
             .filter(|particle| !graph.of(*particle).is_empty())
             .collect();
-        self.pieces = graph.pieces(&order);
+        self.pieces = graph.pieces();
         let mut number = vec![NO_PARTICLE; self.rest.len()];
         for (index, &particle) in order.iter().enumerate() {
             number[particle as usize] = index as u32;

@@ -139,20 +139,11 @@ impl Graph {
         pieces
     }
 
-    /// Number of connected pieces of the particles in an `order`: a piece begins at each particle without an earlier
-    /// neighbour.
-    pub fn pieces(&self, order: &[u32]) -> usize {
-        let mut is_before = vec![false; self.len()];
-        let begins = |particle: &&u32| {
-            let neighbours = self.of(**particle).iter();
-            let is_joined = neighbours
-                .into_iter()
-                .any(|near| is_before[near.0 as usize]);
-            is_before[**particle as usize] = true;
-            !is_joined
-        };
-        let mut begins = begins;
-        order.iter().filter(|particle| begins(particle)).count()
+    /// Number of connected pieces of more than one particle.
+    pub fn pieces(&self) -> usize {
+        let alone = (0..self.len() as u32).filter(|particle| self.of(*particle).is_empty());
+        let last = self.pieces_of().into_iter().max();
+        last.map_or(0, |last| last as usize + 1) - alone.count()
     }
 }
 

@@ -62,6 +62,9 @@ fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere 
     BoundingSphere::new(middle, radius.max(0.0))
 }
 
+/// Particles of a torn grid's largest patches that have a radius.
+const PATCH: usize = 64;
+
 impl Default for QuadTree {
     /// A tree without particles.
     fn default() -> Self {
@@ -75,10 +78,13 @@ impl QuadTree {
     pub fn of_surface(surface: &Surface, diagonals: bool) -> Self {
         match surface.as_grid() {
             Some(grid) => Self::of_grid(grid, diagonals),
-            None => Self(Arc::new(NetworkTree::new(
-                surface.rest_positions(),
-                surface.graph(),
-            ))),
+            None => {
+                // Large patches of a torn grid have no radius: measuring them would take long as it tears.
+                let is_torn_grid = surface.rest_grid().is_some();
+                let measured = if is_torn_grid { PATCH } else { usize::MAX };
+                let (rest, graph) = (surface.rest_positions(), surface.graph());
+                Self(Arc::new(NetworkTree::new(rest, graph, measured)))
+            }
         }
     }
 
@@ -123,7 +129,7 @@ impl QuadTree {
             rest.len(),
             paths.map(|spring| (spring.ends, spring.rest_length)),
         );
-        Ok(Self(Arc::new(NetworkTree::new(rest, &graph))))
+        Ok(Self(Arc::new(NetworkTree::new(rest, &graph, usize::MAX))))
     }
 
     /// Number of nodes.

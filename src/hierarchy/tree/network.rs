@@ -44,8 +44,9 @@ struct NetworkNode {
 }
 
 impl NetworkTree {
-    /// Builds a tree over particles at `rest` (m), with paths along the edges of `graph`.
-    pub fn new(rest: &[Vec3], graph: &Graph) -> Self {
+    /// Builds a tree over particles at `rest` (m), with paths along the edges of `graph`. A patch of more than `measured` particles
+    /// gets an infinite radius, and is taken for flat.
+    pub fn new(rest: &[Vec3], graph: &Graph, measured: usize) -> Self {
         let layout = Layout::new(rest.len() as u32, 1);
         let mut tree = Self {
             layout,
@@ -66,10 +67,12 @@ impl NetworkTree {
             let is_last = patches.iter().all(|patch| patch.len() == 1);
             let mut parts = Vec::new();
             for patch in patches {
-                let (middle, rest_radius) = splitter.measure(patch.clone());
+                let is_measured = patch.len() <= measured;
+                let (middle, rest_radius) = splitter.measure(patch.clone(), is_measured);
                 let child = below + parts.len() as u32;
                 if !is_last {
-                    splitter.split(patch, rest_radius, &mut parts);
+                    let is_folded = is_measured && splitter.is_folded(patch.clone(), rest_radius);
+                    splitter.split(patch, is_folded, &mut parts);
                 }
                 let end = if is_last {
                     child
@@ -241,8 +244,8 @@ struct Splitter<'a> {
 
 impl Splitter<'_> {
     /// The middle particle of a patch, nearest to its centroid, and the largest distance along the surface from it to
-    /// another one of the patch (m).
-    fn measure(&mut self, patch: Range<usize>) -> (u32, f32) {
+    /// another one of the patch (m), if that is to be measured.
+    fn measure(&mut self, patch: Range<usize>, is_measured: bool) -> (u32, f32) {
         let members = &self.order[patch];
         let at = |particle: u32| self.rest[particle as usize].as_dvec3();
         let centroid =
@@ -254,12 +257,14 @@ impl Splitter<'_> {
             .copied()
             .min_by(nearest)
             .expect("no patch is empty");
-        (middle, self.paths.farthest(middle, members))
+        match is_measured {
+            true => (middle, self.paths.farthest(middle, members)),
+            false => (middle, f32::INFINITY),
+        }
     }
 
     /// Halves a patch, and each half.
-    fn split(&mut self, patch: Range<usize>, rest_radius: f32, parts: &mut Vec<Range<usize>>) {
-        let is_folded = self.is_folded(patch.clone(), rest_radius);
+    fn split(&mut self, patch: Range<usize>, is_folded: bool, parts: &mut Vec<Range<usize>>) {
         for half in self.bisect(patch, is_folded) {
             parts.extend(self.bisect(half, is_folded));
         }

@@ -2,6 +2,7 @@
 
 use bevy::{
     ecs::{
+        change_detection::DetectChangesMut,
         entity::Entity,
         system::{Query, SystemParam},
     },
@@ -75,8 +76,10 @@ impl ClothBlade<'_, '_> {
             let to_cloth = frame.isometry().inverse();
             let [from, to] = [from, to].map(|blade| blade.map(|end| to_cloth * end));
             let edges = Cut::new(from, to).edges(built.surface(), particles);
-            if !edges.is_empty() {
-                torn += tears.tear_all(edges);
+            let new = tears.bypass_change_detection().tear_all(edges);
+            if new > 0 {
+                tears.set_changed();
+                torn += new;
             }
         }
         torn

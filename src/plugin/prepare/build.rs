@@ -30,6 +30,9 @@ pub(crate) fn build(
     let is_open = !state.resumes || built.tears().edges().len() == state.inputs.opened;
     if has_grain && is_open && built.is_torn_by(wanted.tears) {
         follow_changes(wanted, parts, particles, built, state)?;
+        if let Some(from) = &mut built.from {
+            from.torn = wanted.torn();
+        }
         return Ok(Build::Kept);
     }
     // Inputs that failed once are not tried again: checking a mesh takes milliseconds.

@@ -292,8 +292,8 @@ fn apply_motion(
         &mut scratch.targets,
     )?;
     let target = state.attachments.targets.first().copied();
-    let (moves, was_built) = (seconds > 0.0, build == Build::Kept);
-    scratch.carried = match moves && build != Build::New {
+    let (moves, goes_on) = (seconds > 0.0, build != Build::New);
+    scratch.carried = match moves && goes_on {
         true => roots.carry(cloth.entity, target)?,
         false => None,
     };
@@ -305,7 +305,7 @@ fn apply_motion(
         || target.is_some_and(|target| roots.jumps(target));
     if let Some(skin) = &cloth.game.skin
         && moves
-        && was_built
+        && goes_on
     {
         let displacement = scratch.pose.farthest_from(&state.pose, new_from_old);
         // A frozen cloth is put where its skeleton has moved meanwhile.
@@ -319,8 +319,8 @@ fn apply_motion(
         state.rest.disturb();
         *cloth.frame = *frame;
     }
-    if moves || !was_built || scratch.teleports {
-        move_with_pose(new_from_old, was_built, particles, built, state, scratch);
+    if moves || build != Build::Kept || scratch.teleports {
+        move_with_pose(new_from_old, goes_on, particles, built, state, scratch);
         follow_targets(
             attachments,
             &scratch.targets,

@@ -56,6 +56,7 @@ pub(super) fn follow_tears(
     let place = place_of_tear([&recipe.tears, built.tears()], before.len(), particles);
     built.unreported_tear = place.map(|place| (place, count));
     hold_parts(surface, &parents, state);
+    state.pose.take_parts(&parents);
     // They are those of other faces.
     state.creases.clear();
     built.solver = shared.solver.clone();

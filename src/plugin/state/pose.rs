@@ -164,6 +164,17 @@ impl Pose {
         };
     }
 
+    /// Takes over other particles, each in the place of one of the known ones.
+    pub fn take_parts(&mut self, of: &[u32]) {
+        let taken = |known: &[Vec3]| -> Vec<Vec3> {
+            let each = of.iter();
+            each.filter_map(|of| known.get(*of as usize).copied())
+                .collect()
+        };
+        self.places = taken(&self.places);
+        self.normals = taken(&self.normals);
+    }
+
     /// Copies `other` into its own memory.
     pub fn copy_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);

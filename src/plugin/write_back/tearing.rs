@@ -2,6 +2,7 @@
 
 use bevy::{
     ecs::{
+        change_detection::DetectChangesMut,
         entity::Entity,
         message::{Message, MessageWriter},
         system::{Local, Query},
@@ -51,9 +52,16 @@ pub(crate) fn tear_cloths(
             && built.tears() == &*tears;
         let material = material.copied().unwrap_or_default();
         if is_ready && tearing.validate(&material).is_ok() {
-            let torn = search.edges(tearing, &material, built.surface(), particles, &tears);
-            if !torn.is_empty() {
-                tears.tear_all(torn);
+            let torn = search.edges(
+                tearing,
+                &material,
+                (built.surface(), built.springs()),
+                particles,
+                &tears,
+            );
+            tears.bypass_change_detection().tear_all(torn);
+            if built.tears() != &*tears {
+                tears.set_changed();
             }
         }
     }

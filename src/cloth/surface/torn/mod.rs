@@ -318,9 +318,8 @@ impl Torn {
                 ..Derived::default()
             },
         };
-        let pieces = surface.graph().pieces_of().into_iter().max();
         surface.extent = Extent {
-            pieces: pieces.map_or(0, |last| last as usize + 1),
+            pieces: surface.graph().pieces(),
             ..whole.extent
         };
         surface.rest = surface.parted(&surface.rest, |particle| surface.origin_of(particle));

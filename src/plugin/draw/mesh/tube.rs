@@ -25,6 +25,11 @@ pub(super) fn radius_of(surface: &Surface) -> Option<f32> {
     surface.as_grid()?.unscaled_rope_radius()
 }
 
+/// Number of vertices of a rope's tube.
+pub(super) fn vertices(surface: &Surface) -> usize {
+    RING * rings(surface.len())
+}
+
 /// Number of rings of so many particles, with one for each end.
 fn rings(particles: usize) -> usize {
     RINGS * (particles - 1) + 3

@@ -92,9 +92,10 @@ impl TornVertices {
 
     /// Number of vertices.
     pub fn len(&self, surface: &Surface) -> usize {
-        match self.0.len() {
-            0 => surface.vertices(),
-            count => count,
+        match (self.0.len(), tube::radius_of(surface)) {
+            (_, Some(_)) => tube::vertices(surface),
+            (0, _) => surface.vertices(),
+            (count, _) => count,
         }
     }
 
@@ -132,14 +133,22 @@ impl TornVertices {
         }
         mesh.insert_indices(Indices::U32(origins));
         mesh.duplicate_vertices();
-        let mut list = Mesh::new(PrimitiveTopology::TriangleList, mesh.asset_usage);
-        for (attribute, values) in mesh.attributes() {
-            list.insert_attribute(*attribute, values.clone());
-        }
-        let indices = triangles.into_iter().flatten().collect();
-        *mesh = list.with_inserted_indices(Indices::U32(indices));
+        *mesh = with_triangles(mesh, triangles.iter());
         Self(particles)
     }
+}
+
+/// A copy of a mesh with these triangles in place of its own.
+pub(in crate::plugin::draw) fn with_triangles<'a>(
+    mesh: &Mesh,
+    triangles: impl Iterator<Item = &'a [u32; 3]>,
+) -> Mesh {
+    let mut list = Mesh::new(PrimitiveTopology::TriangleList, mesh.asset_usage);
+    for (attribute, values) in mesh.attributes() {
+        list.insert_attribute(*attribute, values.clone());
+    }
+    let corners = triangles.flatten().copied().collect();
+    list.with_inserted_indices(Indices::U32(corners))
 }
 
 /// A copy of an asset for one cloth: it is read and written, and lit. Triangles outside the surface are left out, as
@@ -172,12 +181,7 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<(Mesh, TornVert
         corners.all(|corner| surface.particle_of_vertex(*corner as usize).is_some())
     };
     if triangles.iter().filter(moves).count() < triangles.len() {
-        let left = triangles.iter().filter(moves).flatten().copied().collect();
-        let mut list = Mesh::new(PrimitiveTopology::TriangleList, mesh.asset_usage);
-        for (attribute, values) in mesh.attributes() {
-            list.insert_attribute(*attribute, values.clone());
-        }
-        mesh = list.with_inserted_indices(Indices::U32(left));
+        mesh = with_triangles(&mesh, triangles.iter().filter(moves));
     }
     let triangles = triangles
         .into_iter()

@@ -3,14 +3,14 @@
 use bevy::{
     asset::RenderAssetUsages,
     math::{Affine3A, Vec3, Vec4},
-    mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
+    mesh::{Mesh, VertexAttributeValues},
     transform::components::GlobalTransform,
 };
 
 use crate::{
     cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh},
     plugin::{
-        draw::mesh::MeshDrawing,
+        draw::mesh::{MeshDrawing, with_triangles},
         frame::{rigid, unusable},
     },
 };
@@ -179,12 +179,7 @@ fn without_gaps(
         let [a, b, c] = [a, b, c].map(|vertex| binding.face_of(*vertex as usize));
         surface.hang_together(a, b) && surface.hang_together(b, c)
     };
-    let left = triangles.iter().filter(is_whole).flatten().copied();
-    let mut list = Mesh::new(PrimitiveTopology::TriangleList, mesh.asset_usage);
-    for (attribute, values) in mesh.attributes() {
-        list.insert_attribute(*attribute, values.clone());
-    }
-    list.with_inserted_indices(Indices::U32(left.collect()))
+    with_triangles(mesh, triangles.iter().filter(is_whole))
 }
 
 /// The normals of a mesh that has none: of its faces at each vertex, by their areas.

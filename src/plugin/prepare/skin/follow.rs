@@ -152,7 +152,7 @@ fn begin_in_pose(pose: &Pose, particles: &mut Mut<ClothParticles>, built: &Cloth
 /// `new_from_old`. That is `None` if the cloth is new or teleports.
 pub(crate) fn move_with_pose(
     new_from_old: Isometry3d,
-    was_built: bool,
+    goes_on: bool,
     particles: &mut Mut<ClothParticles>,
     built: &mut ClothBuilt,
     state: &mut ClothState,
@@ -161,7 +161,7 @@ pub(crate) fn move_with_pose(
     if built.skin.is_none() {
         return;
     }
-    let was_there = was_built && !state.pose.places.is_empty();
+    let was_there = goes_on && !state.pose.places.is_empty();
     std::mem::swap(&mut scratch.pose, &mut state.pose);
     let (from, to) = (&mut scratch.pose, &state.pose);
     let turn = to.turn_since(from);

@@ -1,0 +1,140 @@
+//! The stress in a cloth, from the forces of its springs.
+
+use bevy::math::Vec3;
+
+use super::{springs::Springs, surface::Surface};
+
+/// How many times stresses are shared with neighbours: a patch of two rings of faces.
+const RINGS: usize = 2;
+
+/// The stress around each particle, times the area of its patch (N m), and that area (m²).
+///
+/// The force T of a spring of length L in direction d makes a stress `½ T L d dᵀ` over the areas of its ends (the virial). In a mesh of
+/// springs, edges side by side bear loads that differ by a half and more. Their mean over two rings of faces differs by a tenth to a fifth.
+#[derive(Debug, Default)]
+pub(super) struct Stress {
+    around: Vec<Patch>,
+    before: Vec<Patch>,
+}
+
+/// `σ_xx σ_yy σ_zz`, `σ_xy σ_yz σ_zx`, and the area.
+#[derive(Debug, Default, Clone, Copy)]
+struct Patch(Vec3, Vec3, f32);
+
+impl Stress {
+    /// Finds the stress of springs between particles at these places (m). Rigid springs don't count.
+    pub fn find(&mut self, springs: &Springs, surface: &Surface, places: &[Vec3]) {
+        let Self { around, before } = self;
+        around.clear();
+        let areas = (0..surface.len()).map(|particle| surface.area_of(particle));
+        around.extend(areas.map(|area| Patch(Vec3::ZERO, Vec3::ZERO, area)));
+        springs.for_each(|_, spring| {
+            let [a, b] = spring.ends.map(|end| places[end as usize]);
+            let length = a.distance(b);
+            if spring.compliance <= 0.0 || length <= 0.0 {
+                return;
+            }
+            let direction = (b - a) / length;
+            let half = 0.5 * length * (length - spring.rest_length) / spring.compliance;
+            for end in spring.ends {
+                let Patch(straight, sheared, _) = &mut around[end as usize];
+                *straight += half * direction * direction;
+                *sheared += half * direction * Vec3::new(direction.y, direction.z, direction.x);
+            }
+        });
+        for _ in 0..RINGS {
+            before.clone_from(around);
+            for (particle, patch) in around.iter_mut().enumerate() {
+                for (beside, _) in surface.graph().of(particle as u32) {
+                    let other = before[*beside as usize];
+                    *patch = Patch(patch.0 + other.0, patch.1 + other.1, patch.2 + other.2);
+                }
+            }
+        }
+    }
+
+    /// The force along an edge, over the width of the cloth that bears it (N/m).
+    pub fn along(&self, ends: [u32; 2], places: &[Vec3]) -> f32 {
+        let [from, to] = ends.map(|end| places[end as usize]);
+        let d = (to - from).normalize_or_zero();
+        let mixed = 2.0 * d * Vec3::new(d.y, d.z, d.x);
+        let of = |end: u32| {
+            let Patch(straight, sheared, area) = self.around[end as usize];
+            ((d * d).dot(straight) + mixed.dot(sheared)) / area
+        };
+        (of(ends[0]) + of(ends[1])) / 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::{Cloth, ClothMaterial};
+
+    /// A regular mesh that is stretched evenly has the stress that its material says, in all of its patches but those at a border,
+    /// whichever way it is turned.
+    #[test]
+    fn an_even_stretch_has_an_even_stress() {
+        let material = ClothMaterial {
+            stretch_compliance: 1.0e-3,
+            shear_compliance: f32::INFINITY,
+            ..ClothMaterial::COTTON
+        };
+        let side = 12_u32;
+        // Equilateral triangles.
+        let place = |index: u32| {
+            let (row, column) = (index / side, index % side);
+            let shift = if row % 2 == 1 { 0.5 } else { 0.0 };
+            Vec3::new(column as f32 + shift, row as f32 * 0.75_f32.sqrt(), 0.0) * 0.1
+        };
+        let cells = (0..side * (side - 1)).filter(|index| index % side < side - 1);
+        let faces = cells.flat_map(|a| {
+            let (b, c, d) = (a + 1, a + side, a + side + 1);
+            match (a / side) % 2 {
+                0 => [[a, b, c], [b, d, c]],
+                _ => [[a, b, d], [a, d, c]],
+            }
+        });
+        let cloth = Cloth::triangles((0..side * side).map(place), faces);
+        let surface = cloth.surface(Vec3::ONE).expect("a valid mesh");
+        let springs = Springs::of_surface(&surface, &material);
+        let turn = bevy::math::Quat::from_rotation_x(0.7) * bevy::math::Quat::from_rotation_z(1.1);
+        for (stretch, direction) in [
+            (Vec3::new(0.01, 0.0, 0.0), Vec3::X),
+            (Vec3::new(0.01, 0.01, 0.0), Vec3::Y),
+        ] {
+            let moved: Vec<Vec3> = surface
+                .rest_positions()
+                .iter()
+                .map(|at| turn * (*at * (Vec3::ONE + stretch)))
+                .collect();
+            let mut stress = Stress::default();
+            stress.find(&springs, &surface, &moved);
+            // Springs of all directions have a Poisson's ratio of a third: E h ⁄ (1 − ν²) (ε₁ + ν ε₂), with E h = 1 ⁄ compliance.
+            let [own, other] = match direction == Vec3::X {
+                true => [stretch.x, stretch.y],
+                false => [stretch.y, stretch.x],
+            };
+            let truth = (own + other / 3.0) / (8.0 / 9.0) / material.stretch_compliance;
+            let middle = Vec3::new(0.6, 0.5, 0.0);
+            let rest = surface.rest_positions();
+            let near = (0..surface.len() as u32).min_by(|a, b| {
+                let far = |of: u32| rest[of as usize].distance(middle);
+                far(*a).total_cmp(&far(*b))
+            });
+            let near = near.expect("particles");
+            let beside = surface.graph().of(near).iter().map(|(beside, _)| *beside);
+            for beside in beside {
+                let d = (rest[beside as usize] - rest[near as usize]).normalize();
+                if d.dot(direction).abs() > 0.999 {
+                    let found = stress.along([near, beside], &moved);
+                    // To second order in the stretch.
+                    assert!(
+                        (found / truth - 1.0).abs() < 0.04,
+                        "{found} N/m, {truth} N/m"
+                    );
+                }
+            }
+        }
+    }
+}
