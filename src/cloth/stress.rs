@@ -99,10 +99,7 @@ mod tests {
         let surface = cloth.surface(Vec3::ONE).expect("a valid mesh");
         let springs = Springs::of_surface(&surface, &material);
         let turn = bevy::math::Quat::from_rotation_x(0.7) * bevy::math::Quat::from_rotation_z(1.1);
-        for (stretch, direction) in [
-            (Vec3::new(0.01, 0.0, 0.0), Vec3::X),
-            (Vec3::new(0.01, 0.01, 0.0), Vec3::Y),
-        ] {
+        for stretch in [Vec3::X, Vec3::X + Vec3::Y].map(|of| 0.01 * of) {
             let moved: Vec<Vec3> = surface
                 .rest_positions()
                 .iter()
@@ -111,11 +108,7 @@ mod tests {
             let mut stress = Stress::default();
             stress.find(&springs, &surface, &moved);
             // Springs of all directions have a Poisson's ratio of a third: E h ⁄ (1 − ν²) (ε₁ + ν ε₂), with E h = 1 ⁄ compliance.
-            let [own, other] = match direction == Vec3::X {
-                true => [stretch.x, stretch.y],
-                false => [stretch.y, stretch.x],
-            };
-            let truth = (own + other / 3.0) / (8.0 / 9.0) / material.stretch_compliance;
+            let truth = (stretch.x + stretch.y / 3.0) / (8.0 / 9.0) / material.stretch_compliance;
             let middle = Vec3::new(0.6, 0.5, 0.0);
             let rest = surface.rest_positions();
             let near = (0..surface.len() as u32).min_by(|a, b| {
@@ -126,7 +119,7 @@ mod tests {
             let beside = surface.graph().of(near).iter().map(|(beside, _)| *beside);
             for beside in beside {
                 let d = (rest[beside as usize] - rest[near as usize]).normalize();
-                if d.dot(direction).abs() > 0.999 {
+                if d.x.abs() > 0.999 {
                     let found = stress.along([near, beside], &moved);
                     // To second order in the stretch.
                     assert!(
