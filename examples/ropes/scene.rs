@@ -144,7 +144,7 @@ fn spawn_sail(mut shop: Workshop) {
         let tie = shop.commands.spawn(tie).id();
         let end = Pin::Index(particles as usize - 1);
         shop.commands
-            .spawn(ClothSeam::new((tie, end), (sail, Pin::Corner(corner))));
+            .spawn(ClothSeam::new((tie, end), (sail, Pin::Corner(corner))).closing_in(1.0));
     }
 }
 
@@ -175,7 +175,7 @@ fn spawn_swing(mut shop: Workshop) -> Result {
             Pins::new(ends.clone()),
             hemp(),
             // They carry many times their own weight.
-            ClothSettings::substeps(60),
+            ClothSettings::substeps(90),
             paint.clone(),
             ShowClothGizmos::nothing(),
             Transform::from_xyz(x, BAR, 0.0),

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use super::{springs::Springs, surface::Surface};
+use super::surface::Surface;
 
 /// How many times stresses are shared with neighbours: a patch of two rings of faces.
 const RINGS: usize = 2;
@@ -11,6 +11,7 @@ const RINGS: usize = 2;
 ///
 /// The force T of a spring of length L in direction d makes a stress `½ T L d dᵀ` over the areas of its ends (the virial). In a mesh of
 /// springs, edges side by side bear loads that differ by a half and more. Their mean over two rings of faces differs by a tenth to a fifth.
+/// Tensions are those that the solver applied: they balance, where stretches have errors of a sub-step.
 #[derive(Debug, Default)]
 pub(super) struct Stress {
     around: Vec<Patch>,
@@ -22,21 +23,23 @@ pub(super) struct Stress {
 struct Patch(Vec3, Vec3, f32);
 
 impl Stress {
-    /// Finds the stress of springs between particles at these places (m). Rigid springs don't count.
-    pub fn find(&mut self, springs: &Springs, surface: &Surface, places: &[Vec3]) {
+    /// Finds the stress of springs between particles at these places (m). `tensions` calls its argument with each spring's ends and
+    /// tension (N).
+    pub fn find(
+        &mut self,
+        tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
+        surface: &Surface,
+        places: &[Vec3],
+    ) {
         let Self { around, before } = self;
         around.clear();
         let areas = (0..surface.len()).map(|particle| surface.area_of(particle));
         around.extend(areas.map(|area| Patch(Vec3::ZERO, Vec3::ZERO, area)));
-        springs.for_each(|_, spring| {
-            let [a, b] = spring.ends.map(|end| places[end as usize]);
-            let length = a.distance(b);
-            if spring.compliance <= 0.0 || length <= 0.0 {
-                return;
-            }
-            let direction = (b - a) / length;
-            let half = 0.5 * length * (length - spring.rest_length) / spring.compliance;
-            for end in spring.ends {
+        tensions(&mut |ends, tension| {
+            let [a, b] = ends.map(|end| places[end as usize]);
+            let half = 0.5 * a.distance(b) * tension;
+            let direction = (b - a).normalize_or_zero();
+            for end in ends {
                 let Patch(straight, sheared, _) = &mut around[end as usize];
                 *straight += half * direction * direction;
                 *sheared += half * direction * Vec3::new(direction.y, direction.z, direction.x);
@@ -69,7 +72,7 @@ impl Stress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloth::{Cloth, ClothMaterial};
+    use crate::cloth::{Cloth, ClothMaterial, Springs};
 
     /// A regular mesh that is stretched evenly has the stress that its material says, in all of its patches but those at a border,
     /// whichever way it is turned.
@@ -106,7 +109,14 @@ mod tests {
                 .map(|at| turn * (*at * (Vec3::ONE + stretch)))
                 .collect();
             let mut stress = Stress::default();
-            stress.find(&springs, &surface, &moved);
+            let tensions = |visit: &mut dyn FnMut([u32; 2], f32)| {
+                springs.for_each(|_, spring| {
+                    let [a, b] = spring.ends.map(|end| moved[end as usize]);
+                    let longer = a.distance(b) - spring.rest_length;
+                    visit(spring.ends, longer / spring.compliance);
+                });
+            };
+            stress.find(tensions, &surface, &moved);
             // Springs of all directions have a Poisson's ratio of a third: E h ⁄ (1 − ν²) (ε₁ + ν ε₂), with E h = 1 ⁄ compliance.
             let truth = (stretch.x + stretch.y / 3.0) / (8.0 / 9.0) / material.stretch_compliance;
             let middle = Vec3::new(0.6, 0.5, 0.0);

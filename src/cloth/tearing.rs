@@ -7,8 +7,8 @@ use bevy::{
 };
 
 use super::{
-    error::ClothError, material::ClothMaterial, particles::ClothParticles, springs::Springs,
-    stress::Stress, surface::Surface, tears::ClothTears,
+    error::ClothError, material::ClothMaterial, particles::ClothParticles, stress::Stress,
+    surface::Surface, tears::ClothTears,
 };
 
 /// Tears a cloth where its threads bear more than their strength. A tear begins at the thread that is overloaded most, and runs
@@ -91,18 +91,20 @@ pub(crate) struct TearSearch {
 
 impl TearSearch {
     /// Tears at the most overloaded edge of each part of a cloth, or at those at which its tears end: a tear that runs takes
-    /// the load off the rest. Returns these edges, of the whole surface.
+    /// the load off the rest. Returns these edges, of the whole surface. `tensions` calls its argument with the ends and the tension of
+    /// each spring of a mesh (N).
     pub fn edges(
         &mut self,
         tearing: &ClothTearing,
         material: &ClothMaterial,
-        (surface, springs): (&Surface, &Springs),
+        surface: &Surface,
         particles: &ClothParticles,
         tears: &ClothTears,
+        tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
     ) -> Vec<[u32; 2]> {
         self.places.clear();
         self.places.extend(particles.positions());
-        self.find_overloaded(tearing, material, (surface, springs));
+        self.find_overloaded(tearing, material, surface, tensions);
         if self.overloaded.is_empty() {
             return Vec::new();
         }
@@ -137,7 +139,8 @@ impl TearSearch {
         &mut self,
         tearing: &ClothTearing,
         material: &ClothMaterial,
-        (surface, springs): (&Surface, &Springs),
+        surface: &Surface,
+        tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
     ) {
         let Self {
             places,
@@ -157,7 +160,7 @@ impl TearSearch {
         });
         // Edges of an irregular mesh are stretched unevenly: the load of the patch around counts, too.
         if surface.rest_grid().is_none() && !overloaded.is_empty() {
-            stress.find(springs, surface, places);
+            stress.find(tensions, surface, places);
             let [weft, warp] = [tearing.weft_strength, tearing.strength];
             overloaded.retain_mut(|(load, ends, along_warp)| {
                 let borne = between([weft, warp], *along_warp);

@@ -252,6 +252,21 @@ impl SpringSolver for ListSolver {
         self.stretch(|spring| place(spring.ends[0]).distance_squared(place(spring.ends[1])))
     }
 
+    fn for_each_tension(&self, visit: &mut dyn FnMut([u32; 2], f32)) {
+        let scale = self.step_scale.inverse_weight;
+        self.chains
+            .for_each_pull(|ends, rest, _, pull| visit(ends, scale * pull / rest));
+        for (packet, pull) in self.packets.iter().zip(&self.pulls) {
+            let [squares, pulls] = [packet.rest_square, *pull].map(|of| of.to_array());
+            for at in 0..SPRINGS {
+                let tension = scale * pulls[at] * squares[at].sqrt();
+                if tension != 0.0 {
+                    visit([packet.from[at], packet.to[at]], tension);
+                }
+            }
+        }
+    }
+
     fn boxed(&self) -> Box<dyn SpringSolver> {
         Box::new(self.clone())
     }

@@ -55,9 +55,10 @@ pub(crate) fn tear_cloths(
             let torn = search.edges(
                 tearing,
                 &material,
-                (built.surface(), built.springs()),
+                built.surface(),
                 particles,
                 &tears,
+                |visit| built.solver.for_each_tension(visit),
             );
             tears.bypass_change_detection().tear_all(torn);
             if built.tears() != &*tears {

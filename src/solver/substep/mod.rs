@@ -172,6 +172,11 @@ impl Solver {
         self.air.as_ref().map_or(Vec3::ZERO, |air| air.impulse())
     }
 
+    /// Calls `visit` with the ends of each spring of a mesh, and its tension in the last sub-step (N).
+    pub(crate) fn for_each_tension(&self, visit: &mut dyn FnMut([u32; 2], f32)) {
+        self.spring_solver.for_each_tension(visit);
+    }
+
     /// The volume that a closed mesh encloses (m³), and its gauge pressure (Pa), as of the last sub-step; 0 without
     /// [`Air::pressure`].
     pub fn enclosed(&self) -> (f32, f32) {
