@@ -328,10 +328,10 @@ fn a_strip_tears_at_its_strength() {
     }
 }
 
-/// So does an irregular mesh that a weight hangs from, while gravity grows until it tears. The springs of such a mesh bear unlike loads, also
-/// averaged over two rings of faces, and most of all beside a clamp: it tears somewhat early, and never late.
+/// So does an irregular mesh that a weight hangs from, while gravity grows until it is in two. At rest a patch of two rings of faces bears
+/// up to a fifth more or less than the mean, see `cloth/stress.rs`; what the solver leaves in default sub-steps is a twentieth.
 #[test]
-fn a_mesh_tears_below_its_strength() {
+fn a_mesh_tears_at_about_its_strength() {
     let material = ClothMaterial {
         stretch_compliance: 5.0e-4,
         shear_compliance: 1.0e-2,
@@ -362,22 +362,24 @@ fn a_mesh_tears_below_its_strength() {
         let mass = motion(&app, cloth).0 as f32;
         let load = |gravity: f32| mass * gravity / 0.4;
         let most = strength * 0.4 / mass;
-        let mut gravity = 0.0;
-        while tears(&app, cloth).is_empty() && gravity < 1.2 * most {
+        let (mut gravity, mut begins) = (0.0, None);
+        while surface(&app, cloth).pieces() < 2 && gravity < 1.5 * most {
             gravity += 1.0e-3 * most;
             app.insert_resource(ClothGravity(Vec3::NEG_Y * gravity));
             tick(&mut app, 1);
+            if begins.is_none() && !tears(&app, cloth).is_empty() {
+                begins = Some(load(gravity) / strength);
+            }
         }
-        let part = load(gravity) / strength;
+        let (begins, apart) = (begins.unwrap_or(f32::MAX), load(gravity) / strength);
         println!(
-            "{}, moved by {jitter} spacings: tears at {:.1} % of its strength",
+            "{}, moved by {jitter} spacings: tears at {:.1} % of its strength, is in two at {:.1} %",
             surface(&app, cloth),
-            100.0 * part
+            100.0 * begins,
+            100.0 * apart
         );
-        assert!(part > 0.5 && part < 1.05, "{part}");
-        tick(&mut app, 300);
-        let pieces = surface(&app, cloth).pieces();
-        assert!(pieces >= 2, "{pieces}");
+        assert!((begins - 1.0).abs() < 0.25, "{begins}");
+        assert!(apart < 1.4, "{apart}");
     }
 }
 

@@ -62,9 +62,6 @@ fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere 
     BoundingSphere::new(middle, radius.max(0.0))
 }
 
-/// Particles of a torn grid's largest patches that have a radius.
-const PATCH: usize = 64;
-
 impl Default for QuadTree {
     /// A tree without particles.
     fn default() -> Self {
@@ -78,13 +75,10 @@ impl QuadTree {
     pub fn of_surface(surface: &Surface, diagonals: bool) -> Self {
         match surface.as_grid() {
             Some(grid) => Self::of_grid(grid, diagonals),
-            None => {
-                // Large patches of a torn grid have no radius: measuring them would take long as it tears.
-                let is_torn_grid = surface.rest_grid().is_some();
-                let measured = if is_torn_grid { PATCH } else { usize::MAX };
-                let (rest, graph) = (surface.rest_positions(), surface.graph());
-                Self(Arc::new(NetworkTree::new(rest, graph, measured)))
-            }
+            None => Self(Arc::new(NetworkTree::new(
+                surface.rest_positions(),
+                surface.graph(),
+            ))),
         }
     }
 
@@ -129,7 +123,7 @@ impl QuadTree {
             rest.len(),
             paths.map(|spring| (spring.ends, spring.rest_length)),
         );
-        Ok(Self(Arc::new(NetworkTree::new(rest, &graph, usize::MAX))))
+        Ok(Self(Arc::new(NetworkTree::new(rest, &graph))))
     }
 
     /// Number of nodes.

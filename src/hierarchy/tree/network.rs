@@ -44,9 +44,8 @@ struct NetworkNode {
 }
 
 impl NetworkTree {
-    /// Builds a tree over particles at `rest` (m), with paths along the edges of `graph`. A patch of more than `measured` particles
-    /// gets an infinite radius, and is taken for flat.
-    pub fn new(rest: &[Vec3], graph: &Graph, measured: usize) -> Self {
+    /// Builds a tree over particles at `rest` (m), with paths along the edges of `graph`.
+    pub fn new(rest: &[Vec3], graph: &Graph) -> Self {
         let layout = Layout::new(rest.len() as u32, 1);
         let mut tree = Self {
             layout,
@@ -67,12 +66,10 @@ impl NetworkTree {
             let is_last = patches.iter().all(|patch| patch.len() == 1);
             let mut parts = Vec::new();
             for patch in patches {
-                let is_measured = patch.len() <= measured;
-                let (middle, rest_radius) = splitter.measure(patch.clone(), is_measured);
+                let (middle, rest_radius) = splitter.measure(patch.clone());
                 let child = below + parts.len() as u32;
                 if !is_last {
-                    let is_folded = is_measured && splitter.is_folded(patch.clone(), rest_radius);
-                    splitter.split(patch, is_folded, &mut parts);
+                    splitter.split(patch, rest_radius, &mut parts);
                 }
                 let end = if is_last {
                     child
@@ -244,8 +241,8 @@ struct Splitter<'a> {
 
 impl Splitter<'_> {
     /// The middle particle of a patch, nearest to its centroid, and the largest distance along the surface from it to
-    /// another one of the patch (m), if that is to be measured.
-    fn measure(&mut self, patch: Range<usize>, is_measured: bool) -> (u32, f32) {
+    /// another one of the patch (m).
+    fn measure(&mut self, patch: Range<usize>) -> (u32, f32) {
         let members = &self.order[patch];
         let at = |particle: u32| self.rest[particle as usize].as_dvec3();
         let centroid =
@@ -257,14 +254,12 @@ impl Splitter<'_> {
             .copied()
             .min_by(nearest)
             .expect("no patch is empty");
-        match is_measured {
-            true => (middle, self.paths.farthest(middle, members)),
-            false => (middle, f32::INFINITY),
-        }
+        (middle, self.paths.farthest(middle, members))
     }
 
     /// Halves a patch, and each half.
-    fn split(&mut self, patch: Range<usize>, is_folded: bool, parts: &mut Vec<Range<usize>>) {
+    fn split(&mut self, patch: Range<usize>, rest_radius: f32, parts: &mut Vec<Range<usize>>) {
+        let is_folded = self.is_folded(patch.clone(), rest_radius);
         for half in self.bisect(patch, is_folded) {
             parts.extend(self.bisect(half, is_folded));
         }
