@@ -165,6 +165,17 @@ impl ClothGrid {
         (sides * self.spacing()).length()
     }
 
+    /// Half of the thickness of a rope (m), with the transform's scale; `None` if the grid is no rope.
+    pub fn rope_radius(&self) -> Option<f32> {
+        (self.rows == 1).then(|| self.spacing().y / 4.0)
+    }
+
+    /// The same, without the transform's scale.
+    #[cfg(feature = "mesh")]
+    pub(crate) fn unscaled_rope_radius(&self) -> Option<f32> {
+        Some(self.rope_radius()? / mean(self.scale))
+    }
+
     /// The transform's scale that is in it.
     pub(crate) fn scale(&self) -> Vec3 {
         self.scale
@@ -232,6 +243,11 @@ impl ClothGrid {
             })
         })
     }
+}
+
+/// The mean scale of three axes, by which a rope's radius grows.
+pub(super) fn mean(scale: Vec3) -> f32 {
+    scale.abs().element_sum() / 3.0
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{
     error::ClothError,
-    grid::{ClothGrid, ClothPlane},
+    grid::{ClothGrid, ClothPlane, mean},
 };
 
 /// The shape of a rope, before the transform's scale.
@@ -67,24 +67,6 @@ impl RopeShape {
         let width = 4.0 * self.radius * mean(scale);
         let spacing = Vec2::new(self.spacing * along, width);
         ClothGrid::new([self.particles, 1], spacing, axes, scale, self.centred)
-    }
-}
-
-/// The mean scale of three axes.
-fn mean(scale: Vec3) -> f32 {
-    scale.abs().element_sum() / 3.0
-}
-
-impl ClothGrid {
-    /// Half of the thickness of a rope (m), with the transform's scale; `None` if the grid is no rope.
-    pub fn rope_radius(&self) -> Option<f32> {
-        (self.rows() == 1).then(|| self.spacing().y / 4.0)
-    }
-
-    /// The same, without the transform's scale.
-    #[cfg(feature = "mesh")]
-    pub(crate) fn unscaled_rope_radius(&self) -> Option<f32> {
-        Some(self.rope_radius()? / mean(self.scale()))
     }
 }
 

@@ -277,8 +277,8 @@ fn it_lies_on_cloth_with_layers() {
 
 /// Whether a segment passes through a triangle, by signed volumes in f64.
 fn crosses(ends: [Vec3; 2], corners: [Vec3; 3]) -> bool {
-    let [p, q] = ends.map(|end| end.as_dvec3());
-    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let [p, q] = ends.map(Vec3::as_dvec3);
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
     let side = |at: bevy::math::DVec3| (b - a).cross(c - a).dot(at - a);
     let past = |from: bevy::math::DVec3, to: bevy::math::DVec3| (q - p).cross(from - p).dot(to - p);
     let around = [past(a, b), past(b, c), past(c, a)];

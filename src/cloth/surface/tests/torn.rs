@@ -253,3 +253,31 @@ fn an_edge_that_is_none_is_named() {
         );
     }
 }
+
+/// From any tears to any other, also to fewer: each particle comes from one that was at the same place, and is no farther from it than a cut
+/// is wide.
+#[test]
+fn torn_surfaces_follow_each_other() {
+    let mut random = Random(5);
+    for whole in [grid(), mesh()] {
+        let edges = edges(&whole);
+        let mut before = whole.clone();
+        for _ in 0..60 {
+            let count = random.below(edges.len());
+            let torn = whole.torn(&some(&edges, count, &mut random));
+            let after = Arc::new(torn.expect("edges"));
+            let parents = after.parents_in(&before).expect("one whole surface");
+            let places: Vec<Vec3> = (0..after.len() as u32)
+                .map(|particle| whole.rest_positions()[after.origin_of(particle) as usize])
+                .collect();
+            let parted = after.parted(&places, |particle| parents[particle as usize]);
+            for (particle, parent) in parents.iter().enumerate() {
+                assert_eq!(after.origin_of(particle as u32), before.origin_of(*parent));
+                let moved = parted[particle].distance(places[particle]);
+                // A fiftieth of the way to the middle of faces, whose sides are shorter than two spacings.
+                assert!(moved < 0.02 * 0.2, "{moved}");
+            }
+            before = after;
+        }
+    }
+}

@@ -115,8 +115,10 @@ impl Surface {
     /// The places of all particles (m), with a little room between those that have one parent: a cut has a width. So contact of
     /// cloth with cloth knows which side each is on.
     pub(crate) fn parted(&self, places: &[Vec3], parent: impl Fn(u32) -> u32) -> Vec<Vec3> {
-        let mut children = vec![0_u32; self.len()];
-        (0..self.len() as u32).for_each(|child| children[parent(child) as usize] += 1);
+        // A surface that is mended has fewer particles than their parents were.
+        let parents = || (0..self.len() as u32).map(|child| parent(child) as usize);
+        let mut children = vec![0_u32; parents().max().map_or(0, |last| last + 1)];
+        parents().for_each(|parent| children[parent] += 1);
         let mut sums = vec![(Vec3::ZERO, 0.0); self.len()];
         for face in self.triangles() {
             let middle = face
