@@ -29,7 +29,7 @@ use super::{
 /// default, `Cloth::mesh()` takes the mesh of the `Mesh3d` on the same entity; [`triangles`](Self::triangles) takes
 /// positions and triangles.
 ///
-/// A grid, or a cloth of its own triangles, ignores a `Mesh3d` on its entity. The plugin draws the cloth in its place, logs
+/// A grid, a rope, or a cloth of its own triangles, ignores a `Mesh3d` on its entity. The plugin draws the cloth in its place, logs
 /// that once, and puts the `Mesh3d` back when this component is removed. `Cloth::mesh()` makes the cloth from that mesh. A
 /// `ClothRenderMesh` on another entity lets the cloth drive it.
 ///

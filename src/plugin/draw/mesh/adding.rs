@@ -107,9 +107,10 @@ pub(super) fn add_meshes(
 
 /// The text for a cloth that ignores the `Mesh3d` on its entity.
 fn replacing(cloth: &Cloth) -> String {
-    let kind = match cloth.as_grid() {
-        Some(_) => "a grid",
-        None => "made of its own triangles",
+    let kind = match cloth.shape {
+        ClothShape::Grid(_) => "a grid",
+        ClothShape::Rope(_) => "a rope",
+        _ => "made of its own triangles",
     };
     format!(
         "it is {kind} and is drawn in place of its `Mesh3d`: use `Cloth::mesh()` to make the cloth from that mesh, or put the `Mesh3d` on another entity \
