@@ -252,12 +252,12 @@ impl Cloth {
         }
     }
 
-    /// (columns − 1) × spacing (m) of a grid; 0 for a mesh.
+    /// (columns − 1) × spacing (m) of a grid; 0 for a mesh or a rope.
     pub fn width(&self) -> f32 {
         self.as_grid().map_or(0.0, |grid| grid.size().x)
     }
 
-    /// (rows − 1) × spacing (m) of a grid; 0 for a mesh.
+    /// (rows − 1) × spacing (m) of a grid; 0 for a mesh or a rope.
     pub fn height(&self) -> f32 {
         self.as_grid().map_or(0.0, |grid| grid.size().y)
     }
@@ -265,7 +265,7 @@ impl Cloth {
     /// Returns the validated grid under a transform's `scale`.
     ///
     /// # Errors
-    /// [`ClothError::NotAGrid`] for a mesh; otherwise those of [`GridShape::scaled`].
+    /// [`ClothError::NotAGrid`] for a mesh or a rope; otherwise those of [`GridShape::scaled`].
     pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
         let grid = self.as_grid().ok_or(ClothError::NotAGrid)?;
         grid.scaled(scale)

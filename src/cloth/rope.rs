@@ -13,7 +13,7 @@ use super::{
 /// The shape of a rope, before the transform's scale.
 ///
 /// A rope is a row of particles without faces. It resists stretching and bending like a band of the material that is as wide as the rope
-/// is thick, and has the mass of that band. Its particles touch colliders, at the rope's radius. It feels no wind and does not tear.
+/// is thick, and has the mass of that band. Its particles touch colliders, at the rope's radius. It feels no wind, does not crease, and is not torn or cut.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]

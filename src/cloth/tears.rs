@@ -67,6 +67,10 @@ impl ClothTears {
 
     /// Tears a face out, given by its particles: it comes off as a part of its own. Returns how many edges were whole.
     pub fn tear_out(&mut self, surface: &Surface, [a, b, c]: [u32; 3]) -> usize {
+        // The segment of a rope is no face.
+        if b == c {
+            return 0;
+        }
         let edges = [[a, b], [b, c], [c, a]];
         self.tear_all(edges.map(|edge| edge.map(|end| surface.origin_of(end))))
     }

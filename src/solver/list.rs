@@ -217,7 +217,7 @@ impl SpringSolver for ListSolver {
         self.load(blocks);
         let (rows, packets, step_scale) = (&mut self.rows, &self.packets, &self.step_scale);
         if self.chains.is_empty() {
-            (kernels.relax_packets)(rows, packets, step_scale);
+            (kernels.relax_packets_there)(rows, packets, &mut self.pulls, step_scale);
         } else {
             self.chains.solve_there(rows, step_scale, kernels);
             (kernels.relax_packets_there)(rows, packets, &mut self.pulls, step_scale);

@@ -54,7 +54,10 @@ pub(super) struct Anchors {
 
 /// The tension that tethers allow (N/m): four times the weight of a cloth, over a number of pins side by side.
 fn tension(surface: &Surface, material: &ClothMaterial, pins: usize, acceleration: f32) -> f32 {
-    let width = pins as f32 * surface.spacing().typical;
+    let width = match surface.rope_radius() {
+        Some(radius) => 2.0 * radius,
+        None => pins as f32 * surface.spacing().typical,
+    };
     MARGIN * material.areal_density * surface.area() * acceleration.max(MIN_ACCELERATION) / width
 }
 

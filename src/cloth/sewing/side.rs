@@ -67,6 +67,10 @@ impl SewnSide {
                 }
             }
         }
+        if surface.rope_radius().is_some() {
+            let beside = selected.windows(2).filter(|ends| ends[1] == ends[0] + 1);
+            uses.extend(beside.map(|ends| ([ends[0], ends[1]], 1)));
+        }
         let border = uses.iter().filter(|(_, count)| **count == 1);
         let border: Vec<[u32; 2]> = border.map(|(edge, _)| *edge).collect();
         let is_at_border = |particle: &u32| border.iter().any(|edge| edge.contains(particle));

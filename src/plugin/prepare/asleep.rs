@@ -44,7 +44,11 @@ pub(super) fn sleeps_as_it_was(
     let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
     is_prepared
         && state.inputs.known == Some(known)
-        && known_contact == (inputs.settings.particle_radius, inputs.material.friction)
+        && known_contact
+            == (
+                inputs.particle_radius(built.surface()),
+                inputs.material.friction,
+            )
         && state.inputs.written == Some(cloth.particles.last_changed())
         && state.attachments.given.is_empty()
         && cloth

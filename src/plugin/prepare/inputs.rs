@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::preparing::GameQueryItem;
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothShape, ClothTearing},
+    cloth::{ClothError, ClothMaterial, ClothShape, ClothTearing, Surface},
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::state::KnownInputs,
@@ -31,12 +31,9 @@ impl Inputs {
     /// # Errors
     /// The first value that is out of range. The material is checked when it changes.
     pub fn of(game: &GameQueryItem, gravity: Vec3) -> Result<Self, ClothError> {
-        let mut settings = game.settings.copied().unwrap_or_default();
+        let settings = game.settings.copied().unwrap_or_default();
         let material = game.material.copied().unwrap_or_default();
         settings.validate()?;
-        if let ClothShape::Rope(rope) = &game.cloth.shape {
-            settings.particle_radius = settings.particle_radius.max(rope.radius);
-        }
         if let Some(tearing) = game.torn.1 {
             tearing.validate(&material)?;
         }
@@ -53,12 +50,23 @@ impl Inputs {
             settings,
             material,
             search,
-            narrow_phase: game.narrow_phase.copied().unwrap_or_default(),
+            narrow_phase: match game.cloth.shape {
+                // A rope has no triangles.
+                ClothShape::Rope(_) => NarrowPhase::Particles,
+                _ => game.narrow_phase.copied().unwrap_or_default(),
+            },
             self_collision: game.self_collision.copied(),
             creasing: game.creasing.copied(),
             tearing: game.torn.1.copied(),
             gravity,
         })
+    }
+
+    /// The distance at which particles lie on colliders (m): a rope's own radius.
+    pub fn particle_radius(&self, surface: &Surface) -> f32 {
+        surface
+            .rope_radius()
+            .unwrap_or(self.settings.particle_radius)
     }
 
     /// Those that wake a cloth at rest when they change. `acceleration` is that of gravity in the cloth's frame (m/s²).

@@ -120,9 +120,7 @@ pub(super) fn prepare_contact(
 ) {
     let (particles, state) = (&cloth.particles, &mut *cloth.state);
     let (built, scratch) = (&*cloth.built, &mut *cloth.scratch);
-    let Inputs {
-        settings, material, ..
-    } = inputs;
+    let material = &inputs.material;
     scratch.self_collision = inputs.self_collision;
     if scratch.was_put {
         state.carriers.clear();
@@ -136,7 +134,7 @@ pub(super) fn prepare_contact(
     }
     scratch.search = inputs.search;
     scratch.contact_settings = ContactSettings {
-        particle_radius: settings.particle_radius,
+        particle_radius: inputs.particle_radius(built.surface()),
         friction: material.friction,
         narrow_phase: inputs.narrow_phase,
         ..ContactSettings::default()

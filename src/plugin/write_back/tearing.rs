@@ -60,8 +60,7 @@ pub(crate) fn tear_cloths(
                 &tears,
                 |visit| built.solver.for_each_tension(visit),
             );
-            tears.bypass_change_detection().tear_all(torn);
-            if built.tears() != &*tears {
+            if !torn.is_empty() && tears.bypass_change_detection().tear_all(torn) > 0 {
                 tears.set_changed();
             }
         }

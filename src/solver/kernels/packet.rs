@@ -47,14 +47,8 @@ pub(crate) struct Packet {
 /// With q the squared length and r the rest length, C over the length, `1 − r/√q`, is taken as
 /// `(q − r²) / (1.5 q + 0.5 r²)`, the first step of Halley's iteration for the root. At a stretch ε it is off by the part
 /// ε²/4 (6·10⁻⁴ at 5 %).
-#[inline(always)]
-pub(crate) fn relax_packets(rows: &mut [Row], packets: &[Packet], step_scale: &StepScale) {
-    for packet in packets {
-        relax(rows, packet, step_scale, None);
-    }
-}
-
-/// The same on the way there, of which the way back is to know what each spring has pulled with, as a part of its length.
+///
+/// Of this the way back is to know what each spring has pulled with, as a part of its length.
 #[inline(always)]
 pub(crate) fn relax_packets_there(
     rows: &mut [Row],

@@ -174,7 +174,9 @@ impl Surface {
     pub(crate) fn parents_in(self: &Arc<Self>, other: &Arc<Self>) -> Option<Vec<u32>> {
         let (whole, of_other) = (self.whole(), other.whole());
         // Cloths that are made alike need not share it.
-        if !Arc::ptr_eq(&whole, &of_other) && whole.triangles() != of_other.triangles() {
+        let is_alike =
+            || whole.len() == of_other.len() && whole.triangles() == of_other.triangles();
+        if !Arc::ptr_eq(&whole, &of_other) && !is_alike() {
             return None;
         }
         let mut parents: Vec<u32> = (0..self.len() as u32).collect();
