@@ -7,7 +7,10 @@ use bevy_drape::{contact::intersections, prelude::*};
 use serde::Serialize;
 
 use crate::scene::{self, Peg};
-use crate::shared::{headless::Run, parts::report::Report};
+use crate::shared::{
+    headless::Run,
+    parts::report::{Report, is_now},
+};
 
 /// When a peg of the bath towel comes off, when a hand takes the sheet, and when it lets go (s).
 const TAKEN_OFF: f32 = 2.0;
@@ -58,12 +61,6 @@ pub fn report(mut run: Run) -> ExitCode {
         );
         println!("  intersections    {} triangle pairs at most", own.intersections);
     })
-}
-
-/// Whether this time is passed in this tick.
-fn is_now(time: &Time, seconds: f32) -> bool {
-    let now = time.elapsed_secs();
-    now >= seconds && now - time.delta_secs() < seconds
 }
 
 fn take_off_a_peg(

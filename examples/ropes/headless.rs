@@ -8,7 +8,10 @@ use serde::Serialize;
 
 use crate::{
     scene::{self, Plank},
-    shared::{headless::Run, parts::report::Report},
+    shared::{
+        headless::Run,
+        parts::report::{Report, is_now},
+    },
 };
 
 /// When the swing is pushed (s).
@@ -38,7 +41,7 @@ pub fn report(mut run: Run) -> ExitCode {
             FixedUpdate,
             scene::push
                 .before(ClothSystems::Prepare)
-                .run_if(|time: Res<Time>| is_now(&time)),
+                .run_if(|time: Res<Time>| is_now(&time, PUSHED)),
         )
         .add_systems(FixedLast, measure);
     let report = Report {
@@ -58,11 +61,6 @@ pub fn report(mut run: Run) -> ExitCode {
             own.stretch_percent
         );
     })
-}
-
-fn is_now(time: &Time) -> bool {
-    let now = time.elapsed_secs();
-    now >= PUSHED && now - time.delta_secs() < PUSHED
 }
 
 fn measure(

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use bevy::time::Time;
 use bevy_drape::prelude::*;
 use serde::Serialize;
 
@@ -85,4 +86,10 @@ pub fn plain(mut run: Run) -> ExitCode {
             report.own.contacts
         );
     })
+}
+
+/// Whether this time (s) is passed in this tick.
+pub fn is_now(time: &Time, seconds: f32) -> bool {
+    let now = time.elapsed_secs();
+    now >= seconds && now - time.delta_secs() < seconds
 }

@@ -8,7 +8,10 @@ use serde::Serialize;
 
 use crate::{
     scene::Sword,
-    shared::{headless::Run, parts::report::Report},
+    shared::{
+        headless::Run,
+        parts::report::{Report, is_now},
+    },
 };
 
 /// When the sword slashes (s).
@@ -59,12 +62,6 @@ pub fn report(mut run: Run) -> ExitCode {
             own.intersections
         );
     })
-}
-
-/// Whether this time is passed in this tick.
-fn is_now(time: &Time, seconds: f32) -> bool {
-    let now = time.elapsed_secs();
-    now >= seconds && now - time.delta_secs() < seconds
 }
 
 fn slash(time: Res<Time>, mut swords: Query<&mut Sword>) {

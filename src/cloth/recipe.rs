@@ -153,8 +153,8 @@ impl Cloth {
     }
 
     /// A rope of this many particles, `spacing` metres apart, and this radius (m). It hangs down from its transform;
-    /// [`lying`](Self::lying) lays it out along +x. The pin `Pin::Corner(Corner::TopLeft)`, or [`Pin::Index`](crate::cloth::Pin)
-    /// with 0, holds its first particle.
+    /// [`lying`](Self::lying) lays it out along +x. Its first particle is pinned unless its `Pins` say otherwise. The pin
+    /// [`Pin::Index`](crate::cloth::Pin::Index) holds any other.
     ///
     /// ```
     /// use bevy::prelude::*;

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::surface::Surface;
 
-/// How many times stresses are shared with neighbours: a patch of two rings of faces.
+/// Number of times that stresses are shared with neighbours: a patch of two rings of faces.
 const RINGS: usize = 2;
 
 /// The stress around each particle, times the area of its patch (N m), and that area (m²).

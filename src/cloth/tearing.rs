@@ -14,7 +14,8 @@ use super::{
 /// Tears a cloth where its threads bear more than their strength. A tear begins at the thread that is overloaded most, and runs
 /// across it from tick to tick, an edge at a time.
 ///
-/// The load of a thread is its stretch over the material's stretch compliance (N/m, the force on a strip over its width). So the
+/// The load of a thread is its stretch over the material's stretch compliance (N/m, the force on a strip over its width). On a mesh
+/// it is also no more than that of the patch around, by the forces that its springs apply. So the
 /// cloth needs a compliance: none of [`ClothMaterial`]'s presets for fabrics is rigid. Beside a pin a coarse cloth is
 /// stretched more than it should be, see [`ClothSettings`](crate::solver::ClothSettings); that counts as load, too.
 ///

@@ -11,17 +11,29 @@ impl Surface {
         let cells = || grid.cells();
         let spacing = grid.spacing();
         let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
-        // A rope has neither faces nor distances across.
-        let is_rope = grid.rope_radius().is_some();
-        let shortest = if is_rope {
-            spacing.x
-        } else {
-            spacing.min_element()
+        let of_faces = Extent {
+            diagonal: grid.diagonal(),
+            area: (sides.as_vec2() * spacing).element_product(),
+            particles_across: grid.columns().min(grid.rows()) as usize,
+            // Without shear springs, a path follows both sides of a cell.
+            face_reach: spacing.element_sum(),
+            longest_spring: spacing.length(),
+            max_faces: 6,
+            pieces: 1,
         };
-        let longest = if is_rope {
-            spacing.x
-        } else {
-            spacing.max_element()
+        let (extent, [shortest, longest]) = match grid.rope_radius() {
+            None => (of_faces, [spacing.min_element(), spacing.max_element()]),
+            // Neither faces nor distances across.
+            Some(radius) => {
+                let extent = Extent {
+                    area: grid.diagonal() * 2.0 * radius,
+                    face_reach: spacing.x,
+                    longest_spring: spacing.x,
+                    max_faces: 0,
+                    ..of_faces
+                };
+                (extent, [spacing.x; 2])
+            }
         };
         Self {
             rest: cells()
@@ -42,23 +54,7 @@ impl Surface {
                 typical: shortest,
                 longest,
             },
-            extent: Extent {
-                diagonal: grid.diagonal(),
-                area: match grid.rope_radius() {
-                    Some(radius) => grid.diagonal() * 2.0 * radius,
-                    None => (sides.as_vec2() * spacing).element_product(),
-                },
-                particles_across: grid.columns().min(grid.rows()) as usize,
-                // Without shear springs, a path follows both sides of a cell.
-                face_reach: if is_rope {
-                    longest
-                } else {
-                    spacing.element_sum()
-                },
-                longest_spring: if is_rope { longest } else { spacing.length() },
-                max_faces: if is_rope { 0 } else { 6 },
-                pieces: 1,
-            },
+            extent,
             grid: Some(*grid),
             torn: None,
             derived: Derived::default(),

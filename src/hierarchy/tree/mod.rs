@@ -38,30 +38,6 @@ use halving::GridTree;
 #[reflect(Default, Debug, Clone)]
 pub struct QuadTree(Arc<dyn Tree>);
 
-/// The sphere around both. Pieces may be as far apart as numbers go, or lost, so no length overflows: `f64`.
-fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere {
-    let (from, to) = (around.center.as_dvec3(), centre.as_dvec3());
-    let [one, other, apart] = [
-        f64::from(around.radius()),
-        f64::from(radius),
-        from.distance(to),
-    ];
-    if one >= apart + other {
-        return *around;
-    }
-    // Another that contains it is the whole.
-    let whole = ((one + other + apart) / 2.0).max(other);
-    let part = match whole > other {
-        true => (whole - one) / apart,
-        false => 1.0,
-    };
-    let middle = from.lerp(to, part).as_vec3();
-    // More than the rounding errors of its middle and radius.
-    let rounding = f64::from(middle.abs().max_element() * f32::EPSILON);
-    let radius = (whole * (1.0 + 1.0e-6) + rounding) as f32;
-    BoundingSphere::new(middle, radius.max(0.0))
-}
-
 impl Default for QuadTree {
     /// A tree without particles.
     fn default() -> Self {
@@ -168,14 +144,13 @@ impl QuadTree {
             (particles.position_at(node.middle as usize), radius)
         };
         let mut tops = self.0.tops().iter().map(sphere);
-        match (tops.next(), tops.next()) {
-            (None, _) => none,
-            (Some((centre, radius)), None) => BoundingSphere::new(centre, radius),
-            (Some(first), Some(second)) => [second].into_iter().chain(tops).fold(
-                BoundingSphere::new(first.0, first.1),
-                |around, (centre, radius)| merged(&around, centre, radius),
-            ),
-        }
+        let Some((centre, radius)) = tops.next() else {
+            return none;
+        };
+        let first = BoundingSphere::new(centre, radius);
+        tops.fold(first, |around, (centre, radius)| {
+            merged(&around, centre, radius)
+        })
     }
 
     /// Indices of a node's particles.
@@ -257,4 +232,28 @@ impl QuadTree {
             Some(particle) => Err(format!("particle {particle} is in no leaf")),
         }
     }
+}
+
+/// The sphere around both. Pieces may be as far apart as numbers go, or lost, so no length overflows: `f64`.
+fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere {
+    let (from, to) = (around.center.as_dvec3(), centre.as_dvec3());
+    let [one, other, apart] = [
+        f64::from(around.radius()),
+        f64::from(radius),
+        from.distance(to),
+    ];
+    if one >= apart + other {
+        return *around;
+    }
+    // Another that contains it is the whole.
+    let whole = ((one + other + apart) / 2.0).max(other);
+    let part = match whole > other {
+        true => (whole - one) / apart,
+        false => 1.0,
+    };
+    let middle = from.lerp(to, part).as_vec3();
+    // More than the rounding errors of its middle and radius.
+    let rounding = f64::from(middle.abs().max_element() * f32::EPSILON);
+    let radius = (whole * (1.0 + 1.0e-6) + rounding) as f32;
+    BoundingSphere::new(middle, radius.max(0.0))
 }

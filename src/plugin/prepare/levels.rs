@@ -194,6 +194,7 @@ impl LodQueryItem<'_, '_> {
         // The displacement by acceleration grows with the square of the time.
         let times = (ticks / state.moved_by() as f32).max(1.0);
         let around = self.settings.copied().unwrap_or_default().particle_radius;
+        let around = self.built.surface().rope_radius().unwrap_or(around);
         let thickness = self.self_collision.map_or(0.0, |of| of.thickness);
         wanted.radius = radius + 2.0 * state.reach * times * times + around.max(thickness);
         wanted.touches_cloth = self.self_collision.is_some();

@@ -182,6 +182,26 @@ fn partitions_and_simd_levels_change_no_bit() {
     }
 }
 
+/// A rope has no springs to a row below: ω² = 4 k ⁄ m, as of a chain, and its limit is that of twice as much.
+#[test]
+fn the_limit_of_a_rope_is_that_of_a_chain() {
+    let surface = Cloth::rope(16, 0.1, 0.01).surface(Vec3::ONE);
+    let surface = surface.expect("a rope");
+    let grid = surface.as_grid().expect("a row");
+    let springs = Springs::of_grid(grid, &SOFT);
+    let particles = ClothParticles::at_rest(&surface, &SOFT).expect("a valid material");
+    let SpringStorage::Grid(grid, compliances) = springs.storage() else {
+        panic!("a grid's");
+    };
+    let forces = Forces::new(grid, compliances).expect("soft springs");
+    let (width, length) = (0.02, 0.1);
+    let stiffness = width / (length * 1.0e-3);
+    let square = 4.0 * stiffness / (0.15 * width * length);
+    let longest = 0.95 * 2.0 / f32::sqrt(square);
+    let found = forces.longest_substep(particles.blocks());
+    assert!((found / longest - 1.0).abs() < 1.0e-5, "{found} {longest}");
+}
+
 /// Of a flat lattice the fastest swing is known: each particle against all its neighbours, ω² = 4 w (k + k′) for a square one
 /// of stiffness k and k′ along its diagonals.
 /// The limit is that of twice as much, and of 0.95 of the longest step for it.

@@ -35,8 +35,10 @@ impl Elastic {
         step: (u32, i32),
         row: u32,
     ) -> Option<Self> {
+        let is_there = step.0 < grid.rows();
         let stiffness = |block: usize, lane: usize| {
             let of = || {
+                is_there.then_some(())?;
                 let column = layout.column(block, lane)?;
                 let end = column.checked_add_signed(step.1)?;
                 (end < grid.columns()).then_some(())?;
@@ -81,6 +83,10 @@ impl ElasticGrid {
 
     /// The shorter distance between neighbours (m).
     pub(crate) fn spacing(&self) -> f32 {
+        // A rope has none below.
+        if self.layout.rows == 1 {
+            return self.across[0].inverse_rest_square.sqrt().recip();
+        }
         let [across, down] = [&self.across[0], &self.down].map(|of| of.inverse_rest_square);
         across.max(down).sqrt().recip()
     }

@@ -5,6 +5,7 @@ mod cost;
 mod errors;
 mod file;
 mod inertia;
+mod limits;
 mod pose;
 pub mod rig;
 mod teleports;

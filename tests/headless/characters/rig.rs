@@ -167,3 +167,23 @@ pub fn simulated(app: &App, cloth: Entity) -> Vec<Vec3> {
         .map(|place| frame.to_world(place.expect("a particle")))
         .collect()
 }
+
+/// What a place may be off by, 3 m from the origin: a dozen roundings.
+pub const ROUNDING: f32 = 5.0e-6;
+
+pub fn animated(skin: impl Bundle) -> (App, Rig) {
+    let mut app = app_that_draws(FixedUpdate);
+    let rig = rig(&mut app, skin);
+    pose(&mut app, &rig, 0.0);
+    tick(&mut app, 1);
+    assert_eq!(fault(&app, rig.cloth), None);
+    (app, rig)
+}
+
+pub fn go(app: &mut App, rig: &Rig, ticks: std::ops::Range<u32>, mut check: impl FnMut(&mut App)) {
+    for count in ticks {
+        pose(app, rig, count as f32 * TICK);
+        tick(app, 1);
+        check(app);
+    }
+}

@@ -4,7 +4,10 @@ use std::f32::consts::TAU;
 
 use bevy::{
     asset::RenderAssetUsages,
-    math::{Quat, Vec3},
+    math::{
+        Quat, Vec3,
+        cubic_splines::{CubicCardinalSpline, CubicGenerator},
+    },
     mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
 };
 
@@ -14,7 +17,7 @@ use crate::cloth::Surface;
 const SIDES: usize = 8;
 const RINGS: usize = 3;
 
-/// How round its ends are: how far they stand out, in radii.
+/// Distance by which its ends stand out, in radii: they are round.
 const END: f32 = 0.5;
 
 /// Vertices of a ring: the first and the last are at one place, with the texture's left and right border.
@@ -61,13 +64,25 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
     .with_inserted_indices(Indices::U32(corners))
 }
 
-/// Writes a tube of this radius around the drawn positions of the particles (m).
+/// Writes a tube of this radius around the drawn positions of the particles (m), along a smooth curve through all of them.
 pub(super) fn write(mesh: &mut Mesh, drawn: &[Vec3], radius: f32) {
+    let spline = CubicCardinalSpline::new_catmull_rom(drawn.iter().copied());
+    let Ok(curve) = spline.to_curve() else {
+        return;
+    };
     let count = rings(drawn.len());
-    let mut rings = Rings::new(drawn);
+    let mut along = curve.velocity(0.0).normalize_or(Vec3::NEG_Y);
+    let mut across = along.any_orthonormal_vector();
     let (mut places, mut normals) = (Vec::new(), Vec::new());
     for ring in 0..count {
-        let (middle, along, across) = rings.next(ring, count);
+        let at = ring.saturating_sub(1).min(count - 3) as f32 / RINGS as f32;
+        let before = along;
+        along = curve.velocity(at).normalize_or(before);
+        // It turns no more than the curve does.
+        across = (Quat::from_rotation_arc(before, along) * across)
+            .reject_from_normalized(along)
+            .normalize_or(along.any_orthonormal_vector());
+        let middle = curve.position(at);
         let end = match ring {
             0 => -1.0,
             ring if ring + 1 == count => 1.0,
@@ -75,12 +90,11 @@ pub(super) fn write(mesh: &mut Mesh, drawn: &[Vec3], radius: f32) {
         };
         for side in 0..RING {
             let turn = Quat::from_axis_angle(along, TAU * side as f32 / SIDES as f32);
-            let out = turn * across;
-            let (normal, place) = match end == 0.0 {
-                true => (out, middle + out * radius),
-                false => (along * end, middle + along * (end * END * radius)),
+            let (normal, distance) = match end == 0.0 {
+                true => (turn * across, radius),
+                false => (along * end, END * radius),
             };
-            places.push(place.to_array());
+            places.push((middle + normal * distance).to_array());
             normals.push(normal.to_array());
         }
     }
@@ -93,57 +107,6 @@ pub(super) fn write(mesh: &mut Mesh, drawn: &[Vec3], radius: f32) {
         {
             values.copy_from_slice(new);
         }
-    }
-}
-
-/// Goes along a smooth line through all particles (Catmull and Rom 1974), with a direction across it that turns no more than the line.
-struct Rings<'a> {
-    drawn: &'a [Vec3],
-    along: Vec3,
-    across: Vec3,
-}
-
-impl<'a> Rings<'a> {
-    fn new(drawn: &'a [Vec3]) -> Self {
-        let along = (drawn[1] - drawn[0]).normalize_or(Vec3::NEG_Y);
-        Self {
-            drawn,
-            along,
-            across: along.any_orthonormal_vector(),
-        }
-    }
-
-    /// The middle of the next ring, and the directions along and across the rope there.
-    fn next(&mut self, ring: usize, count: usize) -> (Vec3, Vec3, Vec3) {
-        let step = ring.saturating_sub(1).min(count - 3);
-        let last = self.drawn.len() - 1;
-        let segment = (step / RINGS).min(last - 1);
-        let part = (step - RINGS * segment) as f32 / RINGS as f32;
-        let [b, c] = [segment, segment + 1].map(|at| self.drawn[at]);
-        let a = if segment > 0 {
-            self.drawn[segment - 1]
-        } else {
-            2.0 * b - c
-        };
-        let d = if segment + 1 < last {
-            self.drawn[segment + 2]
-        } else {
-            2.0 * c - b
-        };
-        let [one, three] = [(c - a) / 2.0, (d - b) / 2.0];
-        let (quadratic, cubic) = (
-            3.0 * (c - b) - 2.0 * one - three,
-            2.0 * (b - c) + one + three,
-        );
-        let place = b + part * (one + part * (quadratic + part * cubic));
-        let direction = one + part * (2.0 * quadratic + 3.0 * part * cubic);
-        let along = direction.normalize_or(self.along);
-        let turned = Quat::from_rotation_arc(self.along, along) * self.across;
-        self.across = turned
-            .reject_from_normalized(along)
-            .normalize_or(along.any_orthonormal_vector());
-        self.along = along;
-        (place, along, self.across)
     }
 }
 
