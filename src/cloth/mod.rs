@@ -58,5 +58,5 @@ pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage};
 #[cfg(feature = "mesh")]
 pub(crate) use surface::skin_of_asset;
-pub(crate) use surface::{Fan, Fans, Flat, Graph, ShortestPaths};
+pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, ShortestPaths};
 pub(crate) use tearing::TearSearch;

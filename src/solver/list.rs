@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use bevy::math::Vec4;
+use bevy::math::{Mat4, Vec4};
 
 use super::{
     chains::Bundles,
@@ -18,6 +18,9 @@ use super::{
     stretch::Stretch,
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringList, W, X, Y, Z};
+
+/// Half of the lanes: as many numbers as a vector has.
+const HALF: usize = LANES / 2;
 
 /// The part of a spring's length that its pull has given, at most.
 const MOST_GIVEN: f32 = 0.9;
@@ -94,16 +97,20 @@ impl ListSolver {
         let of_rows = self.rows.chunks_exact_mut(strip * LANES);
         for (rows, blocks) in of_rows.zip(blocks.chunks_exact(strip)) {
             let mut each = rows.chunks_exact_mut(strip);
-            let mut strips: [&mut [Row]; LANES] =
+            let strips: [&mut [Row]; LANES] =
                 std::array::from_fn(|_| each.next().unwrap_or_default());
             for (at, block) in blocks.iter().enumerate() {
                 let view = block.view();
-                for (lane, strip) in strips.iter_mut().enumerate() {
-                    let of = |from: usize| view[from + lane];
-                    strip[at] = Row {
-                        place: Vec4::new(of(X), of(Y), of(Z), of(W)),
-                        moved: Vec4::new(of(DX), of(DY), of(DZ), 0.0),
-                    };
+                for half in [0, HALF] {
+                    let of = |from: usize| Vec4::from_slice(&view[from + half..][..HALF]);
+                    let places = turned([X, Y, Z, W].map(of));
+                    let moved = turned([of(DX), of(DY), of(DZ), Vec4::ZERO]);
+                    for lane in 0..HALF {
+                        strips[half + lane][at] = Row {
+                            place: places[lane],
+                            moved: moved[lane],
+                        };
+                    }
                 }
             }
         }
@@ -119,10 +126,11 @@ impl ListSolver {
                 std::array::from_fn(|_| strips.next().unwrap_or_default());
             for (at, block) in blocks.iter_mut().enumerate() {
                 let view = block.view_mut();
-                for (lane, strip) in strips.iter().enumerate() {
-                    let Row { moved, .. } = strip[at];
-                    (view[DX + lane], view[DY + lane], view[DZ + lane]) =
-                        (moved.x, moved.y, moved.z);
+                for half in [0, HALF] {
+                    let moved = [0, 1, 2, 3].map(|lane| strips[half + lane][at].moved);
+                    for (from, numbers) in [DX, DY, DZ].into_iter().zip(turned(moved)) {
+                        view[from + half..][..HALF].copy_from_slice(&numbers.to_array());
+                    }
                 }
             }
         }
@@ -197,6 +205,12 @@ impl ListSolver {
         }
         Stretch::of_ratios(structural.sqrt(), bound.max(structural).sqrt())
     }
+}
+
+/// Four vectors of the first, second, third and fourth numbers of these.
+fn turned([a, b, c, d]: [Vec4; HALF]) -> [Vec4; HALF] {
+    let turned = Mat4::from_cols(a, b, c, d).transpose();
+    [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
 }
 
 impl SpringSolver for ListSolver {

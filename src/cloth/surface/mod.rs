@@ -44,7 +44,7 @@ pub use triangles::{TriangleMesh, VertexAttribute};
 
 #[cfg(feature = "mesh")]
 pub(crate) use asset::skin_of_asset;
-pub(crate) use chains::Chains;
+pub(crate) use chains::{Chain, Chains};
 pub(crate) use faces::Faces;
 pub(crate) use fans::{Fan, Fans};
 pub(crate) use flat::Flat;

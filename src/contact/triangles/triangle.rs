@@ -101,20 +101,48 @@ fn ratio(part: f32, whole: f32) -> f32 {
 }
 
 /// The nearest points of a triangle and a segment, which may be a point.
-pub(crate) fn nearest(triangle: [Vec3; 3], [start, end]: [Vec3; 2]) -> NearestPoints {
-    let of_end = |point: Vec3, along: f32| {
-        let weights = nearest_to_point(triangle, point);
+pub(crate) fn nearest(triangle: [Vec3; 3], segment: [Vec3; 2]) -> NearestPoints {
+    let [start, end] = segment;
+    let span = end - start;
+    let square = span.length_squared();
+    // NaN of a segment that is a point.
+    let along = triangle.map(|corner| (corner - start).dot(span) / square);
+    if along.iter().all(|along| *along <= 0.0) {
+        nearest_to_end(triangle, start, 0.0)
+    } else if along.iter().all(|along| *along >= 1.0) {
+        nearest_to_end(triangle, end, 1.0)
+    } else if along.iter().all(|along| (0.0..=1.0).contains(along)) {
+        // Seen along the segment, they are those of a triangle and a point.
+        let seen = [0, 1, 2].map(|corner| (triangle[corner] - start) - span * along[corner]);
+        let weights = nearest_to_point(seen, Vec3::ZERO);
+        let along: f32 = (0..3).map(|corner| weights[corner] * along[corner]).sum();
         NearestPoints {
             weights,
-            offset: at(triangle, weights) - point,
-            along,
+            offset: at(seen, weights),
+            along: along.clamp(0.0, 1.0),
         }
-    };
-    let mut found = of_end(start, 0.0);
+    } else {
+        nearest_of_parts(triangle, segment)
+    }
+}
+
+/// The point of a triangle that is nearest to an end of a segment.
+fn nearest_to_end(triangle: [Vec3; 3], end: Vec3, along: f32) -> NearestPoints {
+    let weights = nearest_to_point(triangle, end);
+    NearestPoints {
+        weights,
+        offset: at(triangle, weights) - end,
+        along,
+    }
+}
+
+/// The nearest points of a triangle and a segment: of all pairs of corner, edge and face with an end or the segment.
+fn nearest_of_parts(triangle: [Vec3; 3], [start, end]: [Vec3; 2]) -> NearestPoints {
+    let mut found = nearest_to_end(triangle, start, 0.0);
     if start == end {
         return found;
     }
-    found = found.nearer(of_end(end, 1.0));
+    found = found.nearer(nearest_to_end(triangle, end, 1.0));
     for (from, to) in [(0, 1), (1, 2), (2, 0)] {
         let (s, t) = nearest_of_segments([triangle[from], triangle[to]], [start, end]);
         let mut weights = [0.0; 3];

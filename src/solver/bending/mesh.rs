@@ -21,7 +21,7 @@
 
 use std::sync::Arc;
 
-use bevy::math::{DVec3, Vec4};
+use bevy::math::{DVec3, Vec3, Vec3A, Vec4};
 
 use super::{
     creasing::ClothCreasing,
@@ -72,8 +72,8 @@ pub(super) struct MeshBending {
     /// Whether forces push it, as it was prepared.
     is_soft: bool,
     rows: Vec<Row>,
-    /// Places and displacements (m).
-    places: Vec<[Vec4; 2]>,
+    /// Where the particles are, with their displacements, from the first one's place (m).
+    places: Vec<Vec4>,
     /// Conjugate directions.
     directions: Vec<Vec4>,
 }
@@ -130,7 +130,7 @@ impl MeshBending {
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
             directions: vec![Vec4::ZERO; places.len()],
-            places: vec![[Vec4::ZERO; 2]; places.len()],
+            places: vec![Vec4::ZERO; places.len()],
         }
     }
 
@@ -152,6 +152,11 @@ impl MeshBending {
         }
     }
 
+    /// The longest sub-step in which it is soft enough to be pushed (s).
+    pub fn longest_push(&self, blocks: &[Block]) -> f32 {
+        (LIMIT / self.bound(blocks)).sqrt()
+    }
+
     /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
     fn bound(&self, blocks: &[Block]) -> f32 {
         let mut largest = 0.0_f32;
@@ -164,11 +169,13 @@ impl MeshBending {
         largest
     }
 
-    /// Takes places and displacements. A mesh's particles lie in one row of the layout: lane after lane.
+    /// Takes places. A mesh's particles lie in one row of the layout: lane after lane.
     fn load(&mut self, blocks: &[Block]) {
+        let origin = blocks.first().map_or(Vec3::ZERO, |first| first.position(0));
         for (lane, places) in self.places.chunks_mut(blocks.len().max(1)).enumerate() {
             for (place, block) in places.iter_mut().zip(blocks) {
-                *place = [block.position(lane), block.displacement(lane)].map(|of| of.extend(0.0));
+                let there = (block.position(lane) - origin) + block.displacement(lane);
+                *place = there.extend(0.0);
             }
         }
     }
@@ -222,8 +229,8 @@ impl MeshBending {
     /// the cloth: a creased strip at rest began to turn by a degree in a second.
     fn aim_again(&mut self) {
         self.push_creases(-self.weight);
-        for (row, [_, moved]) in self.rows.iter_mut().zip(&mut self.places) {
-            *moved += row.added;
+        for (row, place) in self.rows.iter_mut().zip(&mut self.places) {
+            *place += row.added;
             row.added = Vec4::ZERO;
         }
         self.push_creases(self.weight);
@@ -238,10 +245,7 @@ impl MeshBending {
             return;
         };
         let (places, rows) = (&self.places, &mut self.rows);
-        let at = |particle: u32| {
-            let [place, moved] = places[particle as usize];
-            (place + moved).truncate()
-        };
+        let at = |particle: u32| places[particle as usize].truncate();
         creases.push(at, |particle, force| {
             rows[particle as usize].left += weight * force.extend(0.0);
         });
@@ -250,26 +254,21 @@ impl MeshBending {
     /// `left` becomes −K p, less what the rest curvatures want.
     fn set_forces(&mut self) {
         for at in 0..self.rows.len() {
-            let [place, moved] = self.places[at];
-            let mut sum = Vec4::ZERO;
+            let (mut sum, place) = (Vec4::ZERO, self.places[at]);
             for &(other, number) in &self.entries[of(&self.first, at)] {
-                let [there, moved_there] = self.places[other as usize];
-                sum += number * ((there - place) + (moved_there - moved));
+                sum += number * (self.places[other as usize] - place);
             }
             self.rows[at].left = -sum;
         }
         for face in &*self.rest {
-            let at = |corner: usize| {
-                let [place, moved] = self.places[face.particles[corner] as usize];
-                (place + moved).truncate()
-            };
-            let Some(frame) = frame(at(0), at(1), at(2)) else {
+            let [a, b, c, ..] = face.particles;
+            let corners = [a, b, c].map(|at| Vec3A::from_vec4(self.places[at as usize]));
+            let Some(frame) = frame(corners) else {
                 continue;
             };
-            for (&particle, &force) in face.particles.iter().zip(&face.forces) {
-                let [x, y, z] = frame;
-                let turned = x * force.x + y * force.y + z * force.z;
-                self.rows[particle as usize].left += turned.extend(0.0);
+            let [x, y, z] = frame.map(|axis| axis.extend(0.0));
+            for (&particle, &[along, beside, out]) in face.particles.iter().zip(&face.forces) {
+                self.rows[particle as usize].left += x * along + y * beside + z * out;
             }
         }
         self.push_creases(1.0);

@@ -4,13 +4,19 @@
 //! the bending of the mesh. The rest is a force, the gradient of `A D κ·κ₀`. It includes how the frame turns, so that no face
 //! has a resultant or a moment.
 
-use bevy::math::{DVec3, Vec3};
+use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{
     creasing::ClothCreasing,
     patch::{Patch, faces_beside, frame},
 };
 use crate::cloth::{Block, Layout, Surface, Woven};
+
+/// The frame of a patch with its particles at these places.
+fn axes_of(at: &[Vec3; 6]) -> Option<[Vec3; 3]> {
+    let corners = [at[0], at[1], at[2]].map(Vec3A::from);
+    Some(frame(corners)?.map(Vec3::from))
+}
 
 /// Curvatures along a face's first edge, beside it and of twist (1/m), in its frame.
 type Curvature = [[f32; 3]; 3];
@@ -46,7 +52,7 @@ impl Face {
             most: 4.0 / (2.0 * patch.area as f32).sqrt(),
         };
         let at = new.particles.map(place);
-        new.natural = new.bent(&at, &frame(at[0], at[1], at[2])?);
+        new.natural = new.bent(&at, &axes_of(&at)?);
         Some(new)
     }
 
@@ -63,7 +69,7 @@ impl Face {
 
     /// The forces of a crease on each particle (N).
     fn forces(&self, at: &[Vec3; 6], crease: &Curvature) -> Option<[Vec3; 6]> {
-        let axes = frame(at[0], at[1], at[2])?;
+        let axes = axes_of(at)?;
         let crease = crease.map(Vec3::from);
         let moments = self.stiffness.map(|of| -> Vec3 {
             of.iter()
@@ -191,7 +197,7 @@ impl MeshCreases {
             let at = face
                 .particles
                 .map(|particle| self.places[particle as usize]);
-            let Some(axes) = frame(at[0], at[1], at[2]) else {
+            let Some(axes) = axes_of(&at) else {
                 continue;
             };
             let mut trials = face.bent(&at, &axes);

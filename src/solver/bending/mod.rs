@@ -4,7 +4,9 @@
 //! positions p to the solution y of `(M + s K) y = M p`. This is implicit Euler for bending alone, with s = Δt² and K
 //! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
 //! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A surface
-//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction.
+//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction. One that is
+//! softer still is pushed in every second, third or fourth sub-step, for all of them: by impulses, as molecules are by their
+//! slow forces (Grubmüller et al. 1991; Tuckerman, Berne and Martyna 1992).
 //!
 //! Where the cloth creases, its rest curvature is a state. It is constant in a tick and pushes at p, in frames that turn with the
 //! cloth; as the tick ends, it follows by the return mapping of plasticity with linear kinematic hardening (Simo and Hughes 1998).
@@ -28,10 +30,21 @@ pub use creasing::ClothCreasing;
 use grid::GridBending;
 use mesh::MeshBending;
 
+/// Most sub-steps that a push is for.
+const MOST_AT_ONCE: u32 = 4;
+
 /// A surface's resistance to bending.
 #[derive(Debug, Clone)]
 pub struct Bending {
     of: Kind,
+}
+
+/// For how many sub-steps it bends in sub-step `index` of `count`, with this [stride](Bending::stride). It does so in the middle
+/// one: then particles that keep their places have the same velocity before and after all of them.
+pub(super) fn bends_for(index: u32, count: u32, stride: u32) -> u32 {
+    let first = index - index % stride;
+    let all = stride.min(count - first);
+    if index == first + all / 2 { all } else { 0 }
 }
 
 #[derive(Debug, Clone)]
@@ -74,8 +87,15 @@ impl Bending {
     pub(super) fn longest_push(&self, blocks: &[Block]) -> f32 {
         match &self.of {
             Kind::Grid(grid) => grid.longest_push(blocks),
-            Kind::Mesh(_) => 0.0,
+            Kind::Mesh(mesh) => mesh.longest_push(blocks),
         }
+    }
+
+    /// Of how many sub-steps of `dt` (s) in a row it need bend in one alone, for all of them: as many as leave it soft, with their
+    /// weight together. For the fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable.
+    pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {
+        let weights = (self.longest_push(blocks) / dt).powi(2);
+        (weights as u32).clamp(1, MOST_AT_ONCE)
     }
 
     /// Adds the displacements by the forces at the current positions, with this weight (s²).

@@ -1,6 +1,6 @@
 //! The curvature of a face, from the faces beside it.
 
-use bevy::math::{DMat3, DVec2, DVec3, Vec3};
+use bevy::math::{DMat3, DVec2, DVec3, Vec3, Vec3A};
 
 /// Regularisation, as a fraction: edges with nearly the same information about a face's curvature don't make it
 /// infinite.
@@ -14,11 +14,11 @@ pub(super) struct RestFace {
     /// Its corners first.
     pub particles: [u32; 6],
     /// Force of its rest curvature on each (N), in the face's frame.
-    pub forces: [Vec3; 6],
+    pub forces: [[f32; 3]; 6],
 }
 
-/// The frame of a face: along its first edge, beside that, and its normal.
-pub(super) fn frame(a: Vec3, b: Vec3, c: Vec3) -> Option<[Vec3; 3]> {
+/// The frame of a face with these corners: along its first edge, beside that, and its normal.
+pub(super) fn frame([a, b, c]: [Vec3A; 3]) -> Option<[Vec3A; 3]> {
     let x = (b - a).try_normalize()?;
     let z = x.cross(c - a).try_normalize()?;
     Some([x, z.cross(x), z])
@@ -211,13 +211,14 @@ impl Patch {
         if largest * self.area.sqrt() < FLAT {
             return None;
         }
-        let [x, y, z] = frame(at[0].as_vec3(), at[1].as_vec3(), at[2].as_vec3())?;
+        let corners = [at[0], at[1], at[2]].map(|corner| Vec3A::from(corner.as_vec3()));
+        let [x, y, z] = frame(corners)?.map(Vec3::from);
         let forces = std::array::from_fn(|particle| {
             let force: DVec3 = (0..3)
                 .map(|component| stiffness * self.curvature[component][particle] * bent[component])
                 .sum();
             let force = force.as_vec3();
-            Vec3::new(force.dot(x), force.dot(y), force.dot(z))
+            [x, y, z].map(|axis| force.dot(axis))
         });
         Some(RestFace {
             particles: self.particles,

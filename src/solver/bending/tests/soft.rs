@@ -100,6 +100,42 @@ fn the_limit_is_seen_in_weights_and_masses() {
     assert!(is_soft(&bending));
 }
 
+/// All sub-steps of a tick are bent for, each once, and what bends for several is as soft as what may be pushed at all: on grids
+/// and meshes, of any spacing, in sub-steps of any length.
+#[test]
+fn each_sub_step_is_bent_for_once() {
+    let cloth = Cloth::new(9, 7, 0.02);
+    let grids = [0.1, 1.0, 4.0].map(|scale| {
+        let grid = cloth.grid(Vec3::splat(scale)).expect("valid");
+        Surface::of_grid(&grid)
+    });
+    let meshes = [0.02, 0.05].map(|spacing| {
+        let mesh = crate::meshes::irregular(0.4, 0.3, spacing, 0.3);
+        Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).expect("a surface")
+    });
+    let mut strides = Vec::new();
+    for surface in grids.iter().chain(&meshes) {
+        let particles = ClothParticles::at_rest(surface, &material()).expect("valid");
+        let mut bending = Bending::new(surface, &material()).expect("it is stiff");
+        for count in 1..=60 {
+            let dt = 1.0 / 60.0 / count as f32;
+            let stride = bending.stride(particles.blocks(), dt);
+            let bent: Vec<u32> = (0..count)
+                .map(|index| bends_for(index, count, stride))
+                .collect();
+            assert_eq!(bent.iter().sum::<u32>(), count, "{bent:?}");
+            assert!(bent.iter().all(|for_so_many| *for_so_many <= stride));
+            if stride > 1 {
+                // With a part of a millionth for rounding.
+                bending.prepare(particles.blocks(), 0.999_999 * stride as f32 * dt * dt);
+                assert!(is_soft(&bending), "{stride} of {count}");
+            }
+            strides.push(stride);
+        }
+    }
+    assert!((1..=MOST_AT_ONCE).all(|stride| strides.contains(&stride)));
+}
+
 /// Forces have neither a sum nor a moment.
 #[test]
 fn forces_keep_momentum() {

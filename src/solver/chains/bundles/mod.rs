@@ -1,4 +1,12 @@
 //! All chains of a list of springs, eight at a time.
+//!
+//! In a lane one chain follows another, with a step between them that has no spring and leads to the next one's first particle:
+//!
+//! ```text
+//! lane 0   o─o─o─o─o─o─o─o─o      a bundle of nine steps
+//! lane 1   o─o─o─o─o   o─o─o
+//! lane 2   o─o─o   o─o─o   o─o
+//! ```
 
 #[cfg(test)]
 mod tests;
@@ -6,16 +14,16 @@ mod tests;
 use std::{ops::Range, sync::Arc};
 
 use crate::{
-    cloth::{LANES, Lanes, SpringList},
+    cloth::{Chain, LANES, Lanes, SpringList},
     solver::kernels::{Kernels, Row, Solved, Step, StepScale},
 };
 
-/// Up to eight chains that share no particle.
+/// Chains that share no particle, in eight lanes.
 #[derive(Debug)]
 struct Bundle {
-    /// The rows of the particles that they begin at.
+    /// The rows of the particles that the lanes begin at.
     heads: [u32; LANES],
-    /// As many as the longest has springs.
+    /// As many as the longest chain has springs.
     steps: Range<usize>,
 }
 
@@ -33,22 +41,29 @@ pub(crate) struct Bundles {
 impl Bundles {
     /// Of the chains in `list`. `row_of` says in which row a particle is; in row `none` there is no particle.
     pub fn new(list: &SpringList, row_of: impl Fn(u32) -> u32, none: u32) -> Self {
-        let (mut bundles, mut steps) = (Vec::new(), Vec::new());
-        let colours = list.chains.colours.iter();
-        for chains in colours.flat_map(|colour| colour.chunks(LANES)) {
+        let (mut bundles, mut steps) = (Vec::new(), Vec::<Step>::new());
+        for lanes in list.chains.colours.iter().flat_map(|of| in_lanes(of)) {
             let begin = steps.len();
             let mut heads = [none; LANES];
-            for (lane, chain) in chains.iter().enumerate() {
-                let mut at = chain.first;
-                heads[lane] = row_of(at);
-                // In a colour the longest are first, but that is not relied on.
-                let missing = (begin + chain.edges.len()).saturating_sub(steps.len());
-                steps.extend(std::iter::repeat_n(Step::none(none), missing));
-                for (edge, step) in chain.edges.iter().zip(&mut steps[begin..]) {
-                    let spring = &list.springs[*edge as usize];
-                    let [a, b] = spring.ends;
-                    at = if a == at { b } else { a };
-                    step.set(lane, row_of(at), spring);
+            for (lane, chains) in lanes.iter().enumerate() {
+                let mut next = begin;
+                for chain in chains {
+                    let mut at = chain.first;
+                    if next == begin {
+                        heads[lane] = row_of(at);
+                    } else {
+                        steps[next].lead(lane, row_of(at));
+                        next += 1;
+                    }
+                    let end = next + chain.edges.len();
+                    steps.resize(end.max(steps.len()), Step::none(none));
+                    for (edge, step) in chain.edges.iter().zip(&mut steps[next..]) {
+                        let spring = &list.springs[*edge as usize];
+                        let [a, b] = spring.ends;
+                        at = if a == at { b } else { a };
+                        step.set(lane, row_of(at), spring);
+                    }
+                    next = end;
                 }
             }
             bundles.push(Bundle {
@@ -105,13 +120,37 @@ impl Bundles {
                 .zip(&self.pulled[steps.clone()])
             {
                 for lane in 0..LANES {
-                    if let Some((to, rest, compliance)) = step.spring(lane) {
+                    let (to, spring) = step.lane(lane);
+                    if let Some((rest, compliance)) = spring {
                         // A multiplier is negative where its spring is too long.
                         visit([from[lane], to], rest, compliance, -pulled[lane]);
-                        from[lane] = to;
                     }
+                    from[lane] = to;
                 }
             }
         }
     }
+}
+
+/// Distributes the chains of a colour, of which the longest is first, among the lanes of bundles. A bundle is as long as its longest
+/// chain; each lane takes the longest chain that it has room for, until none is short enough.
+fn in_lanes(colour: &[Chain]) -> Vec<[Vec<&Chain>; LANES]> {
+    let mut left: Vec<&Chain> = colour.iter().collect();
+    let mut bundles = Vec::new();
+    while let Some(longest) = left.first().map(|chain| chain.edges.len()) {
+        bundles.push(std::array::from_fn(|_| {
+            let (mut lane, mut room) = (Vec::new(), longest);
+            loop {
+                let fits = left.partition_point(|chain| chain.edges.len() > room);
+                if fits == left.len() {
+                    return lane;
+                }
+                let chain = left.remove(fits);
+                // A step leads to the next.
+                room = room.saturating_sub(chain.edges.len() + 1);
+                lane.push(chain);
+            }
+        }));
+    }
+    bundles
 }

@@ -152,6 +152,32 @@ fn chains_are_solved_as_by_elimination_in_f64() {
     }
 }
 
+/// Each spring on a chain is in one lane, and few lanes have none: of meshes with short chains, too.
+#[test]
+fn lanes_are_full() {
+    for (spacing, jitter) in [(0.05, 0.0), (0.05, 0.3), (0.02, 0.15), (0.02, 0.3)] {
+        let mesh = meshes::irregular(1.0, 0.7, spacing, jitter);
+        let surface = Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).expect("a surface");
+        let springs = list(&surface, 1.0e-4);
+        let list = chains_of(&springs);
+        let bundles = Bundles::new(list, |particle| particle, surface.len() as u32);
+        let mut found = Vec::new();
+        bundles.for_each_pull(|[a, b], _, _, _| found.push([a.min(b), a.max(b)]));
+        let edges = list.chains.iter().flat_map(|chain| &chain.edges);
+        let ends = edges.map(|edge| list.springs[*edge as usize].ends);
+        let mut expected: Vec<[u32; 2]> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        found.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(found, expected);
+        let full = found.len() as f32 / (8 * bundles.steps.len()) as f32;
+        println!(
+            "{surface}, moved by {jitter} spacings: lanes are full by {:.0} %",
+            100.0 * full
+        );
+        assert!(full > 0.7, "{full}");
+    }
+}
+
 /// Straight between pins, all pinned, all in one point, in the origin, where rows without a particle are, too.
 #[test]
 fn chains_without_a_solution_are_no_nan() {
