@@ -9,11 +9,11 @@
 
 use std::sync::Arc;
 
-use bevy::math::{Mat4, Vec4};
+use bevy::math::Vec4;
 
 use super::{
     chains::Bundles,
-    kernels::{Kernels, Packet, Row, SPRINGS, StepScale},
+    kernels::{Kernels, Packet, Row, SPRINGS, StepScale, turned},
     spring_solver::{Motion, SolvedSubstep, SpringSolver},
     stretch::Stretch,
 };
@@ -205,12 +205,6 @@ impl ListSolver {
         }
         Stretch::of_ratios(structural.sqrt(), bound.max(structural).sqrt())
     }
-}
-
-/// Four vectors of the first, second, third and fourth numbers of these.
-fn turned([a, b, c, d]: [Vec4; HALF]) -> [Vec4; HALF] {
-    let turned = Mat4::from_cols(a, b, c, d).transpose();
-    [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
 }
 
 impl SpringSolver for ListSolver {

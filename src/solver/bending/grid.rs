@@ -41,10 +41,11 @@ impl GridBending {
         }
     }
 
-    pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
-        self.weight = weight;
+    pub fn prepare(&mut self, blocks: &[Block], weight: f32, substeps: u32) {
+        let substeps = substeps as f32;
+        self.weight = weight * substeps;
         let bound = self.push.bound(blocks, weight);
-        self.is_soft = bound < LIMIT;
+        self.is_soft = bound * substeps < LIMIT;
         if bound * SPREAD < LIMIT {
             return;
         }
@@ -52,7 +53,7 @@ impl GridBending {
             .chains
             .get_or_insert_with(|| ChainBending::new(&self.plate));
         if !self.is_soft {
-            chains.prepare(blocks, weight);
+            chains.prepare(blocks, self.weight);
         }
     }
 

@@ -72,7 +72,7 @@ pub(super) struct MeshBending {
     /// Whether forces push it, as it was prepared.
     is_soft: bool,
     rows: Vec<Row>,
-    /// Where the particles are, with their displacements, from the first one's place (m).
+    /// Places with displacements, relative to the first particle (m).
     places: Vec<Vec4>,
     /// Conjugate directions.
     directions: Vec<Vec4>,

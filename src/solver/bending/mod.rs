@@ -5,8 +5,8 @@
 //! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
 //! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A surface
 //! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction. One that is
-//! softer still is pushed in every second, third or fourth sub-step, for all of them: by impulses, as molecules are by their
-//! slow forces (Grubmüller et al. 1991; Tuckerman, Berne and Martyna 1992).
+//! softer still and touches nothing is pushed in every second, third or fourth sub-step, for all of them: by impulses, as molecules
+//! are by their slow forces (Grubmüller et al. 1991; Tuckerman, Berne and Martyna 1992).
 //!
 //! Where the cloth creases, its rest curvature is a state. It is constant in a tick and pushes at p, in frames that turn with the
 //! cloth; as the tick ends, it follows by the return mapping of plasticity with linear kinematic hardening (Simo and Hughes 1998).
@@ -39,12 +39,37 @@ pub struct Bending {
     of: Kind,
 }
 
-/// For how many sub-steps it bends in sub-step `index` of `count`, with this [stride](Bending::stride). It does so in the middle
-/// one: then particles that keep their places have the same velocity before and after all of them.
-pub(super) fn bends_for(index: u32, count: u32, stride: u32) -> u32 {
-    let first = index - index % stride;
-    let all = stride.min(count - first);
-    if index == first + all / 2 { all } else { 0 }
+/// The sub-steps of a tick in which a surface bends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BendingSchedule {
+    stride: u32,
+    /// Sub-steps that it has bent for, all from the first one on.
+    done: u32,
+}
+
+impl BendingSchedule {
+    /// Once in so many sub-steps.
+    pub fn new(stride: u32) -> Self {
+        Self { stride, done: 0 }
+    }
+
+    /// From now on it bends in each sub-step.
+    pub fn bend_in_each(&mut self) {
+        self.stride = 1;
+    }
+
+    /// For how many sub-steps it bends in sub-step `index` of `count`: for a stride in the middle one of it. Then particles at rest
+    /// have nearly no velocity between two strides.
+    pub fn next(&mut self, index: u32, count: u32) -> u32 {
+        let due = self.stride.min(count - self.done);
+        if index < self.done + due / 2 {
+            return 0;
+        }
+        // More, if the stride was shortened.
+        let due = due.max(index + 1 - self.done);
+        self.done += due;
+        due
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -67,11 +92,12 @@ impl Bending {
         Some(Self { of })
     }
 
-    /// Takes over the masses and the weight s (s²) of the forces if they have changed: Δt² for implicit Euler.
-    pub(super) fn prepare(&mut self, blocks: &[Block], weight: f32) {
+    /// Takes over the masses and the weight s (s²) of the forces in a sub-step if they have changed: Δt² for implicit Euler. It bends
+    /// for so many sub-steps at once.
+    pub(super) fn prepare(&mut self, blocks: &[Block], weight: f32, substeps: u32) {
         match &mut self.of {
-            Kind::Grid(grid) => grid.prepare(blocks, weight),
-            Kind::Mesh(mesh) => mesh.prepare(blocks, weight),
+            Kind::Grid(grid) => grid.prepare(blocks, weight, substeps),
+            Kind::Mesh(mesh) => mesh.prepare(blocks, weight * substeps as f32),
         }
     }
 
@@ -83,7 +109,7 @@ impl Bending {
         }
     }
 
-    /// The longest sub-step (s) in which it may [push](Self::push).
+    /// The longest sub-step (s) in which its forces may push.
     pub(super) fn longest_push(&self, blocks: &[Block]) -> f32 {
         match &self.of {
             Kind::Grid(grid) => grid.longest_push(blocks),
@@ -91,14 +117,14 @@ impl Bending {
         }
     }
 
-    /// Of how many sub-steps of `dt` (s) in a row it need bend in one alone, for all of them: as many as leave it soft, with their
-    /// weight together. For the fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable.
+    /// It needs to bend in one of so many sub-steps of `dt` (s), for all of them: their weights together leave it soft. For the
+    /// fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable.
     pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {
         let weights = (self.longest_push(blocks) / dt).powi(2);
         (weights as u32).clamp(1, MOST_AT_ONCE)
     }
 
-    /// Adds the displacements by the forces at the current positions, with this weight (s²).
+    /// Adds the displacements by a grid's forces at the current positions, with this weight (s²).
     pub(super) fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
         if let Kind::Grid(grid) = &mut self.of {
             grid.push(blocks, weight, kernels);

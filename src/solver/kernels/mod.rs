@@ -36,7 +36,7 @@ pub(crate) use chains::{
 pub(crate) use commit::MIN_MOVE;
 pub(crate) use commit::commit;
 pub(crate) use elastic::{ElasticGrid, Force, Kick, kick};
-pub(crate) use packet::{Packet, Row, SPRINGS, relax_packets_back, relax_packets_there};
+pub(crate) use packet::{Packet, Row, SPRINGS, relax_packets_back, relax_packets_there, turned};
 pub(crate) use pentadiagonal::{
     Factor, Vec3Lanes, chain_backward, chain_columns, chain_finish, chain_forward, chain_links,
     chain_moments, chain_rows,

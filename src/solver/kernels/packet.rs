@@ -82,7 +82,7 @@ fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Opti
     let b = packet.to.map(|end| rows[end as usize]);
     let offsets: [Vec4; SPRINGS] =
         std::array::from_fn(|at| (b[at].place - a[at].place) + (b[at].moved - a[at].moved));
-    let [x, y, z] = coordinates(offsets);
+    let [x, y, z, _] = turned(offsets);
     let (weight_a, weight_b) = (weights(&a), weights(&b));
     let q = x * x + y * y + z * z;
     let r2 = packet.rest_square;
@@ -90,7 +90,7 @@ fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Opti
     if step_scale.kept < 1.0 {
         // As of a grid's springs; what a way opens by changes its square by twice its length times that.
         let moved: [Vec4; SPRINGS] = std::array::from_fn(|at| b[at].moved - a[at].moved);
-        let [dx, dy, dz] = coordinates(moved);
+        let [dx, dy, dz, _] = turned(moved);
         let is_soft = packet.compliance.cmpgt(Vec4::ZERO);
         let kept = Vec4::select(is_soft, Vec4::splat(step_scale.kept), Vec4::ONE);
         softness *= kept;
@@ -114,11 +114,11 @@ fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Opti
     share
 }
 
-/// The three coordinates of four vectors.
+/// The first, second, third and fourth numbers of four vectors.
 #[inline(always)]
-fn coordinates([a, b, c, d]: [Vec4; SPRINGS]) -> [Vec4; 3] {
+pub(crate) fn turned([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
     let turned = Mat4::from_cols(a, b, c, d).transpose();
-    [turned.x_axis, turned.y_axis, turned.z_axis]
+    [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
 }
 
 #[inline(always)]

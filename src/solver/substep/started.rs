@@ -4,7 +4,7 @@ use super::{AFTER_CONTACT, RESOLVED, Solver, UNSOLVED, WARY_TICKS};
 use crate::{
     cloth::{Block, ClothParticles, Earlier, StepKind},
     solver::{
-        bending::bends_for,
+        bending::BendingSchedule,
         damping_reference::DampingReference,
         energy::Energy,
         kernels::{AirStep, Prediction, StepScale, weight},
@@ -24,8 +24,7 @@ pub(crate) struct StartedTick {
     next: u32,
     /// Whether springs push by their forces.
     is_explicit: bool,
-    /// Of how many sub-steps the cloth bends in one.
-    bending_stride: u32,
+    bending: BendingSchedule,
     /// The cloth's energy as the tick began, if it is watched.
     watched: Option<Energy>,
     spin: Option<Spin>,
@@ -55,6 +54,7 @@ impl StartedTick {
     pub(crate) fn note_push(&mut self, particles: &mut ClothParticles) {
         self.is_pushed = true;
         self.measured = None;
+        self.bending.bend_in_each();
         self.damping_reference.note_push();
         if !self.is_explicit {
             particles.forget_past(AFTER_CONTACT);
@@ -82,7 +82,7 @@ impl Solver {
             step,
             next: 0,
             is_explicit: false,
-            bending_stride: 1,
+            bending: BendingSchedule::new(1),
             watched: None,
             spin: None,
             damping_reference: DampingReference::of(&step),
@@ -106,11 +106,12 @@ impl Solver {
             particles.zero_pin_displacements();
             return tick;
         }
-        // What touches something is not pushed by jolts: of a hundred piles one took ten times as long to fall asleep.
+        // Jolts keep cloth that touches something awake: one of a hundred piles took ten times as long to fall asleep.
         if let Some(bending) = &self.bending
+            && step.order == TimeOrder::Second
             && !particles.past_mut().is_ignored()
         {
-            tick.bending_stride = bending.stride(particles.blocks(), dt);
+            tick.bending = BendingSchedule::new(bending.stride(particles.blocks(), dt));
         }
         // The work of a wind is no excess, and not known here.
         if self.air.is_none() {
@@ -187,9 +188,11 @@ impl Solver {
         if let Some(air) = &mut self.air {
             air.press(blocks, weight_dt2);
         }
-        let bends_for = bends_for(tick.next, tick.substeps(), tick.bending_stride);
-        if let Some(bending) = self.bending.as_mut().filter(|_| bends_for > 0) {
-            bending.prepare(blocks, bends_for as f32 * weight_dt2);
+        let bends_for = tick.bending.next(tick.next, tick.substeps());
+        if let Some(bending) = &mut self.bending
+            && bends_for > 0
+        {
+            bending.prepare(blocks, weight_dt2, bends_for);
             bending.solve(blocks, &kernels);
         }
         particles.put_loads_on(pull);

@@ -82,21 +82,21 @@ fn the_limit_is_seen_in_weights_and_masses() {
     let mass = f64::from(ClothMaterial::COTTON.areal_density) * 0.02 * 0.02;
     let k = f64::from(RIGIDITY) / (0.02 * 0.02);
     let limit = (f64::from(push::LIMIT) * mass / (64.0 * k)) as f32;
-    bending.prepare(particles.blocks(), 0.4 * limit);
+    bending.prepare(particles.blocks(), 0.4 * limit, 1);
     assert!(is_soft(&bending) && !has_factors(&bending));
-    bending.prepare(particles.blocks(), 0.999 * limit);
+    bending.prepare(particles.blocks(), 0.999 * limit, 1);
     assert!(is_soft(&bending));
-    bending.prepare(particles.blocks(), 1.001 * limit);
+    bending.prepare(particles.blocks(), 1.001 * limit, 1);
     assert!(!is_soft(&bending) && has_factors(&bending));
-    bending.prepare(particles.blocks(), 0.999 * limit);
+    bending.prepare(particles.blocks(), 0.999 * limit, 1);
     assert!(is_soft(&bending));
     particles.set_inverse_mass(50, 1.0e6).expect("it exists");
-    bending.prepare(particles.blocks(), 0.999 * limit);
+    bending.prepare(particles.blocks(), 0.999 * limit, 1);
     assert!(!is_soft(&bending));
     for index in 0..particles.len() {
         particles.set_inverse_mass(index, 0.0).expect("it exists");
     }
-    bending.prepare(particles.blocks(), 1.0);
+    bending.prepare(particles.blocks(), 1.0, 1);
     assert!(is_soft(&bending));
 }
 
@@ -120,14 +120,24 @@ fn each_sub_step_is_bent_for_once() {
         for count in 1..=60 {
             let dt = 1.0 / 60.0 / count as f32;
             let stride = bending.stride(particles.blocks(), dt);
-            let bent: Vec<u32> = (0..count)
-                .map(|index| bends_for(index, count, stride))
-                .collect();
-            assert_eq!(bent.iter().sum::<u32>(), count, "{bent:?}");
-            assert!(bent.iter().all(|for_so_many| *for_so_many <= stride));
+            // From some sub-step on, in each.
+            for shortened in 0..=count {
+                let mut schedule = BendingSchedule::new(stride);
+                let mut bent = 0;
+                for index in 0..count {
+                    if index == shortened {
+                        schedule.bend_in_each();
+                    }
+                    let now = schedule.next(index, count);
+                    assert!(now <= stride);
+                    bent += now;
+                    assert!(bent.abs_diff(index) <= stride);
+                }
+                assert_eq!(bent, count, "{stride}, {shortened} of {count}");
+            }
             if stride > 1 {
                 // With a part of a millionth for rounding.
-                bending.prepare(particles.blocks(), 0.999_999 * stride as f32 * dt * dt);
+                bending.prepare(particles.blocks(), 0.999_999 * dt * dt, stride);
                 assert!(is_soft(&bending), "{stride} of {count}");
             }
             strides.push(stride);

@@ -44,6 +44,8 @@ impl Bundles {
         let (mut bundles, mut steps) = (Vec::new(), Vec::<Step>::new());
         for lanes in list.chains.colours.iter().flat_map(|of| in_lanes(of)) {
             let begin = steps.len();
+            let longest = lanes[0].first().map_or(0, |chain| chain.edges.len());
+            steps.resize(begin + longest, Step::none(none));
             let mut heads = [none; LANES];
             for (lane, chains) in lanes.iter().enumerate() {
                 let mut next = begin;
@@ -55,15 +57,13 @@ impl Bundles {
                         steps[next].lead(lane, row_of(at));
                         next += 1;
                     }
-                    let end = next + chain.edges.len();
-                    steps.resize(end.max(steps.len()), Step::none(none));
                     for (edge, step) in chain.edges.iter().zip(&mut steps[next..]) {
                         let spring = &list.springs[*edge as usize];
                         let [a, b] = spring.ends;
                         at = if a == at { b } else { a };
                         step.set(lane, row_of(at), spring);
                     }
-                    next = end;
+                    next += chain.edges.len();
                 }
             }
             bundles.push(Bundle {
@@ -135,6 +135,7 @@ impl Bundles {
 /// Distributes the chains of a colour, of which the longest is first, among the lanes of bundles. A bundle is as long as its longest
 /// chain; each lane takes the longest chain that it has room for, until none is short enough.
 fn in_lanes(colour: &[Chain]) -> Vec<[Vec<&Chain>; LANES]> {
+    debug_assert!(colour.is_sorted_by_key(|chain| std::cmp::Reverse(chain.edges.len())));
     let mut left: Vec<&Chain> = colour.iter().collect();
     let mut bundles = Vec::new();
     while let Some(longest) = left.first().map(|chain| chain.edges.len()) {

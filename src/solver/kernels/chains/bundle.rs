@@ -1,16 +1,19 @@
 //! Chains in any direction, such as those of a mesh: eight at a time, each in a lane.
 //!
 //! # The floor
-//! Forward, eight springs take the 56 numbers of the particles that they lead to, one by one, and two divisions; those that they
-//! begin at are known from the step before. Each pivot waits for a division and three multiplications of the one before: some
-//! 25 cycles. It takes 64 cycles, 2.7 ns a spring, for all numbers go through one port of the processor on their way to their lanes.
+//! Forward, eight springs take the 56 numbers of the particles that they lead to, one by one, and two divisions. The step before
+//! knows those that they begin at. Each pivot waits for a division and three multiplications of the one before: some 25 cycles.
+//! Eight springs take 64 cycles, 2.7 ns each: all numbers go through one port of the processor.
 
-use bevy::math::{Mat4, Vec4};
+use bevy::math::Vec4;
 
 use super::link::{HOLD, clamped, terms};
 use crate::{
     cloth::{LANES, Lanes, Spring},
-    solver::kernels::{packet::Row, step_scale::StepScale},
+    solver::kernels::{
+        packet::{Row, turned},
+        step_scale::StepScale,
+    },
 };
 
 /// The next spring of each chain of a bundle.
@@ -83,8 +86,8 @@ impl Solved {
     };
 }
 
-/// Eight particles. They are gathered number by number: halves of lanes that were written as vectors of four were waited for in
-/// each step, which took as long as all the rest.
+/// Eight particles, gathered number by number. Where vectors of four were stored for it, loads of eight lanes waited for these stores:
+/// as long as all the rest took.
 #[derive(Clone, Copy)]
 struct Particles {
     place: [Lanes; 3],
@@ -120,8 +123,7 @@ impl Particles {
 fn vectors(coordinates: &[Lanes; 3]) -> [Vec4; LANES] {
     let of = |from: usize| {
         let [x, y, z] = [0, 1, 2].map(|axis| Vec4::from_slice(&coordinates[axis][from..from + 4]));
-        let turned = Mat4::from_cols(x, y, z, Vec4::ZERO).transpose();
-        [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
+        turned([x, y, z, Vec4::ZERO])
     };
     let ([a, b, c, d], [e, f, g, h]) = (of(0), of(4));
     [a, b, c, d, e, f, g, h]
