@@ -41,11 +41,10 @@ impl GridBending {
         }
     }
 
-    pub fn prepare(&mut self, blocks: &[Block], weight: f32, substeps: u32) {
-        let substeps = substeps as f32;
-        self.weight = weight * substeps;
+    pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
+        self.weight = weight;
         let bound = self.push.bound(blocks, weight);
-        self.is_soft = bound * substeps < LIMIT;
+        self.is_soft = bound < LIMIT;
         if bound * SPREAD < LIMIT {
             return;
         }
@@ -53,7 +52,7 @@ impl GridBending {
             .chains
             .get_or_insert_with(|| ChainBending::new(&self.plate));
         if !self.is_soft {
-            chains.prepare(blocks, self.weight);
+            chains.prepare(blocks, weight);
         }
     }
 

@@ -21,7 +21,7 @@
 
 use std::sync::Arc;
 
-use bevy::math::{DVec3, Vec3, Vec3A, Vec4};
+use bevy::math::{DVec3, Vec3A, Vec4};
 
 use super::{
     creasing::ClothCreasing,
@@ -72,8 +72,8 @@ pub(super) struct MeshBending {
     /// Whether forces push it, as it was prepared.
     is_soft: bool,
     rows: Vec<Row>,
-    /// Places with displacements, relative to the first particle (m).
-    places: Vec<Vec4>,
+    /// Places and displacements (m).
+    places: Vec<[Vec4; 2]>,
     /// Conjugate directions.
     directions: Vec<Vec4>,
 }
@@ -130,7 +130,7 @@ impl MeshBending {
             weight: 0.0,
             rows: vec![Row::default(); places.len()],
             directions: vec![Vec4::ZERO; places.len()],
-            places: vec![Vec4::ZERO; places.len()],
+            places: vec![[Vec4::ZERO; 2]; places.len()],
         }
     }
 
@@ -152,11 +152,6 @@ impl MeshBending {
         }
     }
 
-    /// The longest sub-step in which it is soft enough to be pushed (s).
-    pub fn longest_push(&self, blocks: &[Block]) -> f32 {
-        (LIMIT / self.bound(blocks)).sqrt()
-    }
-
     /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
     fn bound(&self, blocks: &[Block]) -> f32 {
         let mut largest = 0.0_f32;
@@ -169,13 +164,11 @@ impl MeshBending {
         largest
     }
 
-    /// Takes places. A mesh's particles lie in one row of the layout: lane after lane.
+    /// Takes places and displacements. A mesh's particles lie in one row of the layout: lane after lane.
     fn load(&mut self, blocks: &[Block]) {
-        let origin = blocks.first().map_or(Vec3::ZERO, |first| first.position(0));
         for (lane, places) in self.places.chunks_mut(blocks.len().max(1)).enumerate() {
             for (place, block) in places.iter_mut().zip(blocks) {
-                let there = (block.position(lane) - origin) + block.displacement(lane);
-                *place = there.extend(0.0);
+                *place = [block.position(lane), block.displacement(lane)].map(|of| of.extend(0.0));
             }
         }
     }
@@ -229,8 +222,8 @@ impl MeshBending {
     /// the cloth: a creased strip at rest began to turn by a degree in a second.
     fn aim_again(&mut self) {
         self.push_creases(-self.weight);
-        for (row, place) in self.rows.iter_mut().zip(&mut self.places) {
-            *place += row.added;
+        for (row, [_, moved]) in self.rows.iter_mut().zip(&mut self.places) {
+            *moved += row.added;
             row.added = Vec4::ZERO;
         }
         self.push_creases(self.weight);
@@ -245,7 +238,10 @@ impl MeshBending {
             return;
         };
         let (places, rows) = (&self.places, &mut self.rows);
-        let at = |particle: u32| places[particle as usize].truncate();
+        let at = |particle: u32| {
+            let [place, moved] = places[particle as usize];
+            (place + moved).truncate()
+        };
         creases.push(at, |particle, force| {
             rows[particle as usize].left += weight * force.extend(0.0);
         });
@@ -254,15 +250,20 @@ impl MeshBending {
     /// `left` becomes −K p, less what the rest curvatures want.
     fn set_forces(&mut self) {
         for at in 0..self.rows.len() {
-            let (mut sum, place) = (Vec4::ZERO, self.places[at]);
+            let [place, moved] = self.places[at];
+            let mut sum = Vec4::ZERO;
             for &(other, number) in &self.entries[of(&self.first, at)] {
-                sum += number * (self.places[other as usize] - place);
+                let [there, moved_there] = self.places[other as usize];
+                sum += number * ((there - place) + (moved_there - moved));
             }
             self.rows[at].left = -sum;
         }
         for face in &*self.rest {
             let [a, b, c, ..] = face.particles;
-            let corners = [a, b, c].map(|at| Vec3A::from_vec4(self.places[at as usize]));
+            let corners = [a, b, c].map(|at| {
+                let [place, moved] = self.places[at as usize];
+                Vec3A::from_vec4(place + moved)
+            });
             let Some(frame) = frame(corners) else {
                 continue;
             };

@@ -4,9 +4,7 @@
 //! positions p to the solution y of `(M + s K) y = M p`. This is implicit Euler for bending alone, with s = Δt² and K
 //! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
 //! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A surface
-//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction. One that is
-//! softer still and touches nothing is pushed in every second, third or fourth sub-step, for all of them: by impulses, as molecules
-//! are by their slow forces (Grubmüller et al. 1991; Tuckerman, Berne and Martyna 1992).
+//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction.
 //!
 //! Where the cloth creases, its rest curvature is a state. It is constant in a tick and pushes at p, in frames that turn with the
 //! cloth; as the tick ends, it follows by the return mapping of plasticity with linear kinematic hardening (Simo and Hughes 1998).
@@ -30,46 +28,10 @@ pub use creasing::ClothCreasing;
 use grid::GridBending;
 use mesh::MeshBending;
 
-/// Most sub-steps that a push is for.
-const MOST_AT_ONCE: u32 = 4;
-
 /// A surface's resistance to bending.
 #[derive(Debug, Clone)]
 pub struct Bending {
     of: Kind,
-}
-
-/// The sub-steps of a tick in which a surface bends.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BendingSchedule {
-    stride: u32,
-    /// Sub-steps that it has bent for, all from the first one on.
-    done: u32,
-}
-
-impl BendingSchedule {
-    /// Once in so many sub-steps.
-    pub fn new(stride: u32) -> Self {
-        Self { stride, done: 0 }
-    }
-
-    /// From now on it bends in each sub-step.
-    pub fn bend_in_each(&mut self) {
-        self.stride = 1;
-    }
-
-    /// For how many sub-steps it bends in sub-step `index` of `count`: for a stride in the middle one of it. Then particles at rest
-    /// have nearly no velocity between two strides.
-    pub fn next(&mut self, index: u32, count: u32) -> u32 {
-        let due = self.stride.min(count - self.done);
-        if index < self.done + due / 2 {
-            return 0;
-        }
-        // More, if the stride was shortened.
-        let due = due.max(index + 1 - self.done);
-        self.done += due;
-        due
-    }
 }
 
 #[derive(Debug, Clone)]
@@ -92,12 +54,11 @@ impl Bending {
         Some(Self { of })
     }
 
-    /// Takes over the masses and the weight s (s²) of the forces in a sub-step if they have changed: Δt² for implicit Euler. It bends
-    /// for so many sub-steps at once.
-    pub(super) fn prepare(&mut self, blocks: &[Block], weight: f32, substeps: u32) {
+    /// Takes over the masses and the weight s (s²) of the forces if they have changed: Δt² for implicit Euler.
+    pub(super) fn prepare(&mut self, blocks: &[Block], weight: f32) {
         match &mut self.of {
-            Kind::Grid(grid) => grid.prepare(blocks, weight, substeps),
-            Kind::Mesh(mesh) => mesh.prepare(blocks, weight * substeps as f32),
+            Kind::Grid(grid) => grid.prepare(blocks, weight),
+            Kind::Mesh(mesh) => mesh.prepare(blocks, weight),
         }
     }
 
@@ -109,22 +70,15 @@ impl Bending {
         }
     }
 
-    /// The longest sub-step (s) in which its forces may push.
+    /// The longest sub-step (s) in which it may [push](Self::push).
     pub(super) fn longest_push(&self, blocks: &[Block]) -> f32 {
         match &self.of {
             Kind::Grid(grid) => grid.longest_push(blocks),
-            Kind::Mesh(mesh) => mesh.longest_push(blocks),
+            Kind::Mesh(_) => 0.0,
         }
     }
 
-    /// It needs to bend in one of so many sub-steps of `dt` (s), for all of them: their weights together leave it soft. For the
-    /// fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable.
-    pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {
-        let weights = (self.longest_push(blocks) / dt).powi(2);
-        (weights as u32).clamp(1, MOST_AT_ONCE)
-    }
-
-    /// Adds the displacements by a grid's forces at the current positions, with this weight (s²).
+    /// Adds the displacements by the forces at the current positions, with this weight (s²).
     pub(super) fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
         if let Kind::Grid(grid) = &mut self.of {
             grid.push(blocks, weight, kernels);

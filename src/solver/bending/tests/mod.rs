@@ -65,7 +65,7 @@ fn added(
     level: SimdLevel,
 ) -> Vec<Vec3> {
     let mut after = particles.clone();
-    bending.prepare(after.blocks(), weight, 1);
+    bending.prepare(after.blocks(), weight);
     bending.solve(after.blocks_mut(), &level.kernels());
     let pairs = after.displacements().zip(particles.displacements());
     pairs.map(|(after, before)| after - before).collect()
@@ -84,7 +84,7 @@ fn softest(bending: &mut Bending, particles: &ClothParticles) -> f32 {
     let (mut soft, mut stiff) = (0.0_f32, 1.0);
     for _ in 0..60 {
         let middle = 0.5 * (soft + stiff);
-        bending.prepare(particles.blocks(), middle, 1);
+        bending.prepare(particles.blocks(), middle);
         if is_soft(bending) {
             soft = middle;
         } else {

@@ -82,68 +82,22 @@ fn the_limit_is_seen_in_weights_and_masses() {
     let mass = f64::from(ClothMaterial::COTTON.areal_density) * 0.02 * 0.02;
     let k = f64::from(RIGIDITY) / (0.02 * 0.02);
     let limit = (f64::from(push::LIMIT) * mass / (64.0 * k)) as f32;
-    bending.prepare(particles.blocks(), 0.4 * limit, 1);
+    bending.prepare(particles.blocks(), 0.4 * limit);
     assert!(is_soft(&bending) && !has_factors(&bending));
-    bending.prepare(particles.blocks(), 0.999 * limit, 1);
+    bending.prepare(particles.blocks(), 0.999 * limit);
     assert!(is_soft(&bending));
-    bending.prepare(particles.blocks(), 1.001 * limit, 1);
+    bending.prepare(particles.blocks(), 1.001 * limit);
     assert!(!is_soft(&bending) && has_factors(&bending));
-    bending.prepare(particles.blocks(), 0.999 * limit, 1);
+    bending.prepare(particles.blocks(), 0.999 * limit);
     assert!(is_soft(&bending));
     particles.set_inverse_mass(50, 1.0e6).expect("it exists");
-    bending.prepare(particles.blocks(), 0.999 * limit, 1);
+    bending.prepare(particles.blocks(), 0.999 * limit);
     assert!(!is_soft(&bending));
     for index in 0..particles.len() {
         particles.set_inverse_mass(index, 0.0).expect("it exists");
     }
-    bending.prepare(particles.blocks(), 1.0, 1);
+    bending.prepare(particles.blocks(), 1.0);
     assert!(is_soft(&bending));
-}
-
-/// All sub-steps of a tick are bent for, each once, and what bends for several is as soft as what may be pushed at all: on grids
-/// and meshes, of any spacing, in sub-steps of any length.
-#[test]
-fn each_sub_step_is_bent_for_once() {
-    let cloth = Cloth::new(9, 7, 0.02);
-    let grids = [0.1, 1.0, 4.0].map(|scale| {
-        let grid = cloth.grid(Vec3::splat(scale)).expect("valid");
-        Surface::of_grid(&grid)
-    });
-    let meshes = [0.02, 0.05].map(|spacing| {
-        let mesh = crate::meshes::irregular(0.4, 0.3, spacing, 0.3);
-        Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).expect("a surface")
-    });
-    let mut strides = Vec::new();
-    for surface in grids.iter().chain(&meshes) {
-        let particles = ClothParticles::at_rest(surface, &material()).expect("valid");
-        let mut bending = Bending::new(surface, &material()).expect("it is stiff");
-        for count in 1..=60 {
-            let dt = 1.0 / 60.0 / count as f32;
-            let stride = bending.stride(particles.blocks(), dt);
-            // From some sub-step on, in each.
-            for shortened in 0..=count {
-                let mut schedule = BendingSchedule::new(stride);
-                let mut bent = 0;
-                for index in 0..count {
-                    if index == shortened {
-                        schedule.bend_in_each();
-                    }
-                    let now = schedule.next(index, count);
-                    assert!(now <= stride);
-                    bent += now;
-                    assert!(bent.abs_diff(index) <= stride);
-                }
-                assert_eq!(bent, count, "{stride}, {shortened} of {count}");
-            }
-            if stride > 1 {
-                // With a part of a millionth for rounding.
-                bending.prepare(particles.blocks(), 0.999_999 * dt * dt, stride);
-                assert!(is_soft(&bending), "{stride} of {count}");
-            }
-            strides.push(stride);
-        }
-    }
-    assert!((1..=MOST_AT_ONCE).all(|stride| strides.contains(&stride)));
 }
 
 /// Forces have neither a sum nor a moment.

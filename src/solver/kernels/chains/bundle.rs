@@ -163,14 +163,12 @@ fn forward<const DAMPED: bool>(
             weight: b.weight,
             ..Solved::NONE
         };
-        let mut moved = [[0.0; LANES]; 3];
         for l in 0..LANES {
-            for axis in 0..3 {
-                moved[axis][l] = b.moved[axis][l] - a.moved[axis][l];
-                link.span[axis][l] = (b.place[axis][l] - a.place[axis][l]) + moved[axis][l];
-            }
-            let [x, y, z] =
-                [0, 1, 2].map(|axis| clamped(link.span[axis][l] * step.inverse_rest[l]));
+            let moved = [0, 1, 2].map(|axis| b.moved[axis][l] - a.moved[axis][l]);
+            let [x, y, z] = [0, 1, 2].map(|axis| {
+                let span = (b.place[axis][l] - a.place[axis][l]) + moved[axis];
+                clamped(span * step.inverse_rest[l])
+            });
             let both = a.weight[l] + b.weight[l];
             let is_rigid = step.compliance[l] == 0.0;
             let kept = if is_rigid { 1.0 } else { step_scale.kept };
@@ -179,7 +177,7 @@ fn forward<const DAMPED: bool>(
             let [diagonal, right] = terms([x, y, z], both, softness, step.hold[l], step.rest[l]);
             let right = if DAMPED {
                 // As of a grid's springs.
-                let opening = x * moved[0][l] + y * moved[1][l] + z * moved[2][l];
+                let opening = x * moved[0] + y * moved[1] + z * moved[2];
                 let opening = if both > 0.0 { opening } else { 0.0 };
                 kept * right - (1.0 - kept) * opening
             } else {
