@@ -144,10 +144,6 @@ fn a_wall_thinner_than_a_spacing_holds_cloth() {
             .spawn((collider.clone(), Transform::IDENTITY));
         let mut edges = box_edges(size, Transform::IDENTITY);
         edges.retain(|[from, to]| from.y > 0.0 || to.y > 0.0);
-        // An upright edge down to 5 cm above the foot.
-        for end in edges.iter_mut().flatten() {
-            end.y = end.y.max(-0.25);
-        }
         let mut deepest = 0.0_f64;
         for _ in 0..128 {
             tick(&mut app, 1);
