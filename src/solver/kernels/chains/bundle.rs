@@ -86,8 +86,8 @@ impl Solved {
     };
 }
 
-/// Eight particles, gathered number by number. Where vectors of four were stored for it, loads of eight lanes waited for these stores:
-/// as long as all the rest took.
+/// Eight particles, gathered number by number. Storing vectors of four and loading them as eight lanes stalls: that took as long as
+/// all the rest.
 #[derive(Clone, Copy)]
 struct Particles {
     place: [Lanes; 3],
