@@ -37,9 +37,9 @@ use crate as library;
 /// Most games need only this: `use bevy_drape::prelude::*`.
 pub mod prelude {
     pub use crate::cloth::{
-        Cloth, ClothBackstop, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothPaint,
-        ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothTearing, ClothTears, ClothWeft,
-        Corner, Pin, Pins, RopeShape, Surface,
+        Cloth, ClothBackstop, ClothError, ClothFactor, ClothGrain, ClothMaterial, ClothMaterialMap,
+        ClothPaint, ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothStiffening,
+        ClothTearing, ClothTears, ClothWeft, Corner, Pin, Pins, RopeShape, Surface,
     };
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,

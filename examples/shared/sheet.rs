@@ -18,6 +18,7 @@ pub fn threads(stretch: f32, shear: f32) -> ClothMaterial {
         shear_compliance: shear,
         bend_rigidity: 0.0,
         weft: None,
+        stiffening: None,
         stretch_damping: 0.0,
         damping: 0.0,
         friction: 0.0,

@@ -1,13 +1,13 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
 mod cut;
-mod density;
 mod error;
 mod grain;
 mod grid;
 mod lanes;
 mod limits;
 mod material;
+mod material_map;
 mod particle_id;
 mod particles;
 mod pins;
@@ -23,14 +23,14 @@ mod surface;
 mod tearing;
 mod tears;
 
-pub use density::ClothDensity;
 pub use error::ClothError;
 pub use grain::ClothGrain;
 #[doc(hidden)]
 pub use grid::ClothGrid;
 pub use grid::{ClothPlane, GridShape};
 pub use limits::MAX_PARTICLES;
-pub use material::{ClothMaterial, ClothWeft};
+pub use material::{ClothMaterial, ClothStiffening, ClothWeft};
+pub use material_map::{ClothFactor, ClothMaterialMap};
 pub use particle_id::ParticleId;
 pub use particles::ClothParticles;
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
@@ -51,11 +51,12 @@ pub(crate) use cut::Cut;
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
+pub(crate) use material_map::MaterialFactors;
 pub(crate) use particles::{DensityFactors, Earlier, Load, StepKind};
 pub(crate) use presence::ClothPresence;
 pub(crate) use sewing::{SewnSide, Stitch, stitches};
 pub(crate) use skin::Skinning;
-pub(crate) use springs::{Compliances, SpringList, SpringStorage};
+pub(crate) use springs::{Compliances, SpringList, SpringStorage, StiffnessFactors};
 #[cfg(feature = "mesh")]
 pub(crate) use surface::skin_of_asset;
 pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, ShortestPaths};

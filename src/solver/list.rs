@@ -13,7 +13,7 @@ use bevy::math::Vec4;
 
 use super::{
     chains::Bundles,
-    kernels::{Kernels, Packet, Row, SPRINGS, StepScale, turned},
+    kernels::{Kernels, Packet, Row, SPRINGS, StepScale, Stiffer, turned},
     spring_solver::{Motion, SolvedSubstep, SpringSolver},
     stretch::Stretch,
 };
@@ -21,9 +21,6 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringL
 
 /// Half of the lanes: as many numbers as a vector has.
 const HALF: usize = LANES / 2;
-
-/// The part of a spring's length that its pull has given, at most.
-const MOST_GIVEN: f32 = 0.9;
 
 /// A list of springs as the sub-steps want them.
 #[derive(Debug, Default, Clone)]
@@ -38,6 +35,7 @@ pub(super) struct ListSolver {
     chains: Bundles,
     layout: Layout,
     step_scale: StepScale,
+    stiffer: Stiffer,
     /// The particles of one sub-step, strip by strip: in the order of their indices, with what is no particle at the end of
     /// each row of the layout.
     rows: Vec<Row>,
@@ -87,6 +85,7 @@ impl ListSolver {
             chains: Bundles::new(springs, row_of, none),
             layout,
             step_scale: StepScale::default(),
+            stiffer: (springs.stiffening.as_ref()).map_or(Stiffer::NONE, Stiffer::of),
             rows: vec![Row::default(); layout.blocks() * LANES + 1],
         }
     }
@@ -144,10 +143,10 @@ impl ListSolver {
         let rows = &mut self.rows;
         let mut material = 0.0_f32;
         let scale = self.step_scale.inverse_weight;
+        let stiffer = self.stiffer;
         // The tension over the length (N/m), and the elongation as a part of the length.
         let mut add = |ends: [u32; 2], tension: f32, part: f32| {
-            let part = part.clamp(0.0, MOST_GIVEN);
-            material = material.max(part / (1.0 - part));
+            material = material.max(stiffer.strain(part));
             for end in ends {
                 rows[end as usize].moved.w += tension;
             }
@@ -209,7 +208,10 @@ impl ListSolver {
 
 impl SpringSolver for ListSolver {
     fn set_step_scale(&mut self, step_scale: StepScale) {
-        self.step_scale = step_scale;
+        self.step_scale = StepScale {
+            stiffer: self.stiffer,
+            ..step_scale
+        };
     }
 
     fn is_exact(&self) -> bool {

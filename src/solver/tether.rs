@@ -74,13 +74,7 @@ pub(crate) fn material_stretch(
     } else {
         pins
     };
-    largest_compliance(material) * tension(surface, material, pins, acceleration)
-}
-
-/// That of warp or weft (m/N), whichever gives more.
-fn largest_compliance(material: &ClothMaterial) -> f32 {
-    let [weft, warp] = material.stretch_compliances();
-    weft.max(warp)
+    material.largest_strain(tension(surface, material, pins, acceleration))
 }
 
 /// Distances over a surface at rest from each particle to a pin, including the stretch of the material.
@@ -96,7 +90,7 @@ impl Lengths<'_> {
         let [across, down] = flat.between(particle, pin);
         let square = across * across + down * down;
         let straight = square.sqrt();
-        let stretch = 1.0 + SLACK + largest_compliance(self.material) * self.tension;
+        let stretch = 1.0 + SLACK + self.material.largest_strain(self.tension);
         let bias = 2.0 * across * down / square;
         // Along a chain there is nothing to shear, and infinite × 0 is NaN; nor where springs run in all directions.
         if !flat.has_chains || bias == 0.0 {
@@ -110,7 +104,7 @@ impl Lengths<'_> {
 
     /// Along edges, anywhere else.
     fn along(&self, path: f32) -> f32 {
-        path * (1.0 + SLACK + largest_compliance(self.material) * self.tension)
+        path * (1.0 + SLACK + self.material.largest_strain(self.tension))
     }
 
     /// The pin to which each particle is tethered in a layer, and the length of the tether.

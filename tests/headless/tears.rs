@@ -354,7 +354,10 @@ fn a_mesh_tears_at_about_its_strength() {
             Cloth::triangles(strip.positions, strip.triangles).flat(),
             top(),
             material,
-            ClothDensity::added(weight),
+            ClothMaterialMap {
+                density: ClothFactor::added(weight),
+                ..default()
+            },
             ClothTearing::new(strength),
         );
         let cloth = app.world_mut().spawn(parts).id();

@@ -1,6 +1,7 @@
 //! The material of a cloth.
 
 mod presets;
+mod stiffening;
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -8,6 +9,7 @@ use bevy::{
 };
 
 use crate::cloth::error::ClothError;
+pub use stiffening::ClothStiffening;
 
 /// The material of a cloth. May change at any time.
 ///
@@ -47,6 +49,8 @@ pub struct ClothMaterial {
     pub bend_rigidity: f32,
     /// The values that differ along the weft. `None` is a cloth that is alike in both directions.
     pub weft: Option<ClothWeft>,
+    /// How it stiffens as it stretches. `None` is a cloth that stretches in proportion to its load.
+    pub stiffening: Option<ClothStiffening>,
     /// Damping along springs, the internal loss of the material: the time (s) in which a released stretch decays to
     /// 1/e. It is the τ of a Kelvin-Voigt solid, zero or more and finite. The damping ratio of an oscillation of
     /// angular frequency ω is τ ω/2. It conserves momentum and does not slow a fall. Rigid springs do not stretch and
@@ -128,6 +132,9 @@ impl ClothMaterial {
                 range,
             )?;
         }
+        if let Some(stiffening) = self.stiffening {
+            stiffening.validate()?;
+        }
         check(self.friction, finite, "friction μ", range)?;
         let range = "zero or more";
         check(
@@ -157,6 +164,27 @@ impl ClothMaterial {
     pub(crate) fn is_woven(&self) -> bool {
         let differs = |[weft, warp]: [f32; 2]| weft != warp;
         differs(self.stretch_compliances()) || differs(self.bend_rigidities())
+    }
+
+    /// The same material where all of it stretches and shears more easily: by this factor of its stiffness.
+    pub(crate) fn softer(&self, factor: f32) -> Self {
+        let weft = |weft: ClothWeft| ClothWeft {
+            stretch_compliance: weft.stretch_compliance / factor,
+            ..weft
+        };
+        Self {
+            stretch_compliance: self.stretch_compliance / factor,
+            shear_compliance: self.shear_compliance / factor,
+            weft: self.weft.map(weft),
+            ..*self
+        }
+    }
+
+    /// The strain under a tension (N/m) of warp or weft, whichever gives more.
+    pub(crate) fn largest_strain(&self, tension: f32) -> f32 {
+        let [weft, warp] = self.stretch_compliances();
+        let linear = weft.max(warp) * tension;
+        (self.stiffening).map_or(linear, |stiffening| stiffening.strain_of(linear))
     }
 
     /// The stretch compliances of a mesh (m/N). Where warp and weft differ, they are those of strips of a grid: shear springs,
@@ -243,7 +271,27 @@ mod tests {
         for (name, material) in ClothMaterial::PRESETS {
             assert_eq!(material.validate(), Ok(()), "{name}");
         }
-        let bad: [(fn(&mut ClothMaterial, f32), &[f32], &str); 9] = [
+        let bad: [(fn(&mut ClothMaterial, f32), &[f32], &str); 11] = [
+            (
+                |m, strain| {
+                    m.stiffening = Some(ClothStiffening {
+                        strain,
+                        ..ClothStiffening::default()
+                    });
+                },
+                &[0.0, -0.1, 11.0, f32::NAN],
+                "strain beyond",
+            ),
+            (
+                |m, factor| {
+                    m.stiffening = Some(ClothStiffening {
+                        factor,
+                        ..ClothStiffening::default()
+                    });
+                },
+                &[0.5, f32::NAN, f32::INFINITY],
+                "factor by which",
+            ),
             (
                 |m, v| m.areal_density = v,
                 &[0.0, -1.0, f32::NAN, f32::INFINITY],

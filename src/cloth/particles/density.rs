@@ -2,14 +2,44 @@
 
 use crate::cloth::{error::ClothError, material::ClothMaterial, surface::Surface};
 
-/// Factors of a cloth's areal density, one a particle; empty if all are 1.
-#[derive(Debug, Default, Clone, PartialEq)]
-pub(crate) struct DensityFactors(pub Vec<f32>);
+/// Factors of a cloth's areal density.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct DensityFactors {
+    /// One a particle; empty if all are 1.
+    of_particles: Vec<f32>,
+    /// Their mean over the area.
+    pub mean: f32,
+}
+
+impl Default for DensityFactors {
+    /// 1 everywhere.
+    fn default() -> Self {
+        Self {
+            of_particles: Vec::new(),
+            mean: 1.0,
+        }
+    }
+}
 
 impl DensityFactors {
+    /// Of these factors, one a particle; of none, 1 everywhere.
+    pub fn new(of_particles: Vec<f32>, surface: &Surface) -> Self {
+        if of_particles.is_empty() {
+            return Self::default();
+        }
+        let weighted = of_particles.iter().enumerate();
+        let sum: f64 = weighted
+            .map(|(index, factor)| f64::from(factor * surface.area_of(index)))
+            .sum();
+        Self {
+            mean: (sum / f64::from(surface.area())) as f32,
+            of_particles,
+        }
+    }
+
     /// The mass of a particle (kg).
     pub fn mass(&self, index: usize, surface: &Surface, material: &ClothMaterial) -> f32 {
-        let factor = self.0.get(index).copied().unwrap_or(1.0);
+        let factor = self.of_particles.get(index).copied().unwrap_or(1.0);
         factor * material.areal_density * surface.area_of(index)
     }
 

@@ -1,5 +1,6 @@
 //! The springs between the particles, sorted by colour.
 
+mod stiffness;
 #[cfg(test)]
 mod tests;
 
@@ -11,10 +12,11 @@ use super::{
     error::ClothError,
     grid::ClothGrid,
     lanes::Layout,
-    material::ClothMaterial,
+    material::{ClothMaterial, ClothStiffening},
     spring::{Spring, SpringKind},
     surface::{Chains, Link, Surface},
 };
+pub(crate) use stiffness::StiffnessFactors;
 
 /// A cloth's springs, sorted by colour. No two springs of one colour share a particle, so that they can be solved in
 /// parallel and in any order.
@@ -50,6 +52,8 @@ pub(crate) struct SpringList {
     pub colours: Vec<Range<usize>>,
     /// Springs that are solved together, after the sweep over the others.
     pub chains: Chains,
+    /// How all of them stiffen.
+    pub stiffening: Option<ClothStiffening>,
 }
 
 impl SpringList {
@@ -185,6 +189,15 @@ impl Springs {
     /// between the two opposite corners, add the difference. A mesh without a [grain](crate::cloth::ClothGrain) takes the
     /// geometric mean of what warp and weft have.
     pub fn of_surface(surface: &Surface, material: &ClothMaterial) -> Self {
+        Self::with_factors(surface, material, &StiffnessFactors::default())
+    }
+
+    /// The same of a mesh whose stiffness differs from place to place. A grid takes no factors.
+    pub(crate) fn with_factors(
+        surface: &Surface,
+        material: &ClothMaterial,
+        factors: &StiffnessFactors,
+    ) -> Self {
         if let Some(grid) = surface.as_grid() {
             return Self::of_grid(grid, material);
         }
@@ -194,7 +207,10 @@ impl Springs {
             None => surface.woven_links(material.woven_stretch().ratio),
         };
         let all_links = woven_links.as_deref().unwrap_or(surface.links());
-        let mut list = SpringList::default();
+        let mut list = SpringList {
+            stiffening: material.stiffening,
+            ..SpringList::default()
+        };
         // Springs along edges come last: the stiffest springs are solved last.
         let [_, places] = [false, true].map(|is_along| {
             let links = all_links.iter();
@@ -204,7 +220,7 @@ impl Springs {
                     kind: link.kind,
                     ends: link.ends,
                     rest_length: link.rest_length,
-                    compliance: compliance(link) * link.slenderness,
+                    compliance: compliance(link) * link.slenderness * factors.of_spring(link.ends),
                 })
                 .filter(|spring| spring.compliance.is_finite())
                 .collect();

@@ -1,6 +1,6 @@
 //! The particles and triangles that each collider may touch in a tick, in blocks of eight.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use crate::{
     cloth::{Fan, Fans, LANES, Lanes, Layout, Slot, Surface},
@@ -53,6 +53,8 @@ pub(crate) struct ContactBlock {
     pub moved: f32,
     /// Each particle's share of the cloth's area (m²).
     pub area: Lanes,
+    /// Each particle's factor of μ.
+    pub grip: Lanes,
     /// Largest depth of each (m); negative for the smallest distance.
     pub depth: Lanes,
 }
@@ -67,6 +69,7 @@ impl ContactBlock {
             clear_until: f32::NEG_INFINITY,
             moved: 0.0,
             area: [0.0; LANES],
+            grip: [1.0; LANES],
             depth: [f32::NEG_INFINITY; LANES],
         }
     }
@@ -84,6 +87,8 @@ pub(crate) struct Candidates {
     pub blocks: Vec<ContactBlock>,
     /// For each block of the colliders that are tested against triangles.
     pub budgets: Vec<FrictionBudget>,
+    /// Factors of μ, by the cloth's blocks; empty if all are 1.
+    pub grips: Arc<[Lanes]>,
     /// The last contact block of each of the cloth's blocks.
     marks: Vec<u32>,
     /// A bit for each particle, to sort them.
@@ -195,7 +200,10 @@ impl Candidates {
         let known = self.blocks.get(mark).filter(|_| mark >= first);
         if known.is_none_or(|known| known.block as usize != block) {
             self.marks[block] = self.blocks.len() as u32;
-            self.blocks.push(ContactBlock::new(block as u32));
+            self.blocks.push(ContactBlock {
+                grip: self.grips.get(block).copied().unwrap_or([1.0; LANES]),
+                ..ContactBlock::new(block as u32)
+            });
         }
     }
 

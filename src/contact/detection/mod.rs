@@ -20,7 +20,7 @@ use super::{
     edges::ShapeCache,
 };
 use crate::{
-    cloth::{ClothParticles, Surface},
+    cloth::{ClothParticles, Lanes, Surface},
     hierarchy::{Probe, TopDownQuery},
     solver::SubStep,
 };
@@ -77,6 +77,13 @@ impl Detection {
     /// Sets the radius of the particles (m), 0 by default. [`add`](Self::add) uses it to leave out triangles at pins.
     pub fn set_particle_radius(&mut self, particle_radius: f32) {
         self.particle_radius = particle_radius;
+    }
+
+    /// Sets factors of μ, by the cloth's blocks; none by default.
+    pub(crate) fn set_grips(&mut self, grips: &Arc<[Lanes]>) {
+        if !Arc::ptr_eq(&self.candidates.grips, grips) {
+            self.candidates.grips = grips.clone();
+        }
     }
 
     /// Returns the probe to search for this collider in the tick, and the narrow phase for it. Triangles reach

@@ -223,12 +223,15 @@ impl OffEdges<'_, '_> {
                 None => known.deepest(shape, triangle, near, moved),
             };
             let given = &mut self.found.given;
-            let (pushed, depth) = if let Some((centre, normal)) = hit {
+            let (index, slot) = self.pushing.place(&candidate);
+            // That of the particle that owns the triangle.
+            let friction = motion.settings.friction * self.pushing.contacts[index].grip[slot.lane];
+            let (pushed, depth) = if let Some(hit) = hit {
                 let corners = Corners::of(particles, slots);
-                push_in_front(particles, &corners, centre, normal, motion, given)
+                push_in_front(particles, &corners, hit, (motion, friction), given)
             } else if let Some(contact) = contact {
                 let corners = Corners::of(particles, slots);
-                push_point(particles, &corners, &contact, motion, given)
+                push_point(particles, &corners, &contact, (motion, friction), given)
             } else {
                 clearance = clearance.min(known.clearance).max(0.0);
                 continue;
@@ -240,7 +243,6 @@ impl OffEdges<'_, '_> {
             let blocks = particles.blocks();
             self.view
                 .look(blocks, fan.corners, &motion.to_local, &motion.of);
-            let (index, slot) = self.pushing.place(&candidate);
             self.pushing.note_depth(index, slot.lane, depth);
             self.found.deepest = self.found.deepest.max(depth);
             self.farthest = self.farthest.max(pushed);
@@ -254,7 +256,7 @@ fn push_point(
     particles: &mut ClothParticles,
     corners: &Corners,
     contact: &EdgeContact,
-    motion: &EdgeMotion,
+    (motion, friction): (&EdgeMotion, f32),
     given: &mut Impulse,
 ) -> (f32, f32) {
     let EdgeContact {
@@ -278,7 +280,7 @@ fn push_point(
         depth,
         relative: at(corners.displacements, weights) - surface,
     }
-    .push(motion.settings.friction, &motion.push_out);
+    .push(friction, &motion.push_out);
     let mut farthest = 0.0_f32;
     for (corner, part) in parts.into_iter().enumerate() {
         let share = part / mobility;
@@ -297,9 +299,8 @@ fn push_point(
 fn push_in_front(
     particles: &mut ClothParticles,
     corners: &Corners,
-    centre: Vec3,
-    normal: Vec3,
-    motion: &EdgeMotion,
+    (centre, normal): (Vec3, Vec3),
+    (motion, friction): (&EdgeMotion, f32),
     given: &mut Impulse,
 ) -> (f32, f32) {
     let origin = motion.of.origin;
@@ -317,7 +318,7 @@ fn push_in_front(
             depth,
             relative: corners.displacements[corner] - surface,
         }
-        .push(motion.settings.friction, &motion.push_out);
+        .push(friction, &motion.push_out);
         deepest = deepest.max(depth);
         farthest = farthest.max(push.position.length());
         let pushed = corners.push(corner, particles, [push.position, push.displacement]);

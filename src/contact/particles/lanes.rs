@@ -178,7 +178,7 @@ fn leave_out(
 pub(crate) fn push(
     view: &mut View,
     near: &Near,
-    area: &Lanes,
+    [area, grips]: [&Lanes; 2],
     motion: &LaneMotion,
     sums: &mut Sums,
 ) {
@@ -199,7 +199,7 @@ pub(crate) fn push(
         let (tx, ty, tz) = (rx - nx * apart, ry - ny * apart, rz - nz * apart);
         let (stopped, released) = motion.push_out.of_lane(depth, apart);
         let slip = (tx * tx + ty * ty + tz * tz).sqrt();
-        let held = motion.friction * stopped;
+        let held = motion.friction * grips[l] * stopped;
         let grip = if slip > held { held / slip } else { 1.0 };
         let (fx, fy, fz) = (tx * grip, ty * grip, tz * grip);
         let (dx, dy, dz) = (nx * stopped - fx, ny * stopped - fy, nz * stopped - fz);
@@ -261,7 +261,7 @@ macro_rules! by_shape {
                 let view = blocks[contact.block as usize].view_mut();
                 let mut near = $near(view, shape);
                 if survey(view, &mut near, contact, motion, &mut own) {
-                    push(view, &near, &contact.area, motion, &mut own);
+                    push(view, &near, [&contact.area, &contact.grip], motion, &mut own);
                 }
             }
             *sums = own;

@@ -218,7 +218,7 @@ fn push_left(
                 depth,
                 relative: displacement - surface,
             }
-            .push(settings.friction, &motion.push_out);
+            .push(settings.friction * contact.grip[lane], &motion.push_out);
             let mut pushed = position + push.position;
             if hit.is_some() && shape.is_geometry() {
                 // Another part of it may be in front of the one that was hit.

@@ -223,7 +223,13 @@ pub(crate) fn push_planes_baseline(
         let view = blocks[block].view_mut();
         let mut near = near_planes(view, &planes[block], frame);
         if survey(view, &mut near, contact, motion, &mut own) {
-            push(view, &near, &contact.area, motion, &mut own);
+            push(
+                view,
+                &near,
+                [&contact.area, &contact.grip],
+                motion,
+                &mut own,
+            );
         }
     }
     *sums = own;

@@ -42,7 +42,11 @@ fn blocks(random: &mut Random) -> (Vec<Block>, Vec<ContactBlock>) {
             );
         }
     }
-    let contacts = (0..BLOCKS).map(ContactBlock::new).collect();
+    let contact = |block| ContactBlock {
+        grip: std::array::from_fn(|_| random.between(0.0, 2.0)),
+        ..ContactBlock::new(block)
+    };
+    let contacts = (0..BLOCKS).map(contact).collect();
     (blocks, contacts)
 }
 

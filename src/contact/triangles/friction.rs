@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use crate::{
-    cloth::{Block, DX, DY, DZ, LANES, View, W, X, Y, Z},
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
         friction::{FrictionBudget, larger},
@@ -30,7 +30,7 @@ pub(crate) struct CapsuleCore {
 #[inline(always)]
 fn hold(
     view: &mut View,
-    held: &mut FrictionBudget,
+    (held, grips): (&mut FrictionBudget, &Lanes),
     core: &CapsuleCore,
     motion: &LaneMotion,
     kept: f32,
@@ -47,7 +47,7 @@ fn hold(
             let new = held.push[axis][l] / pushed;
             if is_new { new } else { held.normal[axis][l] }
         });
-        let budget = held.budget[l] * kept + motion.friction * pushed;
+        let budget = held.budget[l] * kept + motion.friction * grips[l] * pushed;
         let (x, y, z) = (view[X + l] - ox, view[Y + l] - oy, view[Z + l] - oz);
         let along = x * ux + y * uy + z * uz;
         let along = if along < core.half_length {
@@ -130,7 +130,7 @@ pub(crate) fn hold_all_baseline(
     for (contact, held) in contacts.iter().zip(budgets) {
         if held.is_active {
             let view = blocks[contact.block as usize].view_mut();
-            hold(view, held, core, motion, kept, &mut own);
+            hold(view, (held, &contact.grip), core, motion, kept, &mut own);
         }
     }
     *sums = own;

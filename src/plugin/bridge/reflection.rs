@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothDensity, ClothGrain, ClothSkin, ClothTears, Pins},
+    cloth::{Cloth, ClothGrain, ClothMaterialMap, ClothSkin, ClothTears, Pins},
     contact::ClothCollider,
     plugin::authoring::{
         BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, ClothSeam,
@@ -22,8 +22,8 @@ use crate::{
 pub(crate) fn register_lists(app: &mut App) {
     register::<Cloth>(app);
     register::<ClothCollider>(app);
-    register::<ClothDensity>(app);
     register::<ClothGrain>(app);
+    register::<ClothMaterialMap>(app);
     register::<ClothTears>(app);
     register::<Pins>(app);
     register::<ClothAttachments>(app);

@@ -63,7 +63,7 @@ pub(super) fn sleeps_as_it_was(
         && built.is_torn_by(cloth.game.tears())
         && built.is_made_from(
             cloth.game.cloth.last_changed(),
-            cloth.game.weighed(),
+            cloth.game.mapped(),
             &inputs.material,
             pins,
         )

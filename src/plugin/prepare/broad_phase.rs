@@ -61,6 +61,9 @@ pub(crate) fn update_bounds(
         scratch.detection.begin(built.surface(), scratch.reach);
         let radius = scratch.contact_settings.particle_radius;
         scratch.detection.set_particle_radius(radius);
+        if let Some(from) = &built.from {
+            scratch.detection.set_grips(&from.factors.grips);
+        }
         state.rests_on.clear();
         if is_stale {
             search.query.clear();

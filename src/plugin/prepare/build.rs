@@ -10,7 +10,7 @@ use super::{
     tears::follow_tears,
 };
 use crate::{
-    cloth::{ClothError, ClothParticles, DensityFactors, Surface},
+    cloth::{ClothError, ClothParticles, ClothTears, DensityFactors, MaterialFactors, Surface},
     plugin::state::{BuiltFrom, ClothBuilt, ClothState, FailedBuild, Recipe, Shared, SharedParts},
     solver::{TickStep, TimeOrder},
 };
@@ -28,7 +28,8 @@ pub(crate) fn build(
     let has_grain = is_built && built.has_grain(wanted.grain);
     // A snapshot may be from between a tear and its opening.
     let is_open = !state.resumes || built.tears().edges().len() == state.inputs.opened;
-    if has_grain && is_open && built.is_torn_by(wanted.tears) {
+    let has_form = built.is_torn_by(wanted.tears) && built.is_as_mesh() == wanted.is_as_mesh();
+    if has_grain && is_open && has_form {
         follow_changes(wanted, parts, particles, built, state)?;
         if let Some(from) = &mut built.from {
             from.torn = wanted.torn();
@@ -41,7 +42,7 @@ pub(crate) fn build(
         source: wanted.source,
         material: *wanted.material,
         grained: wanted.grain.map(|(_, changed)| changed),
-        weighed: wanted.weighed(),
+        mapped: wanted.mapped(),
         torn: wanted.torn(),
         pins: wanted.pins.clone(),
         scale: wanted.scale,
@@ -104,7 +105,7 @@ fn build_new(
         ..
     } = *wanted;
     cloth.validate()?;
-    material.validate()?;
+    wanted.check_material()?;
     let recipe = Recipe {
         shape: cloth.shape.clone(),
         scale: scale_of(wanted),
@@ -114,22 +115,31 @@ fn build_new(
             true => wanted.tears().first(state.inputs.opened),
             false => wanted.tears(),
         },
+        as_mesh: wanted.is_as_mesh(),
     };
     let is_open = recipe.tears.edges().len() == wanted.tears().edges().len();
-    let shared = parts.get(&recipe, material, || sources.surface(&recipe))?;
+    let mut factors = MaterialFactors::default();
+    let of = |surface: &Surface| {
+        factors = wanted.factors(surface)?;
+        Ok(factors.stiffness.clone())
+    };
+    let shared = parts.get(&recipe, material, of, || sources.surface(&recipe))?;
     let surface = &shared.surface;
     pins.validate(surface)?;
-    let factors = wanted.factors(surface)?;
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
     // not.
     let (build, new) = if state.resumes {
         // The particles are those of a snapshot, with its pins and attachments.
         check_count(particles, surface)?;
         (Build::Kept, None)
-    } else if let Some(resampled) = resampled(wanted, &shared, &factors, particles, built)? {
+    } else if let Some(resampled) = resampled(wanted, &shared, &factors.density, particles, built)?
+    {
         (Build::Resampled, Some(resampled))
     } else if built.from.is_some() || particles.is_empty() {
-        (Build::New, Some(at_rest(wanted, surface, &factors)?))
+        (
+            Build::New,
+            Some(at_rest(wanted, surface, &factors.density)?),
+        )
     } else {
         check_count(particles, surface)?;
         (Build::New, Some((**particles).clone()))
@@ -148,7 +158,7 @@ fn build_new(
         changed: wanted.changed,
         material: *material,
         grained: wanted.grained(),
-        weighed: wanted.weighed(),
+        mapped: wanted.mapped(),
         factors,
         pins: pins.clone(),
         torn: wanted.torn().filter(|_| is_open),
@@ -169,9 +179,13 @@ fn resampled(
     built: &ClothBuilt,
 ) -> Result<Option<ClothParticles>, ClothError> {
     let surface = &shared.surface;
-    let (Some(from), Some(to)) = (built.surface().as_grid(), surface.as_grid()) else {
+    let (Some(from), Some(to)) = (built.surface().rest_grid(), surface.rest_grid()) else {
         return Ok(None);
     };
+    let is_torn = |tears: &ClothTears| !tears.edges().is_empty();
+    if is_torn(built.tears()) || is_torn(&wanted.tears()) {
+        return Ok(None);
+    }
     let is_known = built.matches(particles) && particles.validate().is_ok();
     if !is_known || !is_same_rectangle(from, to) {
         return Ok(None);

@@ -4,8 +4,8 @@ use bevy::{ecs::change_detection::Tick, math::Vec3};
 
 use crate::{
     cloth::{
-        Cloth, ClothDensity, ClothError, ClothGrain, ClothMaterial, ClothTears, DensityFactors,
-        Pins, Surface,
+        Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothTears,
+        MaterialFactors, Pins, Surface,
     },
     plugin::{authoring::ClothAttachment, state::Source},
 };
@@ -20,8 +20,8 @@ pub(crate) struct BuildInputs<'a> {
     pub material: &'a ClothMaterial,
     /// The grain of a mesh with a weft, and when it was last changed.
     pub grain: Option<(&'a ClothGrain, Option<Tick>)>,
-    /// Its density, and when that was last changed.
-    pub density: Option<(&'a ClothDensity, Tick)>,
+    /// The map of its material, and when that was last changed.
+    pub map: Option<(&'a ClothMaterialMap, Tick)>,
     /// Its tears, and when they were last changed.
     pub tears: Option<(&'a ClothTears, Tick)>,
     pub pins: &'a Pins,
@@ -30,9 +30,9 @@ pub(crate) struct BuildInputs<'a> {
 }
 
 impl BuildInputs<'_> {
-    /// When its density was last changed.
-    pub(super) fn weighed(&self) -> Option<Tick> {
-        self.density.map(|(_, changed)| changed)
+    /// When the map of its material was last changed.
+    pub(super) fn mapped(&self) -> Option<Tick> {
+        self.map.map(|(_, changed)| changed)
     }
 
     /// When its grain was last changed.
@@ -50,11 +50,41 @@ impl BuildInputs<'_> {
             .map_or_else(ClothTears::none, |(tears, _)| tears.clone())
     }
 
-    pub(super) fn factors(&self, surface: &Surface) -> Result<DensityFactors, ClothError> {
-        self.density.map_or_else(
-            || Ok(DensityFactors::default()),
-            |(density, _)| density.factors(surface),
-        )
+    /// Whether it is a grid whose springs differ or stiffen, which is solved as a mesh. What is torn is a mesh already.
+    pub(super) fn is_as_mesh(&self) -> bool {
+        let has_own_springs = || {
+            let has_stiffness = |(map, _): (&ClothMaterialMap, Tick)| map.has_stiffness();
+            self.material.stiffening.is_some() || self.map.is_some_and(has_stiffness)
+        };
+        let is_torn = self
+            .tears
+            .is_some_and(|(tears, _)| !tears.edges().is_empty());
+        matches!(self.cloth.shape, ClothShape::Grid(_)) && !is_torn && has_own_springs()
+    }
+
+    /// Checks the material.
+    ///
+    /// # Errors
+    /// Those of [`ClothMaterial::validate`]; [`ClothError::Quantity`] for a rope that stiffens.
+    pub(super) fn check_material(&self) -> Result<(), ClothError> {
+        self.material.validate()?;
+        match (&self.cloth.shape, self.material.stiffening) {
+            (ClothShape::Rope(_), Some(stiffening)) => {
+                let quantity = "factor by which a rope stiffens";
+                ClothError::check(stiffening.factor, |factor| factor == 1.0, quantity, "1")?;
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The factors of its material.
+    ///
+    /// # Errors
+    /// Those of [`ClothMaterialMap::factors`].
+    pub(super) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, ClothError> {
+        let of = |(map, _): (&ClothMaterialMap, Tick)| map.factors(surface);
+        self.map.map_or_else(|| Ok(MaterialFactors::default()), of)
     }
 }
 

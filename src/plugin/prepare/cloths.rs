@@ -213,7 +213,7 @@ fn build_cloth(
         source: sources.find(cloth.entity, &cloth.game.cloth, built.source())?,
         material: &inputs.material,
         grain: cloth.game.grain(),
-        density: (cloth.game.density.as_ref()).map(|density| (&**density, density.last_changed())),
+        map: (cloth.game.map.as_ref()).map(|map| (&**map, map.last_changed())),
         tears: cloth.game.tears(),
         pins: cloth.game.pins.unwrap_or(&NO_PINS),
         attachments: cloth

@@ -22,7 +22,7 @@ pub(super) fn follow_grain(
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<Build, ClothError> {
-    wanted.material.validate()?;
+    wanted.check_material()?;
     wanted.pins.validate(built.surface())?;
     let Some(known) = &built.shared.recipe else {
         return Ok(Build::Kept);
@@ -31,7 +31,8 @@ pub(super) fn follow_grain(
         grain: wanted.grain.map(|(grain, _)| grain.clone()),
         ..known.clone()
     };
-    let shared = parts.get(&recipe, wanted.material, || sources.surface(&recipe))?;
+    let of = |surface: &Surface| Ok(wanted.factors(surface)?.stiffness);
+    let shared = parts.get(&recipe, wanted.material, of, || sources.surface(&recipe))?;
     // A change that fails leaves the springs as they are.
     follow_changes(wanted, parts, particles, built, state)?;
     take_springs(built, shared, state);
@@ -67,44 +68,47 @@ pub(super) fn follow_changes(
     };
     let (was, were_pinned) = (&from.material, &from.pins);
     let are_others_pinned = were_pinned != pins;
-    let is_weighed_otherwise = from.weighed != wanted.weighed();
-    if was == material && !are_others_pinned && !is_weighed_otherwise {
+    let is_mapped_otherwise = from.mapped != wanted.mapped();
+    if was == material && !are_others_pinned && !is_mapped_otherwise {
         return Ok(());
     }
-    material.validate()?;
+    wanted.check_material()?;
     let surface = &built.shared.surface;
-    if is_weighed_otherwise {
+    let mut is_as_stiff = true;
+    if is_mapped_otherwise {
         let factors = wanted.factors(surface)?;
         pins.validate(surface)?;
         // The same as before leaves masses that the game has set.
-        if factors != from.factors {
+        if factors.density != from.factors.density {
             // Their motion goes on: nothing that rests on where they are has to be looked at again.
             let particles = particles.bypass_change_detection();
-            particles.weigh(surface, material, &factors)?;
+            particles.weigh(surface, material, &factors.density)?;
             built.masses = particles.free_masses();
-            from.factors = factors;
         }
-        from.weighed = wanted.weighed();
+        is_as_stiff = factors.stiffness == from.factors.stiffness;
+        from.factors = factors;
+        from.mapped = wanted.mapped();
     }
     if was.areal_density != material.areal_density || are_others_pinned {
-        particles.assign_masses(surface, material, &from.factors, pins)?;
+        particles.assign_masses(surface, material, &from.factors.density, pins)?;
         // They are pinned again with the offsets that they have.
         for attached in &state.attachments.attached {
             particles.pin(attached.particle as usize);
         }
     }
     let tethered_by = |of: &ClothMaterial| {
-        let [weft, warp] = of.stretch_compliances();
-        [of.areal_density, weft, warp, of.shear_compliance]
+        let compliances = (of.stretch_compliances(), of.shear_compliance);
+        (of.areal_density, compliances, of.stiffening)
     };
     let gives_otherwise = tethered_by(was) != tethered_by(material);
-    let is_sprung_otherwise = Stiffnesses::of(was) != Stiffnesses::of(material);
+    let is_sprung_otherwise = !is_as_stiff || !Stiffnesses::are_alike(was, material);
+    let stiffness = from.factors.stiffness.clone();
     (from.material, from.pins) = (*material, pins.clone());
-    if are_others_pinned || gives_otherwise {
+    if are_others_pinned || gives_otherwise || !is_as_stiff {
         built.forget_tethers();
     }
     if is_sprung_otherwise {
-        let shared = parts.with_material(&built.shared, material);
+        let shared = parts.with_material(&built.shared, material, &stiffness);
         take_springs(built, shared, state);
     }
     state.rest.disturb();

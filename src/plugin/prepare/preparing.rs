@@ -10,7 +10,7 @@ use bevy::ecs::{
 use super::{attach::Targets, roots::Roots, skin::Skins, source::Sources};
 use crate::{
     cloth::{
-        Cloth, ClothDensity, ClothGrain, ClothMaterial, ClothParticles, ClothShape, ClothSkin,
+        Cloth, ClothGrain, ClothMaterial, ClothMaterialMap, ClothParticles, ClothShape, ClothSkin,
         ClothTearing, ClothTears, Pins, Surface,
     },
     contact::{ClothSelfCollision, NarrowPhase},
@@ -35,7 +35,7 @@ pub(crate) struct GameQuery {
     pub cloth: Ref<'static, Cloth>,
     pub material: Option<&'static ClothMaterial>,
     pub grain: Option<Ref<'static, ClothGrain>>,
-    pub density: Option<Ref<'static, ClothDensity>>,
+    pub map: Option<Ref<'static, ClothMaterialMap>>,
     pub torn: (
         Option<Ref<'static, ClothTears>>,
         Option<&'static ClothTearing>,
@@ -57,9 +57,9 @@ pub(crate) struct GameQuery {
 static BY_TEXTURE: ClothGrain = ClothGrain::by_texture();
 
 impl GameQueryItem<'_, '_> {
-    /// When the density was last changed, if it has one.
-    pub fn weighed(&self) -> Option<Tick> {
-        self.density.as_ref().map(DetectChanges::last_changed)
+    /// When the map of its material was last changed, if it has one.
+    pub fn mapped(&self) -> Option<Tick> {
+        self.map.as_ref().map(DetectChanges::last_changed)
     }
 
     /// Its pressure. A closed surface that is torn open has burst.

@@ -28,20 +28,21 @@ pub(crate) fn resample(
     (new, to): (&mut ClothParticles, &ClothGrid),
     relax: impl FnOnce(&mut ClothParticles),
 ) -> Result<(), ClothError> {
-    let between = |(row, column): (u32, u32),
-                   of: fn(&ClothParticles, (u32, u32)) -> Option<Vec3>| {
+    let between = |(row, column): (u32, u32), of: fn(&ClothParticles, usize) -> Option<Vec3>| {
         let (row, down) = place(row, to.rows(), from.rows());
         let (column, across) = place(column, to.columns(), from.columns());
-        let of = |row, column| of(old, (row, column)).unwrap_or_default();
+        let of = |row, column| of(old, from.index(row, column) as usize).unwrap_or_default();
         let in_row = |row| of(row, column).lerp(of(row, column + 1), across);
         in_row(row).lerp(in_row(row + 1), down)
     };
+    // A grid that is solved as a mesh has them in one row.
+    let index = |(row, column): (u32, u32)| to.index(row, column) as usize;
     for cell in to.cells() {
-        new.set_position(cell, between(cell, ClothParticles::position))?;
+        new.set_position(index(cell), between(cell, ClothParticles::position))?;
     }
     relax(new);
     for cell in to.cells() {
-        new.set_velocity(cell, between(cell, ClothParticles::velocity))?;
+        new.set_velocity(index(cell), between(cell, ClothParticles::velocity))?;
     }
     Ok(())
 }

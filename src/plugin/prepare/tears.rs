@@ -7,14 +7,14 @@ use super::{
     follow::follow_changes,
 };
 use crate::{
-    cloth::{ClothError, ClothParticles, ClothTears, Surface},
+    cloth::{ClothError, ClothParticles, ClothTears, MaterialFactors, Surface},
     plugin::{
         authoring::Attached,
         state::{ClothBuilt, ClothState, Recipe, SharedParts},
     },
 };
 
-/// Takes over other tears. Particles keep their places, motion and indices, and new ones follow.
+/// Takes over other tears, or that a grid is now solved as a mesh or not any more. Particles keep their places, motion and indices, and new ones follow.
 ///
 /// # Errors
 /// [`ClothError::NoSuchEdge`]; the cloth stays as it was.
@@ -32,15 +32,18 @@ pub(super) fn follow_tears(
     };
     let recipe = Recipe {
         tears: wanted.tears(),
+        as_mesh: wanted.is_as_mesh(),
         ..known.clone()
     };
     let before = built.surface().clone();
-    let shared = parts.get(&recipe, wanted.material, || {
-        let whole = before.whole();
-        match recipe.tears.edges() {
-            [] => Ok((*whole).clone()),
-            edges => whole.torn(edges),
-        }
+    let mut factors = MaterialFactors::default();
+    let of = |surface: &Surface| {
+        // Of each particle.
+        factors = wanted.factors(surface)?;
+        Ok(factors.stiffness.clone())
+    };
+    let shared = parts.get(&recipe, wanted.material, of, || {
+        recipe.opened(before.whole())
     })?;
     let surface = &shared.surface;
     let Some(parents) = surface.parents_in(&before) else {
@@ -64,8 +67,7 @@ pub(super) fn follow_tears(
     built.shared = shared;
     if let Some(from) = &mut built.from {
         from.torn = wanted.torn();
-        // Of each particle.
-        from.factors = wanted.factors(&built.shared.surface)?;
+        from.factors = factors;
     }
     Ok(Build::Resampled)
 }

@@ -11,7 +11,7 @@ use bevy::{
 use super::{notices::Noticed, pose::SkinLimits, shared::Shared, source::Source};
 use crate::{
     cloth::{
-        ClothError, ClothGrain, ClothMaterial, ClothParticles, ClothTears, DensityFactors, Pins,
+        ClothError, ClothGrain, ClothMaterial, ClothParticles, ClothTears, MaterialFactors, Pins,
         Springs, Surface,
     },
     hierarchy::QuadTree,
@@ -72,9 +72,9 @@ pub(crate) struct BuiltFrom {
     pub material: ClothMaterial,
     /// When its `ClothGrain` was last changed, if it has one.
     pub grained: Option<Tick>,
-    /// When its `ClothDensity` was last changed, if it has one, and what that gave.
-    pub weighed: Option<Tick>,
-    pub factors: DensityFactors,
+    /// When its `ClothMaterialMap` was last changed, if it has one, and what that gave.
+    pub mapped: Option<Tick>,
+    pub factors: MaterialFactors,
     pub pins: Pins,
     /// When its `ClothTears` were last changed, if it has them.
     pub torn: Option<Tick>,
@@ -87,7 +87,7 @@ pub(crate) struct FailedBuild {
     pub source: Option<Source>,
     pub material: ClothMaterial,
     pub grained: Option<Option<Tick>>,
-    pub weighed: Option<Tick>,
+    pub mapped: Option<Tick>,
     pub torn: Option<Tick>,
     pub pins: Pins,
     pub scale: Vec3,
@@ -148,18 +148,23 @@ impl ClothBuilt {
         (self.shared.recipe.as_ref()).map_or(&NONE, |recipe| &recipe.tears)
     }
 
-    /// Whether it was made from a `Cloth` and a `ClothDensity` that were changed then, and from this material and these
+    /// Whether it is a grid that is solved as a mesh, though nothing is torn.
+    pub(crate) fn is_as_mesh(&self) -> bool {
+        (self.shared.recipe.as_ref()).is_some_and(|recipe| recipe.as_mesh)
+    }
+
+    /// Whether it was made from a `Cloth` and a `ClothMaterialMap` that were changed then, and from this material and these
     /// pins.
     pub(crate) fn is_made_from(
         &self,
         changed: Tick,
-        weighed: Option<Tick>,
+        mapped: Option<Tick>,
         material: &ClothMaterial,
         pins: &Pins,
     ) -> bool {
         self.from.as_ref().is_some_and(|from| {
             from.changed == changed
-                && from.weighed == weighed
+                && from.mapped == mapped
                 && from.material == *material
                 && from.pins == *pins
         })
@@ -181,7 +186,7 @@ impl ClothBuilt {
             ..
         } = from;
         for index in of.clone() {
-            particles.assign_mass(index, self.surface(), material, factors);
+            particles.assign_mass(index, self.surface(), material, &factors.density);
         }
         let given: std::collections::HashSet<usize> = of.collect();
         if !given.is_empty() {
@@ -206,7 +211,7 @@ impl ClothBuilt {
         }
         for index in 0..particles.len() {
             if particles.inverse_mass(index) == Some(0.0) {
-                particles.assign_mass(index, self.surface(), material, factors);
+                particles.assign_mass(index, self.surface(), material, &factors.density);
             }
         }
     }
@@ -240,6 +245,9 @@ impl ClothBuilt {
             self.masses = particles.free_masses();
             self.pins_version = self.pins_version.wrapping_add(1);
         }
+        let factors = self.from.as_ref().map(|from| &from.factors);
+        let gravity = gravity * factors.map_or(1.0, |of| of.density.mean);
+        let material = &material.softer(factors.map_or(1.0, |of| of.stiffness.softest()));
         let surface = &self.shared.surface;
         let gives = |gravity: f32| material_stretch(surface, material, self.pinned.len(), gravity);
         // Gravity that comes and goes finds all as it was; what it stretched before is no fault after.
@@ -289,13 +297,19 @@ mod tests {
         let recipe = Recipe {
             grain: None,
             tears: ClothTears::default(),
+            as_mesh: false,
             shape: cloth.shape,
             scale: Vec3::ONE,
             source: None,
         };
         let mut built = ClothBuilt {
             shared: parts
-                .get(&recipe, &material, || Ok(surface))
+                .get(
+                    &recipe,
+                    &material,
+                    |_| Ok(Default::default()),
+                    || Ok(surface),
+                )
                 .expect("a surface"),
             ..Default::default()
         };

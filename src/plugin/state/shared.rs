@@ -7,8 +7,8 @@ use bevy::{ecs::resource::Resource, math::Vec3};
 use super::source::Source;
 use crate::{
     cloth::{
-        ClothError, ClothGrain, ClothMaterial, ClothShape, ClothTears, ClothWeft, Skinning,
-        SpringKind, Springs, Surface, TriangleMesh,
+        ClothError, ClothGrain, ClothMaterial, ClothShape, ClothStiffening, ClothTears, ClothWeft,
+        Skinning, SpringKind, Springs, StiffnessFactors, Surface, TriangleMesh,
     },
     contact::Sheet,
     hierarchy::QuadTree,
@@ -73,6 +73,8 @@ pub(crate) struct Recipe {
     /// The grain of a mesh with a weft.
     pub grain: Option<ClothGrain>,
     pub tears: ClothTears,
+    /// Whether a grid without tears is solved as a mesh.
+    pub as_mesh: bool,
 }
 
 impl Recipe {
@@ -93,9 +95,20 @@ impl Recipe {
             Some(grain) => grain.apply(surface, mesh)?,
             None => surface,
         };
+        if self.tears.edges().is_empty() && !self.as_mesh {
+            return Ok(surface);
+        }
+        self.opened(Arc::new(surface))
+    }
+
+    /// The whole surface, with its tears, or as a mesh.
+    ///
+    /// # Errors
+    /// Those of [`Surface::torn`].
+    pub fn opened(&self, whole: Arc<Surface>) -> Result<Surface, ClothError> {
         match self.tears.edges() {
-            [] => Ok(surface),
-            edges => Arc::new(surface).torn(edges),
+            [] if !self.as_mesh => Ok((*whole).clone()),
+            edges => whole.torn(edges),
         }
     }
 }
@@ -107,33 +120,34 @@ pub(crate) struct SharedParts {
 }
 
 impl SharedParts {
-    /// The shared data of cloths with this recipe and material: made by `make` if there is none yet.
+    /// The shared data of cloths with this recipe and material, and the factors that `factors` finds for its surface. The
+    /// surface is made by `make` if there is none yet.
     ///
     /// # Errors
-    /// The error that `make` finds in the surface.
+    /// Those of `make` and `factors`.
     pub fn get(
         &mut self,
         recipe: &Recipe,
         material: &ClothMaterial,
+        factors: impl FnOnce(&Surface) -> Result<Arc<StiffnessFactors>, ClothError>,
         make: impl FnOnce() -> Result<Surface, ClothError>,
     ) -> Result<Arc<Shared>, ClothError> {
-        let stiffnesses = Stiffnesses::of(material);
-        let mut alike = None;
-        for known in self.known.iter().filter_map(Weak::upgrade) {
-            if known.recipe.as_ref() == Some(recipe) {
-                if known.stiffnesses == stiffnesses {
-                    return Ok(known);
-                }
-                alike = Some(known);
-            }
-        }
-        let surface = match &alike {
+        let all = self.known.iter().filter_map(Weak::upgrade);
+        let alike: Vec<_> = all
+            .filter(|known| known.recipe.as_ref() == Some(recipe))
+            .collect();
+        let surface = match alike.last() {
             Some(known) => known.surface.clone(),
             None => Arc::new(make()?),
         };
+        let factors = factors(&surface)?;
+        let stiffnesses = Stiffnesses::of(material, &factors);
+        if let Some(known) = alike.iter().find(|known| known.stiffnesses == stiffnesses) {
+            return Ok(known.clone());
+        }
         // A tree does not know of stiffness.
         let has_diagonals = material.shear_compliance.is_finite();
-        let known = alike.filter(|known| {
+        let known = alike.last().filter(|known| {
             surface.as_grid().is_none() || known.springs.has(SpringKind::Shear) == has_diagonals
         });
         let tree = || match &known {
@@ -141,9 +155,9 @@ impl SharedParts {
             None => QuadTree::of_surface(&surface, has_diagonals),
         };
         let (tree, (springs, solver)) = join(tree, || {
-            let springs = Springs::of_surface(&surface, material);
+            let springs = Springs::with_factors(&surface, material, &factors);
             let mut solver = Solver::of_surface(&surface, &springs);
-            solver.set_bending(Bending::new(&surface, material));
+            solver.set_bending(Bending::with_factors(&surface, material, factors));
             (springs, solver)
         });
         let shared = Arc::new(Shared {
@@ -161,27 +175,35 @@ impl SharedParts {
         Ok(shared)
     }
 
-    /// The same for a cloth whose material has changed.
-    pub fn with_material(&mut self, shared: &Arc<Shared>, material: &ClothMaterial) -> Arc<Shared> {
+    /// The same for a cloth whose material, or the factors of it, have changed.
+    pub fn with_material(
+        &mut self,
+        shared: &Arc<Shared>,
+        material: &ClothMaterial,
+        factors: &Arc<StiffnessFactors>,
+    ) -> Arc<Shared> {
         let Some(recipe) = &shared.recipe else {
             return shared.clone();
         };
         // A surface of that recipe exists, so it can't be refused.
-        let other = self.get(recipe, material, || Ok((*shared.surface).clone()));
+        let known = |_: &Surface| Ok(factors.clone());
+        let other = self.get(recipe, material, known, || Ok((*shared.surface).clone()));
         other.unwrap_or_else(|_| shared.clone())
     }
 }
 
 /// The values of a material that its solver depends on: compliances of stretch and shear (m/N), flexural rigidity
-/// (N·m), and those of the weft.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
+/// (N·m), those of the weft, how it stiffens, and the factors of its particles.
+#[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Stiffnesses {
     warp: [f32; 3],
     weft: Option<ClothWeft>,
+    stiffening: Option<ClothStiffening>,
+    factors: Arc<StiffnessFactors>,
 }
 
 impl Stiffnesses {
-    pub fn of(material: &ClothMaterial) -> Self {
+    fn of(material: &ClothMaterial, factors: &Arc<StiffnessFactors>) -> Self {
         Self {
             warp: [
                 material.stretch_compliance,
@@ -189,6 +211,14 @@ impl Stiffnesses {
                 material.bend_rigidity,
             ],
             weft: material.weft,
+            stiffening: material.stiffening,
+            factors: factors.clone(),
         }
+    }
+
+    /// Whether a solver is the same for both materials.
+    pub fn are_alike(a: &ClothMaterial, b: &ClothMaterial) -> bool {
+        let [a, b] = [a, b].map(|material| Self::of(material, &Arc::default()));
+        a == b
     }
 }

@@ -29,7 +29,7 @@ use super::{
     patch::{Patch, RestFace, faces_beside, for_each_row, frame},
     push::LIMIT,
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, Surface, W, Woven};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, StiffnessFactors, Surface, W, Woven};
 
 /// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
 const TOLERANCE: f32 = 1.0e-4;
@@ -79,8 +79,9 @@ pub(super) struct MeshBending {
 }
 
 impl MeshBending {
-    /// Of a plate of these flexural rigidities (N·m). Without a grain, it has their mean in all directions.
-    pub fn new(surface: &Surface, rigidity: Woven) -> Self {
+    /// Of a plate of these flexural rigidities (N·m), times the factor of each face. Without a grain, it has their mean in all
+    /// directions.
+    pub fn new(surface: &Surface, rigidity: Woven, factors: &StiffnessFactors) -> Self {
         let places: Vec<DVec3> = surface
             .rest_positions()
             .iter()
@@ -97,7 +98,7 @@ impl MeshBending {
             if let Some(warp) = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0) {
                 patch.weave(warp.as_dvec3(), rigidity.ratio.into(), &places);
             }
-            let stiffness = f64::from(rigidity.mean) * patch.area;
+            let stiffness = f64::from(rigidity.mean * factors.of_face(*face)) * patch.area;
             rest.extend(patch.rest(stiffness, &places));
             patches.push((patch, stiffness));
         }
@@ -280,12 +281,14 @@ impl MeshBending {
         &mut self,
         surface: &Surface,
         rigidity: Woven,
+        factors: &StiffnessFactors,
         creasing: Option<ClothCreasing>,
     ) {
         match (creasing, &mut self.creases) {
             (Some(creasing), Some(known)) => known.set(creasing),
             (Some(creasing), none) => {
-                *none = Some(Box::new(MeshCreases::new(surface, rigidity, creasing)));
+                let new = MeshCreases::new(surface, rigidity, factors, creasing);
+                *none = Some(Box::new(new));
             }
             (None, known) => *known = None,
         }

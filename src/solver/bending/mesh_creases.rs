@@ -10,7 +10,7 @@ use super::{
     creasing::ClothCreasing,
     patch::{Patch, faces_beside, frame},
 };
-use crate::cloth::{Block, Layout, Surface, Woven};
+use crate::cloth::{Block, Layout, StiffnessFactors, Surface, Woven};
 
 /// The frame of a patch with its particles at these places.
 fn axes_of(at: &[Vec3; 6]) -> Option<[Vec3; 3]> {
@@ -36,10 +36,10 @@ struct Face {
 }
 
 impl Face {
-    fn new(patch: &Patch, woven: [[f64; 3]; 3], rigidity: Woven, places: &[DVec3]) -> Option<Self> {
+    fn new(patch: &Patch, woven: [[f64; 3]; 3], rigidity: f32, places: &[DVec3]) -> Option<Self> {
         let number = |row: usize, column: usize| {
             let product = woven.iter().map(|of| of[row] * of[column]).sum::<f64>();
-            (f64::from(rigidity.mean) * patch.area * product) as f32
+            (f64::from(rigidity) * patch.area * product) as f32
         };
         // From one corner, so that rounding stays below curvatures.
         let origin = places[patch.particles[0] as usize];
@@ -114,7 +114,12 @@ pub(super) struct MeshCreases {
 }
 
 impl MeshCreases {
-    pub fn new(surface: &Surface, rigidity: Woven, creasing: ClothCreasing) -> Self {
+    pub fn new(
+        surface: &Surface,
+        rigidity: Woven,
+        factors: &StiffnessFactors,
+        creasing: ClothCreasing,
+    ) -> Self {
         let places: Vec<DVec3> = surface
             .rest_positions()
             .iter()
@@ -128,6 +133,7 @@ impl MeshCreases {
             };
             let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);
             let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
+            let rigidity = rigidity.mean * factors.of_face(*face);
             faces.extend(Face::new(&patch, woven, rigidity, &places));
         }
         Self {

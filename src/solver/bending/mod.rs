@@ -22,8 +22,10 @@ mod push;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use super::kernels::Kernels;
-use crate::cloth::{Block, ClothMaterial, Surface};
+use crate::cloth::{Block, ClothMaterial, StiffnessFactors, Surface};
 pub use creasing::ClothCreasing;
 use grid::GridBending;
 use mesh::MeshBending;
@@ -32,6 +34,7 @@ use mesh::MeshBending;
 #[derive(Debug, Clone)]
 pub struct Bending {
     of: Kind,
+    factors: Arc<StiffnessFactors>,
 }
 
 #[derive(Debug, Clone)]
@@ -43,15 +46,28 @@ enum Kind {
 impl Bending {
     /// The resistance of a surface; `None` if its material bends freely.
     pub fn new(surface: &Surface, material: &ClothMaterial) -> Option<Self> {
+        Self::with_factors(surface, material, Arc::default())
+    }
+
+    /// The same of a mesh whose rigidity differs from place to place. A grid takes no factors.
+    pub(crate) fn with_factors(
+        surface: &Surface,
+        material: &ClothMaterial,
+        factors: Arc<StiffnessFactors>,
+    ) -> Option<Self> {
         let rigidities = material.bend_rigidities();
         if rigidities[0].max(rigidities[1]) <= 0.0 || surface.is_empty() {
             return None;
         }
         let of = match surface.as_grid() {
             Some(grid) => Kind::Grid(Box::new(GridBending::new(grid, rigidities))),
-            None => Kind::Mesh(MeshBending::new(surface, material.woven_bending())),
+            None => Kind::Mesh(MeshBending::new(
+                surface,
+                material.woven_bending(),
+                &factors,
+            )),
         };
-        Some(Self { of })
+        Some(Self { of, factors })
     }
 
     /// Takes over the masses and the weight s (s²) of the forces if they have changed: Δt² for implicit Euler.
@@ -95,7 +111,8 @@ impl Bending {
         match (&mut self.of, surface.as_grid()) {
             (Kind::Grid(grid), Some(of)) => grid.set_creasing(of, creasing),
             (Kind::Mesh(mesh), None) => {
-                mesh.set_creasing(surface, material.woven_bending(), creasing);
+                let rigidity = material.woven_bending();
+                mesh.set_creasing(surface, rigidity, &self.factors, creasing);
             }
             _ => {}
         }

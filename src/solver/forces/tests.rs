@@ -21,6 +21,7 @@ const SOFT: ClothMaterial = ClothMaterial {
     shear_compliance: 2.0e-3,
     bend_rigidity: 0.0,
     weft: None,
+    stiffening: None,
     stretch_damping: 0.0,
     damping: 0.0,
     friction: 0.0,

@@ -46,7 +46,7 @@ pub(crate) use predict::{
     AirStep, Prediction, begin_past, predict, predict_first, predict_first_in_air, predict_in_air,
     weight,
 };
-pub(crate) use step_scale::StepScale;
+pub(crate) use step_scale::{StepScale, Stiffer};
 pub(crate) use twist::{twist_backward, twist_forward, twist_links};
 
 /// Pulls each particle back that is farther from its anchor than its tether is long: a unilateral constraint

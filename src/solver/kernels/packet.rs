@@ -85,8 +85,14 @@ fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Opti
     let [x, y, z, _] = turned(offsets);
     let (weight_a, weight_b) = (weights(&a), weights(&b));
     let q = x * x + y * y + z * z;
-    let r2 = packet.rest_square;
-    let (mut softness, mut beyond) = (packet.compliance * step_scale.inverse_weight, q - r2);
+    let (mut r2, mut compliance) = (packet.rest_square, packet.compliance);
+    let stiffer = &step_scale.stiffer;
+    if stiffer.is_some() {
+        let is_stiff = q.cmpgt(stiffer.from * r2) & compliance.cmpgt(Vec4::ZERO);
+        r2 = Vec4::select(is_stiff, stiffer.rest * stiffer.rest * r2, r2);
+        compliance = Vec4::select(is_stiff, stiffer.compliance * compliance, compliance);
+    }
+    let (mut softness, mut beyond) = (compliance * step_scale.inverse_weight, q - r2);
     if step_scale.kept < 1.0 {
         // As of a grid's springs; what a way opens by changes its square by twice its length times that.
         let moved: [Vec4; SPRINGS] = std::array::from_fn(|at| b[at].moved - a[at].moved);

@@ -154,6 +154,7 @@ fn heal(world: &mut World, entity: Entity) {
             ClothLod,
             ClothInertia,
             ClothSelfCollision,
+            ClothMaterialMap,
             ClothTearing,
             ClothTears,
         )>();
@@ -182,7 +183,7 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
     let [columns, rows] = [2 + random.below(8) as u32, 2 + random.below(8) as u32];
     let grid = || Cloth::new(columns, rows, 0.1);
     let ball = |radius| ClothCollider::ball(radius);
-    let entity = match random.below(14) {
+    let entity = match random.below(15) {
         0..=2 => world.spawn((grid(), place)).id(),
         3 => world
             .spawn((grid(), Pins::none(), ClothSelfCollision::default(), place))
@@ -217,6 +218,19 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
             .spawn((ClothCollider::cuboid(0.2, 0.1, random.number()), place))
             .id(),
         10 => world.spawn((ClothCollider::plane(), place)).id(),
+        13 => {
+            let stiffer = ClothPaint::at_rest(|place| 20.0 * place.x.abs());
+            let map = ClothMaterialMap {
+                stretch: ClothFactor::added(stiffer.clone()),
+                bending: ClothFactor::of(stiffer),
+                ..default()
+            };
+            let material = ClothMaterial {
+                stiffening: random.one_in(2).then(default),
+                ..default()
+            };
+            world.spawn((grid(), material, map, place)).id()
+        }
         12 => {
             let rope = Cloth::rope(columns * rows, 0.1, 0.02);
             world

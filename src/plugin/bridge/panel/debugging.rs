@@ -10,10 +10,11 @@ use bevy_egui::egui::{RichText, Ui};
 
 use super::{
     cloth::PanelClothItem,
+    fabric::{show_stiffening, show_weft},
     row::{choose, line, slide},
 };
 use crate::{
-    cloth::{ClothMaterial, ClothWeft},
+    cloth::ClothMaterial,
     contact::NarrowPhase,
     hierarchy::{SearchMethod, SearchReason},
     plugin::{
@@ -308,6 +309,7 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
         });
     }
     show_weft(ui, material);
+    show_stiffening(ui, material);
     let tip = "Damping along springs (s): time in which a free stretch decays. 0 is none";
     slide(
         ui,
@@ -335,40 +337,4 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
         0.0..=2.0,
         |slider| slider,
     );
-}
-
-/// Whether the cloth differs along its weft, and its values there.
-fn show_weft(ui: &mut Ui, material: &mut ClothMaterial) {
-    let mut is_woven = material.weft.is_some();
-    ui.checkbox(&mut is_woven, "has a weft").on_hover_text(
-        "Whether it stretches and bends differently along its rows, or across the grain of a mesh",
-    );
-    let same = ClothWeft {
-        stretch_compliance: material.stretch_compliance,
-        bend_rigidity: material.bend_rigidity,
-    };
-    material.weft = is_woven.then_some(material.weft.unwrap_or(same));
-    let Some(weft) = &mut material.weft else {
-        return;
-    };
-    for (value, most, name, tip) in [
-        (
-            &mut weft.stretch_compliance,
-            10.0,
-            "weft, m/N",
-            "Stretch compliance along the weft (m/N). 0 is rigid",
-        ),
-        (
-            &mut weft.bend_rigidity,
-            0.01,
-            "weft, N·m",
-            "Flexural rigidity along the weft (N·m). 0 bends freely",
-        ),
-    ] {
-        slide(ui, name, tip, value, 0.0..=most, |slider| {
-            slider
-                .logarithmic(true)
-                .smallest_positive(f64::from(most) * 1.0e-7)
-        });
-    }
 }

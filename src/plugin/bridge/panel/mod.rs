@@ -3,6 +3,7 @@
 
 mod cloth;
 mod debugging;
+mod fabric;
 mod quality;
 mod row;
 #[cfg(test)]

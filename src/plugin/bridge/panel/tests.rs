@@ -7,7 +7,7 @@ use bevy::{
 
 use super::*;
 use crate::{
-    cloth::{Cloth, ClothWeft},
+    cloth::{Cloth, ClothStiffening, ClothWeft},
     plugin::{DrapePlugins, draw::ShowClothGizmos, state::ClothStats},
     solver::ClothSettings,
 };
@@ -245,6 +245,10 @@ fn showing_a_value_does_not_change_it() {
         weft: Some(ClothWeft {
             stretch_compliance: 77.0,
             bend_rigidity: 0.0,
+        }),
+        stiffening: Some(ClothStiffening {
+            strain: 9.0,
+            factor: 1.0e9,
         }),
         stretch_damping: 0.0,
         damping: 0.999,

@@ -9,7 +9,7 @@ use bevy::math::{DVec3, Quat, Vec3};
 
 use super::*;
 use crate::{
-    cloth::{Cloth, ClothGrain, ClothParticles, ClothWeft, TriangleMesh},
+    cloth::{Cloth, ClothGrain, ClothParticles, ClothWeft, StiffnessFactors, TriangleMesh},
     solver::kernels::SimdLevel,
 };
 use dense::expected;
@@ -252,7 +252,11 @@ fn nothing_pulls_from_outside() {
 fn meshes_are_as_stiff_as_the_plate_in_all_directions() {
     for jitter in [0.0, 0.25] {
         let surface = sheet(40, jitter, |place| place);
-        let mesh = MeshBending::new(&surface, material().woven_bending());
+        let mesh = MeshBending::new(
+            &surface,
+            material().woven_bending(),
+            &StiffnessFactors::default(),
+        );
         for degrees in [0.0_f64, 22.5, 45.0, 90.0, 135.0] {
             let (sine, cosine) = degrees.to_radians().sin_cos();
             let heights: Vec<f64> = surface
@@ -288,7 +292,11 @@ fn woven_meshes_are_as_stiff_as_the_plate_in_all_directions() {
         let surface = ClothGrain::along(along)
             .apply(surface, &TriangleMesh::default())
             .expect("a grain");
-        let mesh = MeshBending::new(&surface, material.woven_bending());
+        let mesh = MeshBending::new(
+            &surface,
+            material.woven_bending(),
+            &StiffnessFactors::default(),
+        );
         for degrees in [0.0_f64, 30.0, 45.0, 90.0, 120.0] {
             let (sine, cosine) = degrees.to_radians().sin_cos();
             let heights: Vec<f64> = surface

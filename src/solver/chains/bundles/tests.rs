@@ -8,7 +8,7 @@ use crate::{
     meshes,
     solver::{
         chains::tests::{random, solved},
-        kernels::{Row, SimdLevel, StepScale},
+        kernels::{Row, SimdLevel, StepScale, Stiffer},
         step::TickStep,
         substep::Solver,
     },
@@ -19,6 +19,7 @@ const INVERSE_WEIGHT: f32 = 1200.0 * 1200.0;
 const PACE: StepScale = StepScale {
     inverse_weight: INVERSE_WEIGHT,
     kept: 1.0,
+    stiffer: Stiffer::NONE,
 };
 
 fn surface() -> Surface {

@@ -139,7 +139,7 @@ pub(crate) fn bundle_forward(
     solved: &mut [Solved],
     step_scale: &StepScale,
 ) {
-    if step_scale.kept < 1.0 {
+    if step_scale.kept < 1.0 || step_scale.stiffer.is_some() {
         forward::<true>(rows, heads, steps, pulled, solved, step_scale);
     } else {
         forward::<false>(rows, heads, steps, pulled, solved, step_scale);
@@ -147,7 +147,7 @@ pub(crate) fn bundle_forward(
 }
 
 #[inline(always)]
-fn forward<const DAMPED: bool>(
+fn forward<const DAMPED_OR_STIFFER: bool>(
     rows: &[Row],
     heads: &[u32; LANES],
     steps: &[Step],
@@ -165,17 +165,29 @@ fn forward<const DAMPED: bool>(
         };
         for l in 0..LANES {
             let moved = [0, 1, 2].map(|axis| b.moved[axis][l] - a.moved[axis][l]);
-            let [x, y, z] = [0, 1, 2].map(|axis| {
+            let mut span = [0, 1, 2].map(|axis| {
                 let span = (b.place[axis][l] - a.place[axis][l]) + moved[axis];
                 clamped(span * step.inverse_rest[l])
             });
             let both = a.weight[l] + b.weight[l];
             let is_rigid = step.compliance[l] == 0.0;
             let kept = if is_rigid { 1.0 } else { step_scale.kept };
-            let softness = step.compliance[l] * step_scale.inverse_weight;
-            let softness = if DAMPED { kept * softness } else { softness };
-            let [diagonal, right] = terms([x, y, z], both, softness, step.hold[l], step.rest[l]);
-            let right = if DAMPED {
+            let mut softness = step.compliance[l] * step_scale.inverse_weight;
+            let mut rest = step.rest[l];
+            if DAMPED_OR_STIFFER {
+                let stiffer = &step_scale.stiffer;
+                let square = span[0] * span[0] + span[1] * span[1] + span[2] * span[2];
+                let is_stiff = square > stiffer.from && !is_rigid;
+                let shorter = if is_stiff { stiffer.inverse_rest } else { 1.0 };
+                let longer = if is_stiff { stiffer.rest } else { 1.0 };
+                let part = if is_stiff { stiffer.compliance } else { 1.0 };
+                span = span.map(|span| span * shorter);
+                rest *= longer;
+                softness *= kept * part;
+            }
+            let [x, y, z] = span;
+            let [diagonal, right] = terms(span, both, softness, step.hold[l], rest);
+            let right = if DAMPED_OR_STIFFER {
                 // As of a grid's springs.
                 let opening = x * moved[0] + y * moved[1] + z * moved[2];
                 let opening = if both > 0.0 { opening } else { 0.0 };

@@ -1,0 +1,66 @@
+//! Cloth that is stiffer once it is stretched.
+
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+
+use crate::cloth::error::ClothError;
+
+/// Stiffening: a knit gives easily until its loops are straight, and its yarns take over. The stretch and shear stiffness
+/// grows by a factor beyond a strain. Force over strain is a line with a knee:
+///
+/// ```text
+/// force      /
+///   |       /   factor × as steep
+///   |  ____/
+///   |_/
+///   o──────┴──── strain
+/// ```
+///
+/// A grid that stiffens is solved as a mesh, at about four times the time of a grid. A rope does not stiffen, and what is
+/// rigid stays rigid.
+#[derive(Reflect, Debug, Clone, Copy, PartialEq)]
+#[type_path = "bevy_drape"]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub struct ClothStiffening {
+    /// The strain from which on it is stiffer: elongation over length at rest. Positive, at most 10.
+    pub strain: f32,
+    /// How many times as stiff it is there. At least 1, finite.
+    pub factor: f32,
+}
+
+impl Default for ClothStiffening {
+    /// Ten times as stiff beyond a strain of 0.2. Both are guesses.
+    fn default() -> Self {
+        Self {
+            strain: 0.2,
+            factor: 10.0,
+        }
+    }
+}
+
+impl ClothStiffening {
+    /// Checks that both values are in their ranges.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] for the first that is not.
+    pub(super) fn validate(&self) -> Result<(), ClothError> {
+        ClothError::check(
+            self.strain,
+            |strain| strain > 0.0 && strain <= 10.0,
+            "strain beyond which the cloth stiffens",
+            "positive, and at most 10",
+        )?;
+        ClothError::check(
+            self.factor,
+            |factor| factor >= 1.0 && factor.is_finite(),
+            "factor by which the cloth stiffens",
+            "at least 1, and finite",
+        )?;
+        Ok(())
+    }
+
+    /// The strain under a load that would strain a cloth by `linear` if it did not stiffen.
+    pub(crate) fn strain_of(&self, linear: f32) -> f32 {
+        let beyond = (linear - self.strain).max(0.0);
+        linear - beyond + beyond / self.factor
+    }
+}

@@ -1,0 +1,173 @@
+//! The material of a cloth, particle by particle.
+
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::{
+    LANES, Lanes, error::ClothError, particles::DensityFactors, skin::ClothPaint,
+    springs::StiffnessFactors, surface::Surface,
+};
+
+/// Scales a cloth's material, particle by particle: a stiff seam, an elastic waist, a hem that is wet and heavy. Without
+/// this component, the material is the same everywhere.
+///
+/// All of it may change in every tick. A change of the density changes masses alone, and velocities stay. It also replaces
+/// masses that the game set individually. A change of stretch or bending builds the springs anew, which takes
+/// milliseconds for thousands of particles.
+///
+/// A grid with a map of stretch or bending is solved as a mesh, at about four times the time of a grid. A
+/// [rope](crate::cloth::Cloth::rope) has no map of stretch or bending.
+///
+/// ```
+/// use bevy_drape::prelude::*;
+///
+/// let map = ClothMaterialMap {
+///     // Wet below 0.4 m at rest: it weighs twice as much there.
+///     density: ClothFactor::added(ClothPaint::at_rest(|place| if place.y < 0.4 { 1.0 } else { 0.0 })),
+///     // Full red is eleven times as stiff; without red it is as stiff as the material.
+///     bending: ClothFactor::added(ClothPaint::color(0, 10.0)),
+///     // A waist of a tenth of the stiffness.
+///     stretch: ClothFactor::of(ClothPaint::at_rest(|place| if place.y > 1.0 { 0.1 } else { 1.0 })),
+///     ..ClothMaterialMap::default()
+/// };
+/// # let _ = map;
+/// ```
+#[derive(Component, Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct ClothMaterialMap {
+    /// Scales the areal density. Positive and finite.
+    pub density: ClothFactor,
+    /// Scales the stiffness against stretch and shear. Positive and finite. What is rigid stays rigid. A spring between two
+    /// particles is as stiff as two halves of their materials, one after the other.
+    pub stretch: ClothFactor,
+    /// Scales the flexural rigidity. Zero or more, and finite. A face has the mean of its corners.
+    pub bending: ClothFactor,
+    /// Scales the friction μ against colliders. Zero or more, and finite.
+    pub friction: ClothFactor,
+}
+
+/// A factor for each particle: a base, plus what is painted.
+#[derive(Reflect, Debug, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub struct ClothFactor {
+    /// The factor where nothing is painted. Zero or more.
+    pub base: f32,
+    /// Added to it, particle by particle. Zero or more.
+    pub paint: ClothPaint,
+}
+
+impl Default for ClothFactor {
+    /// 1 everywhere.
+    fn default() -> Self {
+        Self::added(0.0)
+    }
+}
+
+impl ClothFactor {
+    /// 1 plus the paint: 0 changes nothing, 1 doubles.
+    pub fn added(paint: impl Into<ClothPaint>) -> Self {
+        Self {
+            base: 1.0,
+            paint: paint.into(),
+        }
+    }
+
+    /// The paint itself: 1 changes nothing, 0.5 halves.
+    pub fn of(paint: impl Into<ClothPaint>) -> Self {
+        Self {
+            base: 0.0,
+            paint: paint.into(),
+        }
+    }
+
+    /// Whether it is 1 everywhere.
+    fn is_one(&self) -> bool {
+        self.base == 1.0 && self.paint == ClothPaint::Uniform(0.0)
+    }
+
+    /// The factor of each particle; empty if it is 1 everywhere.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] for the first that is not in this range;
+    /// [`ClothError::NoSuchPaint`]; [`ClothError::PaintCount`].
+    fn values(
+        &self,
+        surface: &Surface,
+        quantity: &'static str,
+        (range, is_in_range): Range,
+    ) -> Result<Vec<f32>, ClothError> {
+        if self.is_one() {
+            return Ok(Vec::new());
+        }
+        let mut factors = self.paint.values(surface, quantity)?;
+        ClothError::check(self.base, |base| base >= 0.0, quantity, "zero or more")?;
+        for factor in &mut factors {
+            *factor += self.base;
+            ClothError::check(*factor, is_in_range, quantity, range)?;
+        }
+        Ok(factors)
+    }
+}
+
+/// A range of factors in words, and whether one is in it.
+type Range = (&'static str, fn(f32) -> bool);
+
+impl ClothMaterialMap {
+    /// Whether stretch or bending differ from place to place.
+    pub(crate) fn has_stiffness(&self) -> bool {
+        !(self.stretch.is_one() && self.bending.is_one())
+    }
+
+    /// The factors of each particle.
+    ///
+    /// # Errors
+    /// [`ClothError::Quantity`] for the first that is out of its range; [`ClothError::NoSuchPaint`];
+    /// [`ClothError::PaintCount`].
+    pub(crate) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, ClothError> {
+        let positive: Range = ("positive and finite", |of| of > 0.0 && of.is_finite());
+        let or_zero: Range = ("zero or more, and finite", |of| of >= 0.0 && of.is_finite());
+        // Rows of a grid's springs know no places, and a rope is not solved as a mesh.
+        let is_rope = surface.rope_radius().is_some();
+        let one: Range = ("1 on a rope", |of| of == 1.0);
+        let [of_stretch, of_bending] = [positive, or_zero].map(|of| if is_rope { one } else { of });
+        let density = (self.density).values(surface, "factor of the density", positive)?;
+        let stretch = (self.stretch).values(surface, "factor of the stiffness", of_stretch)?;
+        let bending = (self.bending).values(surface, "factor of the rigidity", of_bending)?;
+        let friction = (self.friction).values(surface, "factor of the friction", or_zero)?;
+        Ok(MaterialFactors {
+            density: DensityFactors::new(density, surface),
+            stiffness: Arc::new(StiffnessFactors { stretch, bending }),
+            grips: by_block(&friction, surface).into(),
+        })
+    }
+}
+
+/// The factors of a cloth's material, one a particle.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(crate) struct MaterialFactors {
+    pub density: DensityFactors,
+    pub stiffness: Arc<StiffnessFactors>,
+    /// Of μ, by the blocks of particles; empty if all are 1.
+    pub grips: Arc<[Lanes]>,
+}
+
+/// One value a particle, by the blocks of particles.
+fn by_block(values: &[f32], surface: &Surface) -> Vec<Lanes> {
+    let layout = surface.layout();
+    let blocks = if values.is_empty() {
+        0
+    } else {
+        layout.blocks()
+    };
+    let mut lanes = vec![[1.0; LANES]; blocks];
+    for (value, slot) in values.iter().zip(layout.slots()) {
+        lanes[slot.block][slot.lane] = *value;
+    }
+    lanes
+}

@@ -1,0 +1,566 @@
+//! Cloth whose material differs from place to place, and changes while it moves.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::{faults::expect_fault, support::*};
+
+const SIDE: u32 = 9;
+const SPACING: f32 = 0.1;
+const COMPLIANCE: f32 = 5.0e-3;
+
+fn soft() -> ClothMaterial {
+    ClothMaterial {
+        stretch_compliance: COMPLIANCE,
+        shear_compliance: f32::INFINITY,
+        bend_rigidity: 0.0,
+        damping: 0.1,
+        ..ClothMaterial::COTTON
+    }
+}
+
+/// Ten times the density below the middle, which is where a sheet gets wet.
+fn wet() -> ClothMaterialMap {
+    weighed(ClothPaint::at_rest(
+        |place| {
+            if place.y < -0.35 { 9.0 } else { 0.0 }
+        },
+    ))
+}
+
+fn weighed(added: impl Into<ClothPaint>) -> ClothMaterialMap {
+    ClothMaterialMap {
+        density: ClothFactor::added(added),
+        ..default()
+    }
+}
+
+/// How far the lower edge hangs below its place (m): each spring carries the rows below it, of which the last is half as wide.
+fn exact(factor_of: impl Fn(u32) -> f32) -> f32 {
+    let last = SIDE - 1;
+    let weight = |row: u32| factor_of(row) * if row == last { 0.5 } else { 1.0 };
+    let below = |row: u32| (row + 1..SIDE).map(weight).sum::<f32>();
+    let carried: f32 = (0..last).map(below).sum();
+    COMPLIANCE * soft().areal_density * 9.81 * SPACING * SPACING * carried
+}
+
+fn sag(app: &App, cloth: Entity) -> f32 {
+    let lowest = particles(app, cloth).positions().map(|place| place.y);
+    -lowest.fold(0.0, f32::min) - (SIDE - 1) as f32 * SPACING
+}
+
+fn at(app: &App, cloth: Entity, index: usize) -> Vec3 {
+    particles(app, cloth).position(index).expect("a particle")
+}
+
+fn sheet() -> Cloth {
+    let place = |index: u32| Vec3::new((index % SIDE) as f32, -((index / SIDE) as f32), 0.0);
+    let triangles = (0..SIDE * (SIDE - 1)).filter(|a| a % SIDE < SIDE - 1);
+    let triangles = triangles.flat_map(|a| {
+        let (b, c, d) = (a + 1, a + SIDE, a + SIDE + 1);
+        [[a, c, b], [b, c, d]]
+    });
+    let positions = (0..SIDE * SIDE).map(|index| place(index) * SPACING);
+    Cloth::triangles(positions, triangles)
+}
+
+/// It hangs lower by what its compliance says, whether it was spawned wet, gets wet asleep, or dries again.
+#[test]
+fn a_wet_sheet_hangs_lower() {
+    let dry = exact(|_| 1.0);
+    let soaked = exact(|row| if row > 3 { 10.0 } else { 1.0 });
+    // A mesh draws in at its free sides and is clamped at its top.
+    for (kind, cloth, allowed) in [
+        ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
+        ("mesh", sheet(), 0.1),
+    ] {
+        let top = Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)]);
+        let mut app = app();
+        let spawned = (cloth.clone(), top.clone(), soft(), wet());
+        let spawned = app.world_mut().spawn(spawned).id();
+        let cloth = app.world_mut().spawn((cloth, top, soft())).id();
+        tick(&mut app, 600);
+        let expect = |app: &App, cloth, exact: f32| {
+            let found = sag(app, cloth);
+            println!(
+                "{kind}: {:.2} mm, closed form {:.2} mm",
+                1.0e3 * found,
+                1.0e3 * exact
+            );
+            assert!(
+                (found / exact - 1.0).abs() < allowed,
+                "{kind}: {found} {exact}"
+            );
+        };
+        expect(&app, spawned, soaked);
+        expect(&app, cloth, dry);
+        assert!(stats(&app, cloth).is_asleep, "{kind}");
+        app.world_mut().entity_mut(cloth).insert(wet());
+        tick(&mut app, 600);
+        expect(&app, cloth, soaked);
+        // A particle that was held in between has its wet mass again.
+        let hand = app.world_mut().spawn(Transform::default()).id();
+        let held = ClothAttachments::new([(Pin::Vertex(76), hand)]);
+        app.world_mut().entity_mut(cloth).insert(held);
+        tick(&mut app, 2);
+        app.world_mut()
+            .entity_mut(cloth)
+            .remove::<ClothAttachments>();
+        tick(&mut app, 2);
+        let masses = |cloth| {
+            particles(&app, cloth)
+                .inverse_masses()
+                .collect::<Vec<f32>>()
+        };
+        assert_eq!(masses(cloth), masses(spawned), "{kind}");
+        app.world_mut()
+            .entity_mut(cloth)
+            .remove::<ClothMaterialMap>();
+        tick(&mut app, 600);
+        expect(&app, cloth, dry);
+    }
+}
+
+/// Weight that changes in every tick moves nothing by itself: what falls goes on to fall, v = g t.
+#[test]
+fn weight_that_changes_leaves_velocities_alone() {
+    for cloth in [Cloth::new(SIDE, SIDE, SPACING), sheet()] {
+        let mut app = app();
+        let bundle = (cloth, Pins::none(), soft(), ClothMaterialMap::default());
+        let cloth = app.world_mut().spawn(bundle).id();
+        tick(&mut app, 1);
+        let speed =
+            |app: &App, index: usize| particles(app, cloth).velocity(index).expect("a particle").y;
+        let before = speed(&app, 40);
+        for at in 0..64 {
+            let wet = at as f32 / 64.0;
+            let paint = ClothPaint::at_rest(move |place| if place.y < -0.35 { wet } else { 0.0 });
+            change::<ClothMaterialMap>(&mut app, cloth, |map| map.density.paint = paint);
+            tick(&mut app, 1);
+        }
+        // Rounding of 1,280 displacements by 2⁻²⁴ each is 8·10⁻⁵.
+        for index in [0, 40, 80] {
+            let gained = speed(&app, index) - before;
+            assert!((gained / -9.81 - 1.0).abs() < 2.0e-4, "{index}: {gained}");
+        }
+        let masses = particles(&app, cloth)
+            .inverse_masses()
+            .map(|inverse| 1.0 / inverse);
+        // Of nine rows, five have nearly twice the weight; the last of them is half as wide: 4.5 of 8.
+        let dry = soft().areal_density * (8.0 * SPACING).powi(2);
+        let ratio = masses.sum::<f32>() / dry;
+        let expected = 1.0 + 63.0 / 64.0 * 4.5 / 8.0;
+        assert!(
+            (ratio / expected - 1.0).abs() < 1.0e-2,
+            "{ratio} {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_density_that_cannot_be() {
+    let mend = |app: &mut App, entity: Entity| {
+        change::<ClothMaterialMap>(app, entity, |map| *map = default());
+    };
+    for factor in [0.0, -1.0, f32::NAN, f32::INFINITY, 1.0e-30] {
+        expect_fault(
+            (
+                Cloth::default(),
+                ClothMaterialMap {
+                    density: ClothFactor {
+                        base: factor,
+                        ..default()
+                    },
+                    ..default()
+                },
+                Pins::none(),
+            ),
+            |_, _| {},
+            |error| matches!(error, ClothError::Quantity { .. }),
+            mend,
+        );
+    }
+    expect_fault(
+        (
+            Cloth::default(),
+            weighed(ClothPaint::vertices([1.0; 3])),
+            Pins::none(),
+        ),
+        |_, _| {},
+        |error| matches!(error, ClothError::PaintCount { .. }),
+        mend,
+    );
+    // While it moves: it stays where it is until it is mended.
+    expect_fault(
+        (Cloth::default(), ClothMaterialMap::default(), Pins::none()),
+        |app, entity| {
+            tick(app, 3);
+            change::<ClothMaterialMap>(app, entity, |map| {
+                map.density.paint = ClothPaint::from(f32::NAN);
+            });
+        },
+        |error| matches!(error, ClothError::Quantity { .. }),
+        mend,
+    );
+    // Masses that are too small, at run time; without a density, all is as it was.
+    let mut masses = Vec::new();
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    tick(&mut app, 3);
+    let all = |app: &App| particles(app, cloth).inverse_masses().collect::<Vec<f32>>();
+    masses.extend(all(&app));
+    let tiny = ClothMaterialMap {
+        density: ClothFactor::of(1.0e-30),
+        ..default()
+    };
+    app.world_mut().entity_mut(cloth).insert(tiny);
+    tick(&mut app, 3);
+    assert!(app.world().get::<ClothFault>(cloth).is_some());
+    app.world_mut()
+        .entity_mut(cloth)
+        .remove::<ClothMaterialMap>();
+    change::<Pins>(&mut app, cloth, |pins| *pins = Pins::none());
+    change::<Pins>(&mut app, cloth, |pins| *pins = Pins::top_row());
+    tick(&mut app, 3);
+    assert!(app.world().get::<ClothFault>(cloth).is_none());
+    assert_eq!(all(&app), masses);
+}
+
+/// The lower half, five springs of eight, is a fourth as stiff. Of the spring between both halves, half is.
+fn soft_below() -> ClothMaterialMap {
+    ClothMaterialMap {
+        stretch: ClothFactor::of(ClothPaint::at_rest(|place| {
+            if place.y < -0.35 { 0.25 } else { 1.0 }
+        })),
+        ..default()
+    }
+}
+
+/// How far the lower edge hangs below its place (m), with a compliance of each spring.
+fn exact_stretch(elongation: impl Fn(u32, f32) -> f32) -> f32 {
+    let last = SIDE - 1;
+    let weight = |row: u32| if row == last { 0.5 } else { 1.0 };
+    let load = soft().areal_density * 9.81 * SPACING;
+    let of = |row: u32| {
+        let below = (row + 1..SIDE).map(weight).sum::<f32>();
+        elongation(row, COMPLIANCE * load * below)
+    };
+    (0..last).map(|row| SPACING * of(row)).sum()
+}
+
+/// It hangs lower by what its compliance says: painted at once, while it hangs, and no more once the map is gone.
+#[test]
+fn a_cloth_that_is_softer_below_hangs_lower() {
+    let softer = |row: u32, strain: f32| {
+        strain
+            * match row {
+                0..3 => 1.0,
+                3 => 2.5,
+                _ => 4.0,
+            }
+    };
+    for (kind, cloth, allowed) in [
+        ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
+        ("mesh", sheet(), 0.1),
+    ] {
+        let top = Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)]);
+        let mut app = app();
+        let bundle = (cloth.clone(), top.clone(), soft(), soft_below());
+        let spawned = app.world_mut().spawn(bundle).id();
+        let cloth = app.world_mut().spawn((cloth, top, soft())).id();
+        let expect = |app: &App, cloth, exact: f32| {
+            let found = sag(app, cloth);
+            println!("{kind}: {found:.5} m, closed form {exact:.5} m");
+            let ratio = found / exact;
+            assert!((ratio - 1.0).abs() < allowed, "{kind}: {found} {exact}");
+        };
+        tick(&mut app, 600);
+        let (alike, soft) = (exact_stretch(|_, strain| strain), exact_stretch(softer));
+        expect(&app, spawned, soft);
+        expect(&app, cloth, alike);
+        let before = at(&app, cloth, 40);
+        app.world_mut().entity_mut(cloth).insert(soft_below());
+        tick(&mut app, 1);
+        // It begins where it was: free fall for a tick is 1.2 mm.
+        let moved = at(&app, cloth, 40).distance(before);
+        assert!(moved < 1.2e-3, "{kind}: {moved}");
+        tick(&mut app, 600);
+        expect(&app, cloth, soft);
+        app.world_mut()
+            .entity_mut(cloth)
+            .remove::<ClothMaterialMap>();
+        tick(&mut app, 600);
+        expect(&app, cloth, alike);
+        let built = app.world().get::<ClothBuilt>(cloth).expect("built");
+        assert!(!built.surface().is_torn(), "{kind}: as it was");
+    }
+}
+
+/// Force over strain has a knee: each spring gives as its own load says, above and below it, and a cloth that swings up and
+/// down over it gains nothing.
+#[test]
+fn a_cloth_that_stiffens_hangs_as_its_knee_says() {
+    let stiffening = ClothStiffening {
+        strain: 2.0e-3,
+        factor: 5.0,
+    };
+    let material = ClothMaterial {
+        stiffening: Some(stiffening),
+        ..soft()
+    };
+    let exact = exact_stretch(|_, strain| match strain - stiffening.strain {
+        beyond @ 0.0.. => stiffening.strain + beyond / stiffening.factor,
+        _ => strain,
+    });
+    // Loads reach from half a row to seven and a half: some springs are on either side.
+    let alike = exact_stretch(|_, strain| strain);
+    assert!(exact < 0.7 * alike && exact > 1.5 * alike / stiffening.factor);
+    for (kind, cloth, allowed) in [
+        ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
+        ("mesh", sheet(), 0.1),
+    ] {
+        let top = Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)]);
+        let mut app = app();
+        let calm = app
+            .world_mut()
+            .spawn((cloth.clone(), top.clone(), material));
+        let calm = calm.id();
+        let swinging = ClothMaterial {
+            damping: 0.0,
+            ..material
+        };
+        let swinging = app.world_mut().spawn((cloth, top, swinging)).id();
+        let largest = |app: &mut App, ticks: usize| {
+            let each = (0..ticks).map(|_| {
+                tick(app, 1);
+                sag(app, swinging)
+            });
+            each.fold(0.0, f32::max)
+        };
+        let [first, later] = [64, 576].map(|ticks| largest(&mut app, ticks));
+        println!("{kind}: deepest {first:.5} m, later {later:.5} m");
+        assert!(later < 1.05 * first, "{kind}: {first} {later}");
+        let found = sag(&app, calm);
+        println!("{kind}: {found:.5} m, closed form {exact:.5} m");
+        assert!((found / exact - 1.0).abs() < allowed, "{kind}: {found}");
+    }
+}
+
+/// A strip that is clamped level and five times as rigid in its inner half droops by `q L⁴/8D (15/16 / 5 + 1/16)`: the integral of
+/// the moment q (L − x)²/2 over the rigidity, times L − x.
+#[test]
+fn a_strip_that_is_stiffer_at_its_clamp_droops_less() {
+    let (columns, spacing) = (41, 0.01);
+    let length = (columns - 2) as f32 * spacing;
+    let material = ClothMaterial {
+        bend_rigidity: 0.09,
+        stretch_compliance: 1.0e-6,
+        damping: 0.1,
+        ..ClothMaterial::COTTON
+    };
+    let middle = spacing + length / 2.0;
+    let map = ClothMaterialMap {
+        bending: ClothFactor::of(ClothPaint::at_rest(move |place| {
+            if place.x < middle { 5.0 } else { 1.0 }
+        })),
+        ..default()
+    };
+    let clamp = Pins::new([Pin::at_rest(move |place| place.x < 1.5 * spacing)]);
+    let strip = Cloth::new(columns, 5, spacing).lying();
+    let mut app = app();
+    let bundle = (strip.clone(), clamp.clone(), material, map);
+    let stiffer = app.world_mut().spawn(bundle).id();
+    let alike = app.world_mut().spawn((strip, clamp, material)).id();
+    tick(&mut app, 1_000);
+    let alone = material.areal_density * 9.81 * length.powi(4) / (8.0 * material.bend_rigidity);
+    for (cloth, part) in [(alike, 1.0), (stiffer, 15.0 / 16.0 / 5.0 + 1.0 / 16.0)] {
+        let end = at(&app, cloth, columns as usize * 3 - 1);
+        let (found, exact) = (-end.y, alone * part);
+        println!("droops by {found:.5} m, closed form {exact:.5} m");
+        // Γ is 1: of an elastica the end droops by 0.1235 L, and 1/8 L of this theory of small droops. The middle of the spring
+        // between both halves is half a spacing off, 1 % of L.
+        assert!((found / exact - 1.0).abs() < 0.05, "{found} {exact}");
+    }
+}
+
+/// On a slope of 0.6, cloth of μ 0.5 slides, and holds where its map doubles that; half of it without friction and half with twice
+/// as much slides by g (sin α − μ cos α), as all of it does.
+#[test]
+fn friction_follows_its_map() {
+    let slope = 0.6_f32.atan();
+    let material = ClothMaterial {
+        friction: 0.5,
+        damping: 0.0,
+        ..ClothMaterial::COTTON
+    };
+    let map = |paint: ClothPaint| ClothMaterialMap {
+        friction: ClothFactor::of(paint),
+        ..default()
+    };
+    let mixed = ClothPaint::at_rest(|place| if place.x < 0.0 { 0.0 } else { 2.0 });
+    let ball = NarrowPhase::Triangles;
+    for (name, collider, offset, narrow_phase) in [
+        ("plane", ClothCollider::plane(), 0.0, NarrowPhase::Auto),
+        (
+            "box",
+            ClothCollider::cuboid(20.0, 1.0, 20.0),
+            0.5,
+            NarrowPhase::Auto,
+        ),
+        ("ball", ClothCollider::ball(500.0), 500.0, ball),
+    ] {
+        let mut app = app();
+        let down = Vec3::new(slope.sin(), -slope.cos(), 0.0);
+        app.insert_resource(ClothGravity(9.81 * down));
+        let below = Transform::from_xyz(0.0, -offset, 0.0);
+        app.world_mut().spawn((collider, below));
+        let mut spawn = |map: ClothMaterialMap, z: f32| {
+            let cloth = Cloth::new(8, 8, 0.05).lying().centred().flat();
+            let settings = ClothSettings::default();
+            let place = Transform::from_xyz(0.0, settings.particle_radius, z);
+            let bundle = (
+                cloth,
+                material,
+                map,
+                Pins::none(),
+                settings,
+                narrow_phase,
+                place,
+            );
+            app.world_mut().spawn(bundle).id()
+        };
+        let plain = spawn(default(), -2.0);
+        let doubled = spawn(map(2.0.into()), 0.0);
+        let mixed = spawn(map(mixed.clone()), 2.0);
+        let place = |app: &App, cloth| {
+            let all = particles(app, cloth).positions();
+            all.map(|place| place.x).sum::<f32>() / 64.0
+        };
+        tick(&mut app, 8);
+        let begun = [plain, doubled, mixed].map(|cloth| (cloth, place(&app, cloth)));
+        let speed = |app: &App, cloth| {
+            let all = (0..64).map(|index| particles(app, cloth).velocity(index));
+            all.map(|speed| speed.expect("a particle").x).sum::<f32>() / 64.0
+        };
+        let before = [plain, doubled, mixed].map(|cloth| speed(&app, cloth));
+        tick(&mut app, 32);
+        let gained = [plain, doubled, mixed].map(|cloth| speed(&app, cloth));
+        let slides = 9.81 * (slope.sin() - 0.5 * slope.cos()) * 32.0 * TICK;
+        let [plain, doubled, mixed] = [0, 1, 2].map(|at| gained[at] - before[at]);
+        println!("{name}: {plain:.4} {doubled:.4} {mixed:.4} m/s, closed form {slides:.4}");
+        assert!((plain / slides - 1.0).abs() < 0.02, "{name}: {plain}");
+        assert!((mixed / slides - 1.0).abs() < 0.02, "{name}: {mixed}");
+        let (cloth, begun) = begun[1];
+        let moved = place(&app, cloth) - begun;
+        assert!(doubled.abs() < 1.0e-3 && moved < 1.0e-3, "{name}: {moved}");
+    }
+}
+
+/// A map that says 1 everywhere leaves a grid what it is; one that is taken away, another resolution, and a tear are followed.
+#[test]
+fn a_grid_with_a_map_is_followed() {
+    let mut app = app();
+    let grid = |side: u32| Cloth::new(side, side, 0.8 / (side - 1) as f32);
+    let cloth = (grid(SIDE), soft(), ClothMaterialMap::default());
+    let cloth = app.world_mut().spawn(cloth).id();
+    let is_grid = |app: &App| {
+        let layout = particles(app, cloth);
+        (layout.columns(), layout.rows())
+    };
+    tick(&mut app, 60);
+    assert_eq!(is_grid(&app), (9, 9));
+    app.world_mut().entity_mut(cloth).insert(soft_below());
+    tick(&mut app, 300);
+    assert_eq!(is_grid(&app), (81, 1));
+    let hanging = sag(&app, cloth);
+    // Half of the spacing: it stays where it is.
+    change::<Cloth>(&mut app, cloth, |cloth| *cloth = grid(17));
+    tick(&mut app, 1);
+    assert_eq!(is_grid(&app), (289, 1));
+    let lowest = particles(&app, cloth).positions().map(|place| place.y);
+    let lowest = -lowest.fold(0.0, f32::min) - 0.8;
+    assert!((lowest - hanging).abs() < 2.0e-3, "{lowest} {hanging}");
+    let surface = app.world().get::<ClothBuilt>(cloth).expect("built");
+    let surface = surface.surface().clone();
+    let mut tears = ClothTears::default();
+    tears.tear_out(&surface, surface.triangles()[100]);
+    app.world_mut().entity_mut(cloth).insert(tears);
+    tick(&mut app, 60);
+    assert!(app.world().get::<ClothFault>(cloth).is_none());
+    assert_eq!(
+        messages::<ClothTorn>(&mut app).len(),
+        1,
+        "for its tear alone"
+    );
+    app.world_mut()
+        .entity_mut(cloth)
+        .remove::<(ClothTears, ClothMaterialMap)>();
+    tick(&mut app, 60);
+    assert_eq!(is_grid(&app), (17, 17));
+}
+
+#[test]
+fn a_stiffness_that_cannot_be() {
+    let is_quantity = |error: &ClothError| matches!(error, ClothError::Quantity { .. });
+    let mend = |app: &mut App, entity: Entity| {
+        change::<ClothMaterialMap>(app, entity, |map| *map = default());
+    };
+    for factor in [0.0, f32::NAN, f32::INFINITY] {
+        let map = ClothMaterialMap {
+            stretch: ClothFactor::of(factor),
+            ..default()
+        };
+        expect_fault(
+            (Cloth::default(), map, Pins::none()),
+            |_, _| {},
+            is_quantity,
+            mend,
+        );
+    }
+    for factor in [f32::NAN, f32::INFINITY] {
+        let map = ClothMaterialMap {
+            bending: ClothFactor::of(factor),
+            friction: ClothFactor::of(factor),
+            ..default()
+        };
+        expect_fault(
+            (Cloth::default(), map, Pins::none()),
+            |_, _| {},
+            is_quantity,
+            mend,
+        );
+    }
+    // While it moves.
+    let bundle = (Cloth::default(), ClothMaterialMap::default(), Pins::none());
+    expect_fault(
+        bundle,
+        |app, entity| {
+            tick(app, 3);
+            change::<ClothMaterialMap>(app, entity, |map| {
+                map.stretch = ClothFactor::of(ClothPaint::vertices([1.0; 3]));
+            });
+        },
+        |error| matches!(error, ClothError::PaintCount { .. }),
+        mend,
+    );
+    // A rope is solved by its row alone.
+    let rope = || Cloth::rope(9, 0.1, 0.01);
+    let mut app = app();
+    let map = ClothMaterialMap {
+        stretch: ClothFactor::of(2.0),
+        ..default()
+    };
+    let stiffer = app.world_mut().spawn((rope(), map)).id();
+    let stiffening = ClothMaterial {
+        stiffening: Some(default()),
+        ..default()
+    };
+    let stiffening = app.world_mut().spawn((rope(), stiffening)).id();
+    let heavy = app.world_mut().spawn((rope(), wet())).id();
+    tick(&mut app, 3);
+    let has_fault = |cloth| app.world().get::<ClothFault>(cloth).is_some();
+    assert_eq!(
+        [stiffer, stiffening, heavy].map(has_fault),
+        [true, true, false]
+    );
+}
