@@ -54,13 +54,13 @@ pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{BakeError, ClothBake};
     pub use crate::plugin::{
-        ClothAir, ClothAttachment, ClothAttachments, ClothBlade, ClothBody, ClothBone, ClothBones,
-        ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothGrab, ClothGravity,
-        ClothHit, ClothInertia, ClothLimitExceeded, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
-        ClothRayCast, ClothSeam, ClothSeamSide, ClothSnapshot, ClothStats, ClothSystems,
-        ClothTarget, ClothTeleport, ClothTorn, ClothTouchStarted, ClothTouchStopped, ClothWind,
-        ClothWindShape, ClothWindZone, ClothWorldSnapshot, DrapePlugins, GlobalClothLod,
-        SnapshotError, shift_cloths,
+        ClothAir, ClothAsyncBuild, ClothAttachment, ClothAttachments, ClothBlade, ClothBody,
+        ClothBone, ClothBones, ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothFrame,
+        ClothGrab, ClothGravity, ClothHit, ClothInertia, ClothLimitExceeded, ClothLod,
+        ClothLodLevel, ClothOrder, ClothPush, ClothRayCast, ClothSeam, ClothSeamSide,
+        ClothSnapshot, ClothStats, ClothSystems, ClothTarget, ClothTeleport, ClothTorn,
+        ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
+        ClothWorldSnapshot, DrapePlugins, GlobalClothLod, SnapshotError, shift_cloths,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

@@ -31,9 +31,9 @@ use bevy::{
 };
 
 pub use authoring::{
-    ClothAir, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones, ClothGrab,
-    ClothGravity, ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush, ClothSeam,
-    ClothSeamSide, ClothTarget, ClothTeleport, ClothWind, ClothWindShape, ClothWindZone,
+    ClothAir, ClothAsyncBuild, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones,
+    ClothGrab, ClothGravity, ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
+    ClothSeam, ClothSeamSide, ClothTarget, ClothTeleport, ClothWind, ClothWindShape, ClothWindZone,
     GlobalClothLod,
 };
 #[cfg(feature = "mesh")]

@@ -32,8 +32,8 @@ use bevy::{
 use super::prepare::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
     authoring::{
-        ClothAir, ClothBody, ClothGrab, ClothGravity, ClothInertia, ClothOrder, ClothPush,
-        ClothSeam, ClothTeleport, ClothWind, ClothWindZone, give_order,
+        ClothAir, ClothAsyncBuild, ClothBody, ClothGrab, ClothGravity, ClothInertia, ClothOrder,
+        ClothPush, ClothSeam, ClothTeleport, ClothWind, ClothWindZone, give_order,
     },
     bridge::register_lists,
     frame::ClothFrame,
@@ -124,6 +124,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothFrame>()
         .register_type::<ClothStats>()
         .register_type::<ClothTeleport>()
+        .register_type::<ClothAsyncBuild>()
         .register_type::<ClothInertia>()
         .register_type::<ClothBuilt>()
         .register_type::<ClothSearch>()

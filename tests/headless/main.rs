@@ -1,5 +1,6 @@
 //! Drives a headless app: `MinimalPlugins`, fixed ticks, no renderer.
 
+mod async_build;
 mod attach;
 mod bake;
 mod cape;

@@ -3,6 +3,7 @@
 //! In: the game's values. Out: the same values, which later stages read. Beside some of them lies what the plugin writes with
 //! them: the push on a body, the mesh that is drawn, the skeleton taken over, and how far a character has moved.
 
+mod async_build;
 mod attachments;
 mod body;
 mod bones;
@@ -19,6 +20,7 @@ mod skeleton;
 mod wind;
 mod wind_zone;
 
+pub use async_build::ClothAsyncBuild;
 pub(crate) use attachments::Attached;
 pub use attachments::{ClothAttachment, ClothAttachments, ClothTarget, ClothTeleport};
 pub use body::{ClothBody, ClothPush};

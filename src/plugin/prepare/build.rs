@@ -61,7 +61,9 @@ pub(crate) fn build(
     } else {
         build_new(wanted, sources, parts, particles, built, state)
     };
-    built.refused = new.as_ref().err().map(|error| (tried, error.clone()));
+    let refused = new.as_ref().err();
+    let refused = refused.filter(|error| **error != ClothError::MeshLoading);
+    built.refused = refused.map(|error| (tried, error.clone()));
     let build = new?;
     state.inputs.opened = built.tears().edges().len();
     if !resumes {
@@ -123,7 +125,14 @@ fn build_new(
         factors = wanted.factors(surface)?;
         Ok(factors.stiffness.clone())
     };
-    let shared = parts.get(&recipe, material, of, || sources.surface(&recipe))?;
+    // Kept until it is found among the known parts.
+    let _built = match wanted.is_async && !state.resumes {
+        true => parts.get_built(wanted.request(&recipe), || sources.mesh(&recipe))?,
+        false => None,
+    };
+    let shared = parts.get(&recipe, material, of, || {
+        recipe.surface(&sources.mesh(&recipe)?)
+    })?;
     let surface = &shared.surface;
     pins.validate(surface)?;
     // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are

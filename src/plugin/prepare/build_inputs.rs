@@ -7,7 +7,10 @@ use crate::{
         Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothTears,
         MaterialFactors, Pins, Surface,
     },
-    plugin::{authoring::ClothAttachment, state::Source},
+    plugin::{
+        authoring::ClothAttachment,
+        state::{BuildRequest, Recipe, Source},
+    },
 };
 
 /// The game's description of a cloth. Removed components count as their defaults, and as no pins.
@@ -27,6 +30,8 @@ pub(crate) struct BuildInputs<'a> {
     pub pins: &'a Pins,
     pub attachments: &'a [ClothAttachment],
     pub scale: Vec3,
+    /// Whether it is built beside the game.
+    pub is_async: bool,
 }
 
 impl BuildInputs<'_> {
@@ -48,6 +53,15 @@ impl BuildInputs<'_> {
     pub(super) fn tears(&self) -> ClothTears {
         self.tears
             .map_or_else(ClothTears::none, |(tears, _)| tears.clone())
+    }
+
+    /// What is to be built of a recipe.
+    pub(super) fn request(&self, recipe: &Recipe) -> BuildRequest {
+        BuildRequest {
+            recipe: recipe.clone(),
+            material: *self.material,
+            map: self.map.map(|(map, _)| map.clone()),
+        }
     }
 
     /// Whether it is a grid whose springs differ or stiffen, which is solved as a mesh. What is torn is a mesh already.

@@ -48,6 +48,7 @@ pub(crate) fn prepare_cloths(
     for entity in &around.teleports {
         commands.entity(entity).try_remove::<ClothTeleport>();
     }
+    parts.begin_tick();
     let global_lod = global_lod.as_ref().map(|global| &global.0);
     for mut cloth in &mut cloths {
         let level = cloth.state.lod.level;
@@ -221,6 +222,7 @@ fn build_cloth(
             .attachments
             .map_or(&[][..], ClothAttachments::as_slice),
         scale,
+        is_async: around.async_builds.contains(cloth.entity),
     };
     let is_new = built.from.is_some() || particles.is_empty();
     let build = build(&wanted, sources, parts, particles, built, state)?;

@@ -32,7 +32,9 @@ pub(super) fn follow_grain(
         ..known.clone()
     };
     let of = |surface: &Surface| Ok(wanted.factors(surface)?.stiffness);
-    let shared = parts.get(&recipe, wanted.material, of, || sources.surface(&recipe))?;
+    let shared = parts.get(&recipe, wanted.material, of, || {
+        recipe.surface(&sources.mesh(&recipe)?)
+    })?;
     // A change that fails leaves the springs as they are.
     follow_changes(wanted, parts, particles, built, state)?;
     take_springs(built, shared, state);

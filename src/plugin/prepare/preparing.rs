@@ -16,7 +16,7 @@ use crate::{
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     plugin::{
-        authoring::{ClothAir, ClothAttachments, ClothLod, ClothTeleport},
+        authoring::{ClothAir, ClothAsyncBuild, ClothAttachments, ClothLod, ClothTeleport},
         frame::ClothFrame,
         state::{
             BroadPhaseBounds, ClothBuilt, ClothContacts, ClothFault, ClothScratch, ClothSearch,
@@ -115,4 +115,6 @@ pub(crate) struct Surroundings<'w, 's> {
     pub field: Res<'w, WindField>,
     /// Entities that teleport the cloths below them.
     pub teleports: Query<'w, 's, Entity, (With<ClothTeleport>, Without<Cloth>)>,
+    /// Cloths that are built beside the game.
+    pub async_builds: Query<'w, 's, (), With<ClothAsyncBuild>>,
 }

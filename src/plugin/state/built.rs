@@ -279,7 +279,7 @@ fn pinned(particles: &ClothParticles) -> impl Iterator<Item = u32> + '_ {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::shared::{Recipe, SharedParts},
+        super::{recipe::Recipe, shared_parts::SharedParts},
         *,
     };
     use crate::cloth::{Cloth, ClothTears};

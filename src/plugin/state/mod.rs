@@ -4,6 +4,7 @@
 //! is handed from stage to stage within a tick. Stages write them; nothing here is a system, except for the log of notices.
 
 mod air;
+mod async_build;
 mod built;
 mod contacts;
 mod excess;
@@ -13,14 +14,17 @@ mod memory;
 mod notices;
 mod parts;
 mod pose;
+mod recipe;
 mod resting;
 mod scratch;
 mod search;
 mod shared;
+mod shared_parts;
 mod source;
 mod stats;
 mod wind_field;
 
+pub(crate) use async_build::BuildRequest;
 pub use built::ClothBuilt;
 pub(crate) use built::{BuiltFrom, FailedBuild};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
@@ -31,11 +35,13 @@ pub(crate) use memory::KnownInputs;
 pub(crate) use notices::{Notice, Notices, log_notices};
 pub(crate) use parts::{ClothParts, OwnParts};
 pub(crate) use pose::{Pose, SkinLimits};
+pub(crate) use recipe::Recipe;
 pub(crate) use resting::RestsOn;
 pub use scratch::ClothScratch;
 pub(crate) use search::BroadPhaseBounds;
 pub use search::ClothSearch;
-pub(crate) use shared::{Recipe, Shared, SharedParts, Stiffnesses};
+pub(crate) use shared::{Shared, Stiffnesses};
+pub(crate) use shared_parts::SharedParts;
 pub(crate) use source::Source;
 pub use stats::ClothStats;
 pub(crate) use wind_field::{EffectiveWind, WindField};

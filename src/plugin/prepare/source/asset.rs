@@ -129,15 +129,14 @@ impl Sources<'_, '_> {
         Skinning::new(surface, &self.triangles(source.mesh)?.positions, &skin)
     }
 
-    /// The surface of a recipe.
+    /// The triangles of a recipe that is made from an asset; none of any other.
     ///
     /// # Errors
-    /// The error of the mesh, or of its grain.
-    pub fn surface(&self, recipe: &Recipe) -> Result<Surface, ClothError> {
-        let (ClothShape::Mesh { weld }, Some(source)) = (&recipe.shape, recipe.source) else {
-            return recipe.surface_without_asset();
-        };
-        let mesh = self.triangles(source.mesh)?;
-        recipe.finished(Surface::of_mesh(&mesh, *weld, recipe.scale)?, &mesh)
+    /// The error of the mesh.
+    pub fn mesh(&self, recipe: &Recipe) -> Result<TriangleMesh, ClothError> {
+        let of = |source: Source| self.triangles(source.mesh);
+        recipe
+            .source
+            .map_or_else(|| Ok(TriangleMesh::default()), of)
     }
 }

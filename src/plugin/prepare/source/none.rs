@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use bevy::ecs::{entity::Entity, system::SystemParam};
 
 use crate::{
-    cloth::{Cloth, ClothError, Skinning, Surface},
+    cloth::{Cloth, ClothError, Skinning, Surface, TriangleMesh},
     contact::ClothCollider,
     plugin::state::{Recipe, Source},
 };
@@ -32,9 +32,9 @@ impl Sources<'_, '_> {
         match source {}
     }
 
-    /// The surface of a recipe.
-    pub fn surface(&self, recipe: &Recipe) -> Result<Surface, ClothError> {
-        recipe.surface_without_asset()
+    /// No recipe has any.
+    pub fn mesh(&self, _: &Recipe) -> Result<TriangleMesh, ClothError> {
+        Ok(TriangleMesh::default())
     }
 }
 

@@ -1,0 +1,19 @@
+//! Cloths that are built beside the game.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+/// Builds a cloth on Bevy's `AsyncComputeTaskPool` while the game goes on. A mesh of 4,096 vertices takes some 40 ms, which is
+/// longer than a frame. Until it is built, the cloth stands still like one whose asset is loading: its
+/// [`ClothParticles`](crate::cloth::ClothParticles) are empty, and its mesh is drawn as it is.
+///
+/// The tick in which the cloth begins depends on the machine. Do not use this component where apps have to move alike, such as a server and
+/// its clients. A cloth that is restored from a snapshot is built at once.
+///
+/// Cloths that are made alike share what is built. Only the first of them waits.
+#[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
+#[type_path = "bevy_drape"]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct ClothAsyncBuild;

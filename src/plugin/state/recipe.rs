@@ -1,0 +1,55 @@
+//! The inputs of a surface.
+
+use std::sync::Arc;
+
+use bevy::math::Vec3;
+
+use super::source::Source;
+use crate::cloth::{ClothError, ClothGrain, ClothShape, ClothTears, Surface, TriangleMesh};
+
+/// The inputs of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Recipe {
+    pub shape: ClothShape,
+    pub scale: Vec3,
+    /// The mesh, if it is made from an asset.
+    pub source: Option<Source>,
+    /// The grain of a mesh with a weft.
+    pub grain: Option<ClothGrain>,
+    pub tears: ClothTears,
+    /// Whether a grid without tears is solved as a mesh.
+    pub as_mesh: bool,
+}
+
+impl Recipe {
+    /// The surface with its grain and its tears: of `mesh`, if it is made from an asset.
+    ///
+    /// # Errors
+    /// Those of [`ClothShape::surface`], [`ClothGrain::apply`] and [`Surface::torn`].
+    pub fn surface(&self, mesh: &TriangleMesh) -> Result<Surface, ClothError> {
+        let surface = match self.shape {
+            #[cfg(feature = "mesh")]
+            ClothShape::Mesh { weld } => Surface::of_mesh(mesh, weld, self.scale)?,
+            _ => self.shape.surface(self.scale)?,
+        };
+        let surface = match &self.grain {
+            Some(grain) => grain.apply(surface, mesh)?,
+            None => surface,
+        };
+        if self.tears.edges().is_empty() && !self.as_mesh {
+            return Ok(surface);
+        }
+        self.opened(Arc::new(surface))
+    }
+
+    /// The whole surface, with its tears, or as a mesh.
+    ///
+    /// # Errors
+    /// Those of [`Surface::torn`].
+    pub fn opened(&self, whole: Arc<Surface>) -> Result<Surface, ClothError> {
+        match self.tears.edges() {
+            [] if !self.as_mesh => Ok((*whole).clone()),
+            edges => whole.torn(edges),
+        }
+    }
+}
