@@ -60,4 +60,4 @@ pub(crate) use springs::{Compliances, SpringList, SpringStorage, StiffnessFactor
 #[cfg(feature = "mesh")]
 pub(crate) use surface::skin_of_asset;
 pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, ShortestPaths};
-pub(crate) use tearing::TearSearch;
+pub(crate) use tearing::{Strength, TearSearch};

@@ -23,8 +23,8 @@ pub(super) struct Stress {
 struct Patch(Vec3, Vec3, f32);
 
 impl Stress {
-    /// Finds the stress of springs between particles at these places (m). `tensions` calls its argument with each spring's ends and
-    /// tension (N).
+    /// Finds the stress of springs between particles at these places (m). `tensions` calls its argument with each spring's ends, and
+    /// its tension over its length (N/m).
     pub fn find(
         &mut self,
         tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
@@ -35,14 +35,13 @@ impl Stress {
         around.clear();
         let areas = (0..surface.len()).map(|particle| surface.area_of(particle));
         around.extend(areas.map(|area| Patch(Vec3::ZERO, Vec3::ZERO, area)));
-        tensions(&mut |ends, tension| {
+        tensions(&mut |ends, tension_over_length| {
             let [a, b] = ends.map(|end| places[end as usize]);
-            let half = 0.5 * a.distance(b) * tension;
-            let direction = (b - a).normalize_or_zero();
+            let (span, half) = (b - a, 0.5 * tension_over_length);
             for end in ends {
                 let Patch(straight, sheared, _) = &mut around[end as usize];
-                *straight += half * direction * direction;
-                *sheared += half * direction * Vec3::new(direction.y, direction.z, direction.x);
+                *straight += half * span * span;
+                *sheared += half * span * Vec3::new(span.y, span.z, span.x);
             }
         });
         for _ in 0..RINGS {
@@ -113,7 +112,7 @@ mod tests {
                 springs.for_each(|_, spring| {
                     let [a, b] = spring.ends.map(|end| moved[end as usize]);
                     let longer = a.distance(b) - spring.rest_length;
-                    visit(spring.ends, longer / spring.compliance);
+                    visit(spring.ends, longer / spring.compliance / a.distance(b));
                 });
             };
             stress.find(tensions, &surface, &moved);

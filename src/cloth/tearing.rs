@@ -7,15 +7,16 @@ use bevy::{
 };
 
 use super::{
-    error::ClothError, material::ClothMaterial, particles::ClothParticles, stress::Stress,
-    surface::Surface, tears::ClothTears,
+    error::ClothError, material::ClothMaterial, particles::ClothParticles,
+    springs::StiffnessFactors, stress::Stress, surface::Surface, tears::ClothTears,
 };
 
 /// Tears a cloth where its threads bear more than their strength. A tear begins at the thread that is overloaded most, and runs
 /// across it from tick to tick, an edge at a time.
 ///
-/// The load of a thread is its stretch over the material's stretch compliance (N/m, the force on a strip over its width). On a mesh
-/// it is also no more than that of the patch around, by the forces that its springs apply. So the
+/// The load of a thread is that at which its material is stretched as far (N/m, the force on a strip over its width). On a mesh
+/// it is also no more than that of the patch around, by the forces that its springs apply. A
+/// [map](crate::cloth::ClothMaterialMap) of stretch changes the stretch, not the strength. So the
 /// cloth needs a compliance: none of [`ClothMaterial`]'s presets for fabrics is rigid. Beside a pin a coarse cloth is
 /// stretched more than it should be, see [`ClothSettings`](crate::solver::ClothSettings); that counts as load, too.
 ///
@@ -81,6 +82,38 @@ impl ClothTearing {
     }
 }
 
+/// The strength of a cloth, and what it is of.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Strength<'a> {
+    pub tearing: &'a ClothTearing,
+    pub material: &'a ClothMaterial,
+    pub factors: &'a StiffnessFactors,
+}
+
+impl Strength<'_> {
+    /// The load that an edge bears (N/m). `along_warp` is the square of the cosine of its angle with the warp.
+    fn load(&self, along_warp: f32) -> f32 {
+        let ClothTearing {
+            strength,
+            weft_strength,
+        } = *self.tearing;
+        between([weft_strength, strength], along_warp)
+    }
+
+    /// The strain of an edge at the load that it bears.
+    fn strain(&self, ends: [u32; 2], along_warp: f32) -> f32 {
+        let [weft, warp] = self.material.stretch_compliances();
+        let ClothTearing {
+            strength,
+            weft_strength,
+        } = *self.tearing;
+        let strains = [weft * weft_strength, warp * strength];
+        let linear = between(strains, along_warp) * self.factors.of_spring(ends);
+        let stiffening = self.material.stiffening;
+        stiffening.map_or(linear, |stiffening| stiffening.strain_of(linear))
+    }
+}
+
 /// The search for edges to tear next. Its memory is reused from tick to tick.
 #[derive(Debug, Default)]
 pub(crate) struct TearSearch {
@@ -92,12 +125,11 @@ pub(crate) struct TearSearch {
 
 impl TearSearch {
     /// Tears at the most overloaded edge of each part of a cloth, or at those at which its tears end: a tear that runs takes
-    /// the load off the rest. Returns these edges, of the whole surface. `tensions` calls its argument with the ends and the tension of
-    /// each spring of a mesh (N).
+    /// the load off the rest. Returns these edges, of the whole surface. `tensions` calls its argument with the ends of each spring
+    /// of a mesh, and its tension over its length (N/m).
     pub fn edges(
         &mut self,
-        tearing: &ClothTearing,
-        material: &ClothMaterial,
+        strength: Strength,
         surface: &Surface,
         particles: &ClothParticles,
         tears: &ClothTears,
@@ -105,7 +137,7 @@ impl TearSearch {
     ) -> Vec<[u32; 2]> {
         self.places.clear();
         self.places.extend(particles.positions());
-        self.find_overloaded(tearing, material, surface, tensions);
+        self.find_overloaded(strength, surface, tensions);
         if self.overloaded.is_empty() {
             return Vec::new();
         }
@@ -138,8 +170,7 @@ impl TearSearch {
 
     fn find_overloaded(
         &mut self,
-        tearing: &ClothTearing,
-        material: &ClothMaterial,
+        strength: Strength,
         surface: &Surface,
         tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
     ) {
@@ -149,12 +180,10 @@ impl TearSearch {
             stress,
         } = self;
         overloaded.clear();
-        let [weft, warp] = material.stretch_compliances();
-        let bears = [weft * tearing.weft_strength, warp * tearing.strength];
         surface.for_each_thread(|ends, rest_length, along_warp| {
             let [a, b] = ends.map(|end| places[end as usize]);
             let stretch = a.distance(b) / rest_length - 1.0;
-            let borne = between(bears, along_warp);
+            let borne = strength.strain(ends, along_warp);
             if stretch > borne {
                 overloaded.push((stretch / borne, ends, along_warp));
             }
@@ -162,9 +191,8 @@ impl TearSearch {
         // Edges of an irregular mesh are stretched unevenly: the load of the patch around counts, too.
         if surface.rest_grid().is_none() && !overloaded.is_empty() {
             stress.find(tensions, surface, places);
-            let [weft, warp] = [tearing.weft_strength, tearing.strength];
             overloaded.retain_mut(|(load, ends, along_warp)| {
-                let borne = between([weft, warp], *along_warp);
+                let borne = strength.load(*along_warp);
                 *load = load.min(stress.along(*ends, places) / borne);
                 *load > 1.0
             });

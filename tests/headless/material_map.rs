@@ -69,7 +69,8 @@ fn sheet() -> Cloth {
 fn a_wet_sheet_hangs_lower() {
     let dry = exact(|_| 1.0);
     let soaked = exact(|row| if row > 3 { 10.0 } else { 1.0 });
-    // A mesh draws in at its free sides and is clamped at its top.
+    // A grid is rounded in its last digits, 0.02 of a spring's stretch. A mesh draws in at its free sides and is clamped at its top: as
+    // a strip its stiffness is between that of a plate that may draw in, 1, and of one that may not, 9/8.
     for (kind, cloth, allowed) in [
         ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
         ("mesh", sheet(), 0.1),
@@ -383,41 +384,50 @@ fn a_strip_that_is_stiffer_at_its_clamp_droops_less() {
     }
 }
 
-/// On a slope of 0.6, cloth of μ 0.5 slides, and holds where its map doubles that; half of it without friction and half with twice
-/// as much slides by g (sin α − μ cos α), as all of it does.
+/// On a slope of 0.6, cloth of μ 0.5 slides by g (sin α − μ cos α), and holds where its map doubles that. Of one whose columns have no
+/// friction on one side and twice as much on the other, each column slides by itself: it has no springs that pull across.
 #[test]
 fn friction_follows_its_map() {
     let slope = 0.6_f32.atan();
     let material = ClothMaterial {
         friction: 0.5,
         damping: 0.0,
+        shear_compliance: f32::INFINITY,
+        bend_rigidity: 0.0,
+        weft: Some(ClothWeft {
+            stretch_compliance: 1.0e6,
+            bend_rigidity: 0.0,
+        }),
         ..ClothMaterial::COTTON
     };
     let map = |paint: ClothPaint| ClothMaterialMap {
         friction: ClothFactor::of(paint),
         ..default()
     };
-    let mixed = ClothPaint::at_rest(|place| if place.x < 0.0 { 0.0 } else { 2.0 });
-    let ball = NarrowPhase::Triangles;
+    let sides = ClothPaint::at_rest(|place| if place.x < 0.0 { 0.0 } else { 2.0 });
+    let capsule = ClothCollider::capsule(500.0, 1.0);
+    let block = ClothCollider::cuboid(20.0, 1.0, 20.0);
     for (name, collider, offset, narrow_phase) in [
         ("plane", ClothCollider::plane(), 0.0, NarrowPhase::Auto),
+        ("box", block, 0.5, NarrowPhase::Auto),
         (
-            "box",
-            ClothCollider::cuboid(20.0, 1.0, 20.0),
-            0.5,
-            NarrowPhase::Auto,
+            "ball",
+            ClothCollider::ball(500.0),
+            500.0,
+            NarrowPhase::Triangles,
         ),
-        ("ball", ClothCollider::ball(500.0), 500.0, ball),
+        ("capsule", capsule, 500.5, NarrowPhase::Triangles),
     ] {
         let mut app = app();
-        let down = Vec3::new(slope.sin(), -slope.cos(), 0.0);
+        // Down its columns.
+        let down = Vec3::new(0.0, -slope.cos(), slope.sin());
         app.insert_resource(ClothGravity(9.81 * down));
         let below = Transform::from_xyz(0.0, -offset, 0.0);
         app.world_mut().spawn((collider, below));
-        let mut spawn = |map: ClothMaterialMap, z: f32| {
+        let mut spawn = |map: ClothMaterialMap, x: f32| {
             let cloth = Cloth::new(8, 8, 0.05).lying().centred().flat();
             let settings = ClothSettings::default();
-            let place = Transform::from_xyz(0.0, settings.particle_radius, z);
+            let place = Transform::from_xyz(x, settings.particle_radius, 0.0);
             let bundle = (
                 cloth,
                 material,
@@ -431,28 +441,36 @@ fn friction_follows_its_map() {
         };
         let plain = spawn(default(), -2.0);
         let doubled = spawn(map(2.0.into()), 0.0);
-        let mixed = spawn(map(mixed.clone()), 2.0);
-        let place = |app: &App, cloth| {
-            let all = particles(app, cloth).positions();
-            all.map(|place| place.x).sum::<f32>() / 64.0
+        let sides = spawn(map(sides.clone()), 2.0);
+        let speed = |app: &App, cloth, columns: std::ops::Range<usize>| {
+            let count = 8 * columns.len();
+            let all = columns.flat_map(|column| (0..8).map(move |row| 8 * row + column));
+            let all = all.map(|index| particles(app, cloth).velocity(index));
+            all.map(|speed| speed.expect("a particle").z).sum::<f32>() / count as f32
+        };
+        let each = |app: &App| {
+            let sides = [0..4, 4..8].map(|columns| speed(app, sides, columns));
+            let all = [plain, doubled].map(|cloth| speed(app, cloth, 0..8));
+            [all[0], all[1], sides[0], sides[1]]
         };
         tick(&mut app, 8);
-        let begun = [plain, doubled, mixed].map(|cloth| (cloth, place(&app, cloth)));
-        let speed = |app: &App, cloth| {
-            let all = (0..64).map(|index| particles(app, cloth).velocity(index));
-            all.map(|speed| speed.expect("a particle").x).sum::<f32>() / 64.0
-        };
-        let before = [plain, doubled, mixed].map(|cloth| speed(&app, cloth));
+        let before = each(&app);
         tick(&mut app, 32);
-        let gained = [plain, doubled, mixed].map(|cloth| speed(&app, cloth));
-        let slides = 9.81 * (slope.sin() - 0.5 * slope.cos()) * 32.0 * TICK;
-        let [plain, doubled, mixed] = [0, 1, 2].map(|at| gained[at] - before[at]);
-        println!("{name}: {plain:.4} {doubled:.4} {mixed:.4} m/s, closed form {slides:.4}");
-        assert!((plain / slides - 1.0).abs() < 0.02, "{name}: {plain}");
-        assert!((mixed / slides - 1.0).abs() < 0.02, "{name}: {mixed}");
-        let (cloth, begun) = begun[1];
-        let moved = place(&app, cloth) - begun;
-        assert!(doubled.abs() < 1.0e-3 && moved < 1.0e-3, "{name}: {moved}");
+        let after = each(&app);
+        let [plain, doubled, free, held] = [0, 1, 2, 3].map(|at| after[at] - before[at]);
+        let fall = |friction: f32| 9.81 * (slope.sin() - friction * slope.cos()) * 32.0 * TICK;
+        println!("{name}: {plain:.4} {doubled:.4} {free:.4} {held:.4} m/s");
+        // It slides by less than 1.3 m, over which a slope of a radius of 500 m changes by 0.3 %, and its part of the speed by 1 %.
+        for (found, exact) in [(plain, fall(0.5)), (free, fall(0.0))] {
+            assert!(
+                (found / exact - 1.0).abs() < 0.015,
+                "{name}: {found} {exact}"
+            );
+        }
+        assert!(
+            doubled.abs().max(held.abs()) < 1.0e-3,
+            "{name}: {doubled} {held}"
+        );
     }
 }
 
@@ -563,4 +581,110 @@ fn a_stiffness_that_cannot_be() {
         [stiffer, stiffening, heavy].map(has_fault),
         [true, true, false]
     );
+}
+
+/// A factor that is the same everywhere is another material, to the bit: stretch, bending, and creases.
+#[test]
+fn a_factor_that_is_everywhere_is_another_material() {
+    let softer = ClothMaterial {
+        stretch_compliance: 1.0e-3,
+        shear_compliance: 2.0e-3,
+        ..ClothMaterial::COTTON
+    };
+    let stiffer = ClothMaterial {
+        stretch_compliance: 0.5e-3,
+        shear_compliance: 1.0e-3,
+        bend_rigidity: 4.0 * softer.bend_rigidity,
+        ..softer
+    };
+    let of = |factor: f32| ClothFactor::of(ClothPaint::at_rest(move |_| factor));
+    let map = ClothMaterialMap {
+        stretch: of(2.0),
+        bending: of(4.0),
+        ..default()
+    };
+    let creasing = ClothCreasing {
+        yield_curvature: 1.0,
+        hardening: 0.1,
+    };
+    let mut app = app();
+    app.insert_resource(ClothWind::new(Vec3::new(1.0, 0.0, 4.0)));
+    let pins = || Pins::new([Pin::Vertex(0), Pin::Vertex(SIDE as usize - 1)]);
+    let by_map = (sheet(), softer, map, pins(), creasing);
+    let by_map = app.world_mut().spawn(by_map).id();
+    let by_material = (sheet(), stiffer, pins(), creasing);
+    let by_material = app.world_mut().spawn(by_material).id();
+    tick(&mut app, 200);
+    assert_eq!(particles(&app, by_map), particles(&app, by_material));
+}
+
+/// A snapshot of a grid that has become a mesh since, or the other way round, is restored, and goes on.
+#[test]
+fn a_snapshot_from_before_a_map_is_restored() {
+    for has_map in [false, true] {
+        let mut app = app();
+        let cloth = (Cloth::new(SIDE, SIDE, SPACING), soft());
+        let cloth = app.world_mut().spawn(cloth).id();
+        let toggle = |app: &mut App, has_map: bool| {
+            let mut cloth = app.world_mut().entity_mut(cloth);
+            match has_map {
+                true => cloth.insert(soft_below()),
+                false => cloth.remove::<ClothMaterialMap>(),
+            };
+        };
+        toggle(&mut app, has_map);
+        tick(&mut app, 30);
+        let place = |app: &App| at(app, cloth, 60);
+        let saved = (
+            ClothSnapshot::of(app.world(), cloth).expect("saved"),
+            place(&app),
+        );
+        toggle(&mut app, !has_map);
+        tick(&mut app, 30);
+        assert_ne!(place(&app), saved.1);
+        saved.0.restore(app.world_mut(), cloth).expect("restored");
+        tick(&mut app, 1);
+        assert!(app.world().get::<ClothFault>(cloth).is_none());
+        // As fast as it was, and a tick of gravity.
+        let farthest = (particles(&app, cloth).largest_speed() + 9.81 * TICK) * TICK;
+        let moved = place(&app).distance(saved.1);
+        assert!(moved < farthest, "{moved} {farthest}");
+        tick(&mut app, 30);
+        assert!(app.world().get::<ClothFault>(cloth).is_none());
+    }
+}
+
+/// A cloth that sleeps, and one that a hand holds, take over a map; one that is written without a change wakes nobody.
+#[test]
+fn a_map_wakes_what_sleeps_and_leaves_what_is_held() {
+    let mut app = app();
+    let hand = app.world_mut().spawn(Transform::default()).id();
+    let held = ClothAttachments::new([(Pin::Row(0), hand)]);
+    let grid = Cloth::new(SIDE, SIDE, SPACING);
+    let bundle = (
+        grid,
+        Pins::none(),
+        soft(),
+        held,
+        ClothMaterialMap::default(),
+    );
+    let cloth = app.world_mut().spawn(bundle).id();
+    tick(&mut app, 600);
+    assert!(stats(&app, cloth).is_asleep);
+    change::<ClothMaterialMap>(&mut app, cloth, |map| map.friction = ClothFactor::of(1.0));
+    tick(&mut app, 1);
+    assert!(stats(&app, cloth).is_asleep, "1 is 1");
+    app.world_mut().entity_mut(cloth).insert(soft_below());
+    tick(&mut app, 1);
+    assert!(!stats(&app, cloth).is_asleep);
+    for (from, to) in [(0.0, 0.1), (0.1, 0.0)] {
+        let moved = Vec3::new(to, 0.0, 0.0);
+        change::<Transform>(&mut app, hand, |hand| hand.translation = moved);
+        tick(&mut app, 1);
+        // The hand has moved through the tick.
+        assert!(at(&app, cloth, 0).distance(moved) < 1.0e-5, "{from} {to}");
+        app.world_mut()
+            .entity_mut(cloth)
+            .remove::<ClothMaterialMap>();
+    }
 }

@@ -4,19 +4,20 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 use crate::cloth::error::ClothError;
 
-/// Stiffening: a knit gives easily until its loops are straight, and its yarns take over. The stretch and shear stiffness
-/// grows by a factor beyond a strain. Force over strain is a line with a knee:
+/// A knit gives easily until its loops are straight, and its yarns take over. Beyond a strain, cloth that stiffens is stiffer against
+/// stretch and shear, by a factor. Force over strain is a line with a knee:
 ///
 /// ```text
-/// force      /
-///   |       /   factor × as steep
-///   |  ____/
-///   |_/
-///   o──────┴──── strain
+/// force           /
+///   |            /    factor × as steep
+///   |           /
+///   |       __-´
+///   |   __-´
+///   o-´────────┴──── strain
 /// ```
 ///
-/// A grid that stiffens is solved as a mesh, at about four times the time of a grid. A rope does not stiffen, and what is
-/// rigid stays rigid.
+/// A grid that stiffens is solved as a mesh, as one with a [map](crate::cloth::ClothMaterialMap) of stretch is. A rope does not
+/// stiffen, and what is rigid stays rigid.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]

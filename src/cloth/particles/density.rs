@@ -9,6 +9,8 @@ pub(crate) struct DensityFactors {
     of_particles: Vec<f32>,
     /// Their mean over the area.
     pub mean: f32,
+    /// The smallest.
+    pub least: f32,
 }
 
 impl Default for DensityFactors {
@@ -17,6 +19,7 @@ impl Default for DensityFactors {
         Self {
             of_particles: Vec::new(),
             mean: 1.0,
+            least: 1.0,
         }
     }
 }
@@ -33,6 +36,7 @@ impl DensityFactors {
             .sum();
         Self {
             mean: (sum / f64::from(surface.area())) as f32,
+            least: of_particles.iter().copied().fold(f32::INFINITY, f32::min),
             of_particles,
         }
     }

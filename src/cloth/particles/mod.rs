@@ -122,10 +122,10 @@ impl ClothParticles {
         Ok(particles)
     }
 
-    /// One row of particles laid out in the rows of a grid of as many, by their indices; `None` of any others.
+    /// The particles laid out as those of a surface of as many, by their indices; `None` of another number.
     pub(crate) fn laid_out(&self, surface: &Surface) -> Option<Self> {
         let (from, to) = (self.valid_layout(), surface.layout());
-        if from.rows != 1 || from.len() != to.len() {
+        if from.len() != to.len() {
             return None;
         }
         let mut new = Self {

@@ -76,6 +76,11 @@ impl Past {
         self.wait = self.wait.max(wait);
     }
 
+    /// Whether the coming sub-step ignores it: something pushed the cloth, or its springs were left stretched.
+    pub fn is_ignored(&self) -> bool {
+        self.wait > 0
+    }
+
     /// The order of the coming sub-step, if second order is enabled.
     pub fn next(&mut self, blocks: usize) -> StepKind {
         if self.blocks.len() != blocks {

@@ -17,7 +17,7 @@ impl StiffnessFactors {
     }
 
     /// The factor of a compliance between two particles: half of each material, one after the other.
-    pub(super) fn of_spring(&self, ends: [u32; 2]) -> f32 {
+    pub fn of_spring(&self, ends: [u32; 2]) -> f32 {
         let compliance = |end: u32| self.stretch.get(end as usize).map_or(1.0, |of| 1.0 / of);
         let [a, b] = ends.map(compliance);
         (a + b) / 2.0

@@ -1,13 +1,14 @@
-//! Cloths that are built beside the game.
+//! Cloths that are built in the background.
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-/// Builds a cloth on Bevy's `AsyncComputeTaskPool` while the game goes on. A mesh of 4,096 vertices takes some 40 ms, which is
-/// longer than a frame. Until it is built, the cloth stands still like one whose asset is loading: its
-/// [`ClothParticles`](crate::cloth::ClothParticles) are empty, and its mesh is drawn as it is.
+/// Builds a cloth on Bevy's `AsyncComputeTaskPool` while the game goes on. A mesh of 4,096 vertices takes some 45 ms, which is
+/// longer than a frame. Until it is built, the cloth waits like one whose asset is loading: its
+/// [`ClothParticles`](crate::cloth::ClothParticles) are empty, and its mesh is drawn as it is. A cloth that moves already stands still
+/// while it is built anew, because its `Cloth` has changed. Changes of its material, map, grain and tears are taken over in their tick.
 ///
 /// The tick in which the cloth begins depends on the machine. Do not use this component where apps have to move alike, such as a server and
 /// its clients. A cloth that is restored from a snapshot is built at once.

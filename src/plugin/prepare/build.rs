@@ -29,15 +29,8 @@ pub(crate) fn build(
     // A snapshot may be from between a tear and its opening.
     let is_open = !state.resumes || built.tears().edges().len() == state.inputs.opened;
     let has_form = built.is_torn_by(wanted.tears) && built.is_as_mesh() == wanted.is_as_mesh();
-    if has_grain && is_open && has_form {
-        follow_changes(wanted, parts, particles, built, state)?;
-        if let Some(from) = &mut built.from {
-            from.torn = wanted.torn();
-        }
-        return Ok(Build::Kept);
-    }
-    // Inputs that failed once are not tried again: checking a mesh takes milliseconds.
-    let tried = FailedBuild {
+    let is_kept = has_grain && is_open && has_form;
+    let failing = |particles: &ClothParticles| FailedBuild {
         changed: wanted.changed,
         source: wanted.source,
         material: *wanted.material,
@@ -48,13 +41,16 @@ pub(crate) fn build(
         scale: wanted.scale,
         particles: [particles.columns(), particles.rows()],
     };
+    // Inputs that failed once are not tried again: checking a mesh takes milliseconds.
     if let Some((before, error)) = &built.refused
-        && *before == tried
+        && *before == failing(particles)
     {
         return Err(error.clone());
     }
     let resumes = state.resumes;
-    let new = if has_grain && !resumes {
+    let new = if is_kept {
+        follow_changes(wanted, parts, particles, built, state).map(|()| Build::Kept)
+    } else if has_grain && !resumes {
         follow_tears(wanted, parts, particles, built, state)
     } else if is_built && !has_grain {
         follow_grain(wanted, sources, parts, particles, built, state)
@@ -63,8 +59,14 @@ pub(crate) fn build(
     };
     let refused = new.as_ref().err();
     let refused = refused.filter(|error| **error != ClothError::MeshLoading);
-    built.refused = refused.map(|error| (tried, error.clone()));
+    built.refused = refused.map(|error| (failing(particles), error.clone()));
     let build = new?;
+    if is_kept {
+        if let Some(from) = &mut built.from {
+            from.torn = wanted.torn();
+        }
+        return Ok(build);
+    }
     state.inputs.opened = built.tears().edges().len();
     if !resumes {
         state.rest.disturb();
@@ -125,9 +127,9 @@ fn build_new(
         factors = wanted.factors(surface)?;
         Ok(factors.stiffness.clone())
     };
-    // Kept until it is found among the known parts.
-    let _built = match wanted.is_async && !state.resumes {
-        true => parts.get_built(wanted.request(&recipe), || sources.mesh(&recipe))?,
+    // The known parts don't keep it.
+    let _kept_alive = match wanted.is_async && !state.resumes {
+        true => parts.get_built(&wanted.request(&recipe), || sources.mesh(&recipe))?,
         false => None,
     };
     let shared = parts.get(&recipe, material, of, || {

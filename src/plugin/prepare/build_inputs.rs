@@ -30,7 +30,7 @@ pub(crate) struct BuildInputs<'a> {
     pub pins: &'a Pins,
     pub attachments: &'a [ClothAttachment],
     pub scale: Vec3,
-    /// Whether it is built beside the game.
+    /// Whether it is built in the background.
     pub is_async: bool,
 }
 
@@ -67,8 +67,9 @@ impl BuildInputs<'_> {
     /// Whether it is a grid whose springs differ or stiffen, which is solved as a mesh. What is torn is a mesh already.
     pub(super) fn is_as_mesh(&self) -> bool {
         let has_own_springs = || {
-            let has_stiffness = |(map, _): (&ClothMaterialMap, Tick)| map.has_stiffness();
-            self.material.stiffening.is_some() || self.map.is_some_and(has_stiffness)
+            let of_map = |(map, _): (&ClothMaterialMap, Tick)| map.has_stiffness(self.material);
+            let stiffening = self.material.stiffening;
+            stiffening.is_some_and(|of| of.factor != 1.0) || self.map.is_some_and(of_map)
         };
         let is_torn = self
             .tears

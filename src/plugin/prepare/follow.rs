@@ -36,7 +36,7 @@ pub(super) fn follow_grain(
         recipe.surface(&sources.mesh(&recipe)?)
     })?;
     // A change that fails leaves the springs as they are.
-    follow_changes(wanted, parts, particles, built, state)?;
+    follow_masses(wanted, particles, built, state)?;
     take_springs(built, shared, state);
     if let Some(from) = &mut built.from {
         from.grained = wanted.grained();
@@ -54,8 +54,7 @@ fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothSt
     state.inputs.written = None;
 }
 
-/// Takes over another material or other pins: masses, springs and tree only where they change, so that a
-/// mass that the game has set outlasts a change of damping.
+/// Takes over another material, map of it, or other pins, and springs, if these change.
 pub(super) fn follow_changes(
     wanted: &BuildInputs,
     parts: &mut SharedParts,
@@ -63,36 +62,55 @@ pub(super) fn follow_changes(
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<(), ClothError> {
+    if follow_masses(wanted, particles, built, state)?
+        && let Some(from) = &built.from
+    {
+        let factors = &from.factors.stiffness;
+        let shared = parts.with_material(&built.shared, wanted.material, factors);
+        take_springs(built, shared, state);
+    }
+    Ok(())
+}
+
+/// Takes over another material, map of it, or other pins: masses only where they change, so that a mass that the game has set
+/// outlasts a change of damping. Returns whether the springs are others.
+pub(super) fn follow_masses(
+    wanted: &BuildInputs,
+    particles: &mut Mut<ClothParticles>,
+    built: &mut ClothBuilt,
+    state: &mut ClothState,
+) -> Result<bool, ClothError> {
     let BuildInputs { material, pins, .. } = *wanted;
     check_count(particles, built.surface())?;
     let Some(from) = &mut built.from else {
-        return Ok(());
+        return Ok(false);
     };
-    let (was, were_pinned) = (&from.material, &from.pins);
-    let are_others_pinned = were_pinned != pins;
     let is_mapped_otherwise = from.mapped != wanted.mapped();
-    if was == material && !are_others_pinned && !is_mapped_otherwise {
-        return Ok(());
+    let are_others_pinned = from.pins != *pins;
+    if from.material == *material && !are_others_pinned && !is_mapped_otherwise {
+        return Ok(false);
     }
     wanted.check_material()?;
     let surface = &built.shared.surface;
-    let mut is_as_stiff = true;
-    if is_mapped_otherwise {
-        let factors = wanted.factors(surface)?;
-        pins.validate(surface)?;
-        // The same as before leaves masses that the game has set.
-        if factors.density != from.factors.density {
-            // Their motion goes on: nothing that rests on where they are has to be looked at again.
-            let particles = particles.bypass_change_detection();
-            particles.weigh(surface, material, &factors.density)?;
-            built.masses = particles.free_masses();
-        }
-        is_as_stiff = factors.stiffness == from.factors.stiffness;
-        from.factors = factors;
-        from.mapped = wanted.mapped();
+    pins.validate(surface)?;
+    let factors = match is_mapped_otherwise {
+        true => wanted.factors(surface)?,
+        false => from.factors.clone(),
+    };
+    from.mapped = wanted.mapped();
+    if from.material == *material && !are_others_pinned && from.factors == factors {
+        // Written, and not changed.
+        return Ok(false);
     }
-    if was.areal_density != material.areal_density || are_others_pinned {
-        particles.assign_masses(surface, material, &from.factors.density, pins)?;
+    factors.density.check(surface, material)?;
+    if from.factors.density != factors.density {
+        // Their motion goes on: nothing that rests on where they are has to be looked at again.
+        let particles = particles.bypass_change_detection();
+        particles.weigh(surface, material, &factors.density)?;
+        built.masses = particles.free_masses();
+    }
+    if from.material.areal_density != material.areal_density || are_others_pinned {
+        particles.assign_masses(surface, material, &factors.density, pins)?;
         // They are pinned again with the offsets that they have.
         for attached in &state.attachments.attached {
             particles.pin(attached.particle as usize);
@@ -102,22 +120,18 @@ pub(super) fn follow_changes(
         let compliances = (of.stretch_compliances(), of.shear_compliance);
         (of.areal_density, compliances, of.stiffening)
     };
-    let gives_otherwise = tethered_by(was) != tethered_by(material);
-    let is_sprung_otherwise = !is_as_stiff || !Stiffnesses::are_alike(was, material);
-    let stiffness = from.factors.stiffness.clone();
-    (from.material, from.pins) = (*material, pins.clone());
+    let is_as_stiff = from.factors.stiffness == factors.stiffness;
+    let gives_otherwise = tethered_by(&from.material) != tethered_by(material);
+    let is_sprung_otherwise = !is_as_stiff || !Stiffnesses::are_alike(&from.material, material);
+    (from.material, from.pins, from.factors) = (*material, pins.clone(), factors);
     if are_others_pinned || gives_otherwise || !is_as_stiff {
         built.forget_tethers();
     }
-    if is_sprung_otherwise {
-        let shared = parts.with_material(&built.shared, material, &stiffness);
-        take_springs(built, shared, state);
-    }
     state.rest.disturb();
-    Ok(())
+    Ok(is_sprung_otherwise)
 }
 
-/// Whether the particles are as many as the surface has. One row of them is laid out as the surface is.
+/// Whether the particles are as many as the surface has. One row of them is laid out as the surface is, and a grid as its mesh.
 pub(super) fn check_count(
     particles: &mut Mut<ClothParticles>,
     surface: &Surface,
@@ -125,7 +139,14 @@ pub(super) fn check_count(
     if particles.matches(surface) {
         return Ok(());
     }
-    if let Some(laid_out) = particles.laid_out(surface) {
+    let rows = [particles.columns(), particles.rows()];
+    let is_grid_as_mesh = || {
+        let grid = surface.rest_grid();
+        grid.is_some_and(|grid| rows == [grid.columns(), grid.rows()])
+    };
+    if (rows[1] == 1 || is_grid_as_mesh())
+        && let Some(laid_out) = particles.laid_out(surface)
+    {
         **particles = laid_out;
         return Ok(());
     }

@@ -115,6 +115,6 @@ pub(crate) struct Surroundings<'w, 's> {
     pub field: Res<'w, WindField>,
     /// Entities that teleport the cloths below them.
     pub teleports: Query<'w, 's, Entity, (With<ClothTeleport>, Without<Cloth>)>,
-    /// Cloths that are built beside the game.
+    /// Cloths that are built in the background.
     pub async_builds: Query<'w, 's, (), With<ClothAsyncBuild>>,
 }

@@ -139,7 +139,9 @@ pub(super) fn prepare_contact(
         narrow_phase: inputs.narrow_phase,
         ..ContactSettings::default()
     };
-    let by_air = (state.inputs.air).acceleration(material, state.largest_speed, seconds);
+    let least = (built.from.as_ref()).map_or(1.0, |from| from.factors.density.least);
+    let lightest = material.areal_density * least;
+    let by_air = (state.inputs.air).acceleration(lightest, state.largest_speed, seconds);
     let acceleration = acceleration.length() + by_air;
     let pins = &scratch.pins;
     scratch.reach =

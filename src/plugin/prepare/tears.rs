@@ -4,7 +4,7 @@ use bevy::{ecs::change_detection::Mut, math::Vec3};
 
 use super::{
     build_inputs::{Build, BuildInputs},
-    follow::follow_changes,
+    follow::follow_masses,
 };
 use crate::{
     cloth::{ClothError, ClothParticles, ClothTears, MaterialFactors, Surface},
@@ -14,7 +14,7 @@ use crate::{
     },
 };
 
-/// Takes over other tears, or that a grid is now solved as a mesh or not any more. Particles keep their places, motion and indices, and new ones follow.
+/// Takes over other tears, or the change of a grid to a mesh and back. Particles keep their places, motion and indices, and new ones follow.
 ///
 /// # Errors
 /// [`ClothError::NoSuchEdge`]; the cloth stays as it was.
@@ -25,8 +25,6 @@ pub(super) fn follow_tears(
     built: &mut ClothBuilt,
     state: &mut ClothState,
 ) -> Result<Build, ClothError> {
-    // What else has changed is of the same surface.
-    follow_changes(wanted, parts, particles, built, state)?;
     let Some(known) = &built.shared.recipe else {
         return Ok(Build::Kept);
     };
@@ -38,7 +36,6 @@ pub(super) fn follow_tears(
     let before = built.surface().clone();
     let mut factors = MaterialFactors::default();
     let of = |surface: &Surface| {
-        // Of each particle.
         factors = wanted.factors(surface)?;
         Ok(factors.stiffness.clone())
     };
@@ -46,6 +43,8 @@ pub(super) fn follow_tears(
         recipe.opened(before.whole())
     })?;
     let surface = &shared.surface;
+    // What else has changed is of the same particles.
+    follow_masses(wanted, particles, built, state)?;
     let Some(parents) = surface.parents_in(&before) else {
         return Ok(Build::Kept);
     };

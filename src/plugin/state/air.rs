@@ -7,7 +7,7 @@ use bevy::{
 
 use super::wind_field::{EffectiveWind, WindField};
 use crate::{
-    cloth::{ClothMaterial, ClothParticles, Surface},
+    cloth::{ClothParticles, Surface},
     plugin::{
         authoring::PlacedZone,
         frame::{ClothFrame, Shift},
@@ -124,11 +124,11 @@ impl AirState {
         }
     }
 
-    /// Largest acceleration that the air may give a cloth with this largest `speed` (m/s²). Within one tick of
+    /// Largest acceleration (m/s²) that the air may give a cloth whose lightest part has this areal density (kg/m²), at this largest `speed` (m/s). Within one tick of
     /// `seconds`, wind does not accelerate it beyond the wind's speed, and gas not beyond the speed at which it fills.
-    pub fn acceleration(&self, material: &ClothMaterial, speed: f32, seconds: f32) -> f32 {
+    pub fn acceleration(&self, areal_density: f32, speed: f32, seconds: f32) -> f32 {
         let inside = match self.pressure {
-            Some(ClothPressure::Gauge(pressure)) => pressure.abs() / material.areal_density,
+            Some(ClothPressure::Gauge(pressure)) => pressure.abs() / areal_density,
             Some(ClothPressure::Gas { .. }) if seconds > 0.0 => FILLING / seconds,
             // Gas fills nothing in zero time.
             None | Some(ClothPressure::Gas { .. }) => 0.0,
@@ -141,6 +141,6 @@ impl AirState {
         let relative = fastest + speed;
         let force = 0.5 * wind.density * (wind.drag + wind.lift) * relative * relative;
         let most = relative / seconds.max(f32::MIN_POSITIVE);
-        inside + (force / material.areal_density).min(most)
+        inside + (force / areal_density).min(most)
     }
 }

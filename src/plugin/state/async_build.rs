@@ -1,4 +1,4 @@
-//! Shared data that is built beside the game.
+//! Shared data that is built in the background.
 
 use std::sync::Arc;
 
@@ -6,15 +6,15 @@ use bevy::tasks::{AsyncComputeTaskPool, Task, TaskPool, block_on};
 
 use super::{recipe::Recipe, shared::Shared};
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothMaterialMap, TriangleMesh},
+    cloth::{ClothError, ClothMaterial, ClothMaterialMap, StiffnessFactors, Surface, TriangleMesh},
     hierarchy::QuadTree,
 };
 
 /// Ticks without a cloth that waits for it, after which a task is given up.
-const PATIENCE: u32 = 60;
+const PATIENCE: u32 = 16;
 
 /// What is to be built.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct BuildRequest {
     pub recipe: Recipe,
     pub material: ClothMaterial,
@@ -22,23 +22,34 @@ pub(crate) struct BuildRequest {
 }
 
 impl BuildRequest {
-    /// Builds it of a mesh, if it is made from an asset.
+    /// The factors of its map on its surface.
+    ///
+    /// # Errors
+    /// Those of [`ClothMaterialMap::factors`].
+    pub fn factors(&self, surface: &Surface) -> Result<Arc<StiffnessFactors>, ClothError> {
+        match &self.map {
+            Some(map) => Ok(map.factors(surface)?.stiffness),
+            None => Ok(Arc::default()),
+        }
+    }
+
+    /// Builds it: of a mesh, if it is made from an asset, or of parts that are made alike.
     ///
     /// # Errors
     /// Those of the surface, its grain, tears and map.
-    fn build(self, mesh: &TriangleMesh) -> Result<Shared, ClothError> {
-        let Self {
-            recipe,
-            material,
-            map,
-        } = self;
-        let surface = Arc::new(recipe.surface(mesh)?);
-        let factors = match &map {
-            Some(map) => map.factors(&surface)?.stiffness,
-            None => Arc::default(),
+    fn build(self, mesh: &TriangleMesh, alike: Option<&Shared>) -> Result<Shared, ClothError> {
+        let surface = match alike {
+            Some(alike) => alike.surface.clone(),
+            None => Arc::new(self.recipe.surface(mesh)?),
         };
-        let tree = QuadTree::of_surface(&surface, material.shear_compliance.is_finite());
-        let shared = Shared::new(recipe, &material, surface, factors, || tree);
+        let factors = self.factors(&surface)?;
+        let has_diagonals = self.material.shear_compliance.is_finite();
+        let known = alike.filter(|alike| alike.has_tree(has_diagonals));
+        let tree = match known {
+            Some(alike) => alike.tree.clone(),
+            None => QuadTree::of_surface(&surface, has_diagonals),
+        };
+        let shared = Shared::new(self.recipe, &self.material, surface, factors, || tree);
         // The first tick needs them.
         shared.surface.fans();
         shared.sheet();
@@ -49,7 +60,7 @@ impl BuildRequest {
 /// A task that builds what is requested.
 #[derive(Debug)]
 struct Building {
-    request: BuildRequest,
+    recipe: Recipe,
     task: Task<Result<Shared, ClothError>>,
     /// Ticks since a cloth waited for it.
     idle: u32,
@@ -70,30 +81,28 @@ impl AsyncBuilds {
         self.all.retain(|building| building.idle <= PATIENCE);
     }
 
-    /// What has been built of this request, which begins to be built if it is not yet. `mesh` is that of its asset.
+    /// What has been built of this recipe; `None` if nothing is. Its material may have changed since the request.
     ///
     /// # Errors
-    /// [`ClothError::MeshLoading`] until it is built; that of `mesh`, and those of the surface, its grain, tears and map.
-    pub fn get(
-        &mut self,
-        request: BuildRequest,
-        mesh: impl FnOnce() -> Result<TriangleMesh, ClothError>,
-    ) -> Result<Shared, ClothError> {
-        let known = self.all.iter().position(|known| known.request == request);
-        let Some(known) = known else {
-            let (mesh, wanted) = (mesh()?, request.clone());
-            let pool = AsyncComputeTaskPool::get_or_init(TaskPool::default);
-            self.all.push(Building {
-                request,
-                task: pool.spawn(async move { wanted.build(&mesh) }),
-                idle: 0,
-            });
-            return Err(ClothError::MeshLoading);
+    /// [`ClothError::MeshLoading`] until it is built; those of the surface, its grain, tears and map.
+    pub fn take(&mut self, recipe: &Recipe) -> Result<Option<Shared>, ClothError> {
+        let Some(known) = self.all.iter().position(|known| known.recipe == *recipe) else {
+            return Ok(None);
         };
         self.all[known].idle = 0;
         if !self.all[known].task.is_finished() {
             return Err(ClothError::MeshLoading);
         }
-        block_on(self.all.swap_remove(known).task)
+        block_on(self.all.swap_remove(known).task).map(Some)
+    }
+
+    /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`.
+    pub fn begin(&mut self, request: BuildRequest, mesh: TriangleMesh, alike: Option<Arc<Shared>>) {
+        let pool = AsyncComputeTaskPool::get_or_init(TaskPool::default);
+        self.all.push(Building {
+            recipe: request.recipe.clone(),
+            task: pool.spawn(async move { request.build(&mesh, alike.as_deref()) }),
+            idle: 0,
+        });
     }
 }

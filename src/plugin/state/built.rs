@@ -39,9 +39,10 @@ pub struct ClothBuilt {
     pub(crate) noticed: Noticed,
     #[reflect(ignore)]
     pub(crate) solver: Solver,
-    /// Whether there are tethers, and for which acceleration (m/s²), 0 without; `None` if they have to be made again.
+    /// The acceleration (m/s²) that tethers are for, and the factor of the material's weight; 0 without tethers; `None` if they have to
+    /// be made again.
     #[reflect(ignore)]
-    tethered: Option<(bool, f32)>,
+    tethered: Option<[f32; 2]>,
     /// The stretch of the material itself, under the gravity of the tick and under the largest gravity so far.
     #[reflect(ignore)]
     pub(crate) material_stretch: f32,
@@ -246,15 +247,27 @@ impl ClothBuilt {
             self.pins_version = self.pins_version.wrapping_add(1);
         }
         let factors = self.from.as_ref().map(|from| &from.factors);
-        let gravity = gravity * factors.map_or(1.0, |of| of.density.mean);
-        let material = &material.softer(factors.map_or(1.0, |of| of.stiffness.softest()));
+        let mean = factors.map_or(1.0, |of| of.density.mean);
+        // In steps, so that a weight that changes in every tick does not make tethers in every tick.
+        let mut weight = 1.0;
+        while weight < mean {
+            weight *= 2.0;
+        }
+        let material = &ClothMaterial {
+            areal_density: material.areal_density * weight,
+            ..material.softer(factors.map_or(1.0, |of| of.stiffness.softest()))
+        };
         let surface = &self.shared.surface;
         let gives = |gravity: f32| material_stretch(surface, material, self.pinned.len(), gravity);
         // Gravity that comes and goes finds all as it was; what it stretched before is no fault after.
         *largest_gravity = largest_gravity.max(Tethers::made_for(gravity));
         self.material_stretch = gives(gravity);
         self.largest_material_stretch = gives(largest_gravity.max(gravity));
-        let made_for = Some((wanted, if wanted { *largest_gravity } else { 0.0 }));
+        let made_for = Some(if wanted {
+            [*largest_gravity, weight]
+        } else {
+            [0.0; 2]
+        });
         if self.tethered == made_for {
             return false;
         }
@@ -282,7 +295,51 @@ mod tests {
         super::{recipe::Recipe, shared_parts::SharedParts},
         *,
     };
-    use crate::cloth::{Cloth, ClothTears};
+    use crate::cloth::{Cloth, ClothFactor, ClothMaterialMap, ClothTears};
+
+    /// What limits go by knows the mean of a density, in steps of two, and the softest place.
+    #[test]
+    fn limits_know_the_map_of_the_material() {
+        let surface = Cloth::new(8, 8, 0.1).surface(Vec3::ONE).expect("a grid");
+        let material = ClothMaterial::COTTON;
+        let particles = ClothParticles::at_rest(&surface, &material).expect("a material");
+        let stretch = |map: ClothMaterialMap| {
+            let factors = map.factors(&surface).expect("factors");
+            let mut built = ClothBuilt {
+                shared: Arc::new(Shared {
+                    surface: Arc::new(surface.clone()),
+                    ..Shared::default()
+                }),
+                from: Some(BuiltFrom {
+                    unevenness: 0.0,
+                    changed: Tick::new(0),
+                    material,
+                    grained: None,
+                    mapped: None,
+                    factors,
+                    pins: Pins::none(),
+                    torn: None,
+                }),
+                ..Default::default()
+            };
+            let gravity = 9.81;
+            built.tether(false, &material, &particles, gravity, &mut 0.0);
+            built.material_stretch
+        };
+        let alone = stretch(ClothMaterialMap::default());
+        for (density, softest, expected) in [(1.0, 1.0, 1.0), (10.0, 1.0, 16.0), (0.5, 0.25, 4.0)] {
+            let found = stretch(ClothMaterialMap {
+                density: ClothFactor::of(density),
+                stretch: ClothFactor::of(softest),
+                ..Default::default()
+            });
+            // A quotient and a product of four numbers, each rounded.
+            assert!(
+                (found / alone - expected).abs() < 1.0e-5 * expected,
+                "{found} {alone}"
+            );
+        }
+    }
 
     /// Gravity swings between nothing and 60 m/s² for 200 ticks: tethers are made as it first grows, for 9.81 and each
     /// doubling of it up to four fifths of 60, and never again.

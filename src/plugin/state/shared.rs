@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 use super::{recipe::Recipe, source::Source};
 use crate::{
     cloth::{
-        ClothError, ClothMaterial, ClothStiffening, ClothWeft, Skinning, Springs, StiffnessFactors,
-        Surface,
+        ClothError, ClothMaterial, ClothStiffening, ClothWeft, Skinning, SpringKind, Springs,
+        StiffnessFactors, Surface,
     },
     contact::Sheet,
     hierarchy::QuadTree,
@@ -56,6 +56,11 @@ impl Shared {
             sheet: OnceLock::new(),
             skinning: OnceLock::new(),
         }
+    }
+
+    /// Whether its tree is that of springs with diagonals, or without: those of a grid change its bounds.
+    pub fn has_tree(&self, has_diagonals: bool) -> bool {
+        self.surface.as_grid().is_none() || self.springs.has(SpringKind::Shear) == has_diagonals
     }
 
     /// The sheet that contact of cloth with cloth searches.

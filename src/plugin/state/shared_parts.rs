@@ -10,7 +10,7 @@ use super::{
     shared::{Shared, Stiffnesses},
 };
 use crate::{
-    cloth::{ClothError, ClothMaterial, SpringKind, StiffnessFactors, Surface, TriangleMesh},
+    cloth::{ClothError, ClothMaterial, StiffnessFactors, Surface, TriangleMesh},
     hierarchy::QuadTree,
 };
 
@@ -34,10 +34,7 @@ impl SharedParts {
         factors: impl FnOnce(&Surface) -> Result<Arc<StiffnessFactors>, ClothError>,
         make: impl FnOnce() -> Result<Surface, ClothError>,
     ) -> Result<Arc<Shared>, ClothError> {
-        let all = self.known.iter().filter_map(Weak::upgrade);
-        let alike: Vec<_> = all
-            .filter(|known| known.recipe.as_ref() == Some(recipe))
-            .collect();
+        let alike = self.alike(recipe);
         let surface = match alike.last() {
             Some(known) => known.surface.clone(),
             None => Arc::new(make()?),
@@ -49,9 +46,7 @@ impl SharedParts {
         }
         // A tree does not know of stiffness.
         let has_diagonals = material.shear_compliance.is_finite();
-        let known = alike.last().filter(|known| {
-            surface.as_grid().is_none() || known.springs.has(SpringKind::Shear) == has_diagonals
-        });
+        let known = alike.iter().find(|known| known.has_tree(has_diagonals));
         let tree = || match &known {
             Some(known) => known.tree.clone(),
             None => QuadTree::of_surface(&surface, has_diagonals),
@@ -68,22 +63,42 @@ impl SharedParts {
         shared
     }
 
-    /// The shared data of an order that is built beside the game, to be kept until [`get`](Self::get) finds it; `None` if a surface
-    /// of its recipe is known already: what is left then is quickly built.
+    /// The shared data of a request that is built in the background, to be kept until [`get`](Self::get) finds it; `None` if that is
+    /// known already, or the request has a NaN: bad input is found at once.
     ///
     /// # Errors
-    /// Those of [`AsyncBuilds::get`].
+    /// [`ClothError::MeshLoading`] until it is built; that of `mesh`, and those of the surface, its grain, tears and map.
     pub fn get_built(
         &mut self,
-        order: BuildRequest,
+        request: &BuildRequest,
         mesh: impl FnOnce() -> Result<TriangleMesh, ClothError>,
     ) -> Result<Option<Arc<Shared>>, ClothError> {
-        let mut all = self.known.iter().filter_map(Weak::upgrade);
-        if all.any(|known| known.recipe.as_ref() == Some(&order.recipe)) {
+        let recipe = &request.recipe;
+        // NaN is unlike itself.
+        if *recipe != recipe.clone() {
             return Ok(None);
         }
-        let built = self.builds.get(order, mesh)?;
-        Ok(Some(self.keep(built)))
+        if let Some(built) = self.builds.take(recipe)? {
+            return Ok(Some(self.keep(built)));
+        }
+        let alike = self.alike(recipe);
+        if let Some(first) = alike.first() {
+            let factors = request.factors(&first.surface)?;
+            let stiffnesses = Stiffnesses::of(&request.material, &factors);
+            if alike.iter().any(|known| known.stiffnesses == stiffnesses) {
+                return Ok(None);
+            }
+        }
+        let alike = alike.into_iter().next();
+        self.builds.begin(request.clone(), mesh()?, alike);
+        Err(ClothError::MeshLoading)
+    }
+
+    /// All that is made of a recipe.
+    fn alike(&self, recipe: &Recipe) -> Vec<Arc<Shared>> {
+        let all = self.known.iter().filter_map(Weak::upgrade);
+        all.filter(|known| known.recipe.as_ref() == Some(recipe))
+            .collect()
     }
 
     /// Begins a tick.

@@ -11,7 +11,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{ClothMaterial, ClothParticles, ClothTearing, ClothTears, TearSearch},
+    cloth::{ClothMaterial, ClothParticles, ClothTearing, ClothTears, Strength, TearSearch},
     plugin::{
         authoring::{ClothOrder, Ordered},
         frame::ClothFrame,
@@ -52,14 +52,15 @@ pub(crate) fn tear_cloths(
             && built.tears() == &*tears;
         let material = material.copied().unwrap_or_default();
         if is_ready && tearing.validate(&material).is_ok() {
-            let torn = search.edges(
+            let factors = (built.from.as_ref()).map(|from| from.factors.stiffness.clone());
+            let strength = Strength {
                 tearing,
-                &material,
-                built.surface(),
-                particles,
-                &tears,
-                |visit| built.solver.for_each_tension(visit),
-            );
+                material: &material,
+                factors: &factors.unwrap_or_default(),
+            };
+            let tensions =
+                |visit: &mut dyn FnMut([u32; 2], f32)| built.solver.for_each_tension(visit);
+            let torn = search.edges(strength, built.surface(), particles, &tears, tensions);
             if !torn.is_empty() && tears.bypass_change_detection().tear_all(torn) > 0 {
                 tears.set_changed();
             }

@@ -154,7 +154,7 @@ impl MeshBending {
     }
 
     /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
-    fn bound(&self, blocks: &[Block]) -> f32 {
+    pub fn bound(&self, blocks: &[Block]) -> f32 {
         let mut largest = 0.0_f32;
         for (block, bounds) in blocks.iter().zip(&*self.bounds) {
             let weights = &block.view()[W..W + LANES];

@@ -89,7 +89,7 @@ fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Opti
     let stiffer = &step_scale.stiffer;
     if stiffer.is_some() {
         let is_stiff = q.cmpgt(stiffer.from * r2) & compliance.cmpgt(Vec4::ZERO);
-        r2 = Vec4::select(is_stiff, stiffer.rest * stiffer.rest * r2, r2);
+        r2 = Vec4::select(is_stiff, stiffer.squares[0] * r2, r2);
         compliance = Vec4::select(is_stiff, stiffer.compliance * compliance, compliance);
     }
     let (mut softness, mut beyond) = (compliance * step_scale.inverse_weight, q - r2);

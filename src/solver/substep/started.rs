@@ -4,6 +4,7 @@ use super::{AFTER_CONTACT, RESOLVED, Solver, UNSOLVED, WARY_TICKS};
 use crate::{
     cloth::{Block, ClothParticles, Earlier, StepKind},
     solver::{
+        bending::BendingSchedule,
         damping_reference::DampingReference,
         energy::Energy,
         kernels::{AirStep, Prediction, StepScale, weight},
@@ -23,6 +24,7 @@ pub(crate) struct StartedTick {
     next: u32,
     /// Whether springs push by their forces.
     is_explicit: bool,
+    bending: BendingSchedule,
     /// The cloth's energy as the tick began, if it is watched.
     watched: Option<Energy>,
     spin: Option<Spin>,
@@ -52,6 +54,7 @@ impl StartedTick {
     pub(crate) fn note_push(&mut self, particles: &mut ClothParticles) {
         self.is_pushed = true;
         self.measured = None;
+        self.bending.bend_in_each();
         self.damping_reference.note_push();
         if !self.is_explicit {
             particles.forget_past(AFTER_CONTACT);
@@ -79,6 +82,7 @@ impl Solver {
             step,
             next: 0,
             is_explicit: false,
+            bending: BendingSchedule::new(1),
             watched: None,
             spin: None,
             damping_reference: DampingReference::of(&step),
@@ -101,6 +105,13 @@ impl Solver {
             particles.end_past();
             particles.zero_pin_displacements();
             return tick;
+        }
+        // Jolts keep cloth that touches something awake.
+        if let Some(bending) = &self.bending
+            && step.order == TimeOrder::Second
+            && !particles.past_mut().is_ignored()
+        {
+            tick.bending = BendingSchedule::new(bending.stride(particles.blocks(), dt));
         }
         // The work of a wind is no excess, and not known here.
         if self.air.is_none() {
@@ -177,8 +188,11 @@ impl Solver {
         if let Some(air) = &mut self.air {
             air.press(blocks, weight_dt2);
         }
-        if let Some(bending) = &mut self.bending {
-            bending.prepare(blocks, weight_dt2);
+        let bends_for = tick.bending.next(tick.next, tick.substeps());
+        if let Some(bending) = &mut self.bending
+            && bends_for > 0
+        {
+            bending.prepare(blocks, weight_dt2 * bends_for as f32);
             bending.solve(blocks, &kernels);
         }
         particles.put_loads_on(pull);

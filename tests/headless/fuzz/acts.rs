@@ -281,7 +281,20 @@ fn tear(world: &mut World, entity: Entity, random: &mut Random) {
         return;
     };
     let mut tears = world.get::<ClothTears>(entity).cloned().unwrap_or_default();
-    match random.below(4) {
+    match random.below(5) {
+        2 => {
+            let map = ClothMaterialMap {
+                stretch: ClothFactor::of(random.number()),
+                density: ClothFactor::added(ClothPaint::vertices([1.0; 30])),
+                ..default()
+            };
+            let mut cloth = world.entity_mut(entity);
+            match random.one_in(2) {
+                true => cloth.insert(map),
+                false => cloth.remove::<ClothMaterialMap>(),
+            };
+            return;
+        }
         0 => drop(
             world
                 .entity_mut(entity)

@@ -100,6 +100,33 @@ fn the_limit_is_seen_in_weights_and_masses() {
     assert!(is_soft(&bending));
 }
 
+/// What bends for several sub-steps at once is as soft as what may be pushed at all: meshes of any spacing, in sub-steps of any length.
+#[test]
+fn a_stride_leaves_a_mesh_soft() {
+    let mut strides = Vec::new();
+    for spacing in [0.02, 0.05] {
+        let mesh = crate::meshes::irregular(0.4, 0.3, spacing, 0.3);
+        let surface = Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).expect("a surface");
+        let particles = ClothParticles::at_rest(&surface, &material()).expect("valid");
+        let mut bending = Bending::new(&surface, &material()).expect("it is stiff");
+        for count in 1..=60 {
+            let dt = 1.0 / 60.0 / count as f32;
+            let stride = bending.stride(particles.blocks(), dt);
+            if stride > 1 {
+                // With a part of a millionth for rounding.
+                let weight = 0.999_999 * dt * dt * stride as f32;
+                bending.prepare(particles.blocks(), weight);
+                assert!(is_soft(&bending), "{stride} of {count}");
+            }
+            strides.push(stride);
+        }
+    }
+    assert!(
+        (1..=4).all(|stride| strides.contains(&stride)),
+        "{strides:?}"
+    );
+}
+
 /// Forces have neither a sum nor a moment.
 #[test]
 fn forces_keep_momentum() {

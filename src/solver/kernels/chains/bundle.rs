@@ -7,7 +7,7 @@
 
 use bevy::math::Vec4;
 
-use super::link::{HOLD, clamped, terms};
+use super::link::{HOLD, clamped, terms_at};
 use crate::{
     cloth::{LANES, Lanes, Spring},
     solver::kernels::{
@@ -165,7 +165,7 @@ fn forward<const DAMPED_OR_STIFFER: bool>(
         };
         for l in 0..LANES {
             let moved = [0, 1, 2].map(|axis| b.moved[axis][l] - a.moved[axis][l]);
-            let mut span = [0, 1, 2].map(|axis| {
+            let [x, y, z] = [0, 1, 2].map(|axis| {
                 let span = (b.place[axis][l] - a.place[axis][l]) + moved[axis];
                 clamped(span * step.inverse_rest[l])
             });
@@ -173,20 +173,18 @@ fn forward<const DAMPED_OR_STIFFER: bool>(
             let is_rigid = step.compliance[l] == 0.0;
             let kept = if is_rigid { 1.0 } else { step_scale.kept };
             let mut softness = step.compliance[l] * step_scale.inverse_weight;
-            let mut rest = step.rest[l];
+            let mut squares = [1.0; 2];
             if DAMPED_OR_STIFFER {
                 let stiffer = &step_scale.stiffer;
-                let square = span[0] * span[0] + span[1] * span[1] + span[2] * span[2];
-                let is_stiff = square > stiffer.from && !is_rigid;
-                let shorter = if is_stiff { stiffer.inverse_rest } else { 1.0 };
-                let longer = if is_stiff { stiffer.rest } else { 1.0 };
+                let is_stiff = x * x + y * y + z * z > stiffer.from && !is_rigid;
                 let part = if is_stiff { stiffer.compliance } else { 1.0 };
-                span = span.map(|span| span * shorter);
-                rest *= longer;
                 softness *= kept * part;
+                for (square, of_stiff) in squares.iter_mut().zip(stiffer.squares) {
+                    *square = if is_stiff { of_stiff } else { 1.0 };
+                }
             }
-            let [x, y, z] = span;
-            let [diagonal, right] = terms(span, both, softness, step.hold[l], rest);
+            let (hold, rest) = (step.hold[l], step.rest[l]);
+            let [diagonal, right] = terms_at([x, y, z], both, softness, hold, rest, squares);
             let right = if DAMPED_OR_STIFFER {
                 // As of a grid's springs.
                 let opening = x * moved[0] + y * moved[1] + z * moved[2];

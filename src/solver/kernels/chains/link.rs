@@ -171,13 +171,26 @@ pub(crate) fn terms(
     hold: f32,
     rest: f32,
 ) -> [f32; 2] {
+    terms_at([x, y, z], weight, softness, hold, rest, [1.0; 2])
+}
+
+/// The same of a spring without a force at another length: its square, and one over it, in squared lengths at rest.
+#[inline(always)]
+pub(crate) fn terms_at(
+    [x, y, z]: [f32; 3],
+    weight: f32,
+    softness: f32,
+    hold: f32,
+    rest: f32,
+    [square, inverse_square]: [f32; 2],
+) -> [f32; 2] {
     let p = x * x + y * y + z * z;
     let soft = softness * p;
-    let off = p - 1.0;
-    let least = (REGULARISATION + STRAINED * off.abs()) * weight;
+    let off = p - square;
+    let least = (REGULARISATION + STRAINED * (off * inverse_square).abs()) * weight;
     let soft = if soft > least { soft } else { least };
     // Halley's step for the root, as in a sweep. Between two pins, however far apart, nothing is to be done.
-    let right = -rest * p * (off / (1.5 * p + 0.5));
+    let right = -rest * p * (off / (1.5 * p + 0.5 * square));
     let right = if weight > 0.0 { right } else { 0.0 };
     [weight * p + (soft + hold), right]
 }
