@@ -297,19 +297,34 @@ mod tests {
     };
     use crate::cloth::{Cloth, ClothFactor, ClothMaterialMap, ClothTears};
 
-    /// What limits go by knows the mean of a density, in steps of two, and the softest place.
+    fn shared(cloth: &Cloth, material: &ClothMaterial) -> Arc<Shared> {
+        let recipe = Recipe {
+            grain: None,
+            tears: ClothTears::default(),
+            as_mesh: false,
+            shape: cloth.shape.clone(),
+            scale: Vec3::ONE,
+            source: None,
+        };
+        let surface = || cloth.surface(Vec3::ONE);
+        let no_factors = |_: &Surface| Ok(Arc::default());
+        let mut parts = SharedParts::default();
+        parts
+            .get(&recipe, material, no_factors, surface)
+            .expect("a surface")
+    }
+
+    /// Limits know the mean of a density, in steps of two, and the softest place.
     #[test]
     fn limits_know_the_map_of_the_material() {
-        let surface = Cloth::new(8, 8, 0.1).surface(Vec3::ONE).expect("a grid");
+        let cloth = Cloth::new(8, 8, 0.1);
+        let surface = cloth.surface(Vec3::ONE).expect("a grid");
         let material = ClothMaterial::COTTON;
         let particles = ClothParticles::at_rest(&surface, &material).expect("a material");
         let stretch = |map: ClothMaterialMap| {
             let factors = map.factors(&surface).expect("factors");
             let mut built = ClothBuilt {
-                shared: Arc::new(Shared {
-                    surface: Arc::new(surface.clone()),
-                    ..Shared::default()
-                }),
+                shared: shared(&cloth, &material),
                 from: Some(BuiltFrom {
                     unevenness: 0.0,
                     changed: Tick::new(0),
@@ -350,24 +365,8 @@ mod tests {
         let material = ClothMaterial::COTTON;
         let mut particles = ClothParticles::at_rest(&surface, &material).expect("a material");
         particles.pin(0);
-        let mut parts = SharedParts::default();
-        let recipe = Recipe {
-            grain: None,
-            tears: ClothTears::default(),
-            as_mesh: false,
-            shape: cloth.shape,
-            scale: Vec3::ONE,
-            source: None,
-        };
         let mut built = ClothBuilt {
-            shared: parts
-                .get(
-                    &recipe,
-                    &material,
-                    |_| Ok(Default::default()),
-                    || Ok(surface),
-                )
-                .expect("a surface"),
+            shared: shared(&cloth, &material),
             ..Default::default()
         };
         let mut largest = 0.0;
