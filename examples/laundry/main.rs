@@ -1,5 +1,6 @@
 //! Laundry on a line. Take a peg off, or pull at anything.
 //!
+//! It is wet, more so below, and dries: a `ClothMaterialMap` scales its weight, and changes in every tick.
 //! Pegs are entities that hold a few particles by `ClothAttachments`. Pressing one detaches them. In the window the mouse
 //! pulls at cloth, by `ClothPickingPlugin`, which every example has. Without a window a script does both: a
 //! `ClothRayCast` finds where the hand takes hold, and a `ClothGrab` is the hand. The scene is in `scene.rs`, the script in `headless.rs`.

@@ -15,6 +15,8 @@ const LINE: f32 = 1.9;
 const POSTS: f32 = 3.6;
 /// How fast a peg falls (m/s²).
 const GRAVITY: f32 = 9.81;
+/// How long the laundry takes to dry (s).
+const DRYING: f32 = 60.0;
 
 /// A piece of laundry.
 struct Piece {
@@ -25,6 +27,8 @@ struct Piece {
     size: Vec2,
     /// kg/m².
     density: f32,
+    /// Water over dry weight at its lower edge, as it is hung up; none at its upper edge.
+    water: f32,
     /// Number of pegs that hold it.
     pegs: u32,
 }
@@ -35,6 +39,7 @@ const PIECES: [Piece; 3] = [
         left: -0.5,
         size: Vec2::new(1.4, 1.2),
         density: 0.14,
+        water: 0.5,
         pegs: 3,
     },
     Piece {
@@ -42,6 +47,7 @@ const PIECES: [Piece; 3] = [
         left: -1.4,
         size: Vec2::new(0.7, 1.1),
         density: 0.45,
+        water: 1.5,
         pegs: 2,
     },
     Piece {
@@ -49,6 +55,7 @@ const PIECES: [Piece; 3] = [
         left: 1.05,
         size: Vec2::new(0.45, 0.6),
         density: 0.3,
+        water: 1.5,
         pegs: 2,
     },
 ];
@@ -69,7 +76,7 @@ pub fn build(app: &mut App) {
     .add_observer(press_peg)
     .add_observer(show_hand)
     .add_systems(Startup, (spawn_line, hang_up))
-    .add_systems(FixedUpdate, drop_pegs)
+    .add_systems(FixedUpdate, (drop_pegs, dry.before(ClothSystems::Prepare)))
     .add_systems(
         Update,
         (take_down, hang_up).chain().run_if(is_asked_to_hang),
@@ -79,6 +86,32 @@ pub fn build(app: &mut App) {
 /// Cloths and pegs on the line.
 #[derive(Component)]
 struct Laundry;
+
+/// Water that a cloth holds at its lower edge, over its dry weight, and its height (m).
+#[derive(Component)]
+struct Wet {
+    water: f32,
+    height: f32,
+}
+
+/// Water goes, and with it weight, from the lower edge up.
+fn dry(
+    mut laundry: Query<(Entity, &mut Wet, &mut ClothMaterialMap)>,
+    time: Res<Time>,
+    mut commands: Commands,
+) {
+    for (cloth, mut wet, mut map) in &mut laundry {
+        wet.water -= time.delta_secs() / DRYING;
+        if wet.water <= 0.0 {
+            commands.entity(cloth).remove::<(Wet, ClothMaterialMap)>();
+            continue;
+        }
+        // More below, where the water runs.
+        let Wet { water, height } = *wet;
+        let below = ClothPaint::at_rest(move |place| water * (-place.y / height).max(0.0));
+        map.density = ClothFactor::added(below);
+    }
+}
 
 /// A peg, and the cloth that it holds.
 #[derive(Component)]
@@ -149,6 +182,11 @@ fn hang_up(mut shop: Workshop) {
                 ..ClothMaterial::COTTON
             },
             ClothSelfCollision::default(),
+            ClothMaterialMap::default(),
+            Wet {
+                water: piece.water,
+                height: piece.size.y,
+            },
             fabric,
             ShowClothGizmos::nothing(),
             Transform::from_translation(corner),

@@ -9,7 +9,7 @@ const RINGS: usize = 2;
 
 /// The stress around each particle, times the area of its patch (N m), and that area (m²).
 ///
-/// The force T of a spring of length L in direction d makes a stress `½ T L d dᵀ` over the areas of its ends (the virial). In a mesh of
+/// The force T of a spring with the length L₀ at rest, in direction d, makes a stress `½ T L₀ d dᵀ` over the areas of its ends at rest (the virial). In a mesh of
 /// springs, edges side by side bear loads that differ by a half and more. Their mean over two rings of faces differs by a tenth to a fifth.
 /// Tensions are those that the solver applied: they balance, where stretches have errors of a sub-step.
 #[derive(Debug, Default)]
@@ -24,7 +24,7 @@ struct Patch(Vec3, Vec3, f32);
 
 impl Stress {
     /// Finds the stress of springs between particles at these places (m). `tensions` calls its argument with each spring's ends, and
-    /// its tension over its length (N/m).
+    /// its tension T L₀/L (N).
     pub fn find(
         &mut self,
         tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
@@ -35,13 +35,14 @@ impl Stress {
         around.clear();
         let areas = (0..surface.len()).map(|particle| surface.area_of(particle));
         around.extend(areas.map(|area| Patch(Vec3::ZERO, Vec3::ZERO, area)));
-        tensions(&mut |ends, tension_over_length| {
+        tensions(&mut |ends, tension| {
             let [a, b] = ends.map(|end| places[end as usize]);
-            let (span, half) = (b - a, 0.5 * tension_over_length);
+            let half = 0.5 * a.distance(b) * tension;
+            let direction = (b - a).normalize_or_zero();
             for end in ends {
                 let Patch(straight, sheared, _) = &mut around[end as usize];
-                *straight += half * span * span;
-                *sheared += half * span * Vec3::new(span.y, span.z, span.x);
+                *straight += half * direction * direction;
+                *sheared += half * direction * Vec3::new(direction.y, direction.z, direction.x);
             }
         });
         for _ in 0..RINGS {
@@ -112,7 +113,7 @@ mod tests {
                 springs.for_each(|_, spring| {
                     let [a, b] = spring.ends.map(|end| moved[end as usize]);
                     let longer = a.distance(b) - spring.rest_length;
-                    visit(spring.ends, longer / spring.compliance / a.distance(b));
+                    visit(spring.ends, longer / spring.compliance);
                 });
             };
             stress.find(tensions, &surface, &moved);

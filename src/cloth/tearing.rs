@@ -126,7 +126,7 @@ pub(crate) struct TearSearch {
 impl TearSearch {
     /// Tears at the most overloaded edge of each part of a cloth, or at those at which its tears end: a tear that runs takes
     /// the load off the rest. Returns these edges, of the whole surface. `tensions` calls its argument with the ends of each spring
-    /// of a mesh, and its tension over its length (N/m).
+    /// of a mesh, and its tension T L₀/L (N).
     pub fn edges(
         &mut self,
         strength: Strength,
@@ -188,8 +188,9 @@ impl TearSearch {
                 overloaded.push((stretch / borne, ends, along_warp));
             }
         });
-        // Edges of an irregular mesh are stretched unevenly: the load of the patch around counts, too.
-        if surface.rest_grid().is_none() && !overloaded.is_empty() {
+        // Edges of an irregular mesh are stretched unevenly, and so are those that cross a knee: the load of the patch around counts, too.
+        let is_uneven = surface.rest_grid().is_none() || strength.material.stiffening.is_some();
+        if is_uneven && !overloaded.is_empty() {
             stress.find(tensions, surface, places);
             overloaded.retain_mut(|(load, ends, along_warp)| {
                 let borne = strength.load(*along_warp);

@@ -265,12 +265,14 @@ impl SpringSolver for ListSolver {
     fn for_each_tension(&self, visit: &mut dyn FnMut([u32; 2], f32)) {
         let scale = self.step_scale.inverse_weight;
         self.chains
-            .for_each_pull(|ends, rest, _, pull| visit(ends, scale * pull / rest));
+            .for_each_pull(|ends, _, _, pull| visit(ends, scale * pull));
         for (packet, pull) in self.packets.iter().zip(&self.pulls) {
-            for (at, pull) in pull.to_array().into_iter().enumerate() {
+            let [squares, pulls] = [packet.rest_square, *pull].map(|of| of.to_array());
+            for at in 0..SPRINGS {
                 // The last packet of a colour is not full.
                 if (packet.from[at] as usize) < self.layout.len() {
-                    visit([packet.from[at], packet.to[at]], scale * pull);
+                    let tension = scale * pulls[at] * squares[at].sqrt();
+                    visit([packet.from[at], packet.to[at]], tension);
                 }
             }
         }

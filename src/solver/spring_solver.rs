@@ -56,7 +56,7 @@ pub(super) trait SpringSolver: fmt::Debug + Send + Sync {
     /// Measures the stretch.
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch;
 
-    /// Calls `visit` with the ends of each spring of a mesh, and its tension over its length in the last sub-step (N/m). The springs of a grid are not
+    /// Calls `visit` with the ends of each spring of a mesh, and its tension T L₀/L in the last sub-step, with L₀ its length at rest (N). The springs of a grid are not
     /// visited: their stretch says it.
     fn for_each_tension(&self, _visit: &mut dyn FnMut([u32; 2], f32)) {}
 

@@ -172,7 +172,7 @@ impl Solver {
         self.air.as_ref().map_or(Vec3::ZERO, |air| air.impulse())
     }
 
-    /// Calls `visit` with the ends of each spring of a mesh, and its tension over its length in the last sub-step (N/m).
+    /// Calls `visit` with the ends of each spring of a mesh, and its tension T L₀/L in the last sub-step (N).
     pub(crate) fn for_each_tension(&self, visit: &mut dyn FnMut([u32; 2], f32)) {
         self.spring_solver.for_each_tension(visit);
     }
