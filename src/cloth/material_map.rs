@@ -43,7 +43,7 @@ use super::{
 pub struct ClothMaterialMap {
     /// Scales the areal density. Positive and finite.
     pub density: ClothFactor,
-    /// Scales the stiffness against stretch and shear. Positive and finite. What is rigid stays rigid. A spring between two
+    /// Scales the stiffness against stretch and shear. Positive and finite. A rigid material stays rigid. A spring between two
     /// particles is as stiff as two halves of their materials, one after the other.
     pub stretch: ClothFactor,
     /// Scales the flexural rigidity. Zero or more, and finite. A face has the mean of its corners.

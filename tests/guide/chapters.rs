@@ -44,6 +44,29 @@ mod banner {
     }
 }
 
+mod painted {
+    include!("painted.rs");
+
+    /// It hangs by its waist, and weighs three times as much below as in its middle.
+    #[test]
+    fn the_apron_is_heavy_below() {
+        let mut app = super::app(apron, |_: &mut App| {});
+        super::run(&mut app, 0.5);
+        let mut cloths = app.world_mut().query::<(&ClothParticles, &ClothBuilt)>();
+        let (particles, built) = cloths.single(app.world()).expect("the apron");
+        let surface = built.surface();
+        assert_eq!(surface.len(), 22 * 22);
+        let mass_over_area = |near: Vec3| {
+            let rest = surface.rest_positions();
+            let at = rest.iter().position(|place| place.distance(near) < 0.06);
+            let at = at.expect("a particle");
+            1.0 / particles.inverse_mass(at).expect("it exists") / surface.area_of(at)
+        };
+        let [middle, below] = [0.0, -0.8].map(|y| mass_over_area(Vec3::new(0.0, y, 0.0)));
+        assert!((below / middle - 3.0).abs() < 1.0e-3, "{below} {middle}");
+    }
+}
+
 mod scene {
     include!("scene.rs");
 

@@ -13,12 +13,13 @@ use bevy::{
 use bevy_drape::prelude::*;
 
 /// Each program with the document that shows it.
-const PROGRAMS: [(&str, &str); 18] = [
+const PROGRAMS: [(&str, &str); 19] = [
     (include_str!("first.rs"), "README.md"),
     (include_str!("flag.rs"), "README.md"),
     (include_str!("sheet.rs"), "src/guide/first_cloth.md"),
     (include_str!("banner.rs"), "src/guide/own_model.md"),
     (include_str!("model.rs"), "src/guide/own_model.md"),
+    (include_str!("painted.rs"), "src/guide/own_model.md"),
     (include_str!("scene.rs"), "src/guide/own_model.md"),
     (include_str!("coat.rs"), "src/guide/characters.md"),
     (include_str!("far_away.rs"), "src/guide/characters.md"),

@@ -1,7 +1,7 @@
 //! Closed forms that a sheet of any surface has to follow, and what it does.
 
 use bevy::math::Vec3;
-use bevy_drape::cloth::{ClothGrain, ClothMaterial, ClothWeft};
+use bevy_drape::cloth::{ClothGrain, ClothMaterial, ClothStiffening, ClothWeft};
 
 use super::{play::Play, surfaces::Made};
 use crate::shared::{modes::hanging_period, sheet::GRAVITY};
@@ -26,10 +26,12 @@ pub enum Truth {
     Clamped(f64, f64),
     /// The sag (m) of a woven sheet that hangs by a side at this angle (degrees) to its warp.
     Woven(f32),
+    /// The elongation (m) of a hanging strip that is ten times as stiff beyond half of the strain at its pins.
+    Stiffening,
 }
 
 impl Truth {
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Membrane,
         Self::Hanging(0),
         Self::Hanging(1),
@@ -40,6 +42,7 @@ impl Truth {
         Self::Woven(0.0),
         Self::Woven(45.0),
         Self::Woven(90.0),
+        Self::Stiffening,
     ];
 
     pub fn name(self) -> String {
@@ -49,12 +52,13 @@ impl Truth {
             Self::Taut => "taut strip's sag, m".into(),
             Self::Clamped(gamma, _) => format!("clamped strip, gamma {gamma:.0}, of length"),
             Self::Woven(degrees) => format!("woven sheet at {degrees:.0} degrees, m"),
+            Self::Stiffening => "strip that stiffens, m".into(),
         }
     }
 
-    /// Whether a surface has it: a grid cannot be cut at an angle.
+    /// Whether a surface has it: a grid cannot be cut at an angle, and one that stiffens is solved as a mesh.
     pub fn is_of(self, made: Made) -> bool {
-        made != Made::Grid || self != Self::Woven(45.0)
+        made != Made::Grid || !matches!(self, Self::Woven(45.0) | Self::Stiffening)
     }
 
     pub fn find(self, made: Made, side: u32) -> Found {
@@ -64,6 +68,7 @@ impl Truth {
             Self::Taut => taut(made, side),
             Self::Clamped(gamma, drop) => clamped(made, gamma, drop),
             Self::Woven(degrees) => woven(made, degrees),
+            Self::Stiffening => stiffening(made),
         }
     }
 }
@@ -262,5 +267,37 @@ fn woven(made: Made, degrees: f32) -> Found {
         particles: surface.len(),
         value: -height - length,
         expected: compliance * f64::from(material.areal_density) * GRAVITY * length * length / 2.0,
+    }
+}
+
+/// At a height z over the lower end, the strain e₀ = α ρ g z of a strip without a knee is that beyond it, s + (e₀ − s) ⁄ 10, from
+/// half of the length up, where e₀ is s. The integral is α ρ g L²/2 × (1 − 9/10 × 1/4).
+fn stiffening(made: Made) -> Found {
+    const ROWS: u32 = 33;
+    const SPACING: f32 = 0.05;
+    const FACTOR: f64 = 10.0;
+    let length = f64::from(ROWS - 1) * f64::from(SPACING);
+    let material = ClothMaterial {
+        stretch_compliance: 2.0e-2,
+        shear_compliance: f32::INFINITY,
+        ..limp(0.05)
+    };
+    let weight = f64::from(material.areal_density) * GRAVITY;
+    let at_pins = f64::from(material.stretch_compliance) * weight * length;
+    let material = ClothMaterial {
+        stiffening: Some(ClothStiffening {
+            strain: (at_pins / 2.0) as f32,
+            factor: FACTOR as f32,
+        }),
+        ..material
+    };
+    let (surface, _) = made.surface([9, ROWS], SPACING);
+    let mut play = Play::new(&surface, &material, ROWS, |at| at, |at| at.y > -1.0e-4);
+    play.settle(384);
+    let end = f64::from(SPACING) * (f64::from(ROWS) - 1.01);
+    Found {
+        particles: surface.len(),
+        value: -play.height(|at| f64::from(-at.y) > end) - length,
+        expected: at_pins * length / 2.0 * (1.0 - (1.0 - 1.0 / FACTOR) / 4.0),
     }
 }

@@ -141,7 +141,8 @@ const GRID_COLOURS: [((u32, i32), u32); 8] = [
 
 impl Springs {
     /// Structural and shear springs of `grid`. A strip's compliance follows from its length and width
-    /// ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are left out.
+    /// ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are left out. They do not
+    /// stiffen: the plugin solves a grid that does as a mesh.
     pub fn of_grid(grid: &ClothGrid, material: &ClothMaterial) -> Self {
         let compliances = Compliances {
             structural: material.stretch_compliances(),

@@ -137,24 +137,7 @@ fn build_new(
     })?;
     let surface = &shared.surface;
     pins.validate(surface)?;
-    // Particles that came with a newly spawned cloth are kept as they are, masses included; those of another surface are
-    // not.
-    let (build, new) = if state.resumes {
-        // The particles are those of a snapshot, with its pins and attachments.
-        check_count(particles, surface)?;
-        (Build::Kept, None)
-    } else if let Some(resampled) = resampled(wanted, &shared, &factors.density, particles, built)?
-    {
-        (Build::Resampled, Some(resampled))
-    } else if built.from.is_some() || particles.is_empty() {
-        (
-            Build::New,
-            Some(at_rest(wanted, surface, &factors.density)?),
-        )
-    } else {
-        check_count(particles, surface)?;
-        (Build::New, Some((**particles).clone()))
-    };
+    let (build, new) = new_particles(wanted, &shared, &factors.density, particles, built, state)?;
     if let Some(mut new) = new {
         pins.for_each(surface, |index| new.pin(index));
         state.detach();
@@ -178,6 +161,32 @@ fn build_new(
         return follow_tears(wanted, parts, particles, built, state);
     }
     Ok(build)
+}
+
+/// The particles of a cloth that is built anew; `None` to keep those that it has. Particles that came with a newly spawned cloth are
+/// kept as they are, masses included; those of another surface are not.
+fn new_particles(
+    wanted: &BuildInputs,
+    shared: &Shared,
+    factors: &DensityFactors,
+    particles: &mut Mut<ClothParticles>,
+    built: &ClothBuilt,
+    state: &ClothState,
+) -> Result<(Build, Option<ClothParticles>), ClothError> {
+    let surface = &shared.surface;
+    if state.resumes {
+        // The particles are those of a snapshot, with its pins and attachments.
+        check_count(particles, surface)?;
+        return Ok((Build::Kept, None));
+    }
+    if let Some(resampled) = resampled(wanted, shared, factors, particles, built)? {
+        return Ok((Build::Resampled, Some(resampled)));
+    }
+    if built.from.is_some() || particles.is_empty() {
+        return Ok((Build::New, Some(at_rest(wanted, surface, factors)?)));
+    }
+    check_count(particles, surface)?;
+    Ok((Build::New, Some((**particles).clone())))
 }
 
 /// The particles of a cloth of which only the resolution has changed, while the rectangle is the same; `None` for any

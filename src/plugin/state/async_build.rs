@@ -81,7 +81,7 @@ impl AsyncBuilds {
         self.all.retain(|building| building.idle <= PATIENCE);
     }
 
-    /// What has been built of this recipe; `None` if nothing is. Its material may have changed since the request.
+    /// Takes the data that is built of this recipe; `None` if nothing builds it. Its material may have changed since the request.
     ///
     /// # Errors
     /// [`ClothError::MeshLoading`] until it is built; those of the surface, its grain, tears and map.

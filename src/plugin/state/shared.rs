@@ -97,29 +97,31 @@ impl Shared {
 /// (N·m), those of the weft, how it stiffens, and the factors of its particles.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Stiffnesses {
-    warp: [f32; 3],
-    weft: Option<ClothWeft>,
-    stiffening: Option<ClothStiffening>,
+    everywhere: Stiffness,
     factors: Arc<StiffnessFactors>,
 }
+
+type Stiffness = ([f32; 3], Option<ClothWeft>, Option<ClothStiffening>);
 
 impl Stiffnesses {
     pub fn of(material: &ClothMaterial, factors: &Arc<StiffnessFactors>) -> Self {
         Self {
-            warp: [
-                material.stretch_compliance,
-                material.shear_compliance,
-                material.bend_rigidity,
-            ],
-            weft: material.weft,
-            stiffening: material.stiffening,
+            everywhere: everywhere(material),
             factors: factors.clone(),
         }
     }
 
     /// Whether a solver is the same for both materials.
     pub fn are_alike(a: &ClothMaterial, b: &ClothMaterial) -> bool {
-        let [a, b] = [a, b].map(|material| Self::of(material, &Arc::default()));
-        a == b
+        everywhere(a) == everywhere(b)
     }
+}
+
+fn everywhere(material: &ClothMaterial) -> Stiffness {
+    let warp = [
+        material.stretch_compliance,
+        material.shear_compliance,
+        material.bend_rigidity,
+    ];
+    (warp, material.weft, material.stiffening)
 }

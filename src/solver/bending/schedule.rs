@@ -12,7 +12,7 @@ pub(crate) struct BendingSchedule {
 }
 
 impl BendingSchedule {
-    /// Once in so many sub-steps.
+    /// It bends in one of `stride` sub-steps.
     pub fn new(stride: u32) -> Self {
         Self { stride, done: 0 }
     }

@@ -22,7 +22,7 @@ pub(crate) struct Stiffer {
     pub from: f32,
     /// The squared length at which it has no force, in squared lengths at rest, and one over it.
     pub squares: [f32; 2],
-    /// Its compliance, in parts of the spring's.
+    /// Its compliance as a part of the spring's own.
     pub compliance: f32,
 }
 

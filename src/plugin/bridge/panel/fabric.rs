@@ -1,4 +1,4 @@
-//! What some fabrics have: a weft, and stiffening.
+//! The sliders of fabrics with a weft, and of those that stiffen.
 
 use bevy_egui::egui::Ui;
 
