@@ -28,6 +28,8 @@ pub struct TickStep {
     /// The stretch of the material itself. A stretch far beyond it is unsolved, and the motion does not continue from
     /// it.
     pub material_stretch: f32,
+    /// Whether it may touch cloth, itself or another.
+    pub has_layers: bool,
 }
 
 /// The frame in which damping acts.
@@ -69,6 +71,7 @@ impl Default for TickStep {
             damped_against: DampingFrame::default(),
             order: TimeOrder::default(),
             material_stretch: 0.0,
+            has_layers: false,
         }
     }
 }

@@ -92,6 +92,7 @@ pub(super) fn prepare_step(
         damped_against: carrier(&scratch.pins, built.pinned.len(), seconds),
         order: settings.order,
         material_stretch: built.material_stretch,
+        has_layers: inputs.self_collision.is_some(),
     });
     scratch.substepping = settings.substepping;
     scratch.is_in_island = false;

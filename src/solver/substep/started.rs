@@ -106,9 +106,10 @@ impl Solver {
             particles.zero_pin_displacements();
             return tick;
         }
-        // Jolts keep cloth that touches something awake.
+        // Jolts keep cloth that touches something awake, and two layers may pass each other by one.
         if let Some(bending) = &self.bending
             && step.order == TimeOrder::Second
+            && !step.has_layers
             && !particles.past_mut().is_ignored()
         {
             tick.bending = BendingSchedule::new(bending.stride(particles.blocks(), dt));
