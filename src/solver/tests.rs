@@ -20,6 +20,7 @@ const STEP: TickStep = TickStep {
     damped_against: DampingFrame::Still,
     order: TimeOrder::Second,
     material_stretch: 0.0,
+    has_layers: false,
 };
 
 /// `SplitMix64`, from −1 to 1.
