@@ -64,18 +64,27 @@ fn sheet() -> Cloth {
     Cloth::triangles(positions, triangles)
 }
 
+/// A grid and a mesh, and how far off the closed form each may hang. A grid is rounded in its last digits, 0.02 of a spring's stretch. A
+/// mesh draws in at its free sides and is clamped at its top: as a strip its stiffness is between that of a plate that may draw in, 1, and
+/// of one that may not, 9/8.
+fn hung_sheets() -> [(&'static str, Cloth, f32); 2] {
+    [
+        ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
+        ("mesh", sheet(), 0.1),
+    ]
+}
+
+fn top() -> Pins {
+    Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)])
+}
+
 /// It hangs lower by what its compliance says, whether it was spawned wet, gets wet asleep, or dries again.
 #[test]
 fn a_wet_sheet_hangs_lower() {
     let dry = exact(|_| 1.0);
     let soaked = exact(|row| if row > 3 { 10.0 } else { 1.0 });
-    // A grid is rounded in its last digits, 0.02 of a spring's stretch. A mesh draws in at its free sides and is clamped at its top: as
-    // a strip its stiffness is between that of a plate that may draw in, 1, and of one that may not, 9/8.
-    for (kind, cloth, allowed) in [
-        ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
-        ("mesh", sheet(), 0.1),
-    ] {
-        let top = Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)]);
+    for (kind, cloth, allowed) in hung_sheets() {
+        let top = top();
         let mut app = app();
         let spawned = (cloth.clone(), top.clone(), soft(), wet());
         let spawned = app.world_mut().spawn(spawned).id();
@@ -260,11 +269,8 @@ fn a_cloth_that_is_softer_below_hangs_lower() {
                 _ => 4.0,
             }
     };
-    for (kind, cloth, allowed) in [
-        ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
-        ("mesh", sheet(), 0.1),
-    ] {
-        let top = Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)]);
+    for (kind, cloth, allowed) in hung_sheets() {
+        let top = top();
         let mut app = app();
         let bundle = (cloth.clone(), top.clone(), soft(), soft_below());
         let spawned = app.world_mut().spawn(bundle).id();
@@ -316,11 +322,8 @@ fn a_cloth_that_stiffens_hangs_as_its_knee_says() {
     // Loads reach from half a row to seven and a half: some springs are on either side.
     let alike = exact_stretch(|_, strain| strain);
     assert!(exact < 0.7 * alike && exact > 1.5 * alike / stiffening.factor);
-    for (kind, cloth, allowed) in [
-        ("grid", Cloth::new(SIDE, SIDE, SPACING), 0.02),
-        ("mesh", sheet(), 0.1),
-    ] {
-        let top = Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)]);
+    for (kind, cloth, allowed) in hung_sheets() {
+        let top = top();
         let mut app = app();
         let calm = app
             .world_mut()
