@@ -13,7 +13,7 @@ use bevy::{
 /// The tick in which the cloth begins depends on the machine. Do not use this component where apps have to move alike, such as a server and
 /// its clients. A cloth that is restored from a snapshot is built at once.
 ///
-/// Cloths that are made alike share what is built. Only the first of them waits.
+/// Cloths of the same shape and material share the data. Only the first of them waits.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]

@@ -55,7 +55,7 @@ impl BuildInputs<'_> {
             .map_or_else(ClothTears::none, |(tears, _)| tears.clone())
     }
 
-    /// What is to be built of a recipe.
+    /// The request to build a recipe in the background.
     pub(super) fn request(&self, recipe: &Recipe) -> BuildRequest {
         BuildRequest {
             recipe: recipe.clone(),

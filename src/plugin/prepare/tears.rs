@@ -43,7 +43,7 @@ pub(super) fn follow_tears(
         recipe.opened(before.whole())
     })?;
     let surface = &shared.surface;
-    // What else has changed is of the same particles.
+    // Other changes are those of the same particles.
     follow_masses(wanted, particles, built, state)?;
     let Some(parents) = surface.parents_in(&before) else {
         return Ok(Build::Kept);

@@ -13,7 +13,7 @@ use crate::{
 /// Ticks without a cloth that waits for it, after which a task is given up.
 const PATIENCE: u32 = 16;
 
-/// What is to be built.
+/// A request to build shared data.
 #[derive(Debug, Clone)]
 pub(crate) struct BuildRequest {
     pub recipe: Recipe,

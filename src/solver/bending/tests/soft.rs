@@ -100,7 +100,8 @@ fn the_limit_is_seen_in_weights_and_masses() {
     assert!(is_soft(&bending));
 }
 
-/// What bends for several sub-steps at once is as soft as what may be pushed at all: meshes of any spacing, in sub-steps of any length.
+/// A stride leaves a mesh soft: the weights of its sub-steps together stay below the limit of a push, at any spacing and length of a
+/// sub-step.
 #[test]
 fn a_stride_leaves_a_mesh_soft() {
     let mut strides = Vec::new();
