@@ -1,18 +1,24 @@
-//! A cloth from a mesh beside the same cloth from a grid: a sub-step, a search, and the building; and a
+//! A cloth from a mesh beside the same cloth from a grid: a sub-step, a search, the building, and ticks of an app; and a
 //! fine mesh that is driven by a coarse cloth.
 //! `cargo bench --profile dev --bench mesh`; in `sub-steps` an element is a spring in a sub-step.
 
 #[path = "../tests/shared/meshes.rs"]
 mod meshes;
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use bevy::math::Vec3;
+use bevy::{
+    MinimalPlugins, app::App, math::Vec3, time::TimeUpdateStrategy, transform::TransformPlugin,
+};
 /// What `meshes` calls the crate, whose own tests read it, too.
 use bevy_drape as library;
 use bevy_drape::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface, SurfaceBinding, TriangleMesh},
+    cloth::{
+        Cloth, ClothFactor, ClothMaterial, ClothMaterialMap, ClothParticles, Pin, Pins, Springs,
+        Surface, SurfaceBinding, TriangleMesh,
+    },
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, Probe, QuadTree, TopDownQuery},
+    prelude::{ClothAsyncBuild, DrapePlugins},
     solver::{Solver, TickStep},
 };
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -177,5 +183,126 @@ fn render_meshes(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, substeps, searches, building, render_meshes);
+/// An app that updates by a tick.
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, DrapePlugins::default()));
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(
+        1.0 / 64.0,
+    )));
+    app.finish();
+    app.cleanup();
+    // Time begins to run.
+    app.update();
+    app
+}
+
+/// Cloths of 4,096 particles that hang by two corners: a grid, a mesh of squares, and irregular ones.
+fn hung() -> [(&'static str, Cloth, Pins); 4] {
+    const SIDE: u32 = 64;
+    let spacing = 2.0 / (SIDE - 1) as f32;
+    let corners = Pins::new([Pin::Vertex(0), Pin::Vertex(SIDE as usize - 1)]);
+    let of = |mesh: TriangleMesh| Cloth::triangles(mesh.positions, mesh.triangles);
+    let irregular = |jitter: f32| of(meshes::irregular(2.0, 2.0, spacing, jitter));
+    [
+        (
+            "grid",
+            Cloth::new(SIDE, SIDE, spacing),
+            Pins::new([Pin::Index(0), Pin::Index(SIDE as usize - 1)]),
+        ),
+        (
+            "mesh of squares",
+            of(meshes::regular(SIDE, SIDE, spacing)),
+            corners.clone(),
+        ),
+        ("irregular mesh, 0.15", irregular(0.15), corners.clone()),
+        ("irregular mesh, 0.3", irregular(0.3), corners),
+    ]
+}
+
+/// A tick of an app with one cloth, from its fall on; and the same with other factors of its material in each tick.
+fn ticks(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("tick of 4,096");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_secs(1))
+        .measurement_time(Duration::from_secs(2));
+    for (name, cloth, pins) in hung() {
+        let mut app = app();
+        app.world_mut().spawn((cloth, pins));
+        group.bench_function(name, |bencher| bencher.iter(|| app.update()));
+    }
+    let changes: [(&str, fn(f32) -> ClothMaterialMap); 2] = [
+        ("density", |factor| ClothMaterialMap {
+            density: ClothFactor::of(factor),
+            ..Default::default()
+        }),
+        ("stretch", |factor| ClothMaterialMap {
+            stretch: ClothFactor::of(factor),
+            ..Default::default()
+        }),
+    ];
+    for (name, map) in changes {
+        let [.., (_, cloth, pins)] = hung();
+        let mut app = app();
+        let cloth = app.world_mut().spawn((cloth, pins, map(1.0))).id();
+        let mut count = 0;
+        group.bench_function(format!("irregular mesh, 0.3, other {name}"), |bencher| {
+            bencher.iter(|| {
+                count += 1;
+                let changed = map(1.0 + 0.1 * (count as f32).sin());
+                app.world_mut().entity_mut(cloth).insert(changed);
+                app.update();
+            });
+        });
+    }
+    group.finish();
+}
+
+/// The longest tick from where a mesh of 4,096 vertices is spawned to where it moves.
+fn first_ticks(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("longest of the first ticks of 4,096");
+    group
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(2));
+    let [.., (_, cloth, pins)] = hung();
+    for (name, is_async) in [("at once", false), ("in the background", true)] {
+        group.bench_function(name, |bencher| {
+            bencher.iter_custom(|times| {
+                let longest = || {
+                    let mut app = app();
+                    let cloth = app.world_mut().spawn((cloth.clone(), pins.clone())).id();
+                    if is_async {
+                        app.world_mut().entity_mut(cloth).insert(ClothAsyncBuild);
+                    }
+                    let mut longest = Duration::ZERO;
+                    let is_built = |app: &App| {
+                        let particles = app.world().get::<ClothParticles>(cloth);
+                        particles.is_some_and(|particles| !particles.is_empty())
+                    };
+                    while !is_built(&app) {
+                        let begin = Instant::now();
+                        app.update();
+                        longest = longest.max(begin.elapsed());
+                        std::thread::sleep(Duration::from_millis(2));
+                    }
+                    longest
+                };
+                (0..times).map(|_| longest()).sum()
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(
+    benches,
+    substeps,
+    searches,
+    building,
+    render_meshes,
+    ticks,
+    first_ticks
+);
 criterion_main!(benches);

@@ -2,7 +2,7 @@
 //!
 //! Across an edge, the difference of the two faces' slopes is linear in the four positions; on a quadratic surface it
 //! is linear in the curvature. Three edges give all three numbers of a face's curvature, exactly on any triangles. So
-//! the energy `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` does not depend on the triangulation. A woven mesh has x along its warp and
+//! the energy `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` of a quadratic surface does not depend on the triangulation. A woven mesh has x along its warp and
 //! `½ Σ A (D_warp κ_xx² + 2 √(D_warp D_weft) κ_xy² + D_weft κ_yy²)`.
 //!
 //! ```text
@@ -26,8 +26,9 @@ use bevy::math::{DVec3, Vec3A, Vec4};
 use super::{
     creasing::ClothCreasing,
     mesh_creases::MeshCreases,
-    patch::{Patch, RestFace, faces_beside, for_each_row, frame},
+    patch::{Patch, RestFace, for_each_row, frame},
     push::LIMIT,
+    triangulation::Triangulation,
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, StiffnessFactors, Surface, W, Woven};
 
@@ -87,12 +88,11 @@ impl MeshBending {
             .iter()
             .map(|place| place.as_dvec3())
             .collect();
-        let faces = surface.triangles();
-        let beside = faces_beside(faces);
-        let mut patches = Vec::with_capacity(faces.len());
+        let faces = Triangulation::new(surface.triangles(), &places);
+        let mut patches = Vec::with_capacity(faces.faces().len());
         let mut rest = Vec::new();
-        for (index, (face, beside)) in faces.iter().zip(&beside).enumerate() {
-            let Some(mut patch) = Patch::new(*face, *beside, &places) else {
+        for (index, face) in faces.faces().iter().enumerate() {
+            let Some(mut patch) = Patch::new(*face, faces.beside(index), &places) else {
                 continue;
             };
             if let Some(warp) = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0) {

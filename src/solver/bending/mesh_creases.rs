@@ -8,7 +8,8 @@ use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{
     creasing::ClothCreasing,
-    patch::{Patch, faces_beside, frame},
+    patch::{Patch, frame},
+    triangulation::Triangulation,
 };
 use crate::cloth::{Block, Layout, StiffnessFactors, Surface, Woven};
 
@@ -125,10 +126,10 @@ impl MeshCreases {
             .iter()
             .map(|place| place.as_dvec3())
             .collect();
-        let corners = surface.triangles();
-        let mut faces = Vec::with_capacity(corners.len());
-        for (index, (face, beside)) in corners.iter().zip(faces_beside(corners)).enumerate() {
-            let Some(patch) = Patch::new(*face, beside, &places) else {
+        let triangulation = Triangulation::new(surface.triangles(), &places);
+        let mut faces = Vec::with_capacity(triangulation.faces().len());
+        for (index, face) in triangulation.faces().iter().enumerate() {
+            let Some(patch) = Patch::new(*face, triangulation.beside(index), &places) else {
                 continue;
             };
             let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);

@@ -24,6 +24,7 @@ mod push;
 mod schedule;
 #[cfg(test)]
 mod tests;
+mod triangulation;
 
 use std::sync::Arc;
 

@@ -24,30 +24,6 @@ pub(super) fn frame([a, b, c]: [Vec3A; 3]) -> Option<[Vec3A; 3]> {
     Some([x, z.cross(x), z])
 }
 
-/// The corner beyond each edge of each face, in the order of the edges: the first is that from the first corner to the second.
-/// None where an edge does not have two faces.
-pub(super) fn faces_beside(faces: &[[u32; 3]]) -> Vec<[Option<u32>; 3]> {
-    let mut sides = Vec::with_capacity(3 * faces.len());
-    for (face, corners) in faces.iter().enumerate() {
-        for edge in 0..3 {
-            let [a, b, opposite] = [0, 1, 2].map(|on| corners[(edge + on) % 3]);
-            sides.push(([a.min(b), a.max(b)], face, edge, opposite));
-        }
-    }
-    sides.sort_unstable();
-    let mut beside = vec![[None; 3]; faces.len()];
-    for sides in sides.chunk_by(|a, b| a.0 == b.0) {
-        if let [one, other] = sides {
-            // Two faces of the same corners lie on each other.
-            if one.3 != other.3 {
-                beside[one.1][one.2] = Some(other.3);
-                beside[other.1][other.2] = Some(one.3);
-            }
-        }
-    }
-    beside
-}
-
 /// Calls `visit` with each row of the matrix of patches with these stiffnesses: its columns that are not zero, ascending, and
 /// the sums of what the patches add there, in their order.
 pub(super) fn for_each_row(
