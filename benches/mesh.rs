@@ -18,7 +18,7 @@ use bevy_drape::{
         Surface, SurfaceBinding, TriangleMesh,
     },
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, Probe, QuadTree, TopDownQuery},
-    prelude::{ClothAsyncBuild, DrapePlugins},
+    prelude::{ClothAsyncBuild, ClothSettings, DrapePlugins},
     solver::{Solver, TickStep},
 };
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -197,12 +197,18 @@ fn app() -> App {
     app
 }
 
-/// Cloths of 4,096 particles that hang by two corners: a grid, a mesh of squares, and irregular ones.
-fn hung() -> [(&'static str, Cloth, Pins); 4] {
+/// Cloths of 4,096 particles that hang by two corners: a grid, a mesh of squares, half a pipe of such, and irregular ones.
+fn hung() -> [(&'static str, Cloth, Pins); 5] {
     const SIDE: u32 = 64;
     let spacing = 2.0 / (SIDE - 1) as f32;
     let corners = Pins::new([Pin::Vertex(0), Pin::Vertex(SIDE as usize - 1)]);
     let of = |mesh: TriangleMesh| Cloth::triangles(mesh.positions, mesh.triangles);
+    let mut pipe = meshes::regular(SIDE, SIDE, spacing);
+    for place in &mut pipe.positions {
+        let angle = place.x * std::f32::consts::FRAC_PI_2;
+        place.x = -angle.cos() * std::f32::consts::FRAC_2_PI;
+        place.z = angle.sin() * std::f32::consts::FRAC_2_PI;
+    }
     let irregular = |jitter: f32| of(meshes::irregular(2.0, 2.0, spacing, jitter));
     [
         (
@@ -215,6 +221,7 @@ fn hung() -> [(&'static str, Cloth, Pins); 4] {
             of(meshes::regular(SIDE, SIDE, spacing)),
             corners.clone(),
         ),
+        ("half a pipe of squares", of(pipe), corners.clone()),
         ("irregular mesh, 0.15", irregular(0.15), corners.clone()),
         ("irregular mesh, 0.3", irregular(0.3), corners),
     ]
@@ -222,6 +229,10 @@ fn hung() -> [(&'static str, Cloth, Pins); 4] {
 
 /// A tick of an app with one cloth, from its fall on; and the same with other factors of its material in each tick.
 fn ticks(criterion: &mut Criterion) {
+    let awake = ClothSettings {
+        sleeps: false,
+        ..Default::default()
+    };
     let mut group = criterion.benchmark_group("tick of 4,096");
     group
         .sample_size(20)
@@ -229,7 +240,7 @@ fn ticks(criterion: &mut Criterion) {
         .measurement_time(Duration::from_secs(2));
     for (name, cloth, pins) in hung() {
         let mut app = app();
-        app.world_mut().spawn((cloth, pins));
+        app.world_mut().spawn((cloth, pins, awake));
         group.bench_function(name, |bencher| bencher.iter(|| app.update()));
     }
     let changes: [(&str, fn(f32) -> ClothMaterialMap); 2] = [
@@ -245,7 +256,7 @@ fn ticks(criterion: &mut Criterion) {
     for (name, map) in changes {
         let [.., (_, cloth, pins)] = hung();
         let mut app = app();
-        let cloth = app.world_mut().spawn((cloth, pins, map(1.0))).id();
+        let cloth = app.world_mut().spawn((cloth, pins, map(1.0), awake)).id();
         let mut count = 0;
         group.bench_function(format!("irregular mesh, 0.3, other {name}"), |bencher| {
             bencher.iter(|| {

@@ -18,9 +18,6 @@ pub enum ClothLimit {
     Stretch,
     /// The largest number of sub-steps that the settings allow does not hold their tolerance.
     Tolerance,
-    /// A mesh is softer than its material: springs are longer than their tension says, by more than half a per cent in the mean.
-    /// Chains of springs through an irregular mesh are not straight, and the sub-steps are too few to pull them straight.
-    Softness,
     /// The heaviest free particle is more than 10,000 times as heavy as the lightest; more than 300 times in a mesh
     /// without tethers.
     MassRatio,
@@ -45,8 +42,6 @@ pub enum ClothLimit {
 
 /// Largest length / rest length − 1 beyond what the material gives.
 const MAX_STRETCH: f32 = 0.15;
-/// Root of the mean square of what springs are longer than their tension says, in parts of their length.
-const MAX_SOFTNESS: f32 = 0.005;
 /// Of the masses of free particles: of a mesh, and of what chains of a grid or tethers hold. Those of a rectangle's corners and
 /// middle differ by 4.
 const MAX_MASS_RATIO: [f32; 2] = [300.0, 10_000.0];
@@ -63,10 +58,9 @@ const SMALL: f32 = 0.5;
 
 impl ClothLimit {
     /// All limits.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 8] = [
         Self::Stretch,
         Self::Tolerance,
-        Self::Softness,
         Self::MassRatio,
         Self::Distance,
         Self::Damping,
@@ -83,9 +77,6 @@ impl ClothLimit {
             }
             Self::Tolerance => {
                 "more sub-steps or a larger tolerance; sub-steps can't remove the stretch of the material itself"
-            }
-            Self::Softness => {
-                "a mesh of even squares or triangles, or a grid; a fine mesh that a coarse grid drives (`ClothRenderMesh`); more sub-steps"
             }
             Self::MassRatio => {
                 "lighter particles, pins in their place, or tethers (`ClothSettings::tethers`)"
@@ -121,12 +112,11 @@ impl ClothLimit {
             format!("{percent:.decimals$} %")
         };
         let [found, good] = match self {
-            Self::Stretch | Self::Tolerance | Self::Softness => [quantity, good_up_to].map(percent),
+            Self::Stretch | Self::Tolerance => [quantity, good_up_to].map(percent),
             _ => [quantity, good_up_to].map(digits),
         };
         let what = match self {
             Self::Stretch | Self::Tolerance => "",
-            Self::Softness => "in the mean ",
             Self::MassRatio => "heaviest to lightest ",
             Self::Distance => "metres ",
             Self::Damping => "D ",
@@ -144,7 +134,6 @@ impl fmt::Display for ClothLimit {
         f.write_str(match self {
             Self::Stretch => "overstretched",
             Self::Tolerance => "stretched beyond tolerance",
-            Self::Softness => "softer than its material",
             Self::MassRatio => "made of particles with too different masses",
             Self::Distance => "too far from its frame's origin",
             Self::Damping => "damped too much",
@@ -160,8 +149,6 @@ impl fmt::Display for ClothLimit {
 pub(crate) struct LimitInputs {
     /// The largest stretch of a structural spring.
     pub stretch: f32,
-    /// That beyond the stretch of the material at its tension, in the mean.
-    pub unsolved: f32,
     /// The settings that hold it.
     pub substepping: Substepping,
     /// Whether it is stretched beyond its tolerance.
@@ -205,7 +192,6 @@ impl LimitInputs {
                 Substepping::Adaptive { stretch, .. } => [self.stretch, stretch],
                 Substepping::Automatic | Substepping::Fixed(_) => return None,
             },
-            ClothLimit::Softness => [self.unsolved, MAX_SOFTNESS],
             ClothLimit::MassRatio if lightest > 0.0 => [
                 heaviest / lightest,
                 MAX_MASS_RATIO[usize::from(self.holds_weight)],
@@ -234,7 +220,6 @@ mod tests {
     /// Inside of all limits, at most of them.
     const WITHIN: LimitInputs = LimitInputs {
         stretch: MAX_STRETCH,
-        unsolved: MAX_SOFTNESS,
         substepping: Substepping::Fixed(20),
         is_beyond: false,
         substep: USUAL_SUBSTEP,
@@ -264,13 +249,6 @@ mod tests {
                     ..WITHIN
                 },
                 ClothLimit::Stretch,
-            ),
-            (
-                LimitInputs {
-                    unsolved: 0.011,
-                    ..WITHIN
-                },
-                ClothLimit::Softness,
             ),
             (
                 LimitInputs {

@@ -41,17 +41,6 @@ pub(super) struct ListSolver {
     rows: Vec<Row>,
 }
 
-/// What the tensions of springs along edges say.
-#[derive(Debug, Default, Clone, Copy)]
-struct Tensions {
-    /// The largest stretch of the material.
-    material: f32,
-    /// The root of the mean square of the stretch beyond the material's.
-    unsolved: f32,
-    /// The angular frequency of ripples (rad/s).
-    ripple: f32,
-}
-
 impl ListSolver {
     /// For particles that lie as `layout` says.
     pub fn new(springs: &Arc<SpringList>, layout: Layout) -> Self {
@@ -146,59 +135,42 @@ impl ListSolver {
         }
     }
 
-    /// What the tensions of the last sub-step say. The rows are stored by then, and serve as memory: the sums lie beside their
-    /// displacements.
-    fn tensions(&mut self) -> Tensions {
+    /// The stretch of the material at the tensions of the last sub-step, and the angular frequency of the fastest ripples at the
+    /// median particle (rad/s): `ω² = 3/2 w Σ F/l`, as of a lattice of even triangles. Of springs along edges that give.
+    ///
+    /// The rows are stored by then, and serve as memory: the sums lie beside their displacements.
+    fn tensions(&mut self) -> (f32, f32) {
         let rows = &mut self.rows;
-        let (mut material, mut unsolved, mut lengths) = (0.0_f32, 0.0, 0.0);
+        let mut material = 0.0_f32;
         let scale = self.step_scale.inverse_weight;
         let stiffer = self.stiffer;
-        // The length at rest (m), the compliance (m/N) and the tension over the length (N/m).
-        let mut add = |ends: [u32; 2], rest: f32, compliance: f32, tension: f32| {
-            let given = stiffer.strain(compliance * tension);
-            let [a, b] = ends.map(|end| rows[end as usize]);
-            // Nothing pulls at a spring between two pins, nor at what is no spring.
-            if a.place.w + b.place.w > 0.0 {
-                let span = (b.place - a.place) + (b.moved - a.moved);
-                let left = (span.truncate().length() / rest - 1.0 - given).max(0.0);
-                unsolved += rest * left * left;
-                lengths += rest;
-            }
-            if compliance > 0.0 {
-                material = material.max(given);
-                for end in ends {
-                    rows[end as usize].moved.w += tension;
-                }
+        // The tension over the length (N/m), and the elongation as a part of the length.
+        let mut add = |ends: [u32; 2], tension: f32, part: f32| {
+            material = material.max(stiffer.strain(part));
+            for end in ends {
+                rows[end as usize].moved.w += tension;
             }
         };
         self.chains.for_each_pull(|ends, rest, compliance, pull| {
-            add(ends, rest, compliance, scale * pull / rest);
+            if compliance > 0.0 {
+                let tension = scale * pull / rest;
+                add(ends, tension, compliance * tension);
+            }
         });
         let packets = self.packets.iter().zip(&self.pulls).skip(self.across);
         for (packet, pull) in packets {
-            let rest = packet.rest_square.to_array().map(f32::sqrt);
             let (compliance, pull) = (packet.compliance.to_array(), pull.to_array());
             for at in 0..SPRINGS {
-                let ends = [packet.from[at], packet.to[at]];
-                add(ends, rest[at], compliance[at], scale * pull[at]);
+                if compliance[at] > 0.0 {
+                    let tension = scale * pull[at];
+                    add(
+                        [packet.from[at], packet.to[at]],
+                        tension,
+                        compliance[at] * tension,
+                    );
+                }
             }
         }
-        let ripple = self.ripple();
-        Tensions {
-            material,
-            unsolved: if lengths > 0.0 {
-                (unsolved / lengths).sqrt()
-            } else {
-                0.0
-            },
-            ripple,
-        }
-    }
-
-    /// The angular frequency of the fastest ripples at the median particle (rad/s): `ω² = 3/2 w Σ F/l`, as of a lattice of even
-    /// triangles, of the sums beside the rows' displacements.
-    fn ripple(&mut self) -> f32 {
-        let rows = &mut self.rows;
         // The last row is no particle's.
         let rows = rows.split_last_mut().map_or(&mut [][..], |(_, rows)| rows);
         let (mut below, mut above) = (0, 0);
@@ -210,13 +182,13 @@ impl ListSolver {
         // Of pinned particles, and of what is no particle, it is 0: they are not counted.
         let middle = (below + above) / 2;
         if middle < below || above == 0 {
-            return 0.0;
+            return (material, 0.0);
         }
         let from_above = below + above - middle;
         let at = rows.len() - from_above;
         let of = |row: &Row| row.moved.w;
         let (_, median, _) = rows.select_nth_unstable_by(at, |a, b| of(a).total_cmp(&of(b)));
-        of(median).sqrt()
+        (material, of(median).sqrt())
     }
 
     /// The largest length over rest length, given where a particle is.
@@ -266,20 +238,19 @@ impl SpringSolver for ListSolver {
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
-        let tensions = if motion.measures && !self.chains.is_empty() {
+        let (material, ripple) = if motion.measures && !self.chains.is_empty() {
             self.tensions()
         } else {
-            Tensions::default()
+            (0.0, 0.0)
         };
         let stretch = motion.measures.then(|| Stretch {
-            material: tensions.material,
-            unsolved: tensions.unsolved,
+            material,
             ..self.measure(blocks, kernels)
         });
         SolvedSubstep {
             moved,
             stretch,
-            ripple: tensions.ripple,
+            ripple,
         }
     }
 

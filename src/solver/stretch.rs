@@ -19,10 +19,6 @@ pub struct Stretch {
     /// stretch beyond it is what the sub-steps left unsolved. It is known where chains were solved; it equals
     /// `structural` where springs act by explicit forces, and is 0 otherwise.
     pub material: f32,
-    /// The stretch of a mesh's springs beyond what the material gives at their tension: the root of its mean square over their
-    /// length. Where chains are far from straight, the sub-steps leave it unsolved, and the cloth is softer than its material. 0 of
-    /// a grid, and where no chain was solved.
-    pub unsolved: f32,
     /// Number of sub-steps in a tick as long as the last that resolves ripples across the chains. It is that of a taut
     /// membrane in a frame, at the tension in half of the cloth's width, or at the median particle of a mesh. 0 where no chain gives.
     pub ripple_substeps: f32,
@@ -57,7 +53,6 @@ impl Stretch {
             structural: structural.max(1.0) - 1.0,
             bound: bound.max(1.0) - 1.0,
             material: 0.0,
-            unsolved: 0.0,
             ripple_substeps: 0.0,
             load_substeps: 0.0,
             contact_substeps: 0.0,

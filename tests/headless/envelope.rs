@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_drape::{plugin::ClothBuilt, prelude::*};
 
-use crate::{meshes, support::*};
+use crate::support::*;
 
 /// Ticks a cloth beside a valid one and expects a report of that limit, once, with a quantity beyond it, and of nothing
 /// else; not again when its settings change.
@@ -58,25 +58,6 @@ fn a_tolerance_that_the_cap_does_not_hold() {
     let cloth = (Cloth::default(), ClothMaterial::RUBBER, settings);
     let cloth = app.world_mut().spawn(cloth).id();
     expect_reported(app, cloth, ClothLimit::Tolerance);
-}
-
-/// Heavy cloth hung by its upper edge: chains through an irregular mesh are not pulled straight. Those of squares are straight.
-#[test]
-fn a_mesh_that_is_softer_than_its_material() {
-    let material = ClothMaterial {
-        areal_density: 6.0,
-        ..ClothMaterial::COTTON
-    };
-    let pins = || Pins::new([Pin::at_rest(|place| place.y > -1.0e-4)]);
-    let of = |mesh: TriangleMesh| Cloth::triangles(mesh.positions, mesh.triangles);
-    let mut app = app();
-    let regular = of(meshes::regular(21, 21, 0.1));
-    app.world_mut().spawn((regular, material, pins()));
-    tick(&mut app, 60);
-    assert_eq!(messages::<ClothLimitExceeded>(&mut app), []);
-    let irregular = of(meshes::irregular(2.0, 2.0, 0.1, 0.3));
-    let cloth = app.world_mut().spawn((irregular, material, pins())).id();
-    expect_reported(app, cloth, ClothLimit::Softness);
 }
 
 /// Twenty thousand times as heavy as others is too much, with tethers or without.

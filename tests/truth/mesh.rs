@@ -229,15 +229,14 @@ fn a_mesh_is_exact_in_few_sub_steps() {
 /// Cotton that hangs by its upper edge is pulled by ρ g H there, and gives α ρ g H, to a tenth: the springs there end below the edge.
 /// In a frame that is 1 % wider, a mesh of a grid's triangles has springs of 1/α along rows and columns and of half of that along
 /// diagonals: Σ F/l = 5 ε/((1 + ε) α) at a particle of the mass ρ h², so that ω² = 7.5 ε/((1 + ε) α ρ h²), resolved by 2.2/ω. As a
-/// mesh is calibrated, and solved chain by chain, a tenth is allowed. It solves nearly all of that stretch. Of an irregular mesh,
-/// which swings at less than 0.43 of its frequency there, at least 1 − 0.43² is left.
+/// mesh is calibrated, and solved chain by chain, a tenth is allowed.
 #[test]
 fn a_mesh_knows_its_tension() {
     let (side, material) = (33, material(1.0e-4, f32::INFINITY));
-    let [regular, irregular] = [true, false].map(|is_regular| surface(side, is_regular));
-    let hung = |surface: &Surface, wider: f32, is_pinned: &dyn Fn(Vec3) -> bool| {
-        let springs = Springs::of_surface(surface, &material);
-        let mut particles = ClothParticles::at_rest(surface, &material).expect("a valid material");
+    let surface = surface(side, true);
+    let springs = Springs::of_surface(&surface, &material);
+    let hung = |wider: f32, is_pinned: &dyn Fn(Vec3) -> bool| {
+        let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
         for (index, place) in surface.rest_positions().iter().enumerate() {
             particles
                 .set_position(index, wider * *place)
@@ -246,7 +245,7 @@ fn a_mesh_knows_its_tension() {
                 particles.set_inverse_mass(index, 0.0).expect("it exists");
             }
         }
-        let mut solver = Solver::of_surface(surface, &springs);
+        let mut solver = Solver::of_surface(&surface, &springs);
         let mut step = step(40, GRAVITY);
         step.damping = 0.1;
         let mut stretch = solver.measure(&particles);
@@ -255,14 +254,13 @@ fn a_mesh_knows_its_tension() {
         }
         stretch
     };
-    let stretch = hung(&regular, 1.0, &|place| place.y > -1.0e-4);
+    let stretch = hung(1.0, &|place| place.y > -1.0e-4);
     let pull = material.areal_density * 9.81 * 2.0;
     let given = material.stretch_compliance * pull;
     println!("hung: {} of {given}", stretch.material);
     assert!((stretch.material / given - 1.0).abs() < 0.1);
     let on_frame = |at: f32| !(1.0e-4..2.0 - 1.0e-4).contains(&at);
-    let is_held = |place: Vec3| on_frame(place.x) || on_frame(-place.y);
-    let stretch = hung(&regular, 1.01, &is_held);
+    let stretch = hung(1.01, &|place| on_frame(place.x) || on_frame(-place.y));
     let spacing = 2.0 / (side - 1) as f32;
     let mass = material.areal_density * spacing * spacing;
     let square = 7.5 * 0.01 / 1.01 / material.stretch_compliance / mass;
@@ -273,8 +271,4 @@ fn a_mesh_knows_its_tension() {
     );
     assert!((stretch.ripple_substeps / wanted - 1.0).abs() < 0.1);
     assert!((stretch.material / 0.01 - 1.0).abs() < 0.1);
-    let unsolved = [&regular, &irregular].map(|of| hung(of, 1.01, &is_held).unsolved);
-    println!("in a frame, unsolved: {unsolved:?}");
-    assert!(unsolved[0] < 0.1 * 0.01);
-    assert!((0.01 * (1.0 - 0.43 * 0.43)..0.01).contains(&unsolved[1]));
 }

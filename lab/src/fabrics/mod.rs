@@ -15,9 +15,10 @@ use crate::{
     measure::distinct,
 };
 
-/// How far a grid, a mesh of a grid's triangles, and one with alternating diagonals that is not woven may be off.
+/// The error that is allowed of a grid.
 const GRID_WITHIN: f64 = 0.02;
-const REGULAR_WITHIN: f64 = 0.04;
+/// And of a mesh of squares, but for woven ones with alternating diagonals.
+const EVEN_WITHIN: f64 = 0.04;
 /// The error of clamped strips that is allowed, as a part of their length, on any surface.
 const DROP_WITHIN: f64 = 0.01;
 
@@ -47,7 +48,7 @@ impl Row {
     }
 
     fn is_drop(&self) -> bool {
-        self.truth.starts_with("clamped")
+        self.truth.starts_with(Truth::DROOP)
     }
 
     fn is_of(&self, made: Made) -> bool {
@@ -94,13 +95,13 @@ impl Experiment for Fabrics {
         let mut wrong = Vec::new();
         for row in rows {
             let is_even = row.is_of(Made::Regular)
-                || row.is_of(Made::Alternating) && !row.truth.starts_with("woven");
+                || row.is_of(Made::Alternating) && !row.truth.starts_with(Truth::WOVEN);
             let within = if row.is_drop() {
                 DROP_WITHIN
             } else if row.is_of(Made::Grid) {
                 GRID_WITHIN
             } else if is_even {
-                REGULAR_WITHIN
+                EVEN_WITHIN
             } else {
                 f64::INFINITY
             };

@@ -25,6 +25,7 @@ mod springs;
 mod tests;
 mod torn;
 mod triangles;
+mod triangulation;
 mod weld;
 mod woven;
 
@@ -41,6 +42,7 @@ use incidence::Incidence;
 pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
 pub use triangles::{TriangleMesh, VertexAttribute};
+use triangulation::Triangulation;
 
 #[cfg(feature = "mesh")]
 pub(crate) use asset::skin_of_asset;
@@ -101,6 +103,7 @@ struct Derived {
     flat: OnceLock<Option<Flat>>,
     incidence: OnceLock<Incidence>,
     along_warp: OnceLock<Vec<f32>>,
+    bending: OnceLock<Triangulation>,
 }
 
 /// Rest lengths of the stretch springs (m).

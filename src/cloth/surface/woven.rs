@@ -1,5 +1,7 @@
 //! The direction of the warp in each face of a mesh, and the springs of a woven one.
 
+use std::sync::OnceLock;
+
 use bevy::math::{Vec2, Vec3};
 
 use super::{
@@ -19,6 +21,7 @@ impl Surface {
     /// Gives each face of a mesh the direction of its warp, of length 1.
     pub(crate) fn with_grain(mut self, grain: Vec<Vec3>) -> Self {
         self.grain = grain;
+        self.derived.bending = OnceLock::new();
         self
     }
 

@@ -221,7 +221,6 @@ impl IntegrateQueryItem<'_, '_> {
             embedded: self.scratch.detection.embedded(),
             collider_travel: travels.fold(0.0, f32::max),
             stretch: self.state.stretch.structural,
-            unsolved: self.state.stretch.unsolved,
             substepping: self.scratch.substepping,
             is_beyond: self.state.control.is_beyond(),
             substep: step.seconds / count,

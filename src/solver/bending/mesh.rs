@@ -2,7 +2,8 @@
 //!
 //! Across an edge, the difference of the two faces' slopes is linear in the four positions; on a quadratic surface it
 //! is linear in the curvature. Three edges give all three numbers of a face's curvature, exactly on any triangles. So
-//! the energy `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` of a quadratic surface does not depend on the triangulation. A woven mesh has x along its warp and
+//! the energy `½ D Σ A (κ_xx² + 2 κ_xy² + κ_yy²)` of such a surface does not depend on the triangulation. The forces do, so the
+//! triangles are those of [`Surface::bending_faces`]. A woven mesh has x along its warp and
 //! `½ Σ A (D_warp κ_xx² + 2 √(D_warp D_weft) κ_xy² + D_weft κ_yy²)`.
 //!
 //! ```text
@@ -28,7 +29,6 @@ use super::{
     mesh_creases::MeshCreases,
     patch::{Patch, RestFace, for_each_row, frame},
     push::LIMIT,
-    triangulation::Triangulation,
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, StiffnessFactors, Surface, W, Woven};
 
@@ -88,11 +88,11 @@ impl MeshBending {
             .iter()
             .map(|place| place.as_dvec3())
             .collect();
-        let faces = Triangulation::new(surface.triangles(), &places);
-        let mut patches = Vec::with_capacity(faces.faces().len());
+        let bending = surface.bending_faces();
+        let mut patches = Vec::with_capacity(bending.faces().len());
         let mut rest = Vec::new();
-        for (index, face) in faces.faces().iter().enumerate() {
-            let Some(mut patch) = Patch::new(*face, faces.beside(index), &places) else {
+        for (index, face) in bending.faces().iter().enumerate() {
+            let Some(mut patch) = Patch::new(*face, bending.beside(index), &places) else {
                 continue;
             };
             if let Some(warp) = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0) {

@@ -9,7 +9,6 @@ use bevy::math::{DVec3, Vec3, Vec3A};
 use super::{
     creasing::ClothCreasing,
     patch::{Patch, frame},
-    triangulation::Triangulation,
 };
 use crate::cloth::{Block, Layout, StiffnessFactors, Surface, Woven};
 
@@ -126,10 +125,10 @@ impl MeshCreases {
             .iter()
             .map(|place| place.as_dvec3())
             .collect();
-        let triangulation = Triangulation::new(surface.triangles(), &places);
-        let mut faces = Vec::with_capacity(triangulation.faces().len());
-        for (index, face) in triangulation.faces().iter().enumerate() {
-            let Some(patch) = Patch::new(*face, triangulation.beside(index), &places) else {
+        let bending = surface.bending_faces();
+        let mut faces = Vec::with_capacity(bending.faces().len());
+        for (index, face) in bending.faces().iter().enumerate() {
+            let Some(patch) = Patch::new(*face, bending.beside(index), &places) else {
                 continue;
             };
             let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);

@@ -24,7 +24,6 @@ mod push;
 mod schedule;
 #[cfg(test)]
 mod tests;
-mod triangulation;
 
 use std::sync::Arc;
 

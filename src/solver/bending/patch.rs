@@ -154,7 +154,9 @@ impl Patch {
         let [a, b, c] = [0, 1, 2].map(|corner| places[self.particles[corner] as usize]);
         let x = (b - a).normalize();
         let y = (b - a).cross(c - a).normalize().cross(x);
-        let (cos, sin) = (warp.dot(x), warp.dot(y));
+        // Beside a turned diagonal, it is that of a face in nearly this plane.
+        let along = DVec2::new(warp.dot(x), warp.dot(y)).normalize_or(DVec2::X);
+        let (cos, sin) = (along.x, along.y);
         let beside = std::f64::consts::SQRT_2 * cos * sin;
         let (cos, sin) = (cos * cos, sin * sin);
         [
