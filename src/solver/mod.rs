@@ -94,6 +94,7 @@ pub(crate) use air::{AirMemory, FILLING};
 #[doc(hidden)]
 pub use bending::Bending;
 pub use bending::ClothCreasing;
+pub(crate) use bending::creases_of_torn;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]

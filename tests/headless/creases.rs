@@ -101,6 +101,38 @@ fn creases_end_with_the_component_and_with_the_surface() {
     assert!(anew > 0.97, "{anew}");
 }
 
+/// A tear makes the grid a mesh, and a second one tears that mesh: the fold stays as far open, but for the parts of it beside the slit,
+/// a third of five rows at most. Mended, it is a grid without creases.
+#[test]
+fn a_torn_sheet_stays_folded() {
+    let open = |app: &App, sheet: Entity| {
+        let at = |index: usize| particles(app, sheet).position(index).expect("a particle");
+        let ends = [at(2 * 21), at(2 * 21 + 20)];
+        ends[0].distance(ends[1]) / LENGTH
+    };
+    let (mut app, sheet) = folded(Some(CREASING));
+    let whole = open(&app, sheet);
+    assert!(whole < 0.8, "{whole}");
+    for edge in [[10, 31], [31, 52]] {
+        app.world_mut()
+            .entity_mut(sheet)
+            .entry::<ClothTears>()
+            .or_default();
+        change::<ClothTears>(&mut app, sheet, |tears| {
+            tears.tear(edge);
+        });
+        tick(&mut app, 192);
+        assert!(app.world().get::<ClothFault>(sheet).is_none());
+        let torn = open(&app, sheet);
+        println!("whole {whole:.3}, torn {torn:.3}");
+        assert!((torn - whole).abs() < (1.0 - whole) / 3.0, "{torn} {whole}");
+    }
+    change::<ClothTears>(&mut app, sheet, |tears| *tears = ClothTears::default());
+    tick(&mut app, 192);
+    let mended = open(&app, sheet);
+    assert!(mended > 0.97, "{mended}");
+}
+
 /// What is no curvature and no hardening is a fault that names it, and leaves other cloth alone. A good value mends it.
 #[test]
 fn bad_creasing_is_a_fault() {

@@ -5,6 +5,7 @@
 
 #[cfg(feature = "mesh")]
 mod asset;
+mod bending;
 mod binding;
 mod bound;
 mod calibration;

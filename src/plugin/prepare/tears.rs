@@ -12,6 +12,7 @@ use crate::{
         authoring::Attached,
         state::{ClothBuilt, ClothState, Recipe, SharedParts},
     },
+    solver::creases_of_torn,
 };
 
 /// Takes over other tears, or the change of a grid to a mesh and back. Particles keep their places, motion and indices, and new ones follow.
@@ -59,8 +60,7 @@ pub(super) fn follow_tears(
     built.unreported_tear = place.map(|place| (place, count));
     hold_parts(surface, &parents, state);
     state.pose.take_parts(&parents);
-    // They are those of other faces.
-    state.creases.clear();
+    state.creases = creases_of_torn(&before, surface, &state.creases);
     built.solver = shared.solver.clone();
     built.forget_tethers();
     built.shared = shared;

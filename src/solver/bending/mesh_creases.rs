@@ -105,7 +105,8 @@ impl Face {
 pub(super) struct MeshCreases {
     creasing: ClothCreasing,
     layout: Layout,
-    faces: Vec<Face>,
+    /// None where a face has no other beside it.
+    faces: Vec<Option<Face>>,
     /// Beyond those of the surface.
     rest: Vec<Curvature>,
     places: Vec<Vec3>,
@@ -128,13 +129,13 @@ impl MeshCreases {
         let bending = surface.bending_faces();
         let mut faces = Vec::with_capacity(bending.faces().len());
         for (index, face) in bending.faces().iter().enumerate() {
-            let Some(patch) = Patch::new(*face, bending.beside(index), &places) else {
-                continue;
-            };
-            let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);
-            let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
-            let rigidity = rigidity.mean * factors.of_face(*face);
-            faces.extend(Face::new(&patch, woven, rigidity, &places));
+            let patch = Patch::new(*face, bending.beside(index), &places);
+            faces.push(patch.and_then(|patch| {
+                let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);
+                let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
+                let rigidity = rigidity.mean * factors.of_face(*face);
+                Face::new(&patch, woven, rigidity, &places)
+            }));
         }
         Self {
             creasing,
@@ -184,6 +185,9 @@ impl MeshCreases {
     pub fn push(&self, place: impl Fn(u32) -> Vec3, mut add: impl FnMut(u32, Vec3)) {
         for &face in &self.creased {
             let (face, rest) = (&self.faces[face as usize], &self.rest[face as usize]);
+            let Some(face) = face else {
+                continue;
+            };
             let Some(forces) = face.forces(&face.particles.map(&place), rest) else {
                 continue;
             };
@@ -199,7 +203,8 @@ impl MeshCreases {
             *place = blocks[slot.block].position(slot.lane);
         }
         let mut has_flowed = false;
-        for (face, rest) in self.faces.iter().zip(&mut self.rest) {
+        let faces = self.faces.iter().zip(&mut self.rest);
+        for (face, rest) in faces.filter_map(|(face, rest)| Some((face.as_ref()?, rest))) {
             let at = face
                 .particles
                 .map(|particle| self.places[particle as usize]);

@@ -24,6 +24,7 @@ mod push;
 mod schedule;
 #[cfg(test)]
 mod tests;
+mod torn_creases;
 
 use std::sync::Arc;
 
@@ -33,6 +34,7 @@ pub use creasing::ClothCreasing;
 use grid::GridBending;
 use mesh::MeshBending;
 pub(super) use schedule::BendingSchedule;
+pub(crate) use torn_creases::creases_of_torn;
 
 /// A surface's resistance to bending.
 #[derive(Debug, Clone)]

@@ -2,8 +2,14 @@
 
 use std::sync::Arc;
 
-use super::{turning::ALIKE, *};
-use crate::cloth::surface::TriangleMesh;
+use bevy::math::{DVec3, Vec3};
+
+use super::{
+    Triangulation,
+    faces::sorted,
+    turning::{ALIKE, Turning},
+};
+use crate::cloth::surface::{Surface, TriangleMesh};
 
 const SIDE: u32 = 12;
 
@@ -62,7 +68,7 @@ fn directions(faces: &[[u32; 3]]) -> [usize; 2] {
 }
 
 fn turned(faces: &[[u32; 3]], places: &[DVec3]) -> Triangulation {
-    Triangulation::new(faces, places, &[])
+    super::turned(faces, places, &[])
 }
 
 /// Squares, and squares that are not quite square: whatever their diagonals were, they become parallel, and parallel ones stay.
@@ -137,7 +143,7 @@ fn what_is_folded_woven_or_closed_stays() {
         .iter()
         .map(|face| if is_beyond(face) { Vec3::X } else { Vec3::Y })
         .collect();
-    let seam = |grain: &[Vec3]| directions(Triangulation::new(&faces, &places, grain).faces())[1];
+    let seam = |grain: &[Vec3]| directions(super::turned(&faces, &places, grain).faces())[1];
     assert_eq!([seam(&grain), seam(&[])], [SIDE as usize, 0]);
     let (faces, mut places) = square(0.0, 1, alternating);
     for place in &mut places {

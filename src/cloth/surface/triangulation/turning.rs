@@ -7,7 +7,7 @@ use bevy::{
     platform::collections::HashSet,
 };
 
-use super::{Triangulation, sorted};
+use super::faces::{Triangulation, sorted};
 
 /// Sum of the cotangents of the two angles that an edge is seen under: below −`ALIKE`, the other diagonal is better; within
 /// ±`ALIKE` for both, they are as good. Squares whose vertices are out of place by a twentieth of a side, in x and in y, reach 0.4.
@@ -16,6 +16,18 @@ pub(super) const ALIKE: f64 = 0.4;
 const FLAT: f64 = 0.995;
 /// Area of the smaller face after a turn, as a fraction of that of both.
 const THINNEST: f64 = 0.02;
+
+/// As many faces on the same vertices, with diagonals turned where that is better. None is turned between two grains.
+pub(in crate::cloth::surface) fn turned(
+    faces: &[[u32; 3]],
+    places: &[DVec3],
+    grain: &[Vec3],
+) -> Triangulation {
+    let mut turning = Turning::new(Triangulation::of(faces), places, grain);
+    turning.turn_worse_ones();
+    turning.align();
+    turning.of
+}
 
 /// A triangulation while its edges are turned.
 pub(super) struct Turning<'a> {
