@@ -17,7 +17,7 @@ use crate::{
 
 /// The error that is allowed of a grid.
 const GRID_WITHIN: f64 = 0.02;
-/// And of a mesh of squares, but for woven ones with alternating diagonals.
+/// The error that is allowed of a mesh of squares, unless it is woven and has alternating diagonals.
 const EVEN_WITHIN: f64 = 0.04;
 /// The error of clamped strips that is allowed, as a part of their length, on any surface.
 const DROP_WITHIN: f64 = 0.01;

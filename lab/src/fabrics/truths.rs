@@ -69,9 +69,9 @@ impl Truth {
         made != Made::Grid || !matches!(self, Self::Woven(45.0) | Self::Stiffening)
     }
 
-    /// The begin of the names of woven sheets.
+    /// How the names of woven sheets begin.
     pub const WOVEN: &str = "woven";
-    /// The begin of the names of what droops.
+    /// How the names of what droops begin.
     pub const DROOP: &str = "clamped";
 
     pub fn find(self, made: Made, side: u32) -> Found {
@@ -258,7 +258,7 @@ fn clamped(
     }
 }
 
-/// Its end, aside by a hundredth of its length, goes on aside or swings back. Halved until it is known to 0.5 %.
+/// Its end, aside by a hundredth of its length, goes on aside or swings back. The bracket of Γ is halved to 1 %.
 fn upright(made: Made) -> Found {
     const COLUMNS: u32 = 26;
     const TICKS: u32 = 192;

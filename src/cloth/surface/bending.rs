@@ -1,6 +1,6 @@
 //! The triangles on which a surface bends.
 
-use bevy::math::DVec3;
+use bevy::math::{DVec3, Vec3};
 
 use super::{
     Surface,
@@ -8,18 +8,30 @@ use super::{
 };
 
 impl Surface {
-    /// The triangles on which it bends, as many as it has and in their places. Those of a torn surface are turned as before, but
-    /// beside the tears.
+    /// The triangles on which it bends: as many as it has, in the order of those of the whole surface. What is torn is turned as
+    /// before, but beside the tears.
     pub(crate) fn bending_faces(&self) -> &Triangulation {
         self.derived.bending.get_or_init(|| match &self.torn {
-            Some(torn) => Triangulation::torn(self.triangles(), torn.whole.bending_faces(), |at| {
-                self.origin_of(at)
+            Some(torn) => Triangulation::torn(&torn.corners, torn.whole.bending_faces(), |at| {
+                torn.origin[at as usize]
             }),
+            // The diagonals of a grid are parallel.
+            None if self.as_grid().is_some() => Triangulation::of(self.triangles()),
             None => {
                 let places = self.rest.iter().map(|place| place.as_dvec3());
                 let places: Vec<DVec3> = places.collect();
                 turned(self.triangles(), &places, &self.grain)
             }
         })
+    }
+
+    /// The direction of the warp in such a triangle; `None` without a grain.
+    pub(crate) fn bending_grain(&self, face: usize) -> Option<Vec3> {
+        match &self.torn {
+            // That of a grid is the same everywhere.
+            Some(torn) if torn.whole.as_grid().is_some() => self.grain.first().copied(),
+            Some(torn) => torn.whole.bending_grain(face),
+            None => self.grain.get(face).copied(),
+        }
     }
 }

@@ -97,11 +97,6 @@ impl Surface {
         (area.signum() * (b.x * c_place - c.x * b_place)).try_normalize()
     }
 
-    /// The direction of the warp in a face; `None` without a grain.
-    pub(crate) fn grain_of(&self, face: usize) -> Option<Vec3> {
-        self.grain.get(face).copied()
-    }
-
     /// Calls `visit` with each edge that has a spring along it: its ends, its length at rest (m), and the square of the cosine of
     /// its angle with the warp, 1 without a grain. Diagonals of a grid are left out.
     pub(crate) fn for_each_thread(&self, mut visit: impl FnMut([u32; 2], f32, f32)) {

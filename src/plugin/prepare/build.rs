@@ -26,8 +26,10 @@ pub(crate) fn build(
 ) -> Result<Build, ClothError> {
     let is_built = is_built(wanted, built) && !particles.is_empty();
     let has_grain = is_built && built.has_grain(wanted.grain);
-    // A snapshot may be from between a tear and its opening.
-    let is_open = !state.resumes || built.tears().edges().len() == state.inputs.opened;
+    // A snapshot may be from between a tear and its opening, or from before a map.
+    let (opened, as_mesh) = (state.inputs.opened, state.inputs.as_mesh);
+    let is_open =
+        !state.resumes || built.tears().edges().len() == opened && built.is_as_mesh() == as_mesh;
     let has_form = built.is_torn_by(wanted.tears) && built.is_as_mesh() == wanted.is_as_mesh();
     let is_kept = has_grain && is_open && has_form;
     let failing = |particles: &ClothParticles| FailedBuild {
@@ -68,6 +70,7 @@ pub(crate) fn build(
         return Ok(build);
     }
     state.inputs.opened = built.tears().edges().len();
+    state.inputs.as_mesh = built.is_as_mesh();
     if !resumes {
         state.rest.disturb();
     }
@@ -119,9 +122,13 @@ fn build_new(
             true => wanted.tears().first(state.inputs.opened),
             false => wanted.tears(),
         },
-        as_mesh: wanted.is_as_mesh(),
+        as_mesh: match state.resumes {
+            true => state.inputs.as_mesh,
+            false => wanted.is_as_mesh(),
+        },
     };
-    let is_open = recipe.tears.edges().len() == wanted.tears().edges().len();
+    let is_open = recipe.tears.edges().len() == wanted.tears().edges().len()
+        && recipe.as_mesh == wanted.is_as_mesh();
     let mut factors = MaterialFactors::default();
     let of = |surface: &Surface| {
         factors = wanted.factors(surface)?;

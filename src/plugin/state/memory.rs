@@ -122,12 +122,14 @@ pub(crate) struct InputMemory {
     pub air: AirState,
     /// How many of its torn edges have opened: the last ones do so as the next tick begins.
     pub opened: usize,
+    /// Whether it was a grid that is solved as a mesh, though nothing was torn.
+    pub as_mesh: bool,
 }
 
 impl InputMemory {
     fn copy_from(&mut self, other: &Self) {
         (self.written, self.known) = (other.written, other.known);
-        self.opened = other.opened;
+        (self.opened, self.as_mesh) = (other.opened, other.as_mesh);
         self.air.clone_from(&other.air);
     }
 }

@@ -15,8 +15,9 @@ use crate::cloth::ClothError;
 /// up to `κ_y`, and `D (κ_y + h (κ − κ_y))` beyond that. Released, it keeps the curvature `(1 − h) (κ − κ_y)`, but at most
 /// [`largest_crease`](Self::largest_crease). In two directions at once, the norm of the curvature yields, `√(κ_xx² + κ_yy² + 2 κ_xy²)`.
 ///
-/// Creases follow once a tick. They are kept in snapshots, while the cloth sleeps, and when its material changes. They are
-/// smoothed out when this component is removed, or when the cloth is built anew, as for another resolution. A
+/// Creases follow once a tick. They are kept in snapshots, while the cloth sleeps, when its material changes, and where it tears. They are
+/// smoothed out when this component is removed, or when the cloth is built anew, as for another resolution. So are those of a
+/// mesh that becomes a grid again, as one that is mended. A
 /// material that bends freely has no creases, whatever this says.
 ///
 /// A grid bends by at most 2 ⁄ spacing, which is flat on itself. So the yield curvature has to be well below that: finer

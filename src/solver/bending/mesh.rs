@@ -95,7 +95,10 @@ impl MeshBending {
             let Some(mut patch) = Patch::new(*face, bending.beside(index), &places) else {
                 continue;
             };
-            if let Some(warp) = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0) {
+            if let Some(warp) = surface
+                .bending_grain(index)
+                .filter(|_| rigidity.ratio != 1.0)
+            {
                 patch.weave(warp.as_dvec3(), rigidity.ratio.into(), &places);
             }
             let stiffness = f64::from(rigidity.mean * factors.of_face(*face)) * patch.area;

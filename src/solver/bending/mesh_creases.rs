@@ -131,7 +131,9 @@ impl MeshCreases {
         for (index, face) in bending.faces().iter().enumerate() {
             let patch = Patch::new(*face, bending.beside(index), &places);
             faces.push(patch.and_then(|patch| {
-                let warp = surface.grain_of(index).filter(|_| rigidity.ratio != 1.0);
+                let warp = surface
+                    .bending_grain(index)
+                    .filter(|_| rigidity.ratio != 1.0);
                 let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
                 let rigidity = rigidity.mean * factors.of_face(*face);
                 Face::new(&patch, woven, rigidity, &places)

@@ -9,9 +9,11 @@ use crate::cloth::{ClothGrid, Surface};
 const OF_FACE: usize = 9;
 
 /// The rest curvatures of a surface, from those that it had before it was torn further. Faces of a mesh keep theirs, unless a tear
-/// turned them. A face of what was a grid gets the mean of its corners, and the twist of its cell. What becomes a grid again has
-/// none.
+/// turned them. What becomes a grid again has none.
 pub(crate) fn creases_of_torn(before: &Surface, after: &Surface, rest: &[f32]) -> Vec<f32> {
+    if rest.is_empty() {
+        return Vec::new();
+    }
     match (before.as_grid(), after.as_grid()) {
         (Some(grid), None) if rest.len() == 3 * before.len() => of_grid(grid, before, after, rest),
         (None, None) => of_mesh(before, after, rest),
@@ -34,8 +36,9 @@ fn of_mesh(before: &Surface, after: &Surface, rest: &[f32]) -> Vec<f32> {
     creases
 }
 
-/// With the curvature K along the grid's normal, in directions along its rows and columns, a face with the axes x and y has
-/// xᵀ K x, yᵀ K y and √2 xᵀ K y, along its own normal.
+/// A face gets the curvature across its edge along a column, that across its edge along a row, and the twist of its cell: so a fold
+/// in one column stays in the faces beside it. With the curvature K along the grid's normal, in directions along its rows and columns,
+/// a face with the axes x and y has xᵀ K x, yᵀ K y and √2 xᵀ K y, along its own normal.
 fn of_grid(grid: &ClothGrid, before: &Surface, after: &Surface, rest: &[f32]) -> Vec<f32> {
     let columns = grid.columns();
     let place = |particle: u32| Vec3A::from(before.rest_positions()[particle as usize]);
@@ -46,12 +49,12 @@ fn of_grid(grid: &ClothGrid, before: &Surface, after: &Surface, rest: &[f32]) ->
         let cells = corners.map(|corner| [corner % columns, corner / columns]);
         let first = |along: usize| cells.map(|cell| cell[along]).into_iter().min().unwrap_or(0);
         let cell = first(1) * columns + first(0);
+        // Of the two corners in one column, or in one row.
         let mean = |kind: usize| {
-            corners
-                .map(|corner| number(corner, kind))
-                .iter()
-                .sum::<f64>()
-                / 3.0
+            let is_on =
+                |cell: &[u32; 2]| cells.iter().filter(|of| of[kind] == cell[kind]).count() == 2;
+            let on = cells.iter().zip(corners).filter(|(cell, _)| is_on(cell));
+            on.map(|(_, corner)| number(corner, kind)).sum::<f64>() / 2.0
         };
         let curvature =
             DMat2::from_cols_array_2d(&[[mean(0), number(cell, 2)], [number(cell, 2), mean(1)]]);

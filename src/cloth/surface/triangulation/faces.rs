@@ -34,7 +34,7 @@ impl Triangulation {
     }
 
     /// Those faces themselves.
-    pub(super) fn of(faces: &[[u32; 3]]) -> Self {
+    pub fn of(faces: &[[u32; 3]]) -> Self {
         let mut sides = Vec::with_capacity(3 * faces.len());
         for (face, corners) in faces.iter().enumerate() {
             for edge in 0..3 {

@@ -71,12 +71,13 @@ fn turned(faces: &[[u32; 3]], places: &[DVec3]) -> Triangulation {
     super::turned(faces, places, &[])
 }
 
-/// Squares, and squares that are not quite square: whatever their diagonals were, they become parallel, and parallel ones stay.
+/// Squares, squares that are not quite square, and long cells: whatever their diagonals were, they become parallel, and parallel ones stay.
 #[test]
 fn diagonals_of_squares_become_parallel() {
     let all = (SIDE * SIDE) as usize;
-    for jitter in [0.0, 0.05] {
-        let (regular, places) = square(jitter, 1, |_, _| true);
+    for (jitter, wide) in [(0.0, 1.0), (0.05, 1.0), (0.0, 8.0), (0.0, 0.125)] {
+        let (regular, mut places) = square(jitter, 1, |_, _| true);
+        places.iter_mut().for_each(|place| place.x *= wide);
         assert_eq!(turned(&regular, &places).faces(), regular);
         let made: [Box<dyn Fn(u32, u32) -> bool>; 4] = [
             Box::new(alternating),
@@ -85,7 +86,8 @@ fn diagonals_of_squares_become_parallel() {
             Box::new(random(2)),
         ];
         for is_other in made {
-            let (faces, places) = square(jitter, 1, is_other);
+            let (faces, mut places) = square(jitter, 1, is_other);
+            places.iter_mut().for_each(|place| place.x *= wide);
             assert!(directions(&faces).iter().all(|count| *count > all / 4));
             let mut found = directions(turned(&faces, &places).faces());
             found.sort_unstable();
@@ -173,7 +175,7 @@ fn what_is_folded_woven_or_closed_stays() {
     assert_eq!(turned(&pillow, &corners).faces(), pillow);
 }
 
-/// A tear turns nothing but diagonals that it cuts: all others are where they were.
+/// A tear turns nothing but diagonals that it cuts: all others are where they were, in the order of the whole surface's faces.
 #[test]
 fn a_tear_turns_nothing_far_away() {
     let (triangles, places) = square(0.0, 1, alternating);
@@ -183,23 +185,37 @@ fn a_tear_turns_nothing_far_away() {
         ..Default::default()
     };
     let whole = Arc::new(Surface::of_mesh(&mesh, 0.0, Vec3::ONE).expect("a surface"));
-    // Between the sixth and the seventh row, and along a diagonal that bending has turned.
-    let mut edges: Vec<[u32; 2]> = (0..SIDE)
-        .map(|at| [at, at + 1].map(|at| at + 6 * (SIDE + 1)))
-        .collect();
+    let particle = |vertex: u32| {
+        let found = whole.particle_of_vertex(vertex as usize);
+        found.expect("each has one") as u32
+    };
+    let along = |first: u32, step: u32, count: u32| -> Vec<[u32; 2]> {
+        let ends = |at: u32| [first + at * step, first + (at + 1) * step];
+        (0..count)
+            .map(|at| sorted(ends(at).map(particle)))
+            .collect()
+    };
+    let row = SIDE + 1;
+    // From border to border, and slits inside.
+    let slits = [
+        along(6 * row, 1, SIDE),
+        along(6, row, SIDE),
+        along(6 * row + 4, 1, 4),
+        along(3 * row + 7, row, 5),
+    ];
     let turn = whole.bending_faces().turns[0];
-    edges.push(sorted([turn.quad[0], turn.quad[1]]));
-    let torn = whole.torn(&edges).expect("edges");
-    assert!(torn.len() > whole.len());
-    let before = whole.bending_faces().faces().iter();
-    let after = torn
-        .bending_faces()
-        .faces()
-        .iter()
-        .map(|face| face.map(|at| torn.origin_of(at)));
-    let changed = before
-        .zip(after)
-        .filter(|(before, after)| *before != after)
-        .count();
-    assert_eq!(changed, 2, "those beside the torn diagonal");
+    let diagonal = sorted([turn.quad[0], turn.quad[1]]);
+    for mut edges in slits {
+        edges.push(diagonal);
+        let torn = whole.torn(&edges).expect("edges");
+        assert!(torn.len() > whole.len());
+        let before = whole.bending_faces().faces();
+        let after = torn.bending_faces().faces();
+        let origin = |face: &[u32; 3]| face.map(|at| torn.origin_of(at));
+        let pairs = before.iter().zip(after);
+        let changed = pairs
+            .filter(|(before, after)| **before != origin(after))
+            .count();
+        assert_eq!(changed, 2, "those beside the torn diagonal");
+    }
 }

@@ -108,21 +108,23 @@ impl<'a> Turning<'a> {
         }
     }
 
-    /// The edge of each face that is a diagonal as good as the other one.
+    /// The edge of each face that is a diagonal as good as the other one. It is the best of both its faces: in long cells,
+    /// sides are nearly as good.
     fn diagonals(&self) -> Vec<Option<usize>> {
-        let mut diagonals: Vec<Option<usize>> = vec![None; self.of.faces.len()];
+        let worst = |[one, other]: [f64; 2]| one.abs().max(other.abs());
+        let best = |face: usize| {
+            let of_edge = |edge: usize| Some((edge, worst(self.cotangents(face, edge)?)));
+            let alike = (0..3)
+                .filter_map(of_edge)
+                .filter(|(_, worst)| *worst <= ALIKE);
+            let best = alike.min_by(|a, b| a.1.total_cmp(&b.1));
+            best.map(|(edge, _)| edge)
+        };
+        let mut diagonals: Vec<Option<usize>> = (0..self.of.faces.len()).map(best).collect();
         for face in 0..diagonals.len() {
-            for edge in 0..3 {
-                let Some((other, there)) = self.of.opposite(face, edge) else {
-                    continue;
-                };
-                let is_free = diagonals[face].is_none() && diagonals[other].is_none();
-                let sums = self.cotangents(face, edge);
-                let are_alike = |sums: [f64; 2]| sums.iter().all(|sum| sum.abs() <= ALIKE);
-                if is_free && sums.is_some_and(are_alike) {
-                    diagonals[face] = Some(edge);
-                    diagonals[other] = Some(there);
-                }
+            let of = diagonals[face].and_then(|edge| self.of.opposite(face, edge));
+            if of.is_none_or(|(other, there)| diagonals[other] != Some(there)) {
+                diagonals[face] = None;
             }
         }
         diagonals
