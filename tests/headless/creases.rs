@@ -116,8 +116,8 @@ fn creases_end_with_the_component_and_with_the_surface() {
 }
 
 /// A slit along the fold makes the grid a mesh, and one across tears that mesh. Four cells of the fold remain, of which the slits weaken
-/// those at their sides: it opens by less than a third of what it has left. Mended, it is a grid without creases. Folded over a
-/// column, or over a row.
+/// those at their sides: it opens by less than a third of what it has left. Mended, it is a grid without creases: it opens until
+/// it yields no more. Folded over a column, or over a row.
 #[test]
 fn a_torn_sheet_stays_folded() {
     for is_tall in [false, true] {
@@ -154,7 +154,8 @@ fn a_torn_sheet_stays_folded() {
         change::<ClothTears>(&mut app, sheet, |tears| *tears = ClothTears::default());
         tick(&mut app, 192);
         let mended = open(&app, sheet);
-        assert!(mended > 0.97, "{mended}");
+        println!("mended {mended:.3}");
+        assert!(mended > whole + 0.1, "{mended} {whole}");
     }
 }
 

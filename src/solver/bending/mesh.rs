@@ -385,15 +385,17 @@ impl MeshBending {
         (0..count).map(row).collect()
     }
 
-    /// ½ xᵀ K x of one coordinate (J).
+    /// ½ xᵀ K x of one coordinate (J), by differences, as the forces are.
     pub fn energy(&self, places: &[f64]) -> f64 {
         let of_row = |row: usize| {
             let beside = self.entries[of(&self.first, row)].iter();
-            let beside = beside.map(|&(other, number)| f64::from(number) * places[other as usize]);
-            f64::from(self.diagonal[row]) * places[row] + beside.sum::<f64>()
+            let between = |&(other, number): &(u32, f32)| {
+                f64::from(number) * (places[other as usize] - places[row]).powi(2)
+            };
+            beside.map(between).sum::<f64>()
         };
-        let each = places.iter().enumerate();
-        each.map(|(row, place)| place * of_row(row)).sum::<f64>() / 2.0
+        // Each pair is seen from both ends.
+        -(0..places.len()).map(of_row).sum::<f64>() / 4.0
     }
 }
 

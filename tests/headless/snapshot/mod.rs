@@ -169,8 +169,8 @@ fn what_is_wrong_with_a_snapshot_is_said() {
     assert_eq!(
         error,
         SnapshotError::Version {
-            found: 3,
-            expected: 2
+            found: 4,
+            expected: 3
         }
     );
     // A particle that there is not: of what is attached, and of what touches.

@@ -75,7 +75,7 @@ fn turned(faces: &[[u32; 3]], places: &[DVec3]) -> Triangulation {
 #[test]
 fn diagonals_of_squares_become_parallel() {
     let all = (SIDE * SIDE) as usize;
-    for (jitter, wide) in [(0.0, 1.0), (0.05, 1.0), (0.0, 8.0), (0.0, 0.125)] {
+    for (jitter, wide) in [(0.0, 1.0), (0.025, 1.0), (0.0, 8.0), (0.0, 0.125)] {
         let (regular, mut places) = square(jitter, 1, |_, _| true);
         places.iter_mut().for_each(|place| place.x *= wide);
         assert_eq!(turned(&regular, &places).faces(), regular);
@@ -97,11 +97,12 @@ fn diagonals_of_squares_become_parallel() {
 }
 
 /// The same vertices, as many faces, none turned over, the same area; and what lies beside each is what a new look at the faces
-/// finds. Before diagonals are aligned, no edge is worse than the other diagonal.
+/// finds. Before diagonals are aligned, no edge is worse than the other diagonal. Moved by less than a quarter, no face begins turned
+/// over.
 #[test]
 fn irregular_faces_become_about_delaunay() {
     for seed in 0..40 {
-        let (faces, places) = square(0.35, seed, random(seed));
+        let (faces, places) = square(0.24, seed, random(seed));
         let found = turned(&faces, &places);
         let area = |[a, b, c]: &[u32; 3]| {
             let [a, b, c] = [a, b, c].map(|corner| places[*corner as usize]);

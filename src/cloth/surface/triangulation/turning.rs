@@ -10,8 +10,8 @@ use bevy::{
 use super::faces::{Triangulation, sorted};
 
 /// Sum of the cotangents of the two angles that an edge is seen under: below −`ALIKE`, the other diagonal is better; within
-/// ±`ALIKE` for both, they are as good. Squares whose vertices are out of place by a twentieth of a side, in x and in y, reach 0.4.
-pub(super) const ALIKE: f64 = 0.4;
+/// ±`ALIKE` for both, they are as good. Squares whose vertices are out of place by a fortieth of a side, in x and in y, reach 0.2.
+pub(super) const ALIKE: f64 = 0.2;
 /// Cosine of the largest angle between faces, and between their grains, that count as one plane and one grain.
 const FLAT: f64 = 0.995;
 /// Area of the smaller face after a turn, as a fraction of that of both.
