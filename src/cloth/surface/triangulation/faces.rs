@@ -7,6 +7,7 @@ pub(crate) struct Triangulation {
     /// In the order of the edges: the first is that from the first corner to the second. None where an edge does not have two
     /// faces.
     pub(super) across: Vec<[Option<u32>; 3]>,
+    /// In their order: a torn surface repeats them.
     pub(super) turns: Vec<Turn>,
 }
 
@@ -69,8 +70,8 @@ impl Triangulation {
         [0, 1, 2].map(|edge| {
             let other = self.across[face][edge]?;
             let ends = self.edge(face, edge);
-            let corners = self.faces[other as usize].into_iter();
-            corners.into_iter().find(|corner| !ends.contains(corner))
+            let mut corners = self.faces[other as usize].into_iter();
+            corners.find(|corner| !ends.contains(corner))
         })
     }
 
