@@ -28,9 +28,6 @@
 //! | B | next search method |
 //! | C | next contact method: automatic, particles, triangles |
 
-#[path = "shared/mod.rs"]
-mod shared;
-
 use std::{f32::consts::TAU, process::ExitCode};
 
 use bevy::{color::palettes::css, light::NotShadowCaster, prelude::*};
@@ -38,12 +35,11 @@ use bevy_drape::{
     hierarchy::{BoundRule, BoundingVolume},
     prelude::*,
 };
+use examples_shared::headless::{Picture, Run};
+use examples_shared::stage::{Grid, Shot, StagePlugin};
+use examples_shared::workshop::{Weave, Workshop};
+use examples_shared::{measured::median, report::print, start::Example};
 use serde::Serialize;
-
-use crate::shared::headless::{Picture, Run};
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::{Grid, Shot, StagePlugin};
-use crate::shared::{measured::median, parts::report::print, start::Example};
 
 /// Width of a cloth (m). This and all places are sums of few powers of two, so that the cloths differ by nothing, not even
 /// by rounding.

@@ -5,11 +5,11 @@ use std::{process::ExitCode, time::Instant};
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::PhysicsSet;
+use examples_shared::{depth::Placed, report::Report};
+use examples_shared::{headless::Run, measured::median};
 use serde::Serialize;
 
 use crate::scene::{self, Ball};
-use crate::shared::parts::{depth::Placed, report::Report};
-use crate::shared::{headless::Run, measured::median};
 
 /// The printed report: times are medians over all ticks, the rest is the largest of any tick.
 #[derive(Serialize)]

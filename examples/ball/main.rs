@@ -33,17 +33,12 @@
 
 mod headless;
 mod scene;
-#[path = "../shared/mod.rs"]
-mod shared;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_drape::plugin::ClothColliderSpeed;
-
-// Where the scene looks for it: the lab shows that scene as well.
-use crate::shared::parts::physics;
-use crate::shared::{parts::arrows::up_down, start::Example, window::Keys};
+use examples_shared::{arrows::up_down, start::Example, window::Keys};
 
 fn main() -> ExitCode {
     Example {

@@ -8,13 +8,10 @@ use bevy_drape::{
 };
 use bevy_rapier3d::prelude::{Collider, PhysicsSet, RigidBody, Velocity};
 use bevy_transform_interpolation::prelude::TransformInterpolation;
-
-use crate::{
+use examples_shared::{
     physics::PhysicsPlugin,
-    shared::{
-        stage::{Grid, Shot, StagePlugin},
-        woven::{Weave, woven},
-    },
+    stage::{Grid, Shot, StagePlugin},
+    woven::{Weave, woven},
 };
 
 /// Width of the cloth (m): 16 particles of the paper, 0.2 m apart.

@@ -26,14 +26,11 @@
 
 mod models;
 mod scene;
-#[path = "../shared/mod.rs"]
-mod shared;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-
-use crate::shared::{parts::report, stage::Shot, start::Example};
+use examples_shared::{report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {

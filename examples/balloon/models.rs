@@ -3,8 +3,7 @@
 use std::f32::consts::TAU;
 
 use bevy::prelude::*;
-
-use crate::shared::parts::surfaces::smooth;
+use examples_shared::surfaces::smooth;
 
 /// How far the discs are apart in their middle (m): vertices in the same place would be one particle.
 const APART: f32 = 0.004;

@@ -2,12 +2,12 @@
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
+use examples_shared::arrows::{right_left, up_down};
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Weave, Workshop};
 
 use crate::models::discs;
-use crate::shared::parts::arrows::{right_left, up_down};
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
 
 /// Radius of the discs that a balloon is made of (m).
 const RADIUS: f32 = 0.28;

@@ -34,14 +34,11 @@
 mod hero;
 mod model;
 mod scene;
-#[path = "../shared/mod.rs"]
-mod shared;
 
 use std::{env, path::Path, process::ExitCode};
 
 use bevy::prelude::*;
-
-use crate::shared::{parts::report, stage::Shot, start::Example};
+use examples_shared::{report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     if env::args().any(|argument| argument == "--write-model") {

@@ -8,11 +8,11 @@ use bevy::{
 };
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
+use examples_shared::stage::{Grid, StagePlugin};
+use examples_shared::workshop::{Weave, Workshop};
+use examples_shared::{arrows::up_down, headless::TickByTick, window::Keys};
 
 use crate::hero::{Hero, animate, go, load_moves, prepare_player};
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::{Grid, StagePlugin};
-use crate::shared::{headless::TickByTick, parts::arrows::up_down, window::Keys};
 
 /// What `model/` writes: metres, y up, the ground at 0.
 pub const HERO: &str = "models/hero.glb";

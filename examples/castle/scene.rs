@@ -4,11 +4,10 @@ use std::f32::consts::TAU;
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
-
-use crate::shared::parts::arrows::up_down;
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
+use examples_shared::arrows::up_down;
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Weave, Workshop};
 
 /// Length of a flag, and of its pole (m).
 const LENGTH: f32 = 1.5;

@@ -5,11 +5,10 @@ use std::f32::consts::TAU;
 use bevy::{math::Affine2, prelude::*};
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
-
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::parts::{arrows::up_down, surfaces::turned};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Weave, Workshop};
+use examples_shared::{arrows::up_down, surfaces::turned};
 
 /// Particles around the skirt for one from its waist to its hem.
 const AROUND: u32 = 5;

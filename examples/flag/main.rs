@@ -1,7 +1,7 @@
 //! A flag in the wind, on a swaying pole.
 //!
 //! `ClothAttachments` tie the flag's left column to the pole. The resource `ClothWind` blows it: a velocity, gusts and
-//! turbulence. The keys change only that resource (`shared/windy.rs`). The scene is in `scene.rs`.
+//! turbulence. The keys change only that resource (`examples/shared/windy.rs`). The scene is in `scene.rs`.
 //!
 //! ```sh
 //! cargo run --example flag                         # a window, or headless where no window opens
@@ -26,14 +26,11 @@
 //! | C | next contact method: automatic, particles, triangles |
 
 mod scene;
-#[path = "../shared/mod.rs"]
-mod shared;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-
-use crate::shared::{parts::report, stage::Shot, start::Example};
+use examples_shared::{report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {

@@ -5,10 +5,9 @@ use std::f32::consts::TAU;
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
-
-use crate::shared::parts::windy;
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::StagePlugin;
+use examples_shared::stage::StagePlugin;
+use examples_shared::windy;
+use examples_shared::workshop::{Weave, Workshop};
 
 /// Length of the flag, and height of its upper edge (m).
 const LENGTH: f32 = 1.8;

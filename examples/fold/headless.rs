@@ -4,10 +4,10 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
+use examples_shared::{headless::Run, report::Report};
 use serde::Serialize;
 
 use crate::scene::Crossings;
-use crate::shared::{headless::Run, parts::report::Report};
 
 /// The printed report.
 #[derive(Serialize)]

@@ -2,11 +2,10 @@
 
 use bevy::prelude::*;
 use bevy_drape::{contact::intersections, plugin::ClothBuilt, prelude::*};
-
-use crate::shared::parts::figure::{Figure, FigurePlugin};
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
+use examples_shared::figure::{Figure, FigurePlugin};
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Weave, Workshop};
 
 /// Width of the cloth (m).
 const WIDTH: f32 = 0.6;

@@ -11,8 +11,6 @@
 //! Each runs by itself as well, by `cargo run --example NAME`; it says its keys in the panel beside it.
 
 mod movie;
-#[path = "../shared/pixels.rs"]
-mod pixels;
 mod sheet;
 
 use std::{
@@ -22,11 +20,9 @@ use std::{
 };
 
 use clap::Parser;
+use examples_shared::pixels::Pixels;
 
-use crate::{
-    movie::{FRAME_TICKS, FRAMES, SCENES, TICKS_A_SECOND},
-    pixels::Pixels,
-};
+use crate::movie::{FRAME_TICKS, FRAMES, SCENES, TICKS_A_SECOND};
 
 /// An example, and what the pictures show that it makes.
 struct Entry {

@@ -2,9 +2,8 @@
 
 use std::{fs, io::BufWriter, path::Path};
 
+use examples_shared::pixels::{Palette, Pixels};
 use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, EncodingError, Filter, Writer};
-
-use crate::pixels::{Palette, Pixels};
 
 /// How long a frame is shown: ticks of 1/64 s.
 pub const FRAME_TICKS: u16 = 5;

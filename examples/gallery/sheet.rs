@@ -10,9 +10,8 @@ use bevy_egui::egui::{
     Color32, FontDefinitions, FontId,
     epaint::text::{Fonts, FontsView, TextOptions},
 };
+use examples_shared::pixels::Pixels;
 use png::{Decoder, Transformations};
-
-use crate::pixels::Pixels;
 
 /// Pictures in a row.
 const COLUMNS: usize = 3;

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
+use examples_shared::{headless::Run, report::Report};
 use serde::Serialize;
 
 use crate::scene::{self, Ball};
-use crate::shared::{headless::Run, parts::report::Report};
 
 /// The printed report.
 #[derive(Serialize)]

@@ -6,11 +6,10 @@ use bevy_rapier3d::prelude::{
     Ccd, Collider, ColliderMassProperties, PhysicsSet, RigidBody, Velocity,
 };
 use bevy_transform_interpolation::prelude::TransformInterpolation;
-
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::parts::{arrows::up_down, physics::PhysicsPlugin};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Weave, Workshop};
+use examples_shared::{arrows::up_down, physics::PhysicsPlugin};
 
 /// Length of the cloth, and in which part of its size its posts stand once it hangs.
 const LENGTH: f32 = 2.4;

@@ -4,13 +4,13 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_drape::{contact::intersections, prelude::*};
+use examples_shared::{
+    headless::Run,
+    report::{Report, is_now},
+};
 use serde::Serialize;
 
 use crate::scene::{self, Peg};
-use crate::shared::{
-    headless::Run,
-    parts::report::{Report, is_now},
-};
 
 /// When a peg of the bath towel comes off, when a hand takes the sheet, and when it lets go (s).
 const TAKEN_OFF: f32 = 2.0;

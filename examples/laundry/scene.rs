@@ -5,10 +5,9 @@ use std::f32::consts::FRAC_PI_2;
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
-
-use crate::shared::parts::workshop::{Paint, Weave, Workshop};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Paint, Weave, Workshop};
 
 /// Height of the line, and distance between the posts (m).
 const LINE: f32 = 1.9;

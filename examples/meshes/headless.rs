@@ -4,10 +4,9 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
+use examples_shared::headless::{Picture, Run};
+use examples_shared::{measured::median, report::print, stage::Shot};
 use serde::Serialize;
-
-use crate::shared::headless::{Picture, Run};
-use crate::shared::{measured::median, parts::report::print, stage::Shot};
 
 /// The pictures: each cloth by itself.
 const SHOTS: [(&str, Shot); 3] = [

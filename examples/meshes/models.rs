@@ -3,8 +3,7 @@
 use std::f32::consts::TAU;
 
 use bevy::prelude::*;
-
-use crate::shared::parts::surfaces::{rings_of_triangles, surface};
+use examples_shared::surfaces::{rings_of_triangles, surface};
 
 /// A pennant: from its staff, `height` m along −y, to a point `length` m along +x, with `count` triangles along either side.
 pub fn pennant(height: f32, length: f32, count: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {

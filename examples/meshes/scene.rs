@@ -5,10 +5,10 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use bevy::{gltf::GltfAssetLabel, math::Affine2, prelude::*};
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
+use examples_shared::stage::StagePlugin;
+use examples_shared::workshop::{Weave, Workshop};
 
 use crate::models;
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::StagePlugin;
 
 /// The tent, as a modelling program exports it: metres, y up, the ground at 0.
 const TENT: &str = "models/tent.glb";

@@ -4,15 +4,13 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
+use examples_shared::{
+    headless::Run,
+    report::{Report, is_now},
+};
 use serde::Serialize;
 
-use crate::{
-    scene::{self, Plank},
-    shared::{
-        headless::Run,
-        parts::report::{Report, is_now},
-    },
-};
+use crate::scene::{self, Plank};
 
 /// When the swing is pushed (s).
 const PUSHED: f32 = 3.0;

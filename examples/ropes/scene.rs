@@ -4,13 +4,12 @@ use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{Collider, ColliderMassProperties, RigidBody, Velocity};
 use bevy_transform_interpolation::prelude::TransformInterpolation;
-
-use crate::shared::parts::{
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::{
     physics::PhysicsPlugin,
     workshop::{Paint, Weave, Workshop},
 };
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
 
 /// Half of the distances between the posts, their height, and their radius (m).
 const POSTS: Vec3 = Vec3::new(1.25, 2.7, 0.95);

@@ -4,9 +4,8 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
+use examples_shared::{headless::Run, report::Report};
 use serde::Serialize;
-
-use crate::shared::{headless::Run, parts::report::Report};
 
 /// The printed report.
 #[derive(Serialize, Resource, Default, Clone)]

@@ -26,14 +26,11 @@
 
 mod headless;
 mod scene;
-#[path = "../shared/mod.rs"]
-mod shared;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-
-use crate::shared::{stage::Shot, start::Example};
+use examples_shared::{stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {

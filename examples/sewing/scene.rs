@@ -5,10 +5,9 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
-
-use crate::shared::parts::workshop::{Paint, Weave, Workshop};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Paint, Weave, Workshop};
 
 /// Width of a panel, and its height (m).
 const WIDTH: f32 = 0.62;

@@ -4,10 +4,9 @@ use std::process::ExitCode;
 
 use bevy::{platform::collections::HashMap, prelude::*};
 use bevy_drape::{plugin::ClothContact, prelude::*};
+use examples_shared::{depth::Placed, report::Report};
+use examples_shared::{headless::Run, measured::median};
 use serde::Serialize;
-
-use crate::shared::parts::{depth::Placed, report::Report};
-use crate::shared::{headless::Run, measured::median};
 
 /// The printed report.
 #[derive(Serialize)]

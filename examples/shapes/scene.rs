@@ -4,9 +4,8 @@ use std::f32::consts::TAU;
 
 use bevy::{light::NotShadowCaster, mesh::VertexAttributeValues, prelude::*};
 use bevy_drape::prelude::*;
-
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::StagePlugin;
+use examples_shared::stage::StagePlugin;
+use examples_shared::workshop::{Weave, Workshop};
 
 /// Width of the cloth (m).
 const WIDTH: f32 = 2.4;

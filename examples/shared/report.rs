@@ -6,7 +6,7 @@ use bevy::time::Time;
 use bevy_drape::prelude::*;
 use serde::Serialize;
 
-use crate::shared::{
+use crate::{
     headless::{Picture, Run},
     measured::Figures,
 };

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
 use super::arrows::{right_left, up_down};
-use crate::shared::window::Keys;
+use crate::window::Keys;
 
 /// From one press to the next (m/s, rad).
 const STRONGER: f32 = 2.0;

@@ -2,8 +2,8 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 
-pub use crate::shared::woven::Weave;
-use crate::shared::{stage::Grid, woven::woven};
+pub use crate::woven::Weave;
+use crate::{stage::Grid, woven::woven};
 
 /// The material of a mesh.
 pub type Paint = MeshMaterial3d<StandardMaterial>;

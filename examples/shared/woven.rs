@@ -20,7 +20,6 @@ const TRANSLUCENCY: f32 = 0.22;
 
 /// Where a yarn that runs down lies above one that runs across.
 #[derive(Clone, Copy, PartialEq, Eq)]
-#[expect(dead_code, reason = "no example has all of them")]
 pub enum Weave {
     /// At every second crossing: muslin, canvas, gingham.
     Plain,

@@ -4,11 +4,11 @@ use std::process::ExitCode;
 
 use bevy::{platform::collections::HashMap, prelude::*};
 use bevy_drape::prelude::*;
+use examples_shared::headless::{Picture, Run};
+use examples_shared::{depth::Placed, report::Report};
 use serde::Serialize;
 
 use crate::scene::{self, Pull, Shown};
-use crate::shared::headless::{Picture, Run};
-use crate::shared::parts::{depth::Placed, report::Report};
 use crate::things::Thing;
 
 /// After which part of the time the cloth is pulled, and how long after that it is drawn again (s).

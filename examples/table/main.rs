@@ -30,15 +30,12 @@
 mod edges;
 mod headless;
 mod scene;
-#[path = "../shared/mod.rs"]
-mod shared;
 mod things;
 
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-
-use crate::shared::{stage::Shot, start::Example};
+use examples_shared::{stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     Example {

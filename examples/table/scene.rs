@@ -4,12 +4,12 @@ use bevy::prelude::*;
 use bevy_drape::{plugin::ClothBuilt, prelude::*};
 use bevy_rapier3d::prelude::{Collider, Friction, PhysicsSet, RigidBody, Velocity};
 use bevy_transform_interpolation::prelude::TransformInterpolation;
+use examples_shared::figure::{Figure, FigurePlugin};
+use examples_shared::physics::PhysicsPlugin;
+use examples_shared::stage::{Grid, StagePlugin};
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Weave, Workshop};
 
-use crate::shared::parts::figure::{Figure, FigurePlugin};
-use crate::shared::parts::physics::PhysicsPlugin;
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::{Grid, StagePlugin};
-use crate::shared::window::Keys;
 use crate::{
     edges::edges_through,
     things::{self, Thing},

@@ -4,11 +4,9 @@ use bevy::prelude::*;
 use bevy_drape::prelude::*;
 use bevy_rapier3d::prelude::{Collider, ColliderMassProperties, Friction, RigidBody, Velocity};
 use bevy_transform_interpolation::prelude::TransformInterpolation;
+use examples_shared::workshop::{Paint, Workshop};
 
-use crate::{
-    scene::SURFACE,
-    shared::parts::workshop::{Paint, Workshop},
-};
+use crate::scene::SURFACE;
 
 /// A body, and where it stands at first.
 #[derive(Component)]

@@ -4,15 +4,13 @@ use std::{process::ExitCode, time::Instant};
 
 use bevy::prelude::*;
 use bevy_drape::{contact::intersections, prelude::*};
+use examples_shared::{
+    headless::Run,
+    report::{Report, is_now},
+};
 use serde::Serialize;
 
-use crate::{
-    scene::Sword,
-    shared::{
-        headless::Run,
-        parts::report::{Report, is_now},
-    },
-};
+use crate::scene::Sword;
 
 /// When the sword slashes (s).
 const SLASHED: f32 = 2.5;

@@ -5,10 +5,9 @@ use std::f32::consts::FRAC_PI_2;
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_drape::prelude::*;
 use bevy_transform_interpolation::prelude::*;
-
-use crate::shared::parts::workshop::{Weave, Workshop};
-use crate::shared::stage::StagePlugin;
-use crate::shared::window::Keys;
+use examples_shared::stage::StagePlugin;
+use examples_shared::window::Keys;
+use examples_shared::workshop::{Weave, Workshop};
 
 /// Width and height of the banner, and the height of its upper edge (m).
 const SIZE: Vec2 = Vec2::new(1.2, 1.7);

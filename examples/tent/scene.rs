@@ -4,10 +4,9 @@ use std::f32::consts::TAU;
 
 use bevy::{math::Affine2, prelude::*};
 use bevy_drape::prelude::*;
-
-use crate::shared::parts::workshop::{Paint, Weave, Workshop};
-use crate::shared::parts::{surfaces::turned, windy};
-use crate::shared::stage::StagePlugin;
+use examples_shared::stage::StagePlugin;
+use examples_shared::workshop::{Paint, Weave, Workshop};
+use examples_shared::{surfaces::turned, windy};
 
 /// Poles around it: the roof hangs between them.
 const POLES: u32 = 12;

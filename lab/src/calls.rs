@@ -251,7 +251,8 @@ fn thousands(number: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     const COLUMNS: &str = "volume,level,draw_calls,vertices";
 

@@ -25,11 +25,9 @@ use bevy_drape::{
     hierarchy::{BoundRule, BoundingVolume},
     prelude::*,
 };
+use examples_shared::view::View;
 
-use crate::{
-    scene::{SHOT, ScenePlugin, moment_beyond},
-    view::View,
-};
+use crate::scene::{SHOT, ScenePlugin, moment_beyond};
 
 /// Every level of the tree.
 pub const WHOLE: RangeInclusive<usize> = 0..=usize::MAX;

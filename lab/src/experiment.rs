@@ -2,10 +2,11 @@
 
 use std::{fmt, path::PathBuf};
 
+use examples_shared::view::View;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::{Serialize, de::DeserializeOwned};
 
-use crate::{chart::Chart, record, view::View};
+use crate::{chart::Chart, record};
 
 /// One experiment: what it measures, what must hold of that, and what it looks like.
 pub trait Experiment {

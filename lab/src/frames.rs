@@ -1,6 +1,7 @@
 //! The paper's frame test: frames a second over its scene with the whole hierarchy drawn, by every volume, and not drawn.
 
 use bevy_drape::hierarchy::BoundingVolume;
+use examples_shared::view::View;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -8,7 +9,6 @@ use crate::{
     drawn::{Drawn, WHOLE},
     experiment::{Experiment, Run, Table},
     measure::{Spread, distinct, median, seconds},
-    view::View,
 };
 
 /// The paper's averages over its scene.

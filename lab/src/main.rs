@@ -36,26 +36,13 @@ mod pareto;
 #[path = "../../benches/hierarchy/parry.rs"]
 mod parry;
 mod peers;
-#[path = "../../examples/shared/physics.rs"]
-mod physics;
 mod record;
+mod scaling;
 #[path = "../../examples/ball/scene.rs"]
 mod scene;
-#[path = "../../examples/shared"]
-mod shared {
-    pub mod exact;
-    pub mod modes;
-    pub mod sheet;
-    pub mod smooth;
-    pub mod stage;
-    pub mod woven;
-}
-mod scaling;
 mod stability;
 mod table1;
 mod timed;
-#[path = "../../examples/shared/view.rs"]
-mod view;
 mod waves;
 
 use std::{path::PathBuf, process::ExitCode};
@@ -63,11 +50,9 @@ use std::{path::PathBuf, process::ExitCode};
 /// `meshes` calls the crate by this name: the crate's own tests include that file, too.
 use bevy_drape as library;
 use clap::{Parser, ValueEnum};
+use examples_shared::view::View;
 
-use crate::{
-    experiment::{Output, Run, conduct},
-    view::View,
-};
+use crate::experiment::{Output, Run, conduct};
 
 /// Measures speed and accuracy, and finds where methods fail
 #[derive(Parser)]
@@ -181,4 +166,15 @@ fn main() -> ExitCode {
         }
     }
     outcome
+}
+
+#[cfg(test)]
+mod tests {
+    use examples_shared::view::View;
+
+    /// As a program does at its start: tests have none of their own.
+    #[test]
+    fn a_view_is_tried_out_where_asked() {
+        View::was_tried_out();
+    }
 }

@@ -7,11 +7,9 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Air, Bending, Solver, TickStep},
 };
+use examples_shared::sheet::{GRAVITY, threads};
 
-use crate::{
-    meshes,
-    sheet::{GRAVITY, threads},
-};
+use crate::meshes;
 
 const DENSITY: f32 = 1.2;
 

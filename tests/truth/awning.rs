@@ -6,8 +6,7 @@ use bevy_drape::{
     cloth::ClothMaterial,
     solver::{Rest, Substepping, TickStep},
 };
-
-use crate::sheet::{GRAVITY, Sheet};
+use examples_shared::sheet::{GRAVITY, Sheet};
 
 /// Between both ends (m).
 const SPAN: f32 = 2.0;

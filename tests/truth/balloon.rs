@@ -5,8 +5,7 @@ use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
     solver::{Air, ClothPressure, Solver, TickStep},
 };
-
-use crate::sheet::threads;
+use examples_shared::sheet::threads;
 
 /// Two discs of this radius (m), sewn together around: rings of 6, 12, 18 … vertices.
 pub fn discs(radius: f32, rings: u32) -> TriangleMesh {

@@ -8,8 +8,7 @@ use bevy_drape::{
     contact::{ColliderShape, ContactSettings, Detection, MovingCollider, NarrowPhase},
     solver::{Solver, TickStep},
 };
-
-use crate::sheet::{GRAVITY, threads};
+use examples_shared::sheet::{GRAVITY, threads};
 
 const SPACING: f32 = 0.02;
 const FRICTION: f32 = 0.4;

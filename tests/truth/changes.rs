@@ -5,8 +5,7 @@ use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles},
     solver::{Control, PinMotion, Substepping, TickStep},
 };
-
-use crate::sheet::{Sheet, threads};
+use examples_shared::sheet::{Sheet, threads};
 
 const SECONDS: f32 = 1.0 / 60.0;
 

@@ -1,8 +1,7 @@
 //! With which power of the sub-step errors fall.
 
 use bevy_drape::solver::TickStep;
-
-use crate::smooth::Smooth;
+use examples_shared::smooth::Smooth;
 
 /// Below this, rounding counts (m).
 const ROUNDING: f64 = 4.0e-6;

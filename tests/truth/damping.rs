@@ -5,11 +5,9 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{DampingFrame, Solver, TickStep, TimeOrder},
 };
+use examples_shared::sheet::{Sheet, threads};
 
-use crate::{
-    meshes,
-    sheet::{Sheet, threads},
-};
+use crate::meshes;
 
 /// Time in which a stretch dies away (s).
 const RETARDATION: f32 = 2.0e-3;

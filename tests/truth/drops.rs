@@ -2,8 +2,7 @@
 
 use bevy::math::{Quat, Vec3};
 use bevy_drape::solver::TickStep;
-
-use crate::sheet::{Sheet, threads};
+use examples_shared::sheet::{Sheet, threads};
 
 /// Drops, and ticks of 1/64 s of each.
 const DROPS: u32 = 120;

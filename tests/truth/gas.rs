@@ -10,11 +10,9 @@ use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
     solver::{Air, ClothPressure, Solver, TickStep},
 };
+use examples_shared::sheet::threads;
 
-use crate::{
-    balloon::{discs, volume},
-    sheet::threads,
-};
+use crate::balloon::{discs, volume};
 
 /// A ball of this radius (m), its faces turned inwards if asked.
 fn ball(radius: f32, divisions: u32, inwards: bool) -> Surface {

@@ -16,26 +16,18 @@ mod distance;
 mod drape;
 mod drops;
 mod energy;
-#[path = "../../examples/shared/exact.rs"]
-mod exact;
 mod gas;
 mod hung;
 mod mesh;
 #[path = "../shared/meshes.rs"]
 mod meshes;
-#[path = "../../examples/shared/modes.rs"]
-mod modes;
 mod motion;
 mod plate;
 #[path = "../shared/scene.rs"]
 #[expect(dead_code, reason = "the lab asks for a scene's grid, no test does")]
 mod scene;
 mod scenes;
-#[path = "../../examples/shared/sheet.rs"]
-mod sheet;
 mod singular;
-#[path = "../../examples/shared/smooth.rs"]
-mod smooth;
 mod soft;
 mod strip;
 mod swings;

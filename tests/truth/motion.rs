@@ -2,8 +2,7 @@
 
 use bevy::math::{DVec3, Vec3};
 use bevy_drape::solver::{ClothSettings, TickStep};
-
-use crate::{
+use examples_shared::{
     modes::{hanging_period, hanging_places, hanging_shape},
     sheet::{GRAVITY, Sheet, threads},
 };

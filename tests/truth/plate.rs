@@ -5,8 +5,7 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Bending, Solver, TickStep},
 };
-
-use crate::sheet::{GRAVITY, Sheet, threads};
+use examples_shared::sheet::{GRAVITY, Sheet, threads};
 
 /// Particles along a side, spacing (m), and from where on all are held.
 const SIDE: u32 = 41;

@@ -2,8 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_drape::{cloth::ClothMaterial, solver::TickStep};
-
-use crate::sheet::{Sheet, threads};
+use examples_shared::sheet::{Sheet, threads};
 
 /// Seconds of each run, and how far a particle may be from the origin after it (m).
 const SECONDS: u32 = 1;

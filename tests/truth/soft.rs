@@ -2,8 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_drape::{cloth::ClothMaterial, solver::TickStep};
-
-use crate::{
+use examples_shared::{
     sheet::{GRAVITY, Sheet, threads},
     smooth::Smooth,
 };

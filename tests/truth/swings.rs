@@ -4,14 +4,14 @@ use bevy_drape::{
     cloth::ClothMaterial,
     solver::{ClothSettings, Control, TickStep},
 };
-
-use crate::{
-    catenary::catenary,
+use examples_shared::{
     modes::{
         ROOTS, hanging_found, hanging_period, membrane_found, membrane_period, taut_found, taut_sag,
     },
     sheet::{GRAVITY, threads},
 };
+
+use crate::catenary::catenary;
 
 /// Without bending and damping.
 fn cotton() -> ClothMaterial {

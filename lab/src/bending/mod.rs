@@ -267,7 +267,8 @@ fn panel(title: &str, first_style: usize, markers: Vec<(String, Vec<[f64; 2]>)>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn strips_droop_as_the_elastica() {

@@ -5,8 +5,7 @@ use bevy_drape::{
     cloth::{ClothMaterial, Spring, SpringKind, Springs},
     solver::{Solver, TickStep},
 };
-
-use crate::shared::sheet::{GRAVITY, Sheet, threads};
+use examples_shared::sheet::{GRAVITY, Sheet, threads};
 
 /// Free length (m), and mass per area (kg/m²).
 const LENGTH: f32 = 0.3;

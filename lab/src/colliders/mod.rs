@@ -194,7 +194,8 @@ fn touching(rows: &[Row]) -> impl Iterator<Item = &Row> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn colliders_are_measured_by_number_and_shape() {

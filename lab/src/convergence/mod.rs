@@ -3,13 +3,13 @@
 //! Errors are RMS distances after half a second to the same springs in f64, by explicit steps of 1/30,720 s.
 
 use bevy_drape::solver::{TickStep, TimeOrder};
+use examples_shared::smooth::Smooth;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series, number},
     experiment::{Experiment, Run, Table},
     measure::{distinct, exponent},
-    shared::smooth::Smooth,
 };
 
 const OURS: &str = "threads";
@@ -232,7 +232,8 @@ fn chart(rows: &[Row]) -> Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn errors_are_measured_by_both_methods() {

@@ -10,6 +10,7 @@ use std::{
 };
 
 use bevy_drape::hierarchy::BoundingVolume;
+use examples_shared::view::View;
 use serde::{Deserialize, Serialize};
 use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
 
@@ -18,7 +19,6 @@ use crate::{
     drawn::{Drawn, SMALL, WHOLE},
     experiment::{Experiment, Run, Table},
     measure::{Spread, distinct, median},
-    view::View,
 };
 
 /// Frames a second that are kept where the machine can.

@@ -311,7 +311,8 @@ fn of<'a>(rows: &'a [Row], volume: &'a str, rule: &'a str) -> impl Iterator<Item
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn missed_and_false_are_counted_apart() {

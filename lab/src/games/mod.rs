@@ -273,7 +273,8 @@ impl Play {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn each_scene_is_played_with_layers_and_without() {

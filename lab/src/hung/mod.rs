@@ -291,7 +291,8 @@ fn chart(rows: &[Row]) -> Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn each_way_of_pinning_is_played() {

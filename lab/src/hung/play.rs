@@ -7,8 +7,7 @@ use bevy_drape::{
     cloth::SpringKind,
     solver::{ClothSettings, Control, Substepping, TickStep},
 };
-
-use crate::shared::sheet::{Sheet, threads};
+use examples_shared::sheet::{Sheet, threads};
 
 /// Particles along a side, and its length (m).
 pub const SIDE: u32 = 64;

@@ -387,7 +387,8 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn cloth_on_cloth_is_measured_and_intersects_without() {

@@ -171,7 +171,8 @@ fn ms(rows: &[Row], near: u32, flags: Flags) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn far_flags_are_moved_less_often() {

@@ -348,7 +348,8 @@ fn get<'a>(rows: &'a [Row], scene: &str, choice: &str) -> Option<&'a Row> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn needs_are_complete_and_savings_are_exact() {

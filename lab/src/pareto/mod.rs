@@ -315,7 +315,8 @@ fn measure(run: &Run, case: &Case, reference: &Reference, ways: &[Way], turns: u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn pareto_is_complete_and_its_frontier_is_one() {

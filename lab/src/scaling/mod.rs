@@ -366,7 +366,8 @@ fn at(rows: &[Row], kind: Names, side: u32) -> Option<&Row> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn scaling_is_complete_and_the_rest_shape_hardly_grows() {

@@ -275,7 +275,8 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn stability_has_every_map() {

@@ -359,7 +359,8 @@ fn spread(rows: &[Row], volume: &str, rule: &str) -> Spread {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn table1_is_complete_and_misses_nothing() {

@@ -10,18 +10,17 @@ use bevy_drape::{
     cloth::ClothMaterial,
     solver::{ClothSettings, TickStep},
 };
+use examples_shared::{
+    modes::{
+        ROOTS, hanging_found, hanging_period, membrane_found, membrane_period, taut_found, taut_sag,
+    },
+    sheet::threads,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     experiment::{Experiment, Run, Table},
     measure::distinct,
-    shared::{
-        modes::{
-            ROOTS, hanging_found, hanging_period, membrane_found, membrane_period, taut_found,
-            taut_sag,
-        },
-        sheet::threads,
-    },
 };
 
 const HANGING: [(&str, Material, f64); 4] = [
@@ -256,7 +255,8 @@ impl Experiment for Waves {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn modes_are_measured_against_closed_forms() {

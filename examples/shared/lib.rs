@@ -1,0 +1,29 @@
+//! What examples and lab share: options, the window with its keys, the headless run, light and floor, fabric; and sheets
+//! without an app, with the truths that tests and lab hold them to.
+
+#![expect(
+    missing_docs,
+    reason = "what a name says needs no sentence: nothing here is published"
+)]
+
+pub mod arrows;
+pub mod depth;
+pub mod exact;
+pub mod figure;
+pub mod headless;
+pub mod measured;
+pub mod modes;
+pub mod physics;
+pub mod pixels;
+pub mod preparing;
+pub mod report;
+pub mod sheet;
+pub mod smooth;
+pub mod stage;
+pub mod start;
+pub mod surfaces;
+pub mod view;
+pub mod window;
+pub mod windy;
+pub mod workshop;
+pub mod woven;
