@@ -69,7 +69,7 @@ impl Experiment for Fabrics {
         for made in Made::ALL {
             for truth in Truth::ALL {
                 run.step();
-                if !truth.is_of(made) {
+                if !truth.is_of(made) || run.either(truth.is_slow(), false) {
                     continue;
                 }
                 // Only these are measured at more than one resolution.
@@ -203,7 +203,8 @@ fn chart(rows: &[Row]) -> Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{experiment::quick, view::View};
+    use crate::experiment::quick;
+    use examples_shared::view::View;
 
     #[test]
     fn what_is_even_is_true() {

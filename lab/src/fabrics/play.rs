@@ -5,8 +5,7 @@ use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface},
     solver::{Bending, Control, Solver, Substepping, TickStep},
 };
-
-use crate::shared::sheet::GRAVITY;
+use examples_shared::sheet::GRAVITY;
 
 /// A surface, its particles and its automatic sub-steps.
 pub struct Play {

@@ -2,9 +2,9 @@
 
 use bevy::math::Vec3;
 use bevy_drape::cloth::{ClothGrain, ClothMaterial, ClothStiffening, ClothWeft};
+use examples_shared::{modes::hanging_period, sheet::GRAVITY};
 
 use super::{play::Play, surfaces::Made};
-use crate::shared::{modes::hanging_period, sheet::GRAVITY};
 
 /// A measured value, and the expected one.
 pub struct Found {
@@ -67,6 +67,11 @@ impl Truth {
     /// Whether a surface has it: a grid cannot be cut at an angle, and one that stiffens is solved as a mesh.
     pub fn is_of(self, made: Made) -> bool {
         made != Made::Grid || !matches!(self, Self::Woven(45.0) | Self::Stiffening)
+    }
+
+    /// Whether it takes seconds of each surface: a short run leaves it out.
+    pub fn is_slow(self) -> bool {
+        matches!(self, Self::Stiff | Self::Upright)
     }
 
     /// How the names of woven sheets begin.
