@@ -3,7 +3,6 @@
 use std::{path::Path, thread, time::Duration};
 
 use bevy::{
-    asset::AssetPlugin,
     camera::visibility::{VisibilityClass, VisibilityPlugin},
     ecs::reflect::ReflectComponent,
     mesh::MeshPlugin,
@@ -19,7 +18,7 @@ use crate::support::*;
 /// An app with scenes and the assets of this crate.
 pub fn app_with_assets() -> App {
     with_plugins((
-        AssetPlugin::default(),
+        assets(),
         MeshPlugin,
         VisibilityPlugin,
         WorldSerializationPlugin,
@@ -100,7 +99,7 @@ fn flag_text() -> String {
 /// It is to the letter what the crate writes. If it is meant to differ, copy the new one there.
 #[test]
 fn the_file_is_what_is_written() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/flag.scn.ron");
+    let file = Path::new(&assets().file_path).join("scenes/flag.scn.ron");
     let written = flag_text();
     let known = std::fs::read_to_string(&file).unwrap_or_default();
     if known != written {

@@ -70,6 +70,14 @@ pub fn app_with_gizmos() -> App {
     ))
 }
 
+/// Loads from the assets of the plugin.
+pub fn assets() -> AssetPlugin {
+    AssetPlugin {
+        file_path: concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets").into(),
+        ..default()
+    }
+}
+
 /// An app with other plugins of ours.
 pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
     let mut app = App::new();

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use bevy::tasks::{AsyncComputeTaskPool, Task, TaskPool, block_on};
 
 use super::{recipe::Recipe, shared::Shared};
-use crate::{
-    cloth::{ClothError, ClothMaterial, ClothMaterialMap, StiffnessFactors, Surface, TriangleMesh},
-    hierarchy::QuadTree,
+use crate::cloth::{
+    ClothError, ClothMaterial, ClothMaterialMap, StiffnessFactors, Surface, TriangleMesh,
 };
 
 /// Ticks without a cloth that waits for it, after which a task is given up.
@@ -37,19 +36,13 @@ impl BuildRequest {
     ///
     /// # Errors
     /// Those of the surface, its grain, tears and map.
-    fn build(self, mesh: &TriangleMesh, alike: Option<&Shared>) -> Result<Shared, ClothError> {
-        let surface = match alike {
+    fn build(self, mesh: &TriangleMesh, alike: &[Arc<Shared>]) -> Result<Shared, ClothError> {
+        let surface = match alike.first() {
             Some(alike) => alike.surface.clone(),
             None => Arc::new(self.recipe.surface(mesh)?),
         };
         let factors = self.factors(&surface)?;
-        let has_diagonals = self.material.shear_compliance.is_finite();
-        let known = alike.filter(|alike| alike.has_tree(has_diagonals));
-        let tree = match known {
-            Some(alike) => alike.tree.clone(),
-            None => QuadTree::of_surface(&surface, has_diagonals),
-        };
-        let shared = Shared::new(self.recipe, &self.material, surface, factors, || tree);
+        let shared = Shared::new(self.recipe, &self.material, surface, factors, alike);
         // The first tick needs them.
         shared.surface.fans();
         shared.sheet();
@@ -97,11 +90,11 @@ impl AsyncBuilds {
     }
 
     /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`.
-    pub fn begin(&mut self, request: BuildRequest, mesh: TriangleMesh, alike: Option<Arc<Shared>>) {
+    pub fn begin(&mut self, request: BuildRequest, mesh: TriangleMesh, alike: Vec<Arc<Shared>>) {
         let pool = AsyncComputeTaskPool::get_or_init(TaskPool::default);
         self.all.push(Building {
             recipe: request.recipe.clone(),
-            task: pool.spawn(async move { request.build(&mesh, alike.as_deref()) }),
+            task: pool.spawn(async move { request.build(&mesh, &alike) }),
             idle: 0,
         });
     }

@@ -9,10 +9,7 @@ use super::{
     recipe::Recipe,
     shared::{Shared, Stiffnesses},
 };
-use crate::{
-    cloth::{ClothError, ClothMaterial, StiffnessFactors, Surface, TriangleMesh},
-    hierarchy::QuadTree,
-};
+use crate::cloth::{ClothError, ClothMaterial, StiffnessFactors, Surface, TriangleMesh};
 
 /// All shared data in use.
 #[derive(Resource, Debug, Default)]
@@ -35,7 +32,7 @@ impl SharedParts {
         make: impl FnOnce() -> Result<Surface, ClothError>,
     ) -> Result<Arc<Shared>, ClothError> {
         let alike = self.alike(recipe);
-        let surface = match alike.last() {
+        let surface = match alike.first() {
             Some(known) => known.surface.clone(),
             None => Arc::new(make()?),
         };
@@ -44,14 +41,7 @@ impl SharedParts {
         if let Some(known) = alike.iter().find(|known| known.stiffnesses == stiffnesses) {
             return Ok(known.clone());
         }
-        // A tree does not know of stiffness.
-        let has_diagonals = material.shear_compliance.is_finite();
-        let known = alike.iter().find(|known| known.has_tree(has_diagonals));
-        let tree = || match &known {
-            Some(known) => known.tree.clone(),
-            None => QuadTree::of_surface(&surface, has_diagonals),
-        };
-        let shared = Shared::new(recipe.clone(), material, surface.clone(), factors, tree);
+        let shared = Shared::new(recipe.clone(), material, surface, factors, &alike);
         Ok(self.keep(shared))
     }
 
@@ -89,7 +79,6 @@ impl SharedParts {
                 return Ok(None);
             }
         }
-        let alike = alike.into_iter().next();
         self.builds.begin(request.clone(), mesh()?, alike);
         Err(ClothError::MeshLoading)
     }

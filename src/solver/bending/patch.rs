@@ -45,9 +45,11 @@ pub(super) fn for_each_row(
         around[*next as usize] = (at / 6, at % 6);
         *next += 1;
     }
+    const NONE: u32 = u32::MAX;
     let mut numbers: Vec<(u32, f64)> = Vec::new();
+    // Where the number of each column is.
+    let mut place = vec![NONE; rows];
     for row in 0..rows {
-        numbers.clear();
         for &(patch, a) in &around[first[row] as usize..first[row + 1] as usize] {
             let (
                 Patch {
@@ -62,14 +64,19 @@ pub(super) fn for_each_row(
                 if product == 0.0 {
                     continue;
                 }
-                match numbers.iter_mut().find(|(known, _)| known == column) {
-                    Some((_, sum)) => *sum += stiffness * product,
-                    None => numbers.push((*column, stiffness * product)),
+                let place = &mut place[*column as usize];
+                if *place == NONE {
+                    *place = numbers.len() as u32;
+                    numbers.push((*column, 0.0));
                 }
+                numbers[*place as usize].1 += stiffness * product;
             }
         }
         numbers.sort_unstable_by_key(|(column, _)| *column);
         visit(row as u32, &numbers);
+        for (column, _) in numbers.drain(..) {
+            place[column as usize] = NONE;
+        }
     }
 }
 

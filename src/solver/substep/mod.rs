@@ -124,6 +124,11 @@ impl Solver {
         self.bending = bending;
     }
 
+    /// Its resistance to bending.
+    pub(crate) fn bending(&self) -> Option<&Bending> {
+        self.bending.as_ref()
+    }
+
     /// Sets how what resists its bending creases; `None` for not at all. `surface` and `material` are those that it was made with.
     pub(crate) fn set_creasing(
         &mut self,

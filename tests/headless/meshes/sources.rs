@@ -3,13 +3,8 @@
 use std::{thread, time::Duration};
 
 use bevy::{
-    asset::{AssetPlugin, LoadState},
-    camera::visibility::VisibilityPlugin,
-    gltf::GltfPlugin,
-    mesh::MeshPlugin,
-    prelude::*,
-    time::TimeUpdateStrategy,
-    world_serialization::WorldSerializationPlugin,
+    asset::LoadState, camera::visibility::VisibilityPlugin, gltf::GltfPlugin, mesh::MeshPlugin,
+    prelude::*, time::TimeUpdateStrategy, world_serialization::WorldSerializationPlugin,
 };
 use bevy_drape::prelude::*;
 
@@ -38,7 +33,7 @@ fn a_cloth_waits_for_its_mesh() {
 
 fn app_that_loads() -> App {
     with_plugins((
-        AssetPlugin::default(),
+        assets(),
         MeshPlugin,
         ImagePlugin::default(),
         VisibilityPlugin,
