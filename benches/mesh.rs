@@ -243,13 +243,17 @@ fn ticks(criterion: &mut Criterion) {
         app.world_mut().spawn((cloth, pins, awake));
         group.bench_function(name, |bencher| bencher.iter(|| app.update()));
     }
-    let changes: [(&str, fn(f32) -> ClothMaterialMap); 2] = [
+    let changes: [(&str, fn(f32) -> ClothMaterialMap); 3] = [
         ("density", |factor| ClothMaterialMap {
             density: ClothFactor::of(factor),
             ..Default::default()
         }),
         ("stretch", |factor| ClothMaterialMap {
             stretch: ClothFactor::of(factor),
+            ..Default::default()
+        }),
+        ("bending", |factor| ClothMaterialMap {
+            bending: ClothFactor::of(factor),
             ..Default::default()
         }),
     ];

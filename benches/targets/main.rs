@@ -17,7 +17,7 @@ const TURNS: usize = 15;
 
 fn main() {
     println!(
-        "sub-steps: Verlet and one sweep over structural and shear springs, no tethers; ns a spring\n"
+        "sub-steps: chains of structural and shear springs, no tethers; beside them one sweep of a naive layout; ns a spring\n"
     );
     println!(
         "{:>6} {:>9} {:>9} {:>9} {:>22} {:>15} {:>12}",

@@ -1,4 +1,4 @@
-//! What examples and lab share: options, the window with its keys, the headless run, light and floor, fabric; and sheets
+//! Shared by examples and lab: options, the window with its keys, the headless run, light and floor, fabric; and sheets
 //! without an app, with the truths that tests and lab hold them to.
 
 #![expect(

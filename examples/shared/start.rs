@@ -79,9 +79,7 @@ pub struct Example {
 impl Example {
     /// Does as the command line says.
     pub fn run(self) -> ExitCode {
-        if View::was_tried_out() {
-            return ExitCode::SUCCESS;
-        }
+        View::try_out_if_asked();
         let command = Options::command()
             .name(self.name)
             .about(format!("{} {OPENS}", self.about))

@@ -2,7 +2,7 @@
 
 use std::{
     env,
-    process::{Command, Stdio},
+    process::{Command, Stdio, exit},
 };
 
 use bevy::{
@@ -22,6 +22,8 @@ use bevy_drape::prelude::*;
 
 /// Says in a child process's environment which view it is to try out.
 const TO_TRY: &str = "BEVY_DRAPE_TRY_VIEW";
+/// The code that a process ends with that has tried a view out.
+const TRIED_OUT: i32 = 42;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum View {
@@ -88,19 +90,19 @@ impl View {
         }
     }
 
-    /// Whether this process was started only to try a view out, which is then done. To be asked before all else.
-    pub fn was_tried_out() -> bool {
+    /// Tries a view out and ends the process, if it was started only for that. To be called before all else.
+    pub fn try_out_if_asked() {
         let view = match env::var(TO_TRY).as_deref() {
             Ok("window") => Self::Window,
             Ok("offscreen") => Self::Offscreen,
-            _ => return false,
+            _ => return,
         };
         // Panics, or worse, where a display or an adapter is missing.
         App::new().add_plugins(view.plugins("trying out"));
-        true
+        exit(TRIED_OUT);
     }
 
-    /// Whether the plugins can be built. Asked of another process, which [was only started to try](Self::was_tried_out),
+    /// Whether the plugins can be built. Asked of another process, which [is only started to try](Self::try_out_if_asked),
     /// since neither winit nor wgpu nor a driver can be trusted to return an error.
     pub fn can_be_had(self) -> bool {
         if self == Self::Window
@@ -117,13 +119,13 @@ impl View {
         let tried = env::current_exe().and_then(|program| {
             Command::new(program)
                 // Of a program of tests, the one that tries the view out.
-                .arg("a_view_is_tried_out_where_asked")
+                .arg("a_view_is_tried_out_if_asked")
                 .env(TO_TRY, name)
                 .stdin(Stdio::null())
                 .stdout(Stdio::null())
                 .stderr(Stdio::null())
                 .status()
         });
-        tried.is_ok_and(|status| status.success())
+        tried.is_ok_and(|status| status.code() == Some(TRIED_OUT))
     }
 }

@@ -142,9 +142,7 @@ const EXPERIMENTS: [(Name, Conduct); 19] = [
 ];
 
 fn main() -> ExitCode {
-    if View::was_tried_out() {
-        return ExitCode::SUCCESS;
-    }
+    View::try_out_if_asked();
     let options = Options::parse();
     let view = if options.redraw {
         View::Nothing
@@ -174,7 +172,7 @@ mod tests {
 
     /// As a program does at its start: tests have none of their own.
     #[test]
-    fn a_view_is_tried_out_where_asked() {
-        View::was_tried_out();
+    fn a_view_is_tried_out_if_asked() {
+        View::try_out_if_asked();
     }
 }

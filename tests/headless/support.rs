@@ -73,7 +73,9 @@ pub fn app_with_gizmos() -> App {
 /// Loads from the assets of the plugin.
 pub fn assets() -> AssetPlugin {
     AssetPlugin {
-        file_path: concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets").into(),
+        // Asked at run time: checkouts may share a target folder.
+        file_path: std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the tests are")
+            + "/../../assets",
         ..default()
     }
 }

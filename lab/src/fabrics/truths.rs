@@ -69,7 +69,7 @@ impl Truth {
         made != Made::Grid || !matches!(self, Self::Woven(45.0) | Self::Stiffening)
     }
 
-    /// Whether it takes seconds of each surface: a short run leaves it out.
+    /// Whether it takes many seconds of each surface.
     pub fn is_slow(self) -> bool {
         matches!(self, Self::Stiff | Self::Upright)
     }

@@ -27,11 +27,12 @@ pub(crate) struct Shared {
     /// For contact of cloth with cloth: made when a cloth needs it.
     sheet: OnceLock<Arc<Sheet>>,
     /// The skinning by joints: made when a cloth has joints.
-    skinning: OnceLock<Skinning>,
+    skinning: OnceLock<Arc<Skinning>>,
 }
 
 impl Shared {
-    /// Builds springs, solver and tree of a surface, or takes those of `alike` that are the same: cloths with the same recipe.
+    /// Builds springs, solver and tree of a surface, or takes those of `alike` that are the same: they share its recipe and
+    /// surface.
     pub fn new(
         recipe: Recipe,
         material: &ClothMaterial,
@@ -63,6 +64,10 @@ impl Shared {
             });
             (springs, solver)
         });
+        // Neither knows of stiffness, but a sheet's patches are those of the tree.
+        let of_same_tree = alike.iter().filter(|of| of.has_tree(has_diagonals));
+        let sheet = of_same_tree.filter_map(|of| of.sheet.get()).next();
+        let skinning = alike.iter().filter_map(|of| of.skinning.get()).next();
         Self {
             recipe: Some(recipe),
             stiffnesses,
@@ -70,8 +75,8 @@ impl Shared {
             surface,
             springs,
             tree,
-            sheet: OnceLock::new(),
-            skinning: OnceLock::new(),
+            sheet: sheet.cloned().map_or_else(OnceLock::new, OnceLock::from),
+            skinning: skinning.cloned().map_or_else(OnceLock::new, OnceLock::from),
         }
     }
 
@@ -88,7 +93,7 @@ impl Shared {
 
     /// The skinning of its particles by joints, if it has been made.
     pub fn known_skinning(&self) -> Option<&Skinning> {
-        self.skinning.get()
+        self.skinning.get().map(Arc::as_ref)
     }
 
     /// The skinning of its particles by joints; `None` if it is not made from an asset.
@@ -106,7 +111,7 @@ impl Shared {
             return Ok(Some(known));
         }
         let made = make(source, &self.surface)?;
-        Ok(Some(self.skinning.get_or_init(|| made)))
+        Ok(Some(self.skinning.get_or_init(|| Arc::new(made))))
     }
 }
 
@@ -121,6 +126,8 @@ pub(crate) struct Stiffnesses {
 struct Stiffness {
     /// Compliances along weft and warp, and of shear (m/N).
     springs: ([f32; 2], f32),
+    /// Whether anything differs along weft and warp: a mesh's springs depend on that.
+    is_woven: bool,
     stiffening: Option<ClothStiffening>,
     /// Flexural rigidities of strips along weft and warp (N·m).
     bending: [f32; 2],
@@ -139,14 +146,14 @@ impl Stiffnesses {
         Stiffness::of(a) == Stiffness::of(b)
     }
 
-    /// Whether springs of one surface are the same.
+    /// Whether a surface has the same springs with both.
     fn has_springs_of(&self, other: &Self) -> bool {
-        let springs = |of: &Stiffness| (of.springs, of.stiffening);
+        let springs = |of: &Stiffness| (of.springs, of.is_woven, of.stiffening);
         springs(&self.everywhere) == springs(&other.everywhere)
             && self.factors.stretch == other.factors.stretch
     }
 
-    /// Whether one surface resists bending alike.
+    /// Whether a surface resists bending alike with both.
     fn bends_as(&self, other: &Self) -> bool {
         self.everywhere.bending == other.everywhere.bending
             && self.factors.bending == other.factors.bending
@@ -157,6 +164,7 @@ impl Stiffness {
     fn of(material: &ClothMaterial) -> Self {
         Self {
             springs: (material.stretch_compliances(), material.shear_compliance),
+            is_woven: material.is_woven(),
             stiffening: material.stiffening,
             bending: material.bend_rigidities(),
         }
@@ -169,73 +177,141 @@ mod tests {
 
     use super::{super::shared_parts::SharedParts, *};
     use crate::{
-        cloth::{Cloth, ClothParticles, ClothTears, ClothWeft},
+        cloth::{Cloth, ClothParticles, ClothShape, ClothTears, ClothWeft, SpringStorage},
         meshes::irregular,
         solver::TickStep,
     };
 
-    /// Takes what stays the same: what a cloth gets after a change moves it, to the bit, as what is built anew. Grid and mesh,
-    /// each change of a material or of its factors, from each to each.
+    type Wanted = (ClothMaterial, Arc<StiffnessFactors>);
+
+    fn recipe(shape: &ClothShape, as_mesh: bool) -> Recipe {
+        Recipe {
+            grain: None,
+            tears: ClothTears::default(),
+            as_mesh,
+            shape: shape.clone(),
+            scale: Vec3::ONE,
+            source: None,
+        }
+    }
+
+    fn get(parts: &mut SharedParts, recipe: &Recipe, (material, factors): &Wanted) -> Arc<Shared> {
+        let of = |_: &Surface| Ok(factors.clone());
+        let surface = || recipe.surface(&Default::default());
+        let found = parts.get(recipe, material, of, surface);
+        found.expect("a surface")
+    }
+
+    /// A material, and changes of each of its parts and of its factors.
+    fn changes(particles: usize) -> [Wanted; 12] {
+        let material = ClothMaterial {
+            stretch_compliance: 1.0e-3,
+            bend_rigidity: 1.0e-4,
+            ..ClothMaterial::COTTON
+        };
+        let woven = |stretch_compliance: f32, bend_rigidity: f32| ClothMaterial {
+            weft: Some(ClothWeft {
+                stretch_compliance,
+                bend_rigidity,
+            }),
+            ..material
+        };
+        let alone = |material: ClothMaterial| (material, Arc::default());
+        let painted = |seed: usize| -> Vec<f32> {
+            let of = |index: usize| 1.0 + ((index * seed) % 7) as f32;
+            (0..particles).map(of).collect()
+        };
+        let factors = |stretch: usize, bending: usize| {
+            let [stretch, bending] = [stretch, bending].map(painted);
+            (material, Arc::new(StiffnessFactors { stretch, bending }))
+        };
+        [
+            alone(material),
+            alone(ClothMaterial {
+                stretch_compliance: 2.0e-3,
+                ..material
+            }),
+            alone(ClothMaterial {
+                shear_compliance: f32::INFINITY,
+                ..material
+            }),
+            alone(ClothMaterial {
+                bend_rigidity: 3.0e-4,
+                ..material
+            }),
+            alone(ClothMaterial {
+                bend_rigidity: 0.0,
+                ..material
+            }),
+            alone(ClothMaterial {
+                stiffening: Some(ClothStiffening {
+                    strain: 0.01,
+                    factor: 5.0,
+                }),
+                ..material
+            }),
+            alone(woven(4.0e-3, 1.0e-4)),
+            alone(woven(1.0e-3, 4.0e-4)),
+            factors(3, 3),
+            factors(5, 3),
+            factors(3, 5),
+            factors(5, 5),
+        ]
+    }
+
+    /// Grid, grid as a mesh, and mesh move alike, to the bit, whether their parts are taken from others or made anew.
     #[test]
     fn parts_that_are_taken_are_as_new() {
         let mesh = irregular(0.5, 0.5, 0.1, 0.3);
-        for cloth in [
-            Cloth::new(6, 6, 0.1),
-            Cloth::triangles(mesh.positions, mesh.triangles),
+        let [grid, mesh] = [
+            Cloth::new(6, 6, 0.1).shape,
+            Cloth::triangles(mesh.positions, mesh.triangles).shape,
+        ];
+        for recipe in [
+            recipe(&grid, false),
+            recipe(&grid, true),
+            recipe(&mesh, false),
         ] {
-            let recipe = Recipe {
-                grain: None,
-                tears: ClothTears::default(),
-                as_mesh: false,
-                shape: cloth.shape.clone(),
-                scale: Vec3::ONE,
-                source: None,
-            };
-            let surface = || cloth.surface(Vec3::ONE);
-            let len = surface().expect("a surface").len();
-            let painted = |seed: usize| {
-                let of = |index: usize| 1.0 + ((index * seed) % 7) as f32;
-                (0..len).map(of).collect::<Vec<f32>>()
-            };
-            let of = |stretch: f32, bend: f32, weft: f32| ClothMaterial {
-                stretch_compliance: stretch,
-                bend_rigidity: bend,
-                weft: Some(ClothWeft {
-                    stretch_compliance: weft,
-                    bend_rigidity: bend,
-                }),
-                ..ClothMaterial::COTTON
-            };
-            let factors = |stretch: usize, bending: usize| {
-                Arc::new(StiffnessFactors {
-                    stretch: painted(stretch),
-                    bending: painted(bending),
-                })
-            };
-            let soft = of(1.0e-3, 1.0e-4, 1.0e-3);
-            let all = [
-                (soft, Arc::default()),
-                (of(2.0e-3, 1.0e-4, 1.0e-3), Arc::default()),
-                (of(1.0e-3, 3.0e-4, 1.0e-3), Arc::default()),
-                (of(1.0e-3, 1.0e-4, 4.0e-3), Arc::default()),
-                (soft, factors(3, 3)),
-                (soft, factors(5, 3)),
-                (soft, factors(3, 5)),
-            ];
-            let get = |parts: &mut SharedParts, (material, factors): &(ClothMaterial, Arc<_>)| {
-                let of = |_: &Surface| Ok(Arc::clone(factors));
-                let found = parts.get(&recipe, material, of, surface);
-                found.expect("a surface")
-            };
-            for (index, wanted) in all.iter().enumerate() {
-                let new = moved(&get(&mut SharedParts::default(), wanted), &wanted.0);
+            let surface = recipe.surface(&Default::default()).expect("a surface");
+            let all = changes(surface.len());
+            for wanted in &all {
+                let new = moved(
+                    &get(&mut SharedParts::default(), &recipe, wanted),
+                    &wanted.0,
+                );
                 for before in &all {
                     let mut parts = SharedParts::default();
-                    let _known = get(&mut parts, before);
-                    let taken = moved(&get(&mut parts, wanted), &wanted.0);
-                    assert_eq!(taken, new, "{index}");
+                    let _known = get(&mut parts, &recipe, before);
+                    let taken = moved(&get(&mut parts, &recipe, wanted), &wanted.0);
+                    assert_eq!(taken, new, "{before:?} {wanted:?}");
                 }
             }
+        }
+    }
+
+    /// What a change leaves as it is, is not made again.
+    #[test]
+    fn only_what_changes_is_made() {
+        let mesh = irregular(0.5, 0.5, 0.1, 0.3);
+        let shape = Cloth::triangles(mesh.positions, mesh.triangles).shape;
+        let recipe = recipe(&shape, false);
+        let surface = recipe.surface(&Default::default()).expect("a surface");
+        let all = changes(surface.len());
+        let mut parts = SharedParts::default();
+        let [material, stretch, bending, mapped, stretched, bent] =
+            [0, 1, 3, 8, 9, 10].map(|index| get(&mut parts, &recipe, &all[index]));
+        let springs = |of: &Shared| match of.springs.storage() {
+            SpringStorage::List(list) => Arc::as_ptr(list),
+            SpringStorage::Grid(..) => std::ptr::null(),
+        };
+        let bends = |of: &Shared| of.solver.bending().expect("it bends").matrix();
+        for (a, b) in [(&material, &bending), (&mapped, &bent)] {
+            assert_eq!(springs(a), springs(b));
+            assert_ne!(bends(a), bends(b));
+        }
+        for (a, b) in [(&material, &stretch), (&mapped, &stretched)] {
+            assert_ne!(springs(a), springs(b));
+            assert_eq!(bends(a), bends(b));
         }
     }
 

@@ -138,6 +138,11 @@ impl MeshBending {
         }
     }
 
+    #[cfg(test)]
+    pub fn diagonal(&self) -> &[f32] {
+        &self.diagonal
+    }
+
     pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
         self.weight = weight;
         self.is_soft = weight * self.bound(blocks) < LIMIT;

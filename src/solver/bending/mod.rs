@@ -76,6 +76,15 @@ impl Bending {
         Some(Self { of, factors })
     }
 
+    /// Where a mesh's matrix lies, to see which ones share it.
+    #[cfg(test)]
+    pub(crate) fn matrix(&self) -> Option<*const f32> {
+        match &self.of {
+            Kind::Grid(_) => None,
+            Kind::Mesh(mesh) => Some(mesh.diagonal().as_ptr()),
+        }
+    }
+
     /// In one of how many sub-steps of `dt` (s) it needs to bend, for all of them: their weights together leave it soft. For the
     /// fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable. A grid bends in each.
     pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {
