@@ -1,10 +1,7 @@
 //! Shared by examples and lab: options, the window with its keys, the headless run, light and floor, fabric; and sheets
 //! without an app, with the truths that tests and lab hold them to.
 
-#![expect(
-    missing_docs,
-    reason = "what a name says needs no sentence: nothing here is published"
-)]
+#![expect(missing_docs, reason = "names say enough: nothing here is published")]
 
 pub mod arrows;
 pub mod depth;

@@ -289,7 +289,7 @@ mod tests {
         }
     }
 
-    /// What a change leaves as it is, is not made again.
+    /// A change makes only those parts anew that depend on it.
     #[test]
     fn only_what_changes_is_made() {
         let mesh = irregular(0.5, 0.5, 0.1, 0.3);
