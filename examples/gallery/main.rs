@@ -41,7 +41,10 @@ const ENTRIES: &[Entry] = &[
     },
     Entry {
         name: "table",
-        pictures: &[("table.png", "a tablecloth, to be pulled away")],
+        pictures: &[(
+            "table.png",
+            "a tablecloth, to be pulled from under the dishes",
+        )],
     },
     Entry {
         name: "cape",

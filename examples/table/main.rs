@@ -1,8 +1,7 @@
 //! The tablecloth trick: the cloth is pulled off a laid table so fast that the dishes stay where they are.
 //!
-//! Rapier moves plates, cups, bottle and candlestick. Cloth can't carry heavy bodies, and two solids that press it from
-//! both sides pinch it. So the dishes stand on the table's own collider, raised by the cloth's thickness, and the cloth
-//! slides through the gap. It moves around the dishes and never pushes them.
+//! Rapier moves plates, cups, bottle and candlestick, which stand on the cloth. The table holds them through it, and while
+//! it goes, friction takes them along by some centimetres. Then they come down by its thickness.
 //!
 //! No edge or corner of the table pokes through the cloth: the picture shows the number of cloth triangles that a table
 //! edge crosses, counted by brute force.

@@ -16,20 +16,20 @@ use crate::{
 };
 
 /// Length and width of the cloth (m).
-const LENGTH: f32 = 1.7;
+const LENGTH: f32 = 1.55;
 const WIDTH: f32 = 1.3;
 /// Half of the size of the table's top, and how high its surface is (m).
 const TOP: Vec3 = Vec3::new(0.6, 0.02, 0.4);
 const HEIGHT: f32 = 0.72;
 /// Radius of a particle (m): half of the place that the cloth takes.
 const RADIUS: f32 = 0.002;
-/// How much more there is, so that it is not held fast between (m).
-const SPARE: f32 = 0.001;
-/// What things stand on, as long as the cloth is there (m).
-pub const SURFACE: f32 = HEIGHT + 2.0 * RADIUS + SPARE;
+/// How high things stand on the cloth (m).
+pub const SURFACE: f32 = HEIGHT + 2.1 * RADIUS;
+/// How far the cloth hangs over the edge away from the hand (m): more would whip over the table as it is pulled.
+const HEM: f32 = 0.06;
 /// How fast the hand becomes (m/s), how soon (m/s²), and after which way it lets go (m).
 const SPEED: f32 = 4.0;
-const ACCELERATION: f32 = 12.0;
+const ACCELERATION: f32 = 25.0;
 const WAY: f32 = 1.9;
 
 /// The scene, without a camera.
@@ -83,13 +83,9 @@ impl Pull {
 #[derive(Component)]
 struct Hand;
 
-/// The table's top, as the cloth touches it.
+/// The table's top.
 #[derive(Component)]
 struct Top;
-
-/// The same as things stand on it: higher by the cloth.
-#[derive(Component)]
-struct Support;
 
 fn spawn_table(mut shop: Workshop) {
     shop.commands
@@ -106,17 +102,15 @@ fn spawn_table(mut shop: Workshop) {
     shop.commands.spawn((
         Name::new("table"),
         Top,
+        (
+            RigidBody::Fixed,
+            Collider::cuboid(TOP.x, TOP.y, TOP.z),
+            Friction::coefficient(0.5),
+        ),
         ClothCollider::cuboid(size.x, size.y, size.z),
         plate,
         wood.clone(),
         middle,
-    ));
-    shop.commands.spawn((
-        Support,
-        RigidBody::Fixed,
-        Collider::cuboid(TOP.x, TOP.y, TOP.z),
-        Friction::coefficient(0.5),
-        middle.with_translation(middle.translation + Vec3::Y * (SURFACE - HEIGHT)),
     ));
     let leg = Vec3::new(0.05, HEIGHT - size.y, 0.05);
     let mesh = shop.mesh(Cuboid::from_size(leg));
@@ -132,7 +126,7 @@ fn spawn_table(mut shop: Workshop) {
         Name::new("hand"),
         Hand,
         TransformInterpolation,
-        Transform::from_xyz(0.5 * LENGTH, HEIGHT, 0.0),
+        Transform::from_xyz(end(), HEIGHT, 0.0),
     ));
 }
 
@@ -153,7 +147,7 @@ fn spawn_cloth(mut shop: Workshop) {
         Cloth::new(columns, rows, spacing).lying().centred(),
         Pins::none(),
         ClothMaterial {
-            friction: 0.3,
+            friction: 0.2,
             damping: 0.02,
             ..ClothMaterial::COTTON
         },
@@ -164,8 +158,13 @@ fn spawn_cloth(mut shop: Workshop) {
         ClothSelfCollision::default(),
         linen,
         ShowClothGizmos::nothing(),
-        Transform::from_xyz(0.0, HEIGHT + RADIUS, 0.0),
+        Transform::from_xyz(end() - 0.5 * LENGTH, HEIGHT + RADIUS, 0.0),
     ));
+}
+
+/// Where the end that the hand takes lies at first, along the table (m).
+fn end() -> f32 {
+    LENGTH - TOP.x - HEM
 }
 
 /// Whether a place is on the table or above.
@@ -173,18 +172,16 @@ pub fn is_on_table(place: Vec3) -> bool {
     place.x.abs() < TOP.x && place.z.abs() < TOP.z && place.y > HEIGHT - TOP.y
 }
 
-/// A new cloth is laid under things that stand as at first.
+/// A new cloth is laid below the things, which stand as at first.
 fn lay_again(
     particles: Single<&ClothParticles>,
     mut things: Query<(&Thing, &mut Transform, &mut Velocity)>,
-    support: Single<&mut Transform, (With<Support>, Without<Thing>)>,
     mut pull: ResMut<Pull>,
 ) {
     if !particles.is_empty() {
         return;
     }
     *pull = Pull::Not;
-    support.into_inner().translation.y = SURFACE - TOP.y;
     for (thing, mut transform, mut velocity) in &mut things {
         *transform = thing.0;
         *velocity = Velocity::default();
@@ -194,8 +191,7 @@ fn lay_again(
 /// The hand takes the right edge where it hangs, goes away with it, and lets go.
 fn pull(
     cloth: Single<Entity, With<Cloth>>,
-    hand: Single<&mut Transform, (With<Hand>, Without<Support>)>,
-    support: Single<&mut Transform, With<Support>>,
+    hand: Single<&mut Transform, With<Hand>>,
     grid: Res<Grid>,
     time: Res<Time>,
     mut pull: ResMut<Pull>,
@@ -204,7 +200,7 @@ fn pull(
     let mut hand = hand.into_inner();
     match *pull {
         Pull::Not => {
-            hand.translation.x = 0.5 * LENGTH;
+            hand.translation.x = end();
             commands.entity(*cloth).remove::<ClothAttachments>();
         }
         Pull::Begins => {
@@ -221,8 +217,6 @@ fn pull(
                 Pull::Goes(speed, way + step)
             } else {
                 commands.entity(*cloth).remove::<ClothAttachments>();
-                // Nothing is below things any more: they come down by the cloth's thickness.
-                support.into_inner().translation.y = HEIGHT - TOP.y;
                 Pull::Done
             };
         }

@@ -18,10 +18,6 @@ type Part = (Mesh, f32, Paint);
 /// A cylinder that is a part of a body's collider: its radius, and how high its ends are (m).
 type Solid = [f32; 3];
 
-/// Radius and length (m) of the capsule that the cloth meets in place of a body. It is round below, so that cloth which comes
-/// along the table slides under it: below an upright wall it would be pinched and torn.
-type Round = Option<(f32, f32)>;
-
 pub fn spawn(mut shop: Workshop) {
     let porcelain = shop.rough(Color::srgb(0.90, 0.90, 0.88), 0.25);
     let blue = shop.rough(Color::srgb(0.08, 0.22, 0.48), 0.25);
@@ -36,46 +32,39 @@ pub fn spawn(mut shop: Workshop) {
     });
     let wax = shop.rough(Color::srgb(0.93, 0.88, 0.76), 0.6);
 
-    let mut spawn = |name: &str,
-                     mass: f32,
-                     [x, z]: [f32; 2],
-                     parts: Vec<Part>,
-                     solids: &[Solid],
-                     round: Round| {
-        let home = Transform::from_xyz(x, SURFACE, z);
-        let solids = solids.iter().map(|&[radius, low, high]| {
-            let cylinder = Collider::cylinder(0.5 * (high - low), radius);
-            (Vec3::Y * 0.5 * (low + high), Quat::IDENTITY, cylinder)
-        });
-        let parts = parts.into_iter().map(|(mesh, height, material)| {
-            let place = Transform::from_xyz(0.0, height, 0.0);
-            (shop.mesh(mesh), material, place)
-        });
-        let parts: Vec<_> = parts.collect();
-        let mut thing = shop.commands.spawn((
-            Name::new(name.to_string()),
-            Thing(home),
-            home,
-            Visibility::default(),
-            TransformInterpolation,
-            (
-                RigidBody::Dynamic,
-                Velocity::default(),
-                Collider::compound(solids.collect()),
-                ColliderMassProperties::Mass(mass),
-                Friction::coefficient(0.5),
-            ),
-        ));
-        if let Some((radius, length)) = round {
-            thing.with_child((
-                ClothCollider::capsule(radius, length - 2.0 * radius),
-                Transform::from_xyz(0.0, 0.5 * length, 0.0),
+    let mut spawn =
+        |name: &str, mass: f32, [x, z]: [f32; 2], parts: Vec<Part>, solids: &[Solid]| {
+            let home = Transform::from_xyz(x, SURFACE, z);
+            let solids = solids.iter().map(|&[radius, low, high]| {
+                let cylinder = Collider::cylinder(0.5 * (high - low), radius);
+                (Vec3::Y * 0.5 * (low + high), Quat::IDENTITY, cylinder)
+            });
+            let parts = parts.into_iter().map(|(mesh, height, material)| {
+                let place = Transform::from_xyz(0.0, height, 0.0);
+                (shop.mesh(mesh), material, place)
+            });
+            let parts: Vec<_> = parts.collect();
+            let mut thing = shop.commands.spawn((
+                Name::new(name.to_string()),
+                Thing(home),
+                home,
+                Visibility::default(),
+                TransformInterpolation,
+                (
+                    RigidBody::Dynamic,
+                    Velocity::default(),
+                    Collider::compound(solids.collect()),
+                    ColliderMassProperties::Mass(mass),
+                    Friction::coefficient(0.5),
+                    // Cloth touches the body's own shape, carries it on the table, and rubs on it.
+                    RapierClothCollider,
+                    ClothPushBack,
+                ),
             ));
-        }
-        for part in parts {
-            thing.with_child(part);
-        }
-    };
+            for part in parts {
+                thing.with_child(part);
+            }
+        };
 
     for (side, number) in [(-1.0, 1), (1.0, 2)] {
         let plate = vec![
@@ -97,22 +86,14 @@ pub fn spawn(mut shop: Workshop) {
         ];
         let solids = [[0.11, 0.0, 0.02]];
         let name = format!("plate {number}");
-        // Flat, so that the cloth stays below it by itself.
-        spawn(&name, 0.5, [0.36 * side, 0.06 * side], plate, &solids, None);
+        spawn(&name, 0.5, [0.36 * side, 0.06 * side], plate, &solids);
         let cup = vec![
             (cylinder(0.036, 0.075), 0.0375, blue.clone()),
             (cylinder(0.031, 0.001), 0.0756, porcelain.clone()),
         ];
         let name = format!("cup {number}");
         let solids = [[0.036, 0.0, 0.075]];
-        spawn(
-            &name,
-            0.25,
-            [0.2 * side, -0.24 * side],
-            cup,
-            &solids,
-            Some((0.036, 0.075)),
-        );
+        spawn(&name, 0.25, [0.2 * side, -0.24 * side], cup, &solids);
     }
     let bottle = vec![
         (cylinder(0.038, 0.19), 0.095, glass.clone()),
@@ -122,8 +103,7 @@ pub fn spawn(mut shop: Workshop) {
         (cylinder(0.0105, 0.02), 0.315, cork),
     ];
     let solids = [[0.038, 0.0, 0.2], [0.013, 0.2, 0.325]];
-    let round = Some((0.038, 0.24));
-    spawn("bottle", 1.2, [0.07, -0.05], bottle, &solids, round);
+    spawn("bottle", 1.2, [0.07, -0.05], bottle, &solids);
     let candlestick = vec![
         (frustum(0.022, 0.055, 0.025), 0.0125, brass.clone()),
         (cylinder(0.009, 0.15), 0.1, brass.clone()),
@@ -131,15 +111,7 @@ pub fn spawn(mut shop: Workshop) {
         (cylinder(0.011, 0.14), 0.25, wax),
     ];
     let solids = [[0.055, 0.0, 0.02], [0.012, 0.02, 0.32]];
-    let round = Some((0.03, 0.32));
-    spawn(
-        "candlestick",
-        0.7,
-        [-0.12, 0.05],
-        candlestick,
-        &solids,
-        round,
-    );
+    spawn("candlestick", 0.7, [-0.12, 0.05], candlestick, &solids);
 }
 
 fn cylinder(radius: f32, height: f32) -> Mesh {

@@ -60,6 +60,7 @@ mod snapshot;
 mod soak;
 mod solids;
 mod spin;
+mod stands;
 mod startup;
 mod substepping;
 mod support;

@@ -34,6 +34,26 @@ impl BodyChange {
             && self.rotation.is_finite()
     }
 
+    /// The sum of this and another one.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            velocity: self.velocity + other.velocity,
+            angular_velocity: self.angular_velocity + other.angular_velocity,
+            translation: self.translation + other.translation,
+            rotation: self.rotation + other.rotation,
+        }
+    }
+
+    /// A multiple of it.
+    pub(crate) fn times(self, factor: f32) -> Self {
+        Self {
+            velocity: self.velocity * factor,
+            angular_velocity: self.angular_velocity * factor,
+            translation: self.translation * factor,
+            rotation: self.rotation * factor,
+        }
+    }
+
     /// The same change in a rotated frame.
     pub fn turned(self, rotation: Quat) -> Self {
         Self {
@@ -69,6 +89,8 @@ pub(crate) struct Body {
     /// Its motion when candidates were last searched for.
     searched: MovingCollider,
     change: BodyChange,
+    /// The part of that by what it stands on.
+    held: BodyChange,
     /// The particles that carry it while springs are solved.
     pub carriers: Carriers,
 }
@@ -131,8 +153,13 @@ impl Body {
             start: collider.clone(),
             searched: collider.clone(),
             change: BodyChange::default(),
+            held: BodyChange::default(),
             carriers,
         })
+    }
+
+    pub(super) fn mass(&self) -> &BodyMass {
+        &self.mass
     }
 
     /// The change of its motion so far in the tick.
@@ -140,9 +167,19 @@ impl Body {
         self.change
     }
 
+    /// The part of that change by what it stands on.
+    pub fn held(&self) -> BodyChange {
+        self.held
+    }
+
+    /// Notes that what it stands on has changed its motion since.
+    pub(super) fn add_held(&mut self, before: BodyChange) {
+        self.held = self.held.plus(self.change.plus(before.times(-1.0)));
+    }
+
     /// Begins the tick again. Returns the original motion.
     pub fn restart(&mut self) -> MovingCollider {
-        self.change = BodyChange::default();
+        (self.change, self.held) = Default::default();
         self.carriers.clear();
         self.start.clone()
     }
@@ -168,20 +205,22 @@ impl Body {
     }
 
     /// Shares a push between particles, which were pushed as if the body were static, and the body. Returns the
-    /// fraction of the momentum that the particles keep, and the body's displacement (m).
+    /// fraction of the momentum that the particles keep, and the body's displacement (m). A particle
+    /// may be forbidden to carry the body, by its outward normal there.
     pub fn share(
         &mut self,
         before: &Before,
         particles: &mut ClothParticles,
         moving: &mut MovingCollider,
         substep: SubStep,
+        may_carry: impl Fn(Vec3) -> bool,
     ) -> [f32; 2] {
         let (pose, centre) = self.centre(moving, substep.end());
         let out = |place: Vec3| moving.shape.nearest(pose, place).normal;
         let (mut places, mut moves) = (PushSum::default(), PushSum::default());
         for (index, old) in &before.0 {
             let new = &particles.blocks()[*index];
-            self.carriers.note(*index, [old, new], out);
+            self.carriers.note(*index, [old, new], out, &may_carry);
             for lane in 0..LANES {
                 let inverse_mass = new.inverse_mass(lane);
                 let position = new.position(lane);
@@ -260,7 +299,7 @@ impl Body {
     }
 
     /// Its pose at a fraction of the tick, and its centre of mass then (m).
-    fn centre(&self, moving: &MovingCollider, passed: f32) -> (Isometry3d, DVec3) {
+    pub(super) fn centre(&self, moving: &MovingCollider, passed: f32) -> (Isometry3d, DVec3) {
         let pose = moving.pose_at(passed);
         let arm = self.arm(&pose);
         (pose, (Vec3::from(pose.translation) + arm).as_dvec3())
@@ -273,7 +312,7 @@ impl Body {
 
     /// Updates its motion at the end of a sub-step of `dt` (s), with an additional displacement (m) and rotation (rad),
     /// and with a change of its displacement per sub-step. Returns the largest displacement of any of its points (m).
-    fn send_on(
+    pub(super) fn send_on(
         &mut self,
         moving: &mut MovingCollider,
         substep: SubStep,

@@ -13,7 +13,7 @@
 //! A particle has one inverse mass, the same along the surface and across it. It begins the sub-step with the body's
 //! momentum there, in all directions: a carried body rolls, and does not slide. (With the particle's own momentum along
 //! the surface instead, the body came to rest as soon, but without friction it fell through: its particles slipped
-//! aside.)
+//! aside.) Where cloth lies on something, bodies stand on that instead: see the module `standing`.
 
 use bevy::math::{DVec3, Mat3, Vec3};
 
@@ -93,15 +93,24 @@ impl Carriers {
             .binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
     }
 
-    /// Notes the particles of a block that the body has just pushed. `out` gives the outward normal at a point. Blocks
-    /// come in the order of the cloth.
-    pub fn note(&mut self, block: usize, [old, new]: [&Block; 2], out: impl Fn(Vec3) -> Vec3) {
+    /// Notes the particles of a block that the body has just pushed and that may carry it, by the outward normal that `out`
+    /// gives at a point. Blocks come in the order of the cloth.
+    pub fn note(
+        &mut self,
+        block: usize,
+        [old, new]: [&Block; 2],
+        out: impl Fn(Vec3) -> Vec3,
+        may_carry: impl Fn(Vec3) -> bool,
+    ) {
         for lane in 0..LANES {
             if new.inverse_mass(lane) == 0.0 || new.position(lane) == old.position(lane) {
                 continue;
             }
             let slot = Slot { block, lane };
             let normal = out(new.position(lane));
+            if !may_carry(normal) {
+                continue;
+            }
             let carrier = Carrier {
                 slot,
                 normal,

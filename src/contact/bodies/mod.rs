@@ -1,8 +1,11 @@
-//! Bodies with a mass, which cloth pushes back, and the particles that carry them between sub-steps.
+//! Bodies with a mass, which cloth pushes back, the particles that carry them between sub-steps, and bodies that stand on
+//! cloth which lies on something.
 
 mod body;
 mod carriers;
+mod standing;
 
 pub use body::BodyChange;
 pub(crate) use body::{Before, Body};
 pub(crate) use carriers::{Carrier, Carriers};
+pub(crate) use standing::{Near, Standing, Stood, Supports};

@@ -38,6 +38,8 @@ impl Detection {
         for body in &mut self.bodies {
             body.carriers.recall(of(body.id));
         }
+        self.supports.clear();
+        self.find_supports(particles, 0.0);
         self.attach_load(particles, SubStep::first_of(substeps));
     }
 
@@ -83,7 +85,10 @@ impl Detection {
     }
 }
 
-fn moving_of(colliders: &[(usize, MovingCollider)], id: usize) -> Option<&MovingCollider> {
+pub(super) fn moving_of(
+    colliders: &[(usize, MovingCollider)],
+    id: usize,
+) -> Option<&MovingCollider> {
     let known = colliders.iter().find(|(known, _)| *known == id);
     known.map(|(_, moving)| moving)
 }

@@ -1,7 +1,7 @@
 //! Cloth that is caught between two colliders.
 
 use super::Detection;
-use crate::cloth::ClothParticles;
+use crate::{cloth::ClothParticles, contact::candidates::Touch};
 
 /// Two colliders push against each other where the cosine of the angle between their normals is less: in a gap that opens by less
 /// than 60°, and not in the corner of a room.
@@ -12,6 +12,10 @@ impl Detection {
     pub(crate) fn caught_between(&self, particles: &ClothParticles) -> Option<[usize; 2]> {
         for (index, first) in self.touches.iter().enumerate() {
             for second in &self.touches[index + 1..] {
+                let stands = |a: &Touch, b: &Touch| self.supports.is_held_by(a.id, b.id);
+                if stands(first, second) || stands(second, first) {
+                    continue;
+                }
                 let pushed_by_first = self.points(first).filter(|point| point.depth > 0.0);
                 let others = &self.candidates.all[second.of.candidates.clone()];
                 let is_caught = |particle: u32| {

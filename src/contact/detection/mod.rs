@@ -8,13 +8,14 @@ mod margin;
 mod pinned_faces;
 mod push_out;
 mod requery;
+mod standing;
 
 use std::sync::Arc;
 
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
-    bodies::{Before, Body, BodyChange, Carriers},
+    bodies::{Before, Body, BodyChange, Carriers, Supports},
     candidates::{Candidates, ContactPoint, ContactSettings, NarrowPhase, SavedCandidates, Touch},
     colliders::{ColliderShape, MovingCollider},
     edges::ShapeCache,
@@ -53,6 +54,7 @@ pub struct Detection {
     /// Memory of earlier ones.
     spare: Vec<Carriers>,
     before: Before,
+    supports: Supports,
     shapes: ShapeCache,
 }
 
@@ -70,6 +72,7 @@ impl Detection {
         self.shapes.clear();
         self.colliders.clear();
         (self.spare).extend(self.bodies.drain(..).map(|body| body.carriers));
+        self.supports.clear();
         self.margin.begin(margin);
         self.requeries = 0;
     }
@@ -167,10 +170,14 @@ impl Detection {
 
     /// The change of a collider's motion by the cloth so far, if it is dynamic and was near.
     pub fn body_change(&self, id: usize) -> Option<BodyChange> {
-        self.bodies
-            .iter()
-            .find(|body| body.id == id)
-            .map(Body::change)
+        let body = self.bodies.iter().find(|body| body.id == id);
+        body.map(Body::change)
+    }
+
+    /// The part of that change by what the body stands on.
+    pub(crate) fn body_held(&self, id: usize) -> BodyChange {
+        let body = self.bodies.iter().find(|body| body.id == id);
+        body.map_or_else(BodyChange::default, Body::held)
     }
 
     /// Adds a collider after a number of sub-steps.
@@ -243,13 +250,16 @@ impl Detection {
         others: impl FnMut(&mut Vec<(usize, MovingCollider)>),
     ) -> bool {
         let has_carried = self.detach_load(particles, substep);
+        self.follow_rolling(particles, substep.end());
+        let has_stood = self.stand(particles, settings, substep, Body::stand);
         let is_pushed = self.push_out(particles, settings, substep, others);
+        self.stand(particles, settings, substep, Body::rub);
         if let Some(coming) = substep.next()
             && !self.bodies.is_empty()
         {
             self.attach_load(particles, coming);
         }
-        is_pushed || has_carried
+        is_pushed || has_carried || has_stood
     }
 
     /// The colliders that may touch.

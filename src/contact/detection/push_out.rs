@@ -1,6 +1,8 @@
 //! Pushes particles out of all colliders at the end of a sub-step.
 
-use super::{Detection, send_on};
+use bevy::math::Vec3;
+
+use super::{Detection, carrying::moving_of, send_on};
 use crate::{
     cloth::ClothParticles,
     contact::{
@@ -20,6 +22,9 @@ const MEASURED_EACH: u32 = 4;
 
 /// A particle is pushed by six triangles, by at least a third of each.
 const TRIANGLES_A_PUSH: f32 = 3.0;
+
+/// Cloth that pushes a body which stands more sideways than this cosine does not carry it.
+const SIDEWAYS: f32 = 0.7;
 
 impl Detection {
     /// Pushes particles out of the colliders. Returns whether anything moved.
@@ -48,7 +53,9 @@ impl Detection {
                 return is_pushed;
             }
             self.save_before(at, particles);
+            self.hide(at, particles, substep);
             let (found, stopped) = self.push_out_of(at, from, particles, settings, substep);
+            self.supports.show(particles);
             let given = self.share(at, &found, particles, substep);
             // Several triangles may push one particle.
             self.margin.note(found.farthest_push);
@@ -86,6 +93,21 @@ impl Detection {
         }
     }
 
+    /// Hides what lies flat below a body that stands, until [`Supports::show`](crate::contact::bodies::Supports::show).
+    fn hide(&mut self, at: usize, particles: &mut ClothParticles, substep: SubStep) {
+        let touch = &self.touches[at];
+        let contacts = &self.candidates.blocks[touch.of.blocks.clone()];
+        let (colliders, passed) = (&self.colliders, substep.end());
+        let nearest = |ground: usize, place: Vec3| {
+            let ground = moving_of(colliders, ground);
+            ground.map_or(f32::INFINITY, |ground| {
+                ground.nearest(passed, place).distance
+            })
+        };
+        let radius = self.particle_radius;
+        (self.supports).hide(touch.id, contacts, particles, radius, nearest);
+    }
+
     /// Pushes particles out of one collider. Returns what it did, and where to go on if candidates may be missing.
     fn push_out_of(
         &mut self,
@@ -118,6 +140,7 @@ impl Detection {
         let push_out = PushOut::new(particles.substep(), travel, shares);
         let lanes = lane_motion(&motion, settings, push_out, odometer);
         self.embedding.hide(touch.id, particles);
+        let has_hidden = self.supports.has_hidden();
         let (found, stopped) = match touch.narrow_phase {
             _ if has_edges => {
                 self.shapes.reserve(count);
@@ -135,6 +158,7 @@ impl Detection {
                     motion,
                     settings,
                     lanes: &lanes,
+                    has_hidden,
                 };
                 let edges = by_triangles.then_some(&*self.surface);
                 (push_shape(particles, &mut pushing, known, edges), None)
@@ -181,7 +205,12 @@ impl Detection {
             && found.farthest_push > 0.0
         {
             let mut moving = touch.collider.clone();
-            let [kept, gone] = body.share(&self.before, particles, &mut moving, substep);
+            // A wave that hits the side of a cup does not carry it.
+            let up = self
+                .supports
+                .up_of(touch.id, &self.colliders, substep.end());
+            let may_carry = |out: Vec3| up.is_none_or(|up| out.dot(up) < -SIDEWAYS);
+            let [kept, gone] = body.share(&self.before, particles, &mut moving, substep, may_carry);
             given.scale(f64::from(kept));
             touch.travelled += gone;
             self.margin.deviate(body.deviation(&moving, substep.end()));

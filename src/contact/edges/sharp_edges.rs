@@ -11,7 +11,7 @@ use super::{
     shape_memory::{Nearness, ShapeMemory},
 };
 use crate::{
-    cloth::{ClothParticles, Fan, Surface},
+    cloth::{ClothParticles, Fan, Slot, Surface},
     contact::{
         candidates::{Candidate, ContactSettings, Guard},
         colliders::ColliderSubstep,
@@ -188,6 +188,10 @@ impl OffEdges<'_, '_> {
         memory: &mut ShapeMemory,
     ) -> f32 {
         let (motion, near) = (self.motion, self.motion.near);
+        let is_pinned = |slot: &Slot| particles.blocks()[slot.block].inverse_mass(slot.lane) == 0.0;
+        if self.pushing.has_hidden && fan.corners.iter().all(is_pinned) {
+            return 0.0;
+        }
         self.view.look(
             particles.blocks(),
             fan.corners,

@@ -18,6 +18,8 @@ pub(crate) struct ParticlesNearEdges<'a> {
     pub motion: ColliderSubstep<'a>,
     pub settings: &'a ContactSettings,
     pub lanes: &'a LaneMotion,
+    /// Whether some are pinned only now, so that they are not pushed.
+    pub has_hidden: bool,
 }
 
 impl ParticlesNearEdges<'_> {

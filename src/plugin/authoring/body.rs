@@ -17,6 +17,9 @@ use crate::{cloth::ClothError, contact::BodyMass};
 /// [`ClothPush`]: the code that moves the body has to add it. With the feature `rapier`, a `ClothPushBack` on a rapier
 /// body does all of this.
 ///
+/// Where cloth lies on another collider, the body stands on that through the cloth, two particle radii above it and a
+/// little more, with the cloth's friction.
+///
 /// A cloth that pushes a body does not sleep.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]

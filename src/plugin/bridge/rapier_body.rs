@@ -48,7 +48,9 @@ use crate::plugin::{
 /// the cloth alone. With [`Substepping::Automatic`](crate::solver::Substepping::Automatic), the default, the cloth
 /// takes them automatically as long as it holds the body. With too few, a heavy body stretches the cloth far, and may
 /// fall through. Very soft cloth, otherwise moved by the forces of its springs, is solved by chains as long as it
-/// carries a body. A body on cloth rolls, but hardly slides: the particles hold it as if by friction without a limit.
+/// carries a body. A body on hanging cloth rolls, but hardly slides: the particles hold it as if by friction without a limit.
+///
+/// Where cloth lies on another collider, a body stands on that through the cloth, and slides by Coulomb's law.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone)]

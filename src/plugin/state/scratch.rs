@@ -64,8 +64,9 @@ pub struct ClothScratch {
     pub(crate) mutual: Option<Box<MutualContact>>,
     /// Whether its particles were replaced or moved since the last tick.
     pub(crate) was_put: bool,
-    /// The bodies that the cloth pushed in the tick, and the changes of their motion, in the world.
-    pub(crate) pushed: Vec<(Entity, BodyChange)>,
+    /// The bodies that the cloth pushed in the tick, the changes of their motion, in the world, and the parts of these by what
+    /// they stand on.
+    pub(crate) pushed: Vec<(Entity, [BodyChange; 2])>,
     /// Memory for the search of a cloth that sleeps.
     pub(crate) sleep_query: (NodeBounds, TopDownQuery),
     /// The particles as the tick began, for a tick that is repeated.

@@ -36,7 +36,7 @@ type PushedBody = (
 pub(crate) fn push_bodies(
     cloths: Query<(Entity, Option<&ClothOrder>, &ClothScratch)>,
     mut bodies: Query<PushedBody>,
-    mut pushes: Local<Vec<(Ordered, Entity, BodyChange)>>,
+    mut pushes: Local<Vec<(Ordered, Entity, [BodyChange; 2])>>,
 ) {
     pushes.clear();
     if bodies.is_empty() {
@@ -77,21 +77,23 @@ pub(crate) fn push_bodies(
     }
 }
 
-/// The total of changes by several cloths, each of which pushed a part of the body. Changes that are not finite count
-/// as zero.
+/// The total of changes by several cloths, each of which pushed a part of the body. Of a change, the second part comes from
+/// what the body stands on, which stops all of it, through whichever cloth. Changes that are not finite count as zero.
 fn sum<'a>(
-    changes: impl Iterator<Item = &'a BodyChange>,
+    changes: impl Iterator<Item = &'a [BodyChange; 2]>,
     parts: u32,
     body: &ClothBody,
 ) -> BodyChange {
-    let parts = parts as f32;
-    let mut sum = BodyChange::default();
-    for change in changes {
-        sum.velocity += change.velocity / parts;
-        sum.angular_velocity += change.angular_velocity / parts;
-        sum.translation += change.translation / parts;
-        sum.rotation += change.rotation / parts;
+    let [mut pushed, mut held] = [BodyChange::default(); 2];
+    let mut holding = 0.0_f32;
+    for [change, by_ground] in changes {
+        pushed = pushed.plus(change.plus(by_ground.times(-1.0)));
+        held = held.plus(*by_ground);
+        if *by_ground != BodyChange::default() {
+            holding += 1.0;
+        }
     }
+    let sum = (pushed.times(1.0 / parts as f32)).plus(held.times(1.0 / holding.max(1.0)));
     if !sum.is_finite() {
         return BodyChange::default();
     }
@@ -121,11 +123,13 @@ mod tests {
                 rotation: Vec3::new(0.0, bad, 0.0),
                 ..fine
             };
-            assert_eq!(
-                sum([&fine, &bad].into_iter(), 2, &body),
-                BodyChange::default()
-            );
+            let none = BodyChange::default();
+            let both = [[fine, none], [bad, none]];
+            assert_eq!(sum(both.iter(), 2, &body), none);
+            assert_eq!(sum([[fine, none]; 2].iter(), 2, &body), fine);
+            // What two cloths hold is stopped once, by each alone or by both.
+            assert_eq!(sum([[fine, fine]; 2].iter(), 1, &body), fine);
+            assert_eq!(sum([[fine, fine]].iter(), 2, &body), fine);
         }
-        assert_eq!(sum([&fine, &fine].into_iter(), 2, &body), fine);
     }
 }

@@ -138,7 +138,8 @@ impl IntegrateQueryItem<'_, '_> {
             if let Some(change) = detection.body_change(id)
                 && change != BodyChange::default()
             {
-                pushed.push((*entity, change.turned(rotation)));
+                let changes = [change, detection.body_held(id)];
+                pushed.push((*entity, changes.map(|change| change.turned(rotation))));
                 rest.disturb();
             }
         }

@@ -11,8 +11,9 @@ use super::nearest::Nearest;
 use bevy::{math::Vec3, reflect::Reflect};
 pub(crate) use edges::SharpEdge;
 use edges::SharpEdges;
+use parry3d::{math::Pose, shape::Shape};
 pub(crate) use parts::{Parts, turn_up};
-use solid::Solid;
+use solid::{Solid, SolidKind};
 
 /// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with precomputed
 /// data. Clones share the data. Two geometries are equal if they are clones of each other.
@@ -75,6 +76,16 @@ impl ColliderGeometry {
 
     pub(crate) fn thickness(&self) -> f32 {
         self.0.thickness
+    }
+
+    /// Visits its solids, with their poses.
+    pub(crate) fn for_each_solid(&self, mut visit: impl FnMut(Pose, &dyn Shape)) {
+        for solid in &self.0.solids {
+            match &solid.kind {
+                SolidKind::Convex(shape) => visit(solid.pose, &**shape),
+                SolidKind::Mesh(mesh, _) => visit(solid.pose, &**mesh),
+            }
+        }
     }
 
     /// Its parts, for another geometry.

@@ -1,0 +1,304 @@
+//! Holds a body that stands on the ground, and lets friction act on it and on the cloth between.
+
+use bevy::math::{DVec3, Vec3};
+
+use super::{
+    point::{StandingPoint, inverse_mass, push_all, rub_all},
+    supports::{Stand, Support, Supports, THICKNESS},
+};
+use crate::{
+    cloth::{ClothParticles, Lanes, Slot},
+    contact::{
+        bodies::body::Body,
+        candidates::ContactSettings,
+        colliders::{BodyMass, ColliderSubstep, MovingCollider},
+        friction::{Impulse, PushOut},
+    },
+    solver::SubStep,
+};
+
+/// The cloth's contacts in a sub-step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Standing<'a> {
+    /// All colliders, by their IDs.
+    pub colliders: &'a [(usize, MovingCollider)],
+    pub settings: &'a ContactSettings,
+    /// Factors of μ, by the cloth's blocks; empty if all are 1.
+    pub grips: &'a [Lanes],
+    pub substep: SubStep,
+}
+
+/// The result of a sub-step of a body that stands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stood {
+    /// Largest displacement of the body, and of a particle (m).
+    pub gone: f32,
+    pub pushed: f32,
+    /// The impulse on the body, about the origin of its shape.
+    pub given: Impulse,
+}
+
+impl<'a> Standing<'a> {
+    fn ground(&self, stand: &Stand) -> Option<ColliderSubstep<'a>> {
+        let known = self.colliders.iter().find(|(id, _)| *id == stand.ground);
+        known.map(|(_, collider)| collider.in_substep(self.substep))
+    }
+
+    fn friction(&self, particles: &ClothParticles, particle: u32) -> f32 {
+        let Slot { block, lane } = particles.layout().slot_of(particle as usize);
+        let grip = self.grips.get(block).map_or(1.0, |grips| grips[lane]);
+        self.settings.friction * grip
+    }
+
+    /// A support as the sub-step ends. `at` are its indices among the stands and the supports.
+    fn point(
+        &self,
+        at: [usize; 2],
+        support: &Support,
+        [moving, ground]: [&ColliderSubstep; 2],
+        (mass, centre, particles): (&BodyMass, DVec3, &ClothParticles),
+    ) -> StandingPoint {
+        let [above, below] = [
+            moving.pose * support.on_body,
+            ground.pose * support.on_ground,
+        ];
+        let normal = ground.pose.rotation * support.normal;
+        let overlap = THICKNESS * self.settings.particle_radius - (above - below).dot(normal);
+        let own = moving.surface_motion(above);
+        let approach = (ground.surface_motion(below) - own).dot(normal);
+        // What is open closes until the tick ends. Closed at once, by gravity that comes once a tick, it would rock.
+        let left = (self.substep.count - self.substep.index) as f32;
+        let stop = approach - (approach - overlap).max(0.0) / left;
+        let older = overlap - stop.max(0.0);
+        let release = match older > 0.0 {
+            true => PushOut::new(particles.substep(), 0.0, 1.0).of(older),
+            false => older,
+        };
+        let corners = support.cloth.corners.iter().zip(support.cloth.weights);
+        let coefficient: f32 = corners
+            .map(|(corner, weight)| self.friction(particles, *corner) * weight)
+            .sum();
+        let (arm, normal) = (above.as_dvec3() - centre, normal.as_dvec3());
+        StandingPoint {
+            stand: at[0],
+            support: at[1],
+            arm,
+            below: (below - ground.origin).as_dvec3(),
+            normal,
+            stop: stop.into(),
+            release: release.into(),
+            inverse_mass: inverse_mass(mass, arm, normal),
+            push: 0.0,
+            before: support.pushed,
+            released: 0.0,
+            relative: -own.as_dvec3(),
+            coefficient: coefficient.into(),
+            unspent: support.unspent,
+            friction: DVec3::ZERO,
+        }
+    }
+
+    /// Slows the cloth below a body by friction from both sides. Returns the largest displacement of a particle (m).
+    fn slow_cloth(
+        &self,
+        stand: &mut Stand,
+        between: &[u32],
+        particles: &mut ClothParticles,
+        [moving, ground]: [&ColliderSubstep; 2],
+    ) -> f32 {
+        let left = self.substep.count - self.substep.index;
+        let part = stand.unspent / f64::from(left);
+        stand.unspent -= part;
+        let share = part as f32 / between.len() as f32;
+        let layout = particles.layout();
+        let mut farthest = 0.0_f32;
+        for &particle in between {
+            let Slot { block, lane } = layout.slot_of(particle as usize);
+            let friction = self.friction(particles, particle);
+            let block = &mut particles.blocks_mut()[block];
+            let inverse_mass = block.inverse_mass(lane);
+            if inverse_mass == 0.0 {
+                continue;
+            }
+            let (place, before) = (block.position(lane), block.displacement(lane));
+            let normal = ground.collider.shape.nearest(ground.pose, place).normal;
+            let most = friction * share * inverse_mass;
+            let slowed = before - grip(before - moving.surface_motion(place), normal, most);
+            let after = slowed - grip(slowed - ground.surface_motion(place), normal, most);
+            block.set_position(lane, place + after - before);
+            block.set_displacement(lane, after);
+            // The body's share is taken from this in the end.
+            (stand.given).add(place - ground.origin, after - before, inverse_mass);
+            farthest = farthest.max(after.distance(before));
+        }
+        farthest
+    }
+}
+
+/// The part of a displacement along a surface that friction takes, at most this much (m).
+fn grip(displacement: Vec3, normal: Vec3, most: f32) -> Vec3 {
+    let slip = displacement - normal * normal.dot(displacement);
+    slip.clamp_length_max(most)
+}
+
+impl Supports {
+    /// The points where a body stands, as the sub-step ends.
+    fn begin(
+        &mut self,
+        body: usize,
+        motion: &ColliderSubstep,
+        of: (&BodyMass, DVec3, &ClothParticles),
+        standing: &Standing,
+    ) {
+        self.points.clear();
+        for (index, stand) in self.stands.iter_mut().enumerate() {
+            stand.given = Impulse::default();
+            let Some(ground) = standing.ground(stand).filter(|_| stand.body == body) else {
+                continue;
+            };
+            for at in stand.supports.clone() {
+                let point = standing.point([index, at], &self.all[at], [motion, &ground], of);
+                self.points.push(point);
+            }
+        }
+    }
+
+    /// Lets friction act on the cloth below a body. Returns the largest displacement of a particle (m).
+    fn slow(
+        &mut self,
+        particles: &mut ClothParticles,
+        motion: &ColliderSubstep,
+        standing: &Standing,
+    ) -> f32 {
+        let mut farthest = 0.0_f32;
+        for (index, stand) in self.stands.iter_mut().enumerate() {
+            let is_own = self.points.iter().any(|point| point.stand == index);
+            let Some(ground) = standing.ground(stand).filter(|_| is_own) else {
+                continue;
+            };
+            let between = &self.between[stand.between.clone()];
+            let moved = standing.slow_cloth(stand, between, particles, [motion, &ground]);
+            farthest = farthest.max(moved);
+        }
+        for point in &mut self.points {
+            let cloth = self.all[point.support].cloth;
+            for (corner, weight) in cloth.corners.into_iter().zip(cloth.weights) {
+                let displacement = particles.displacement(corner as usize);
+                point.relative += (weight * displacement.unwrap_or_default()).as_dvec3();
+            }
+        }
+        farthest
+    }
+
+    /// Notes the impulses at all points. Returns the one on the body, whose centre of mass is given, about a point (m).
+    fn end(&mut self, [centre, about]: [DVec3; 2]) -> Impulse {
+        let mut given = Impulse::default();
+        for point in &self.points {
+            let used = point.friction.length() / point.coefficient;
+            let used = if used.is_finite() { used } else { 0.0 };
+            let support = &mut self.all[point.support];
+            support.pushed += point.push;
+            support.unspent = (support.unspent + point.push - used).max(0.0);
+            let stand = &mut self.stands[point.stand];
+            stand.unspent = (stand.unspent + point.push).max(0.0);
+            stand.holds |= support.pushed > 0.0;
+            let impulse = point.normal * point.push + point.friction;
+            given.merge(&Impulse {
+                linear: impulse,
+                angular: (centre + point.arm - about).cross(impulse),
+            });
+            stand.given.merge(&Impulse {
+                linear: -impulse,
+                angular: -point.below.cross(impulse),
+            });
+        }
+        given
+    }
+}
+
+impl Body {
+    /// Keeps the body off what it stands on. `None` if it stands on nothing.
+    pub fn stand(
+        &mut self,
+        supports: &mut Supports,
+        particles: &mut ClothParticles,
+        moving: &mut MovingCollider,
+        standing: &Standing,
+    ) -> Option<Stood> {
+        let own = supports.stands.iter().filter(|stand| stand.body == self.id);
+        for stand in own {
+            for support in &mut supports.all[stand.supports.clone()] {
+                support.pushed = 0.0;
+            }
+        }
+        let centre = self.begin_standing(supports, particles, moving, standing)?;
+        let [body, released] = push_all(&mut supports.points, self.mass());
+        if !(body.is_finite() && released.is_finite()) {
+            return None;
+        }
+        let given = supports.end(centre);
+        let place = [body.go + released.go, body.turn + released.turn];
+        let gone = self.hold(moving, particles, standing, [place, [body.go, body.turn]]);
+        Some(Stood {
+            gone,
+            pushed: 0.0,
+            given,
+        })
+    }
+
+    /// Lets friction act on the body, and on the cloth between it and what it stands on, after all else has pushed these.
+    /// `None` if it stands on nothing.
+    pub fn rub(
+        &mut self,
+        supports: &mut Supports,
+        particles: &mut ClothParticles,
+        moving: &mut MovingCollider,
+        standing: &Standing,
+    ) -> Option<Stood> {
+        let centre = self.begin_standing(supports, particles, moving, standing)?;
+        let motion = moving.in_substep(standing.substep);
+        let pushed = supports.slow(particles, &motion, standing);
+        let body = rub_all(&mut supports.points, self.mass());
+        if !body.is_finite() {
+            return None;
+        }
+        let given = supports.end(centre);
+        let gone = self.hold(moving, particles, standing, [[body.go, body.turn]; 2]);
+        Some(Stood {
+            gone,
+            pushed,
+            given,
+        })
+    }
+
+    /// Finds the points where it stands as the sub-step ends. Returns its centre of mass and the origin of its shape (m).
+    fn begin_standing(
+        &self,
+        supports: &mut Supports,
+        particles: &ClothParticles,
+        moving: &MovingCollider,
+        standing: &Standing,
+    ) -> Option<[DVec3; 2]> {
+        let (pose, centre) = self.centre(moving, standing.substep.end());
+        let motion = moving.in_substep(standing.substep);
+        supports.begin(self.id, &motion, (self.mass(), centre, particles), standing);
+        let origin = Vec3::from(pose.translation).as_dvec3();
+        (!supports.points.is_empty()).then_some([centre, origin])
+    }
+
+    /// Moves it by a displacement and a rotation of its place, and of its velocity. Returns the largest displacement of any of
+    /// its points (m).
+    fn hold(
+        &mut self,
+        moving: &mut MovingCollider,
+        particles: &ClothParticles,
+        standing: &Standing,
+        [[go, turn], [push, spin]]: [[DVec3; 2]; 2],
+    ) -> f32 {
+        let before = self.change();
+        let changes = [go, turn, push, spin];
+        let gone = self.send_on(moving, standing.substep, particles.substep(), changes);
+        self.add_held(before);
+        gone
+    }
+}

@@ -1,0 +1,134 @@
+//! Bodies that stand on other colliders, through the cloth between them.
+
+use super::{Detection, carrying::moving_of, send_on};
+use crate::{
+    cloth::ClothParticles,
+    contact::{
+        bodies::{Body, Near, Standing, Stood, Supports},
+        candidates::{Candidates, ContactSettings, Touch},
+        colliders::MovingCollider,
+        friction::Impulse,
+    },
+    solver::SubStep,
+};
+
+/// What bodies do that stand: [`Body::stand`] or [`Body::rub`].
+pub(super) type Act = fn(
+    &mut Body,
+    &mut Supports,
+    &mut ClothParticles,
+    &mut MovingCollider,
+    &Standing,
+) -> Option<Stood>;
+
+impl Detection {
+    /// Finds where bodies stand at a fraction of the tick.
+    pub(super) fn find_supports(&mut self, particles: &ClothParticles, passed: f32) {
+        self.supports.begin_search(passed);
+        for body in &self.bodies {
+            let Some(touch) = self.touches.iter().find(|touch| touch.id == body.id) else {
+                continue;
+            };
+            if self.embedding.blocks(body.id).len() > 0 {
+                continue;
+            }
+            let near = Near {
+                candidates: &self.candidates.all[touch.of.candidates.clone()],
+                surface: &self.surface,
+                particles,
+                radius: self.particle_radius,
+            };
+            // On another body it is carried.
+            let fixed = (self.touches.iter()).filter(|other| other.collider.body.is_none());
+            for ground in fixed {
+                let pair = [touch, ground].map(|touch| (touch.id, &touch.collider));
+                self.supports.find(pair, &near, passed);
+            }
+        }
+    }
+
+    /// Searches for the supports anew if a body that stands has rolled.
+    pub(super) fn follow_rolling(&mut self, particles: &ClothParticles, passed: f32) {
+        let have_rolled = |id: usize| {
+            let moving = moving_of(&self.colliders, id);
+            moving.is_some_and(|moving| self.supports.have_rolled(moving, passed))
+        };
+        let mut stands = self.supports.stands.iter();
+        if stands.any(|stand| have_rolled(stand.body)) {
+            self.find_supports(particles, passed);
+        }
+    }
+
+    /// Has each body that stands `act` on what it stands on and on the cloth between. Returns whether anything moved.
+    pub(super) fn stand(
+        &mut self,
+        particles: &mut ClothParticles,
+        settings: &ContactSettings,
+        substep: SubStep,
+        act: Act,
+    ) -> bool {
+        if self.supports.stands.is_empty() {
+            return false;
+        }
+        let mut has_stood = false;
+        for body in &mut self.bodies {
+            let Some(mut moving) = moving_of(&self.colliders, body.id).cloned() else {
+                continue;
+            };
+            let standing = Standing {
+                colliders: &self.colliders,
+                settings,
+                grips: &self.candidates.grips,
+                substep,
+            };
+            let Some(stood) = act(body, &mut self.supports, particles, &mut moving, &standing)
+            else {
+                continue;
+            };
+            has_stood = true;
+            self.margin.deviate(body.deviation(&moving, substep.end()));
+            self.margin.note(stood.pushed);
+            let touches = &mut self.touches;
+            let own = self.supports.stands.iter();
+            let grounds = own
+                .filter(|stand| stand.body == body.id)
+                .map(|stand| (stand.ground, stand.given));
+            for (id, given) in grounds.chain([(body.id, stood.given)]) {
+                add_impulse(touches, id, &given, particles.substep());
+            }
+            if let Some(touch) = touches.iter_mut().find(|touch| touch.id == body.id) {
+                touch.travelled += stood.gone;
+                if self.supports.hold(body.id) {
+                    note_pressed(touch, &mut self.candidates, &self.supports);
+                }
+            }
+            send_on(touches, &mut self.colliders, body.id, &moving);
+        }
+        has_stood
+    }
+}
+
+/// What a body presses it touches, however little.
+fn note_pressed(touch: &Touch, candidates: &mut Candidates, supports: &Supports) {
+    let near = &candidates.all[touch.of.candidates.clone()];
+    let own = supports
+        .stands
+        .iter()
+        .filter(|stand| stand.body == touch.id);
+    for particle in own.flat_map(|stand| &supports.between[stand.between.clone()]) {
+        let known = near.binary_search_by_key(particle, |candidate| candidate.particle);
+        if let Ok(at) = known {
+            let (block, lane) = near[at].lane();
+            let depth = &mut candidates.blocks[block].depth[lane];
+            *depth = depth.max(f32::MIN_POSITIVE);
+        }
+    }
+}
+
+/// Adds the impulse of a sub-step (kg·m) to a touch. `seconds` is the length of the sub-step.
+fn add_impulse(touches: &mut [Touch], id: usize, given: &Impulse, seconds: f32) {
+    if let Some(touch) = touches.iter_mut().find(|touch| touch.id == id) {
+        touch.impulse += (given.linear / f64::from(seconds)).as_vec3();
+        touch.angular_impulse += (given.angular / f64::from(seconds)).as_vec3();
+    }
+}
