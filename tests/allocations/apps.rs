@@ -108,6 +108,32 @@ fn with_a_ball(is_body: bool) -> usize {
     })
 }
 
+/// Allocations with a box that sinks onto a cloth on the ground again and again, and is held.
+fn with_a_box_that_stands() -> usize {
+    let mut app = app_on_one_thread(());
+    app.world_mut().spawn(ClothCollider::plane());
+    let cloth = Cloth::new(20, 20, 0.05).lying().centred();
+    let settings = ClothSettings {
+        particle_radius: 0.004,
+        ..default()
+    };
+    let place = Transform::from_xyz(0.0, 0.004, 0.0);
+    app.world_mut()
+        .spawn((cloth, Pins::none(), settings, place));
+    let thing = (
+        ClothCollider::cuboid(0.2, 0.1, 0.2),
+        ClothBody::new(2.0, Vec3::splat(0.01)),
+        Transform::from_xyz(0.0, 0.06, 0.0),
+    );
+    let thing = app.world_mut().spawn(thing).id();
+    in_ticks(app, |world, _| {
+        let mut place = world.get_mut::<Transform>(thing).expect("a place");
+        // Without the ground it would be a metre below.
+        assert!(place.translation.y > 0.05, "{}", place.translation);
+        place.translation.y -= 0.005;
+    })
+}
+
 /// Allocations with a skinned cloth whose only bone moves, and its root.
 fn with_a_character(follows: bool) -> usize {
     let mut app = app_on_one_thread((AssetPlugin::default(), MeshPlugin));
@@ -175,6 +201,7 @@ pub fn what_is_pushed_allocates_nothing() {
         let allocations = with_a_ball(is_body);
         assert_eq!(allocations, 0, "pushed back: {is_body}");
     }
+    assert_eq!(with_a_box_that_stands(), 0, "a box that stands");
 }
 
 /// A hand that pulls at a hanging sheet, farther than it reaches.
