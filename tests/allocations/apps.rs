@@ -108,10 +108,15 @@ fn with_a_ball(is_body: bool) -> usize {
     })
 }
 
-/// Allocations with a box that sinks onto a cloth on the ground again and again, and is held.
-fn with_a_box_that_stands() -> usize {
+/// Allocations with a box that sinks onto a cloth on a table or on the ground again and again, and is held.
+fn with_a_box_that_stands(is_table: bool) -> usize {
     let mut app = app_on_one_thread(());
-    app.world_mut().spawn(ClothCollider::plane());
+    let (ground, height) = match is_table {
+        true => (ClothCollider::cuboid(1.4, 0.2, 1.4), -0.1),
+        false => (ClothCollider::plane(), 0.0),
+    };
+    app.world_mut()
+        .spawn((ground, Transform::from_xyz(0.0, height, 0.0)));
     let cloth = Cloth::new(20, 20, 0.05).lying().centred();
     let settings = ClothSettings {
         particle_radius: 0.004,
@@ -201,7 +206,10 @@ pub fn what_is_pushed_allocates_nothing() {
         let allocations = with_a_ball(is_body);
         assert_eq!(allocations, 0, "pushed back: {is_body}");
     }
-    assert_eq!(with_a_box_that_stands(), 0, "a box that stands");
+    for is_table in [true, false] {
+        let allocations = with_a_box_that_stands(is_table);
+        assert_eq!(allocations, 0, "a box stands on a table: {is_table}");
+    }
 }
 
 /// A hand that pulls at a hanging sheet, farther than it reaches.

@@ -288,8 +288,10 @@ fn random_things_stand() {
             true => 0.0,
             false => (random(0.0, 0.66) * friction).atan(),
         };
-        let pose = Transform::from_xyz(random(-3.0, 3.0), random(0.0, 2.0), 0.0)
-            .with_rotation(Quat::from_rotation_z(-tilt) * Quat::from_rotation_y(random(0.0, 6.28)));
+        let pose = Transform::from_xyz(random(-3.0, 3.0), random(0.0, 2.0), 0.0).with_rotation(
+            Quat::from_rotation_z(-tilt)
+                * Quat::from_rotation_y(random(0.0, std::f32::consts::TAU)),
+        );
         let thing = match random(0.0, 1.0) < 0.5 {
             true => block(
                 mass,

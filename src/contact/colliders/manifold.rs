@@ -4,7 +4,7 @@ use bevy::math::{Isometry3d, Vec3};
 use parry3d::{
     math::Pose,
     query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher},
-    shape::{Ball, Capsule, Cuboid, HalfSpace, PackedFeatureId, Shape},
+    shape::{Ball, Capsule, Cuboid, HalfSpace, PackedFeatureId, PolygonalFeature, Shape},
 };
 
 use super::shape::ColliderShape;
@@ -94,6 +94,26 @@ impl Manifold {
         between: Pose,
         within: f32,
     ) {
+        if let (Some(plane), Some((corners, radius))) =
+            (solid.as_halfspace(), other.as_polygonal_feature_map())
+        {
+            // As parry finds them, which makes a new list each time.
+            let mut face = PolygonalFeature::default();
+            let normal = between.rotation.inverse() * plane.normal;
+            corners.local_support_feature(-normal, &mut face);
+            for corner in &face.vertices[..face.num_vertices] {
+                let place = between * *corner;
+                let height = place.dot(plane.normal);
+                if height - radius <= within {
+                    self.points.push(ManifoldPoint {
+                        on_first: at[0] * (place - plane.normal * height),
+                        on_second: at[1] * (*corner - normal * radius),
+                        normal: at[0].rotation * plane.normal,
+                    });
+                }
+            }
+            return;
+        }
         let parry = DefaultQueryDispatcher;
         // What an earlier search found must not change the next one.
         self.pair.points.clear();
