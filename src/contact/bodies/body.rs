@@ -205,8 +205,8 @@ impl Body {
     }
 
     /// Shares a push between particles, which were pushed as if the body were static, and the body. Returns the
-    /// fraction of the momentum that the particles keep, and the body's displacement (m). A particle
-    /// may be forbidden to carry the body, by its outward normal there.
+    /// fraction of the momentum that the particles keep, and the body's displacement (m). `may_carry` tells whether a
+    /// particle may carry the body, by the body's outward normal there.
     pub fn share(
         &mut self,
         before: &Before,

@@ -115,7 +115,7 @@ impl Manifold {
             return;
         }
         let parry = DefaultQueryDispatcher;
-        // What an earlier search found must not change the next one.
+        // An earlier search must not change the next one.
         self.pair.points.clear();
         (self.pair.local_n1, self.pair.local_n2) = (Vec3::ZERO, Vec3::ZERO);
         self.pairs.clear();

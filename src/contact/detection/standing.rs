@@ -12,7 +12,7 @@ use crate::{
     solver::SubStep,
 };
 
-/// What bodies do that stand: [`Body::stand`] or [`Body::rub`].
+/// The response of a body that stands: [`Body::stand`] or [`Body::rub`].
 pub(super) type Act = fn(
     &mut Body,
     &mut Supports,
@@ -108,7 +108,7 @@ impl Detection {
     }
 }
 
-/// What a body presses it touches, however little.
+/// A body touches the particles that it presses, however little.
 fn note_pressed(touch: &Touch, candidates: &mut Candidates, supports: &Supports) {
     let near = &candidates.all[touch.of.candidates.clone()];
     let own = supports

@@ -96,7 +96,7 @@ fn push(points: &mut [StandingPoint], mass: &BodyMass, body: &mut Motion) -> boo
     let [mut most, mut changed] = [0.0_f64; 2];
     for point in points.iter_mut().filter(|point| point.inverse_mass > 0.0) {
         let wanted = point.stop - body.at(point.arm).dot(point.normal);
-        // What came before may have been too much.
+        // The sub-step may have pushed too much before.
         let push = (point.push + wanted / point.inverse_mass).max(-point.before);
         body.push(mass, point.arm, point.normal * (push - point.push));
         most = most.max(push.abs());

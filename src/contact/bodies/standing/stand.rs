@@ -66,7 +66,7 @@ impl<'a> Standing<'a> {
         let overlap = THICKNESS * self.settings.particle_radius - (above - below).dot(normal);
         let own = moving.surface_motion(above);
         let approach = (ground.surface_motion(below) - own).dot(normal);
-        // What is open closes until the tick ends. Closed at once, by gravity that comes once a tick, it would rock.
+        // A gap closes until the tick ends. Gravity comes once a tick: if it closed a gap at once, the body would rock.
         let left = (self.substep.count - self.substep.index) as f32;
         let stop = approach - (approach - overlap).max(0.0) / left;
         let older = overlap - stop.max(0.0);
