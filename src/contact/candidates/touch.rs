@@ -3,7 +3,7 @@
 use bevy::{math::Vec3, reflect::Reflect};
 
 use super::{blocks::Ranges, narrow_phase::NarrowPhase};
-use crate::contact::colliders::MovingCollider;
+use crate::contact::{colliders::MovingCollider, friction::Impulse};
 
 /// A particle near a collider, and its depth.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
@@ -44,6 +44,15 @@ pub struct Touch {
     pub(crate) of: Ranges,
     /// Displacement in the tick so far (m).
     pub(crate) travelled: f32,
+}
+
+impl Touch {
+    /// Adds the impulse of a sub-step that takes some seconds.
+    pub(crate) fn add_impulse(&mut self, given: &Impulse, seconds: f32) {
+        let seconds = f64::from(seconds);
+        self.impulse += (given.linear / seconds).as_vec3();
+        self.angular_impulse += (given.angular / seconds).as_vec3();
+    }
 }
 
 /// The contact settings of a cloth in a tick.

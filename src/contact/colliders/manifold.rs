@@ -17,6 +17,8 @@ pub(crate) struct ManifoldPoint {
     pub on_second: Vec3,
     /// Normal out of the first shape, in its frame, of length 1.
     pub normal: Vec3,
+    /// Distance along it (m).
+    distance: f32,
 }
 
 impl ManifoldPoint {
@@ -25,7 +27,7 @@ impl ManifoldPoint {
         Self {
             on_first: self.on_first.lerp(other.on_first, part),
             on_second: self.on_second.lerp(other.on_second, part),
-            normal: self.normal,
+            ..*self
         }
     }
 }
@@ -70,9 +72,16 @@ impl Manifold {
         middle
     }
 
-    /// Keeps those points that are farthest from each other.
+    /// Keeps the deepest point, and those that are farthest from each other.
     fn thin_out(&mut self) {
-        for kept in 0..self.points.len().min(MOST_POINTS) {
+        let by_distance = |a: &usize, b: &usize| {
+            let [a, b] = [a, b].map(|at| self.points[*at].distance);
+            a.total_cmp(&b)
+        };
+        if let Some(deepest) = (0..self.points.len()).min_by(by_distance) {
+            self.points.swap(0, deepest);
+        }
+        for kept in 1..self.points.len().min(MOST_POINTS) {
             let apart = |point: &ManifoldPoint| {
                 let others = self.points[..kept].iter();
                 let squares = others.map(|other| other.on_second.distance_squared(point.on_second));
@@ -109,6 +118,7 @@ impl Manifold {
                         on_first: at[0] * (place - plane.normal * height),
                         on_second: at[1] * (*corner - normal * radius),
                         normal: at[0].rotation * plane.normal,
+                        distance: height - radius,
                     });
                 }
             }
@@ -141,6 +151,7 @@ impl Manifold {
                 on_first: at[0] * point.local_p1,
                 on_second: at[1] * point.local_p2,
                 normal: at[0].rotation * manifold.local_n1,
+                distance: point.dist,
             }));
         }
     }

@@ -23,6 +23,15 @@ pub struct MovingCollider {
     pub body: Option<BodyMass>,
 }
 
+/// The collider with an ID.
+pub(crate) fn moving_of(
+    colliders: &[(usize, MovingCollider)],
+    id: usize,
+) -> Option<&MovingCollider> {
+    let known = colliders.iter().find(|(known, _)| *known == id);
+    known.map(|(_, moving)| moving)
+}
+
 impl MovingCollider {
     /// A ball that moves from one centre to another (m) without rotation.
     pub fn ball(radius: f32, from: Vec3, to: Vec3) -> Self {

@@ -5,7 +5,7 @@ use crate::{
     cloth::ClothParticles,
     contact::{
         bodies::{Body, Carrier},
-        colliders::MovingCollider,
+        colliders::moving_of,
     },
     solver::SubStep,
 };
@@ -74,21 +74,11 @@ impl Detection {
             self.margin.deviate(body.deviation(&moving, substep.end()));
             if let Some(touch) = self.touches.iter_mut().find(|touch| touch.id == body.id) {
                 touch.travelled += gone;
-                let seconds = f64::from(particles.substep());
-                touch.impulse += (given.linear / seconds).as_vec3();
-                touch.angular_impulse += (given.angular / seconds).as_vec3();
+                touch.add_impulse(&given, particles.substep());
             }
             send_on(&mut self.touches, &mut self.colliders, body.id, &moving);
         }
         particles.loads_mut().clear();
         has_carried
     }
-}
-
-pub(super) fn moving_of(
-    colliders: &[(usize, MovingCollider)],
-    id: usize,
-) -> Option<&MovingCollider> {
-    let known = colliders.iter().find(|(known, _)| *known == id);
-    known.map(|(_, moving)| moving)
 }

@@ -253,7 +253,7 @@ impl Detection {
         self.follow_rolling(particles, substep.end());
         let has_stood = self.stand(particles, settings, substep, Body::stand);
         let is_pushed = self.push_out(particles, settings, substep, others);
-        self.stand(particles, settings, substep, Body::rub);
+        self.stand(particles, settings, substep, Body::apply_friction);
         if let Some(coming) = substep.next()
             && !self.bodies.is_empty()
         {

@@ -2,12 +2,12 @@
 
 use bevy::math::Vec3;
 
-use super::{Detection, carrying::moving_of, send_on};
+use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
     contact::{
         candidates::{Candidates, ContactSettings, NarrowPhase},
-        colliders::MovingCollider,
+        colliders::{MovingCollider, moving_of},
         edges::push_shape,
         friction::{Impulse, PushOut},
         particles::{ContactResult, ParticlesNearEdges, lane_motion, push_particles},
@@ -62,9 +62,7 @@ impl Detection {
             is_pushed |= found.farthest_push > 0.0;
             let touch = &mut self.touches[at];
             touch.deepest = touch.deepest.max(found.deepest);
-            let seconds = f64::from(particles.substep());
-            touch.impulse += (given.linear / seconds).as_vec3();
-            touch.angular_impulse += (given.angular / seconds).as_vec3();
+            touch.add_impulse(&given, particles.substep());
             area += found.area;
             volume += found.volume;
             from = stopped.unwrap_or_default();

@@ -1,25 +1,24 @@
 //! Bodies that stand on other colliders, through the cloth between them.
 
-use super::{Detection, carrying::moving_of, send_on};
+use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
     contact::{
-        bodies::{Body, Near, Standing, Stood, Supports},
+        bodies::{Body, ContactStep, Near, Stand, StandingResult, Supports},
         candidates::{Candidates, ContactSettings, Touch},
-        colliders::MovingCollider,
-        friction::Impulse,
+        colliders::{MovingCollider, moving_of},
     },
     solver::SubStep,
 };
 
-/// The response of a body that stands: [`Body::stand`] or [`Body::rub`].
+/// The response of a body that stands: [`Body::stand`] or [`Body::apply_friction`].
 pub(super) type Act = fn(
     &mut Body,
     &mut Supports,
     &mut ClothParticles,
     &mut MovingCollider,
-    &Standing,
-) -> Option<Stood>;
+    &ContactStep,
+) -> Option<StandingResult>;
 
 impl Detection {
     /// Finds where bodies stand at a fraction of the tick.
@@ -75,34 +74,37 @@ impl Detection {
             let Some(mut moving) = moving_of(&self.colliders, body.id).cloned() else {
                 continue;
             };
-            let standing = Standing {
+            let step = ContactStep {
                 colliders: &self.colliders,
                 settings,
                 grips: &self.candidates.grips,
                 substep,
             };
-            let Some(stood) = act(body, &mut self.supports, particles, &mut moving, &standing)
-            else {
+            let Some(stood) = act(body, &mut self.supports, particles, &mut moving, &step) else {
                 continue;
             };
             has_stood = true;
             self.margin.deviate(body.deviation(&moving, substep.end()));
             self.margin.note(stood.pushed);
-            let touches = &mut self.touches;
-            let own = self.supports.stands.iter();
-            let grounds = own
-                .filter(|stand| stand.body == body.id)
-                .map(|stand| (stand.ground, stand.given));
-            for (id, given) in grounds.chain([(body.id, stood.given)]) {
-                add_impulse(touches, id, &given, particles.substep());
-            }
-            if let Some(touch) = touches.iter_mut().find(|touch| touch.id == body.id) {
-                touch.travelled += stood.gone;
-                if self.supports.hold(body.id) {
-                    note_pressed(touch, &mut self.candidates, &self.supports);
+            let (id, seconds) = (body.id, particles.substep());
+            for touch in &mut self.touches {
+                let mut stands = self.supports.stands.iter();
+                let is_own = |stand: &&Stand| (stand.body, stand.ground) == (id, touch.id);
+                if let Some(stand) = stands.find(is_own) {
+                    touch.add_impulse(&stand.given, seconds);
+                }
+                if touch.id == id {
+                    touch.add_impulse(&stood.given, seconds);
+                    touch.travelled += stood.gone;
                 }
             }
-            send_on(touches, &mut self.colliders, body.id, &moving);
+            if substep.next().is_none()
+                && self.supports.is_held(id)
+                && let Some(touch) = self.touches.iter().find(|touch| touch.id == id)
+            {
+                note_pressed(touch, &mut self.candidates, &self.supports);
+            }
+            send_on(&mut self.touches, &mut self.colliders, body.id, &moving);
         }
         has_stood
     }
@@ -122,13 +124,5 @@ fn note_pressed(touch: &Touch, candidates: &mut Candidates, supports: &Supports)
             let depth = &mut candidates.blocks[block].depth[lane];
             *depth = depth.max(f32::MIN_POSITIVE);
         }
-    }
-}
-
-/// Adds the impulse of a sub-step (kg·m) to a touch. `seconds` is the length of the sub-step.
-fn add_impulse(touches: &mut [Touch], id: usize, given: &Impulse, seconds: f32) {
-    if let Some(touch) = touches.iter_mut().find(|touch| touch.id == id) {
-        touch.impulse += (given.linear / f64::from(seconds)).as_vec3();
-        touch.angular_impulse += (given.angular / f64::from(seconds)).as_vec3();
     }
 }

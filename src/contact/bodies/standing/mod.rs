@@ -29,5 +29,5 @@ mod stand;
 mod supports;
 
 pub(crate) use cover::Near;
-pub(crate) use stand::{Standing, Stood};
-pub(crate) use supports::Supports;
+pub(crate) use stand::{ContactStep, StandingResult};
+pub(crate) use supports::{Stand, Supports};

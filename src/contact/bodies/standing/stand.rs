@@ -3,7 +3,7 @@
 use bevy::math::{DVec3, Vec3};
 
 use super::{
-    point::{StandingPoint, inverse_mass, push_all, rub_all},
+    point::{Motion, StandingPoint, inverse_mass, push_all, rub_all},
     supports::{Stand, Support, Supports, THICKNESS},
 };
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
     contact::{
         bodies::body::Body,
         candidates::ContactSettings,
-        colliders::{BodyMass, ColliderSubstep, MovingCollider},
+        colliders::{BodyMass, ColliderSubstep, MovingCollider, moving_of},
         friction::{Impulse, PushOut},
     },
     solver::SubStep,
@@ -19,7 +19,7 @@ use crate::{
 
 /// The cloth's contacts in a sub-step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Standing<'a> {
+pub(crate) struct ContactStep<'a> {
     /// All colliders, by their IDs.
     pub colliders: &'a [(usize, MovingCollider)],
     pub settings: &'a ContactSettings,
@@ -30,7 +30,7 @@ pub(crate) struct Standing<'a> {
 
 /// The result of a sub-step of a body that stands.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stood {
+pub(crate) struct StandingResult {
     /// Largest displacement of the body, and of a particle (m).
     pub gone: f32,
     pub pushed: f32,
@@ -38,10 +38,10 @@ pub(crate) struct Stood {
     pub given: Impulse,
 }
 
-impl<'a> Standing<'a> {
+impl<'a> ContactStep<'a> {
     fn ground(&self, stand: &Stand) -> Option<ColliderSubstep<'a>> {
-        let known = self.colliders.iter().find(|(id, _)| *id == stand.ground);
-        known.map(|(_, collider)| collider.in_substep(self.substep))
+        let ground = moving_of(self.colliders, stand.ground)?;
+        Some(ground.in_substep(self.substep))
     }
 
     fn friction(&self, particles: &ClothParticles, particle: u32) -> f32 {
@@ -142,22 +142,31 @@ fn grip(displacement: Vec3, normal: Vec3, most: f32) -> Vec3 {
 }
 
 impl Supports {
+    /// Forgets the impulses of the sub-step before.
+    fn begin_substep(&mut self, body: usize) {
+        for stand in self.stands.iter().filter(|stand| stand.body == body) {
+            for support in &mut self.all[stand.supports.clone()] {
+                support.pushed = 0.0;
+            }
+        }
+    }
+
     /// The points where a body stands, as the sub-step ends.
     fn begin(
         &mut self,
         body: usize,
         motion: &ColliderSubstep,
         of: (&BodyMass, DVec3, &ClothParticles),
-        standing: &Standing,
+        step: &ContactStep,
     ) {
         self.points.clear();
         for (index, stand) in self.stands.iter_mut().enumerate() {
             stand.given = Impulse::default();
-            let Some(ground) = standing.ground(stand).filter(|_| stand.body == body) else {
+            let Some(ground) = step.ground(stand).filter(|_| stand.body == body) else {
                 continue;
             };
             for at in stand.supports.clone() {
-                let point = standing.point([index, at], &self.all[at], [motion, &ground], of);
+                let point = step.point([index, at], &self.all[at], [motion, &ground], of);
                 self.points.push(point);
             }
         }
@@ -168,16 +177,16 @@ impl Supports {
         &mut self,
         particles: &mut ClothParticles,
         motion: &ColliderSubstep,
-        standing: &Standing,
+        step: &ContactStep,
     ) -> f32 {
         let mut farthest = 0.0_f32;
         for (index, stand) in self.stands.iter_mut().enumerate() {
             let is_own = self.points.iter().any(|point| point.stand == index);
-            let Some(ground) = standing.ground(stand).filter(|_| is_own) else {
+            let Some(ground) = step.ground(stand).filter(|_| is_own) else {
                 continue;
             };
             let between = &self.between[stand.between.clone()];
-            let moved = standing.slow_cloth(stand, between, particles, [motion, &ground]);
+            let moved = step.slow_cloth(stand, between, particles, [motion, &ground]);
             farthest = farthest.max(moved);
         }
         for point in &mut self.points {
@@ -223,82 +232,75 @@ impl Body {
         supports: &mut Supports,
         particles: &mut ClothParticles,
         moving: &mut MovingCollider,
-        standing: &Standing,
-    ) -> Option<Stood> {
-        let own = supports.stands.iter().filter(|stand| stand.body == self.id);
-        for stand in own {
-            for support in &mut supports.all[stand.supports.clone()] {
-                support.pushed = 0.0;
-            }
-        }
-        let centre = self.begin_standing(supports, particles, moving, standing)?;
-        let [body, released] = push_all(&mut supports.points, self.mass());
-        if !(body.is_finite() && released.is_finite()) {
-            return None;
-        }
-        let given = supports.end(centre);
-        let place = [body.go + released.go, body.turn + released.turn];
-        let gone = self.hold(moving, particles, standing, [place, [body.go, body.turn]]);
-        Some(Stood {
-            gone,
-            pushed: 0.0,
-            given,
-        })
+        step: &ContactStep,
+    ) -> Option<StandingResult> {
+        supports.begin_substep(self.id);
+        self.respond(
+            supports,
+            particles,
+            moving,
+            step,
+            |supports, _, (mass, _)| (push_all(&mut supports.points, mass), 0.0),
+        )
     }
 
     /// Lets friction act on the body, and on the cloth between it and what it stands on, after all else has pushed these.
     /// `None` if it stands on nothing.
-    pub fn rub(
+    pub fn apply_friction(
         &mut self,
         supports: &mut Supports,
         particles: &mut ClothParticles,
         moving: &mut MovingCollider,
-        standing: &Standing,
-    ) -> Option<Stood> {
-        let centre = self.begin_standing(supports, particles, moving, standing)?;
-        let motion = moving.in_substep(standing.substep);
-        let pushed = supports.slow(particles, &motion, standing);
-        let body = rub_all(&mut supports.points, self.mass());
-        if !body.is_finite() {
+        step: &ContactStep,
+    ) -> Option<StandingResult> {
+        self.respond(
+            supports,
+            particles,
+            moving,
+            step,
+            |supports, particles, (mass, motion)| {
+                let pushed = supports.slow(particles, motion, step);
+                let body = rub_all(&mut supports.points, mass);
+                ([body, Motion::default()], pushed)
+            },
+        )
+    }
+
+    /// Finds the points where the body stands as the sub-step ends, and moves it as `solve` says: by a motion, and by another one
+    /// of its place alone. `solve` also returns the largest displacement of a particle (m).
+    fn respond(
+        &mut self,
+        supports: &mut Supports,
+        particles: &mut ClothParticles,
+        moving: &mut MovingCollider,
+        step: &ContactStep,
+        solve: impl FnOnce(
+            &mut Supports,
+            &mut ClothParticles,
+            (&BodyMass, &ColliderSubstep),
+        ) -> ([Motion; 2], f32),
+    ) -> Option<StandingResult> {
+        let (pose, centre) = self.centre(moving, step.substep.end());
+        let mass = *self.mass();
+        let motion = moving.in_substep(step.substep);
+        supports.begin(self.id, &motion, (&mass, centre, particles), step);
+        if supports.points.is_empty() {
             return None;
         }
-        let given = supports.end(centre);
-        let gone = self.hold(moving, particles, standing, [[body.go, body.turn]; 2]);
-        Some(Stood {
+        let ([body, released], pushed) = solve(supports, particles, (&mass, &motion));
+        if !(body.is_finite() && released.is_finite()) {
+            return None;
+        }
+        let given = supports.end([centre, Vec3::from(pose.translation).as_dvec3()]);
+        let place = [body.go + released.go, body.turn + released.turn];
+        let changes = [place[0], place[1], body.go, body.turn];
+        let before = self.change();
+        let gone = self.send_on(moving, step.substep, particles.substep(), changes);
+        self.add_held(before);
+        Some(StandingResult {
             gone,
             pushed,
             given,
         })
-    }
-
-    /// Finds the points where it stands as the sub-step ends. Returns its centre of mass and the origin of its shape (m).
-    fn begin_standing(
-        &self,
-        supports: &mut Supports,
-        particles: &ClothParticles,
-        moving: &MovingCollider,
-        standing: &Standing,
-    ) -> Option<[DVec3; 2]> {
-        let (pose, centre) = self.centre(moving, standing.substep.end());
-        let motion = moving.in_substep(standing.substep);
-        supports.begin(self.id, &motion, (self.mass(), centre, particles), standing);
-        let origin = Vec3::from(pose.translation).as_dvec3();
-        (!supports.points.is_empty()).then_some([centre, origin])
-    }
-
-    /// Moves it by a displacement and a rotation of its place, and of its velocity. Returns the largest displacement of any of
-    /// its points (m).
-    fn hold(
-        &mut self,
-        moving: &mut MovingCollider,
-        particles: &ClothParticles,
-        standing: &Standing,
-        [[go, turn], [push, spin]]: [[DVec3; 2]; 2],
-    ) -> f32 {
-        let before = self.change();
-        let changes = [go, turn, push, spin];
-        let gone = self.send_on(moving, standing.substep, particles.substep(), changes);
-        self.add_held(before);
-        gone
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     cloth::{ClothParticles, LANES, Slot},
     contact::{
         candidates::ContactBlock,
-        colliders::{MOST_POINTS, Manifold, ManifoldPoint, MovingCollider},
+        colliders::{MOST_POINTS, Manifold, ManifoldPoint, MovingCollider, moving_of},
         friction::Impulse,
     },
 };
@@ -192,7 +192,7 @@ impl Supports {
     }
 
     /// Whether something holds a body in this tick.
-    pub fn hold(&self, body: usize) -> bool {
+    pub fn is_held(&self, body: usize) -> bool {
         let mut own = self.stands.iter().filter(|stand| stand.body == body);
         own.any(|stand| stand.holds)
     }
@@ -206,7 +206,7 @@ impl Supports {
     ) -> Option<Vec3> {
         let mut own = self.stands.iter();
         let stand = own.find(|stand| stand.body == body && stand.holds)?;
-        let (_, ground) = colliders.iter().find(|(id, _)| *id == stand.ground)?;
+        let ground = moving_of(colliders, stand.ground)?;
         Some(ground.pose_at(passed).rotation * self.all[stand.supports.start].normal)
     }
 
@@ -228,7 +228,7 @@ impl Supports {
         nearest: impl Fn(usize, Vec3) -> f32,
     ) {
         self.hidden.clear();
-        if !self.hold(body) {
+        if !self.is_held(body) {
             return;
         }
         let within = FLAT * radius;
